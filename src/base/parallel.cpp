@@ -1,0 +1,42 @@
+#include "base/parallel.h"
+
+#include <memory>
+#include <pmmintrin.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <xmmintrin.h>
+
+namespace abbe {
+
+namespace {
+int chosenThreads = 0;
+std::unique_ptr<tbb::global_control> control;
+} // namespace
+
+void setThreadCount(int threads) {
+    chosenThreads = threads;
+    control.reset();
+    if (threads > 0)
+        control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                        static_cast<std::size_t>(threads));
+}
+
+int threadCount() { return chosenThreads > 0 ? chosenThreads : tbb::info::default_concurrency(); }
+
+void flushDenormals() {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+}
+
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            flushDenormals();
+            for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+        },
+        tbb::simple_partitioner{});
+}
+
+} // namespace abbe

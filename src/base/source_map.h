@@ -1,0 +1,44 @@
+// The texts of all files that were read, so that a Span can be shown as line, column and excerpt.
+#pragma once
+
+#include "base/source.h"
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+// Lines and columns count from 1; columns count characters (UTF-8 code points), not bytes.
+struct LineColumn {
+    std::uint32_t line = 0;
+    std::uint32_t column = 0;
+};
+
+// Owns paths and texts; texts never move, so string_views into them stay valid for the map's lifetime.
+// Not thread-safe while files are being added.
+class SourceMap {
+  public:
+    // Takes a text that is in memory already. `path` is shown as given.
+    FileId add(std::string path, std::string text);
+
+    std::string_view path(FileId) const;
+    std::string_view text(FileId) const;
+    std::string_view text(Span) const;
+    LineColumn lineColumn(FileId, std::uint32_t offset) const;
+    // The text of a line (from 1) without its line end.
+    std::string_view line(FileId, std::uint32_t line) const;
+    std::size_t fileCount() const { return files_.size(); }
+
+  private:
+    struct File {
+        std::string path;
+        std::string text;
+        mutable std::vector<std::uint32_t> lineStarts; // made on first use
+    };
+    const std::vector<std::uint32_t>& lineStarts(FileId) const;
+    std::deque<File> files_;
+};
+
+} // namespace abbe

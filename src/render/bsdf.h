@@ -1,0 +1,59 @@
+// Scattering at one point. Directions are local: +z is the shading normal, wo points towards the eye, wi is the new
+// direction. Both are unit vectors.
+#pragma once
+
+#include "base/flags.h"
+#include "math/vec.h"
+#include "spectrum/spectrum.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace abbe {
+
+enum class Lobe : std::uint8_t {
+    diffuse = 1,
+    glossy = 2,
+    delta = 4,
+    reflection = 8,
+    transmission = 16,
+    dispersive = 32, // direction or density depends on wavelength
+};
+using Lobes = Flags<Lobe>;
+
+// Which way the path runs: radiance from the eye, importance from a light. Refraction scales radiance by 1/η².
+enum class Transport : std::uint8_t { radiance, importance };
+
+// Value and density of a pair of directions; delta lobes are left out of both.
+struct BsdfEval {
+    Spectrum fcos; // f(wo, wi) |cos θi|, 1/sr
+    float pdfSolidAngle = 0;
+    // Density at each lane's wavelength over the hero's; 1 unless lobes() has dispersive.
+    Spectrum pdfRatio{1.f};
+};
+
+struct BsdfSample {
+    Vec3 wi;
+    Spectrum weight;         // fcos / density at the hero's wavelength (delta lobes: the ratio of the deltas)
+    float pdfSolidAngle = 0; // hero's; 0 is not returned. Delta lobes: probability of the lobe
+    Lobes lobe;
+    float eta = 1; // index ratio (transmitted side over incident side) crossed by a transmission; 1 otherwise
+    // As in BsdfEval. A *delta* transmission with Lobe::dispersive instead means that the other wavelengths would have
+    // gone elsewhere: the integrator ends them (docs/architecture.md, "Dispersion").
+    Spectrum pdfRatio{1.f};
+};
+
+// Lives in an Arena: trivially destructible, no longer than the vertex. Random choices between lobes that depend on
+// spectral values use the mean over the lanes, so that they are the same for all rotations of the hero [Wilkie2014].
+class Bsdf {
+  public:
+    virtual Lobes lobes() const noexcept = 0;
+    virtual BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept = 0;
+    // uLobe, u in [0, 1). Nothing: the path ends here (no direction, zero weight).
+    virtual std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept = 0;
+
+  protected:
+    ~Bsdf() = default; // never deleted through the base
+};
+
+} // namespace abbe

@@ -1,0 +1,26 @@
+// From a place on the film to a ray.
+#pragma once
+
+#include "render/ray.h"
+
+namespace abbe {
+
+struct CameraSample {
+    Vec2 film; // pixels from the upper left corner of the full frame; (0.5, 0.5) is the middle of the first pixel
+    Vec2 lens; // [0, 1)²
+    float time = 0;
+};
+
+struct CameraRay {
+    Ray ray;
+    float weight = 1; // vignetting and the like; 0: no light comes through
+};
+
+// Immutable, thread-safe. Render space has its origin at the camera (docs/conventions.md).
+class Camera {
+  public:
+    virtual ~Camera() = default;
+    virtual CameraRay ray(const CameraSample&) const noexcept = 0;
+};
+
+} // namespace abbe

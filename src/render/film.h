@@ -1,0 +1,49 @@
+// The image while it is being made: XYZ sums in double for every pixel and replicate.
+#pragma once
+
+#include "math/vec.h"
+
+#include <cstdint>
+
+namespace abbe {
+
+// CIE 1931 tristimulus values; see docs/conventions.md for their scale.
+struct Xyz {
+    double x = 0, y = 0, z = 0;
+
+    Xyz operator+(Xyz b) const { return {x + b.x, y + b.y, z + b.z}; }
+    Xyz operator*(double s) const { return {x * s, y * s, z * s}; }
+    Xyz& operator+=(Xyz b) { return *this = *this + b; }
+};
+
+// A place drawn from the pixel filter: offset from the pixel's centre in pixels, weight ±1 times a constant for filters
+// with negative lobes.
+struct FilterSample {
+    Vec2 offset;
+    float weight = 1;
+};
+
+// Half-open pixel rectangle.
+struct PixelBounds {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+    std::int64_t area() const { return static_cast<std::int64_t>(width()) * height(); }
+};
+
+// Replicates are independent randomisations of the sample set; their spread gives honest error bars for correlated
+// samples [Owen1997]. A pixel's samples go to that pixel alone (filter importance sampling [Ernst2006]), so threads
+// never share one, and the sum does not depend on their order.
+class Film {
+  public:
+    virtual ~Film() = default;
+    virtual PixelBounds bounds() const = 0;
+    virtual int replicates() const = 0;
+    virtual FilterSample filter(Vec2 u) const noexcept = 0;
+    // Adds the sum of `samples` samples to one replicate of a pixel within bounds().
+    virtual void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept = 0;
+    // Mean over all samples so far.
+    virtual Xyz mean(int x, int y) const noexcept = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,76 @@
+// An algorithm that turns a scene into an image.
+#pragma once
+
+#include "render/film.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+struct Scene;
+
+// The numbers a render is asked for. Defaults are documented in the schema of `render`.
+struct RenderSettings {
+    std::uint32_t samples = 64; // per pixel, all replicates together; rounded up to a multiple of the replicates
+    std::uint64_t seed = 0;
+    std::uint32_t maxDepth = 0; // 0: no limit
+    double noiseTarget = 0;     // relative error at which to stop (0.005 for 0.5 %); 0: none
+    double timeLimit = 0;       // s; 0: none
+    bool randomSampler = false; // plain random numbers instead of Owen-scrambled Sobol, for comparisons
+    enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
+};
+
+// Why samples were dropped.
+enum class DropCause : std::uint8_t { nan, infinite, negative };
+
+// A sample that can be repeated: `abbe render … --pixel x,y --sample i`.
+struct DroppedSample {
+    int x = 0, y = 0;
+    int replicate = 0;
+    std::uint32_t index = 0;
+    DropCause cause = DropCause::nan;
+};
+
+struct RenderStatistics {
+    std::uint64_t paths = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t shadowRays = 0;
+    std::uint64_t rays() const { return vertices + shadowRays; }
+    std::uint32_t samplesPerPixel = 0; // finished
+    std::array<std::uint64_t, 3> dropped{}; // by DropCause
+    std::vector<DroppedSample> examples;    // the first few
+    std::uint64_t cappedPaths = 0;          // reached the safety cap of 100 000 vertices
+    double seconds = 0;                     // wall clock
+    double coreSeconds = 0;                 // summed over threads
+    double noise = 0;                       // estimated relative error of the image
+    bool stopped = false;                   // by the caller
+    std::string kernel;                     // the instantiation that ran, e.g. "dispersion+absorption"
+};
+
+struct Progress {
+    double fraction = 0; // of the work that will end the render
+    std::uint32_t pass = 0, passes = 0;
+    std::uint32_t samplesPerPixel = 0, totalSamples = 0;
+    double noise = 0;          // relative; 0 while unknown
+    double pathsPerSecond = 0; // all threads
+    double elapsed = 0, left = -1; // s; left < 0: unknown yet
+};
+
+// How a caller watches and ends a render. Both are used from the calling thread or from workers, one at a time.
+struct RenderControl {
+    const std::atomic<bool>* stop = nullptr;       // set: finish the tiles in hand and return
+    std::function<void(const Progress&)> progress; // a few times a second
+};
+
+class Integrator {
+  public:
+    virtual ~Integrator() = default;
+    virtual RenderStatistics render(const Scene&, Film&, const RenderSettings&, const RenderControl&) const = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,25 @@
+// Rays against everything: the only way by which the path loop sees geometry.
+#pragma once
+
+#include "math/bounds.h"
+#include "render/ray.h"
+#include "render/surface_hit.h"
+
+#include <cstdint>
+
+namespace abbe {
+
+// Thread-safe. Rays that are not finite are never traced: they miss, and are counted.
+class Intersector {
+  public:
+    virtual ~Intersector() = default;
+    // Nearest hit in (0, tMax]; fills `hit` and returns true, or returns false.
+    virtual bool intersect(const Ray&, SurfaceHit& hit) const noexcept = 0;
+    // True if anything lies in (0, tMax).
+    virtual bool occluded(const Ray&) const noexcept = 0;
+    // Of all finite geometry (infinite planes left out), in render space.
+    virtual Bounds3 bounds() const = 0;
+    virtual std::uint64_t rejectedRays() const = 0;
+};
+
+} // namespace abbe

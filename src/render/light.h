@@ -1,0 +1,46 @@
+// Sources of light, as next-event estimation and BSDF sampling see them.
+#pragma once
+
+#include "math/bounds.h"
+#include "render/ray.h"
+#include "render/surface_hit.h"
+#include "spectrum/curve.h"
+
+#include <optional>
+
+namespace abbe {
+
+// Light arriving from one direction. Delta lights carry in `radiance` what a density of 1 makes right: intensity / d².
+struct LightSample {
+    Vec3 wi;                 // unit, towards the light
+    Vec3 p;                  // the point on the light, moved off its surface, for the shadow ray; unused at infinity
+    float distance = 0;      // to that point; infinite for distant lights
+    Spectrum radiance;       // W·m⁻²·sr⁻¹·nm⁻¹
+    float pdfSolidAngle = 0; // > 0
+    bool delta = false;      // cannot be met by chance: MIS weight 1
+};
+
+// Immutable once the scene is committed, thread-safe, render space.
+class Light {
+  public:
+    virtual ~Light() = default;
+    // Called once, after the bounds of all finite geometry are known and before anything else.
+    virtual void commit(const Bounds3&) {}
+    // Emitted power in W, for choosing lights. Infinite lights: through the scene's bounding disk.
+    virtual double power() const = 0;
+    // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
+    virtual bool infinite() const { return false; }
+    // Light that can arrive at `from`; nothing if none can. u in [0, 1)².
+    virtual std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept = 0;
+
+    // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which sample(from, ·)
+    // makes that point.
+    virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
+    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept = 0;
+
+    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and its density.
+    virtual Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept = 0;
+    virtual float pdfEscaped(Vec3 w) const noexcept = 0;
+};
+
+} // namespace abbe

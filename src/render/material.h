@@ -1,0 +1,24 @@
+// What a surface is made of: makes the Bsdf of a point.
+#pragma once
+
+#include "base/arena.h"
+#include "render/bsdf.h"
+#include "render/effects.h"
+#include "render/surface_hit.h"
+#include "spectrum/curve.h"
+
+namespace abbe {
+
+// Immutable after construction, thread-safe.
+class Material {
+  public:
+    virtual ~Material() = default;
+    // Read once, when the scene is built.
+    virtual Effects needs() const { return {}; }
+    // The scattering at a point; made in the arena. Never null.
+    virtual const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept = 0;
+    // Absorption coefficient inside closed shapes of this material, 1/m; null when clear.
+    virtual const Curve* absorption() const { return nullptr; }
+};
+
+} // namespace abbe

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "math/vec.h"
+
+namespace abbe {
+
+// Render space. `direction` is of unit length; `time` in [0, 1] of the shutter interval.
+struct Ray {
+    Vec3 origin;
+    Vec3 direction;
+    float tMax = kInfinity;
+    float time = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,28 @@
+// The built scene: inert data, owned here, const for everyone else.
+#pragma once
+
+#include "render/camera.h"
+#include "render/effects.h"
+#include "render/intersector.h"
+#include "render/light.h"
+#include "render/material.h"
+#include "render/shape.h"
+
+#include <memory>
+#include <vector>
+
+namespace abbe {
+
+struct Scene {
+    std::vector<std::unique_ptr<const Curve>> curves;
+    std::vector<std::unique_ptr<const Material>> materials;
+    std::vector<std::unique_ptr<const Shape>> shapes;
+    std::vector<std::unique_ptr<const Light>> lights; // committed
+    std::unique_ptr<const Intersector> intersector;   // refers to shapes, materials and lights
+    std::unique_ptr<const Camera> camera;
+    Effects effects;
+    std::vector<EffectReason> reasons;
+    Vec3d origin; // world position of the origin of render space
+};
+
+} // namespace abbe

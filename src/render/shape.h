@@ -1,0 +1,63 @@
+// Geometry that can be met by rays and, if it emits, be sampled.
+#pragma once
+
+#include "math/bounds.h"
+#include "render/ray.h"
+#include "render/surface_hit.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace abbe {
+
+// What the acceleration structure knows of a hit. `part` counts the sink calls of the shape's commit.
+struct RawHit {
+    float u = 0, v = 0;
+    float distance = 0;
+    std::uint32_t primitive = 0;
+    std::uint32_t part = 0;
+};
+
+// A point on a shape seen from somewhere. The density is per solid angle at that place.
+struct ShapeSample {
+    Vec3 p;
+    Vec3 pError;
+    Vec3 ng; // unit, outside
+    float pdfSolidAngle = 0;
+};
+
+class Shape;
+
+// Receives a shape's primitives. Data are copied or kept by reference until the shape is gone (see EmbreeScene).
+class GeometrySink {
+  public:
+    virtual ~GeometrySink() = default;
+    virtual void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) = 0;
+    virtual void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) = 0;
+    // One primitive that intersects itself through Shape::intersect.
+    virtual void analytic(const Bounds3&) = 0;
+};
+
+// Immutable after construction; methods are thread-safe and do not throw. Coordinates are those in which the shape was
+// made: render space, or an object's space under an instance.
+class Shape {
+  public:
+    virtual ~Shape() = default;
+    virtual Bounds3 bounds() const = 0;
+    virtual void commit(GeometrySink&) const = 0;
+    // Nearest hit in (0, ray.tMax] of an analytic primitive. Only called for parts given to GeometrySink::analytic.
+    virtual std::optional<RawHit> intersect(const Ray&) const { return std::nullopt; }
+    // Fills p, pError, ng, shading, uv and primitive of the hit.
+    virtual void surface(const RawHit&, const Ray&, SurfaceHit&) const = 0;
+
+    // What only emitters need. Area in m²; infinite for planes.
+    virtual double area() const = 0;
+    // A point seen from `from`, or nothing if none can be (degenerate, below). u in [0, 1)².
+    virtual std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const = 0;
+    // Density with which sample(from, ·) makes the point of `hit`, which lies on this shape; 0 if it cannot.
+    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,101 @@
+// The meaning layer: definitions with their types resolved against the TypeTable, ready to be bound to structs.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "schema/document.h"
+#include "schema/type.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace abbe::schema {
+
+// Colour space of `rgb` values; ids are those of the Color Interop Forum.
+enum class RgbSpace : std::uint8_t { linRec709, linRec2020, linP3D65, linAp1, linAp0 };
+std::optional<RgbSpace> findRgbSpace(std::string_view idOrAlias);
+std::string_view rgbSpaceId(RgbSpace);
+
+// `scene 1 length=mm rgb=acescg up=y`
+struct Header {
+    int edition = 1;
+    double length = 1; // metres per unit of a bare length
+    RgbSpace rgb = RgbSpace::linRec709;
+    bool zUp = false; // rotate the scene so that z is up
+    Span span;
+};
+
+// `kind [name] type [arguments] { properties }`, named or inline in a slot.
+struct Definition {
+    Kind kind = Kind::shape;
+    std::string name; // empty: unnamed
+    Span nameSpan;    // of the name, else of the keyword
+    Span span;        // of the head
+    const TypeInfo* type = nullptr;          // null for group, object, instance
+    std::vector<Value> arguments;            // after the type word
+    std::vector<Node> properties;            // everything in the block that is not a nested definition
+    std::vector<Definition> children;        // nested definitions of group and object
+    std::string target;                      // instance: the object it places
+    Span targetSpan;
+};
+
+// Everything that one file defines. Holds views into `document`.
+struct SceneTree {
+    Header header;
+    std::vector<Definition> definitions;
+    std::filesystem::path directory; // files are looked up here
+    std::shared_ptr<const Document> document;
+
+    const Definition* find(Kind, std::string_view name) const;
+};
+
+// The spectrum values of the language, as written and checked for arity and units, not yet a curve.
+struct SpectrumValue {
+    enum class Form : std::uint8_t {
+        flat,       // numbers = {value}
+        rgb,        // numbers = {r, g, b} linear in `space`
+        table,      // numbers = {nm, value, nm, value, …}; a file has been read into it
+        blackbody,  // numbers = {kelvin}
+        illuminant, // text = name
+        line,       // numbers = {nm} (a monochromatic line)
+        measured,   // text = name of a measured spectrum
+        glass,      // text = name of a dispersive index
+        metal,      // text = name; the real part n when used as a curve
+        sellmeier,  // numbers = {B1, C1, B2, C2, B3, C3}, C in µm²
+        cauchy,     // numbers = {A, B, …}: A + B/λ² + C/λ⁴, λ in µm
+    };
+    Form form = Form::flat;
+    std::vector<double> numbers;
+    std::string text;
+    RgbSpace space = RgbSpace::linRec709;
+    Span span;
+};
+
+// What binding needs from the scene that is being built.
+class Resolver {
+  public:
+    virtual ~Resolver() = default;
+    // The curve of a value in a role; null after a diagnostic (the field then stays unset).
+    virtual const Curve* curve(const SpectrumValue&, SpectrumRole, Diagnostics&) = 0;
+    // n and k of a metal by name; both null after a diagnostic.
+    virtual ComplexIndex metal(std::string_view name, Span, Diagnostics&) = 0;
+    // The index of a definition, building it first if need be; invalid after a diagnostic.
+    virtual Reference reference(const Definition&, Diagnostics&) = 0;
+};
+
+// First pass over a document: header, kinds, names, types. Unknown words are errors with a suggestion, names are
+// unique per kind, missing types get the kind's default.
+SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesystem::path directory, Diagnostics&);
+
+// Second pass: checks every property and argument of one definition against its type (names, units, ranges, arity,
+// groups, required ones, existing files) and stores what is given, and the defaults, into `params`.
+void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
+
+// The transform of a `transform { … }` block, top to bottom as applied to the object.
+Transform bindTransform(const Node& block, const Header&, Diagnostics&);
+
+// The names offered by `did you mean`: the nearest candidate within a third of the word's length, or empty.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
+
+} // namespace abbe::schema

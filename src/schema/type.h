@@ -1,0 +1,199 @@
+// Field tables: the one declaration of every parameter. Loading, checking, `explain`, the generated reference and the
+// editor grammar read them; nothing else lists names, units, ranges or defaults.
+#pragma once
+
+#include "base/source.h"
+#include "math/transform.h"
+#include "schema/unit.h"
+#include "spectrum/curve.h"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace abbe::schema {
+
+// What a definition can be. The keyword in a file is the enumerator's name.
+enum class Kind : std::uint8_t { camera, light, shape, group, object, instance, material, spectrum, film, render };
+std::string_view keyword(Kind);
+std::optional<Kind> findKind(std::string_view keyword);
+
+// What a spectrum is used for decides how it is checked and built.
+enum class SpectrumRole : std::uint8_t {
+    albedo,    // 0 … 1 at every wavelength; rgb is upsampled bounded
+    unbounded, // >= 0: scale factors, absorption; rgb is upsampled unbounded
+    emission,  // >= 0, energy-preserving tables; rgb is upsampled against the space's white
+    index,     // refractive index, > 0; rgb makes no sense
+    shape,     // >= 0, only its shape matters (a light's `color`): the user normalises it
+};
+
+// A number in SI units with the dimension that was written.
+struct Quantity {
+    double value = 0;
+    Dimension dimension = Dimension::none;
+    Span span;
+};
+
+// Polygons: counts[i] vertices of face i, all indices concatenated.
+struct IndexRows {
+    std::vector<std::uint32_t> counts;
+    std::vector<std::uint32_t> indices;
+};
+
+// A named or inline definition, resolved to the index its builder gave it.
+struct Reference {
+    std::uint32_t index = 0xffffffffu;
+    bool valid() const { return index != 0xffffffffu; }
+};
+
+// A word out of a list, with the number that may follow it (`filter gaussian 1.5`).
+struct Choice {
+    std::string word;
+    std::optional<double> number;
+};
+
+// A string with the keys its field allows (`output "a.exr" space=acescg`).
+struct Text {
+    std::string value;
+    std::vector<std::pair<std::string, std::string>> keys;
+    Span span;
+};
+
+// Metals are a pair of curves.
+struct ComplexIndex {
+    const Curve* n = nullptr;
+    const Curve* k = nullptr;
+};
+
+using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
+                                std::vector<double>, std::vector<Vec3d>, IndexRows, const Curve*, ComplexIndex,
+                                Reference, Transform>;
+
+enum class FieldType : std::uint8_t {
+    integer,      // -> std::int64_t
+    number,       // plain number, or a fraction where Dimension::fraction is listed -> double
+    quantity,     // number [unit] -> Quantity (or double/float members: SI value)
+    vector2,      // x y [unit] -> Vec2d
+    vector3,      // x y z [unit] -> Vec3d
+    toggle,       // on | off -> bool
+    choice,       // word out of `choices`, optionally a number -> Choice
+    text,         // string -> Text
+    file,         // path, looked up beside the scene file; must exist -> Text with the resolved path
+    points,       // x y z x y z … or a block of rows, in lengths unless `dimensions` is none -> std::vector<Vec3d>
+    numbers,      // flat list or rows -> std::vector<double>
+    indexRows,    // block of rows of integers -> IndexRows
+    spectrum,     // any spectrum value -> const Curve*
+    complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
+    reference,    // name or inline definition of `referenceKind` -> Reference
+    transform,    // block of translate/rotate/scale/matrix/look-at, top to bottom -> Transform
+};
+
+struct FieldKey {
+    std::string_view name;
+    std::vector<std::string_view> choices;
+    std::string_view doc;
+};
+
+struct FieldInfo {
+    std::string_view name;
+    FieldType type = FieldType::number;
+    std::string_view doc;     // one line, ends with a full stop
+    std::string_view example; // a line that parses: "lens 50 mm"
+    std::string defaultText;  // as it would be written; empty: no default (unset unless required)
+    std::vector<Dimension> dimensions = {Dimension::none}; // accepted; the first one is meant by a bare number
+    double lower = -std::numeric_limits<double>::infinity();
+    double upper = std::numeric_limits<double>::infinity();
+    SpectrumRole role = SpectrumRole::albedo;
+    Kind referenceKind = Kind::material;
+    std::vector<std::string_view> choices;
+    std::vector<FieldKey> keys;
+    std::vector<std::string_view> synonyms; // other renderers' names for it: suggested, never accepted
+    std::string_view group;                 // at most one field of a group may be set ("amount")
+    std::string_view note;                  // shown with a unit or range error
+    bool required = false;
+    int argument = -1; // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
+    std::function<void(void* params, const BoundValue&)> store;
+};
+
+struct TypeInfo {
+    Kind kind;
+    std::string_view name;
+    std::string_view doc;
+    std::string_view example; // a whole definition that parses
+    bool isDefault = false;   // taken when the kind stands without a type (camera: perspective)
+    std::vector<FieldInfo> fields;
+
+    const FieldInfo* find(std::string_view field) const;
+};
+
+// Fluent construction of one field. `Member` is stored from the matching BoundValue alternative; std::optional members
+// stay empty when unset. Float, double and integer members accept the alternatives of their field type.
+template <typename Params, typename Member>
+class Field {
+  public:
+    Field(FieldType type, std::string_view name, Member Params::* member) {
+        info_.type = type;
+        info_.name = name;
+        info_.store = [member](void* params, const BoundValue& value) {
+            assign(static_cast<Params*>(params)->*member, value);
+        };
+    }
+    Field& doc(std::string_view d) { return info_.doc = d, *this; }
+    Field& example(std::string_view e) { return info_.example = e, *this; }
+    Field& byDefault(std::string d) { return info_.defaultText = std::move(d), *this; }
+    Field& unit(std::vector<Dimension> d) { return info_.dimensions = std::move(d), *this; }
+    Field& range(double lower, double upper) { return info_.lower = lower, info_.upper = upper, *this; }
+    Field& role(SpectrumRole r) { return info_.role = r, *this; }
+    Field& to(Kind k) { return info_.referenceKind = k, *this; }
+    Field& choices(std::vector<std::string_view> c) { return info_.choices = std::move(c), *this; }
+    Field& key(FieldKey k) { return info_.keys.push_back(std::move(k)), *this; }
+    Field& synonyms(std::vector<std::string_view> s) { return info_.synonyms = std::move(s), *this; }
+    Field& group(std::string_view g) { return info_.group = g, *this; }
+    Field& note(std::string_view n) { return info_.note = n, *this; }
+    Field& required() { return info_.required = true, *this; }
+    Field& argument(int position) { return info_.argument = position, *this; }
+    operator FieldInfo() const { return info_; }
+
+  private:
+    template <typename M>
+    static void assign(M& member, const BoundValue& value) {
+        if constexpr (std::is_arithmetic_v<M>) {
+            if (const auto* d = std::get_if<double>(&value)) member = static_cast<M>(*d);
+            if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
+            if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
+            if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
+        } else if (const auto* same = std::get_if<M>(&value)) {
+            member = *same;
+        }
+    }
+    template <typename M>
+    static void assign(std::optional<M>& member, const BoundValue& value) {
+        assign(member.emplace(), value);
+    }
+    FieldInfo info_;
+};
+
+template <typename Params, typename Member>
+Field<Params, Member> field(FieldType type, std::string_view name, Member Params::* member) {
+    return {type, name, member};
+}
+
+// All types of all kinds, in the order of the manual. Assembled in one place (src/scene/registry.cpp).
+class TypeTable {
+  public:
+    void add(TypeInfo type) { types_.push_back(std::move(type)); }
+    const TypeInfo* find(Kind, std::string_view name) const;
+    const TypeInfo* defaultOf(Kind) const;
+    std::vector<const TypeInfo*> of(Kind) const;
+    const std::vector<TypeInfo>& all() const { return types_; }
+
+  private:
+    std::vector<TypeInfo> types_; // complete before the first pointer is taken
+};
+
+} // namespace abbe::schema
