@@ -2,19 +2,11 @@
 #pragma once
 
 #include "math/vec.h"
+#include "spectrum/xyz.h"
 
 #include <cstdint>
 
 namespace abbe {
-
-// CIE 1931 tristimulus values; see docs/conventions.md for their scale.
-struct Xyz {
-    double x = 0, y = 0, z = 0;
-
-    Xyz operator+(Xyz b) const { return {x + b.x, y + b.y, z + b.z}; }
-    Xyz operator*(double s) const { return {x * s, y * s, z * s}; }
-    Xyz& operator+=(Xyz b) { return *this = *this + b; }
-};
 
 // A place drawn from the pixel filter: offset from the pixel's centre in pixels, weight ±1 times a constant for filters
 // with negative lobes.
