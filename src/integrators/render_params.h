@@ -1,0 +1,24 @@
+// What `render { … }` says.
+#pragma once
+
+#include "render/integrator.h"
+#include "schema/type.h"
+
+namespace abbe {
+
+struct RenderParams {
+    schema::Choice integrator{"path", {}};
+    std::int64_t samples = 64;
+    std::int64_t seed = 0;
+    std::int64_t maxDepth = 0; // 0: no limit
+    std::int64_t replicates = 2;
+    double noise = 0;     // relative error to stop at; 0: none
+    double timeLimit = 0; // s; 0: none
+    schema::Choice sampler{"sobol", {}};
+    schema::Choice strategy{"mis", {}};
+};
+
+schema::TypeInfo renderType();
+RenderSettings renderSettings(const RenderParams&);
+
+} // namespace abbe

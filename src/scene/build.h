@@ -1,0 +1,52 @@
+// From the meaning of a file to a scene that can be rendered.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "film/film_params.h"
+#include "integrators/render_params.h"
+#include "render/scene.h"
+#include "schema/scene_tree.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// What the command line may change.
+struct BuildOptions {
+    std::string camera;                  // name; empty: the only or first one
+    std::optional<Vec2i> size;           // film size in pixels
+    std::optional<std::int64_t> samples;
+    std::optional<std::int64_t> seed;
+    std::optional<double> noise;         // relative
+    std::optional<double> timeLimit;     // s
+    bool geometry = true; // false: check only; no acceleration structure is built
+};
+
+// Facts for `abbe info` and the summary of a render.
+struct SceneFacts {
+    std::size_t shapes = 0, triangles = 0, quads = 0, analytic = 0, objects = 0, instances = 0;
+    std::size_t lights = 0, materials = 0;
+    Bounds3d bounds; // world space, m
+    struct LightFact {
+        std::string name, type;
+        double watts = 0, lumens = 0;
+    };
+    std::vector<LightFact> lightList;
+    std::vector<std::string> files; // read while building
+};
+
+struct BuiltScene {
+    Scene scene;
+    FilmParams film;
+    RenderParams render;
+    double exposure = 1; // factor from the camera's exposure in stops
+    SceneFacts facts;
+};
+
+// Builds everything, or returns what could be built together with errors in `diagnostics`: the caller must not render
+// a scene with errors. Never throws on bad input. Whole-scene sanity (no camera, no light, …) is checked here (E06xx).
+BuiltScene buildScene(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&);
+
+} // namespace abbe
