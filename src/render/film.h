@@ -36,6 +36,8 @@ class Film {
     virtual void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept = 0;
     // Mean over all samples so far.
     virtual Xyz mean(int x, int y) const noexcept = 0;
+    // Estimated relative error of the image from the spread of the replicates; 0 with a single replicate or sample.
+    virtual double relativeNoise() const = 0;
 };
 
 } // namespace abbe
