@@ -37,7 +37,8 @@ struct Key {
 class Document;
 class NodeRange;
 
-// A view of one node: kind words, property names and `-` rows are all nodes. Cheap to copy; valid while the Document is.
+// A view of one node: kind words, property names and `-` rows are all nodes. Cheap to copy; valid while the Document
+// is.
 class Node {
   public:
     std::string_view name() const;
@@ -51,6 +52,9 @@ class Node {
     std::span<const double> numbers() const; // requires allNumbers()
     std::span<const Key> keys() const;
     bool hasBlock() const;
+    // A syntax error was reported in its head and something of it was lost: what is missing or odd here is no new
+    // error.
+    bool damaged() const;
     NodeRange children() const;
 
   private:
@@ -104,7 +108,23 @@ class Document {
         std::uint32_t firstKey = 0, keyCount = 0;
         std::uint32_t firstChild = kNone, nextSibling = kNone;
         bool hasBlock = false;
+        bool damaged = false;
     };
+
+    // `param name value… ["doc"]`, taken out of the tree. `given` replaces the written value (`-D name=value`).
+    struct Parameter {
+        std::string_view name;
+        Span nameSpan;
+        std::vector<Value> written;
+        std::vector<Value> given;
+        std::string_view doc;
+        std::string_view defaultText; // as it stands in the file: "-32.9 deg"
+
+        const std::vector<Value>& values() const { return given.empty() ? written : given; }
+    };
+
+    // Every markStep-th packed number has its offset kept, so that the span of any of them is found in a few steps.
+    static constexpr std::size_t markStep = 64;
 
     NodeRange roots() const { return {this, nodes.empty() ? kNone : 0u}; }
     std::string_view intern(std::string text) { return pool.emplace_back(std::move(text)); }
@@ -112,7 +132,9 @@ class Document {
     std::vector<NodeRecord> nodes; // the first one is the first root
     std::vector<Value> values;
     std::vector<double> numbers;
+    std::vector<std::uint32_t> marks; // source offset of numbers[markStep * k]
     std::vector<Key> keys;
+    std::vector<Parameter> parameters;
     std::deque<std::string> pool;
     FileId file = FileId::none;
     std::string_view source; // the file's text, to recover the spans of packed numbers

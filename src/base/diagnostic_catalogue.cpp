@@ -1,0 +1,67 @@
+#include "base/diagnostic_catalogue.h"
+
+namespace abbe {
+
+namespace {
+
+// One entry per line. Ranges: E01 syntax, E02 names, E03 values and units, E04 files, E05 layers, E06 whole scene; W01
+// … W06 are the same as warnings.
+// clang-format off
+constexpr CodeInfo kCodes[] = {
+    // E01: syntax
+    {"E0101", "unexpected character", "The character has no meaning where it stands. Lists are written as plain values, `from 0 1 4`, without brackets, parentheses or commas."},
+    {"E0102", "a character that may not stand in a text", "Control characters, byte order marks inside the text and the Unicode characters that change the direction of writing are not allowed, because they can hide what a file says. Inside a quoted string write them as an escape: `\\u{200E}`."},
+    {"E0103", "a text has no end", "A quoted text ends on the line where it began. Add the closing `\"`; for a text of several lines use `\"\"\"`, each of the two on a line end of its own; a raw text `#\"…\"#` ends with as many `#` as it began with."},
+    {"E0104", "a comment has no end", "`/*` opens a comment that ends at the matching `*/`; such comments nest, so each inner `/*` needs a `*/` too."},
+    {"E0105", "a number and its unit are two words", "Write a space between a number and its unit, as the SI asks: `35 mm`, `3200 K`, `0.5 %`."},
+    {"E0106", "a number needs digits on both sides of its point", "Write `0.5` for `.5` and `1.0` or `1` for `1.`."},
+    {"E0107", "a bare keyword", "`true`, `false`, `null`, `inf` and `nan` are written with a `#`: `#true`. Switches of the scene language take the words `on` and `off`. A name that is spelled like a keyword needs quotes."},
+    {"E0108", "`#` does not begin a comment", "A comment begins with `//` and goes to the end of the line, or stands between `/*` and `*/`. `/-` in front of a node, a value or a block switches it off."},
+    {"E0109", "`{` stands on a line of its own", "A line end finishes a node, so the block must open on the line of the node it belongs to: `camera {`."},
+    {"E0110", "a block is not closed", "A `{` has no `}`. The place is found by comparing the indentation of closing braces with that of the lines that opened them."},
+    {"E0111", "a `}` closes nothing", "There is one `}` more than there are open blocks. An earlier block may have been closed twice."},
+    {"E0112", "a comma between values", "Values are separated by spaces: `rgb 0.8 0.2 0.1`. Decimals are written with a point."},
+    {"E0113", "`=` in the wrong place", "A property is separated from its value by a space: `fov 40 deg`. Only the keys at the end of a line have an equals sign, and always between a word and one value: `output \"a.exr\" space=acescg`."},
+    {"E0114", "text in single quotes", "Text is written in double quotes: `\"a.ply\"`. A single word needs no quotes."},
+    {"E0115", "unknown escape in a text", "The escapes are `\\n \\r \\t \\\\ \\\" \\b \\f \\s`, `\\u{1F600}` and a backslash before white space, which removes it. In file names write `/`, or double the backslash, or use a raw text: `#\"C:\\scenes\\a.ply\"#`."},
+    {"E0116", "a text of several lines is laid out wrongly", "After the opening `\"\"\"` comes a line end, and the closing `\"\"\"` stands alone on its line. The white space before the closing quotes is removed from every line, so every line that is not empty must begin with it."},
+    {"E0117", "this is not a number", "A word that begins with a digit must be a number: `12`, `-0.5`, `1.5e-3`, `1_000_000`, `0xff`, `0o17`, `0b101`. A name that begins with a digit needs quotes; a fraction too: `\"1/48\"`."},
+    {"E0118", "the number is too large", "Numbers are stored as 64-bit floating point, whose largest value is about 1.8e308."},
+    {"E0119", "blocks are nested too deeply", "At most 256 blocks may stand inside each other."},
+    {"E0120", "a space is missing", "Values, keys and blocks are separated by at least one space."},
+    {"E0121", "a node begins with a word", "Every line begins with a word (or a quoted text) that says what it is; rows of numbers begin with `-`: `- 0 1 4`."},
+    {"E0122", "`/-` has nothing to switch off", "`/-` removes the node, value, key or block that follows it. Only one `/-` may stand before each of them, and none between a key and its value."},
+    {"E0123", "parentheses hold only a type annotation", "KDL allows one word in parentheses before a name or value, `(u8)12`; the scene language ignores it. There are no function calls: write `rgb 0.8 0.2 0.1`."},
+    {"E0124", "something stands after a block", "A node ends with its block. Begin the next node on a new line or after a `;`, and write all values before the block."},
+    {"E0125", "unknown keyword", "The words that begin with `#` are `#true`, `#false`, `#null`, `#inf`, `#-inf` and `#nan`. Colours as hexadecimal digits are texts: `\"#d87040\"`."},
+    {"E0199", "too many syntax errors", "After a thousand syntax errors no more are listed. Probably this is not a scene file."},
+    {"W0101", "a key is given twice", "The last of several equal keys on a node counts; the others have no effect."},
+    // E02: names
+    {"E0204", "no parameter has this name", "`$name` stands for the value of `param name value`, which must be written at the top level of the same file."},
+    {"E0220", "a parameter is defined twice", "Every `param` name may be defined once. To change its value from outside use `-D name=value`."},
+    {"E0221", "a parameter of the command line does not exist", "`-D name=value` replaces the value of `param name …` in the scene; `abbe info` lists the parameters of a scene."},
+    {"E0222", "a parameter is not complete", "Write `param name value`, with a unit where there is one and a text in quotes at the end that explains it: `param yaw 25 deg \"turntable angle\"`. A parameter has no block and no keys."},
+    {"E0223", "a parameter refers to a parameter", "The value of a parameter is a literal: numbers, words or texts. There are no expressions in a scene file."},
+    {"E0224", "a key takes one value", "A parameter that holds several values, such as a number and its unit, cannot be the value of a key, `key=$name`."},
+    {"W0205", "a parameter is never used", "No `$name` refers to this `param`. Remove it, or switch it off with `/-`."},
+    // E03: values and units
+    // E04: files
+    {"E0410", "the scene file cannot be read", "The file does not exist, is a directory, or its permissions forbid reading it."},
+    {"E0411", "the scene file is too large", "Scene files are limited to 4 GiB of text. Keep meshes in PLY or OBJ files and volumes in VDB files."},
+    {"E0412", "the file is not UTF-8 text", "Scene files are UTF-8. Save the file again with that encoding; binary files are named in a scene, not read as one."},
+    // E05: layers
+    // E06: whole scene
+};
+// clang-format on
+
+} // namespace
+
+const CodeInfo* findCode(std::string_view code) {
+    for (const CodeInfo& info : kCodes)
+        if (info.code == code) return &info;
+    return nullptr;
+}
+
+std::span<const CodeInfo> allCodes() { return kCodes; }
+
+} // namespace abbe
