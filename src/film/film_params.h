@@ -1,0 +1,50 @@
+// What `film { … }` says.
+#pragma once
+
+#include "film/pixel_filter.h"
+#include "render/film.h"
+#include "schema/type.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+struct FilmParams {
+    Vec2d size{1280, 720};                        // pixels
+    std::optional<std::vector<double>> crop;      // x0 y0 x1 y1, half-open, pixels from the top left
+    schema::Choice filter{"blackman-harris", {}}; // radius in pixels; unset: defaultRadius of the filter
+    schema::Text output;                          // empty: named after the scene
+};
+
+schema::TypeInfo filmType();
+
+// Linear RGB encodings of the written image.
+enum class OutputSpace : std::uint8_t { aces2065_1, acescg };
+
+// FilmParams as the renderer uses them.
+struct FilmSettings {
+    int width = 0, height = 0; // pixels
+    PixelBounds crop;          // what is rendered; within 0 0 width height
+    FilterShape filter = FilterShape::blackmanHarris;
+    double filterRadius = 0; // pixels
+    std::string output;      // path; empty: named after the scene
+    OutputSpace space = OutputSpace::aces2065_1;
+    std::string compression = "zip"; // as in the scene; a name of io/exr_writer.h
+    bool half = false;
+};
+
+// A rule that the field table cannot express, broken by the value of `field`.
+struct FilmFault {
+    std::string_view field;
+    std::string message; // one sentence, lower case
+    std::string help;
+};
+std::vector<FilmFault> findFaults(const FilmParams&);
+
+// Requires findFaults(params).empty().
+FilmSettings filmSettings(const FilmParams& params);
+
+} // namespace abbe

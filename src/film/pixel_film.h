@@ -1,0 +1,68 @@
+// The film of the renderer: 28 bytes per pixel and replicate, and no other plane of the image's size.
+#pragma once
+
+#include "film/pixel_filter.h"
+#include "math/vec.h"
+#include "render/film.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace abbe {
+
+// Rows of a 3×3 matrix from XYZ to linear RGB.
+using XyzToRgb = std::array<Vec3d, 3>;
+
+// Planes of the film's bounds, row by row from the top.
+struct ResolvedImage {
+    PixelBounds bounds;
+    std::vector<float> r, g, b;
+    std::vector<float> variance; // of the mean's Y, scaled like it; empty without replicates
+};
+
+class PixelFilm final : public Film {
+  public:
+    // `bounds` is the part of the image that is made (the crop). Requires a non-empty one and replicates >= 1.
+    // Throws std::bad_alloc.
+    PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates);
+    // What a film of this size takes.
+    static std::uint64_t memoryBytes(PixelBounds, int replicates);
+
+    PixelBounds bounds() const override { return bounds_; }
+    int replicates() const override { return replicates_; }
+    FilterSample filter(Vec2 u) const noexcept override { return filter_.sample(u); }
+    // Different pixels may be added to from different threads at once.
+    void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept override;
+    Xyz mean(int x, int y) const noexcept override;
+    std::uint64_t samples(int x, int y) const noexcept;
+
+    // Variance of mean(x, y).y, unbiased for replicates of equal size: s²/R of the R replicate means, hence R − 1
+    // degrees of freedom: a 95 % interval is ± studentFactor95(R − 1) standard errors. Nothing unless two replicates
+    // have samples.
+    std::optional<double> variance(int x, int y) const noexcept;
+    // Mean of variance() over the (2 radius + 1)² pixels around, as far as they are inside: with two replicates a
+    // single pixel's estimate has one degree of freedom and is useless alone, 7×7 of them have up to 49.
+    std::optional<double> pooledVariance(int x, int y, int radius = 3) const noexcept;
+
+    // √ mean over pixels of variance/(Y² + ε), ε = 0.01 (image mean of Y)²: the square root of the expected relMSE.
+    // Pixels without a variance are left out; 0 if there is none. No thread may be adding.
+    double relativeNoise() const override;
+
+    // Linear RGB of mean · scale; negative components stay. No thread may be adding. Pixels without samples are black.
+    ResolvedImage resolve(const XyzToRgb&, double scale) const;
+
+  private:
+    std::size_t pixelIndex(int x, int y) const noexcept;
+
+    PixelBounds bounds_;
+    int replicates_;
+    PixelFilter filter_;
+    std::vector<Xyz> sums_;              // [pixel][replicate]
+    std::vector<std::uint32_t> samples_; // [pixel][replicate]
+};
+
+// Two-sided 95 % quantile of Student's t; requires degreesOfFreedom >= 1.
+double studentFactor95(int degreesOfFreedom);
+
+} // namespace abbe

@@ -1,0 +1,53 @@
+// OpenEXR output.
+#pragma once
+
+#include "io/image.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace abbe {
+
+enum class ExrCompression : std::uint8_t { none, rle, zips, zip, piz, pxr24, dwaa, dwab };
+// By the name in a scene file, which is the enumerator's.
+std::optional<ExrCompression> findExrCompression(std::string_view name);
+
+// One fact about how an image was made. Numbers beyond int are given as text.
+struct ImageAttribute {
+    std::string name;
+    std::variant<std::string, int, double> value;
+};
+
+// A plane of the data window, row by row from the top.
+struct ExrChannel {
+    std::string name;
+    std::span<const float> values;
+};
+
+struct ExrPicture {
+    PixelWindow window;  // data window: the rendered part
+    PixelWindow display; // the whole picture
+    std::span<const float> r, g, b;
+    std::vector<ExrChannel> more; // "variance.Y", …; always float
+    Chromaticities chromaticities;
+    ExrCompression compression = ExrCompression::zip;
+    bool half = false; // R G B in 16 bits
+    std::vector<ImageAttribute> attributes;
+};
+
+struct ExrReport {
+    std::uint64_t halfOverflows = 0;  // finite values beyond ±65504, written as ±65504
+    std::uint64_t halfUnderflows = 0; // non-zero values that became 0
+    bool acesContainer = false;       // the file obeys SMPTE ST 2065-4 and says so
+    std::vector<std::string> leftOut; // channels that an ACES container cannot hold
+};
+
+// Half, uncompressed, AP0: the picture is written as an ACES container (SMPTE ST 2065-4) with R G B alone.
+// The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
+ExrReport writeExr(const std::string& path, const ExrPicture&);
+
+} // namespace abbe
