@@ -1,0 +1,63 @@
+// How much a light emits: one stated quantity and the shape of its spectrum, turned into absolute spectral radiance.
+// Luminous quantities use 683 lm/W and the CIE 1931 observer, radiant ones the integral over [360, 830] nm.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "base/flags.h"
+#include "schema/type.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace abbe {
+
+// At most one of the first five is set (the schema's group "amount").
+struct AmountParams {
+    std::optional<schema::Quantity> power;      // W or lm
+    const Curve* radiance = nullptr;            // W·m⁻²·sr⁻¹·nm⁻¹
+    std::optional<schema::Quantity> luminance;  // cd/m²
+    std::optional<schema::Quantity> intensity;  // cd
+    std::optional<schema::Quantity> irradiance; // lx or W/m²
+    const Curve* color = nullptr;               // any scale; null: the default of LightContext
+
+    bool stated() const { return power || radiance || luminance || intensity || irradiance; }
+};
+
+// The quantities that make sense for a type of light.
+enum class AmountField : std::uint8_t { power = 1, radiance = 2, luminance = 4, intensity = 8, irradiance = 16 };
+using AmountFields = Flags<AmountField>;
+
+// A curve times a number.
+struct ScaledCurve {
+    const Curve* curve = nullptr; // not owned
+    double scale = 0;
+
+    Spectrum at(const Wavelengths& w) const noexcept { return curve->at(w) * static_cast<float>(scale); }
+    double at(double nanometres) const { return curve->at(nanometres) * scale; }
+};
+
+// ∫ s(λ) dλ over [360, 830] nm.
+double radiantIntegral(const Curve&);
+// 683 lm/W ∫ s(λ) ȳ(λ) dλ.
+double luminousIntegral(const Curve&);
+
+// The k for which `factor` times the integral of k s(λ) — radiant or luminous, as the quantity's dimension says — is
+// the quantity. Nothing if the spectrum has no such light.
+// Requires: factor > 0.
+std::optional<double> scaleFor(const schema::Quantity&, const Curve& shape, double factor);
+
+// What the geometry of a light makes of its radiance (point and spot: of its intensity on the axis).
+struct EmitterFactors {
+    double power = 0;      // flux over radiance, m²·sr, or over intensity, sr
+    double irradiance = 0; // sr
+};
+
+// The absolute spectrum of a light: radiance, or intensity for lights without extent. Says what is missing, set twice
+// over or without effect; nothing after an error. Requires: params.stated().
+std::optional<ScaledCurve> absoluteSpectrum(const AmountParams&, const Curve& defaultColor, const EmitterFactors&, Span,
+                                            Diagnostics&);
+
+// The error of a light that states no amount.
+void reportMissingAmount(AmountFields, Span, Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,39 @@
+// A shape that emits the same radiance from all its points in all directions of its outer side.
+#pragma once
+
+#include "lights/amount.h"
+#include "render/light.h"
+#include "render/shape.h"
+
+#include <memory>
+
+namespace abbe {
+
+class AreaLight final : public Light {
+  public:
+    // The shape is in render space; shape and curve outlive the light.
+    AreaLight(const Shape&, ScaledCurve radiance, bool twoSided);
+
+    // Infinite planes cannot be sampled: 0, so that they are never chosen.
+    double power() const override { return power_; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept override;
+    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3) const noexcept override { return 0; }
+
+  private:
+    bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
+    const Shape& shape_;
+    ScaledCurve radiance_;
+    double power_;
+    bool twoSided_;
+};
+
+struct LightContext;
+struct AreaLightParams;
+
+// A light over a shape that the caller has built. Null after an error.
+std::unique_ptr<Light> makeAreaLight(const AreaLightParams&, const Shape&, const LightContext&, Diagnostics&);
+
+} // namespace abbe

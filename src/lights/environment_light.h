@@ -1,0 +1,85 @@
+// Light from a latitude–longitude image of everything around the scene.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "math/distribution_2d.h"
+#include "math/frame.h"
+#include "render/light.h"
+
+#include <memory>
+#include <vector>
+
+namespace abbe {
+
+// Linear RGB, row by row from the top. The image shows the surroundings unmirrored: its middle lies in the direction
+// -z (north; +y in a z-up scene), its right half towards +x (east), its first row at the zenith.
+struct EnvironmentImage {
+    int width = 0, height = 0;
+    std::vector<float> rgb; // 3 width height values
+};
+
+// From linear RGB to spectral radiance: linear in the scale of the triple, and white (1, 1, 1) has Y = 1 in the scale
+// of spectrum/observer.h. Called for every ray that leaves the scene.
+class RgbRadiance {
+  public:
+    virtual ~RgbRadiance() = default;
+    // Requires: components finite and >= 0.
+    virtual Spectrum at(Vec3 rgb, const Wavelengths&) const noexcept = 0;
+};
+
+struct EnvironmentLightParams {
+    schema::Text image;                        // resolved path; key `space`
+    std::optional<schema::Quantity> luminance; // cd/m² of a texel of (1, 1, 1); default: 683 ∫ȳ dλ = 72 983
+    double exposure = 0;                       // stops, on top of that
+    Transform transform;                       // light to parent; a rotation, mirrored or not, and a uniform scale
+};
+
+schema::TypeInfo environmentLightType();
+
+// Radiance is interpolated bilinearly between the centres of the texels, in RGB, and upsampled after.
+class EnvironmentLight final : public Light {
+  public:
+    // `compensated` takes the mean radiance off the sampling density [Karlik2019]: better, but only right beside BSDF
+    // sampling, as dim directions are then never sampled from here. `toRender` turns the image's axes (+y its zenith)
+    // into render space; its matrix is orthogonal. Requires: a checked image, scale >= 0.
+    EnvironmentLight(EnvironmentImage, std::unique_ptr<const RgbRadiance>, double scale, const Transform& toRender,
+                     bool compensated);
+
+    void commit(const Bounds3&) override;
+    double power() const override { return power_; } // 0: all texels are black, and the light must be left out
+    bool infinite() const override { return true; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
+    Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept override;
+    float pdfEscaped(Vec3 w) const noexcept override;
+
+  private:
+    Vec2 imagePoint(Vec3 local) const noexcept;
+    Vec3 texel(int column, int row) const noexcept;
+    Vec3 lookup(Vec2 point) const noexcept;
+    Distribution2D density(bool compensated) const;
+    double cellSolidAngle(int row) const noexcept;
+    double meanRadiantExitance() const;
+
+    EnvironmentImage image_;
+    std::unique_ptr<const RgbRadiance> upsampling_;
+    float scale_;
+    Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
+    std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
+    Distribution2D distribution_;
+    double fluence_; // ∫∫ L dω dλ, W/m²
+    double power_;
+};
+
+// Rejects sizes that do not fit, values that are not finite, and counts negative ones, which are set to zero with a
+// warning. False after an error.
+bool checkEnvironmentImage(EnvironmentImage&, Span, Diagnostics&);
+
+// Null after an error. `white` is the absolute meaning of the image's (1, 1, 1) through RgbRadiance.
+std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,
+                                            std::unique_ptr<const RgbRadiance>, bool compensated, const LightContext&,
+                                            Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,40 @@
+// Light from one point, equal in all directions.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "render/light.h"
+
+#include <memory>
+
+namespace abbe {
+
+struct PointLightParams : AmountParams {
+    Vec3d position;
+    Transform transform; // light to parent
+};
+
+schema::TypeInfo pointLightType();
+
+class PointLight final : public Light {
+  public:
+    // Intensity in W·sr⁻¹·nm⁻¹; the curve outlives the light.
+    PointLight(Vec3 position, ScaledCurve intensity);
+
+    double power() const override { return power_; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3) const noexcept override { return 0; }
+
+  private:
+    Vec3 position_;
+    ScaledCurve intensity_;
+    double power_;
+};
+
+// Null after an error.
+std::unique_ptr<Light> makePointLight(const PointLightParams&, const LightContext&, Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,42 @@
+// The same radiance from everywhere.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "render/light.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Without an amount: kDefaultSkyLuminance.
+struct SkyLightParams : AmountParams {};
+
+inline constexpr double kDefaultSkyLuminance = 20000; // cd/m²: a bright hazy sky
+
+schema::TypeInfo skyLightType();
+
+class SkyLight final : public Light {
+  public:
+    // The curve outlives the light.
+    explicit SkyLight(ScaledCurve radiance);
+
+    void commit(const Bounds3&) override;
+    double power() const override { return power_; }
+    bool infinite() const override { return true; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths& lambda) const noexcept override { return radiance_.at(lambda); }
+    float pdfEscaped(Vec3) const noexcept override;
+
+  private:
+    ScaledCurve radiance_;
+    double radiant_; // W·m⁻²·sr⁻¹
+    double power_;
+};
+
+// Null after an error.
+std::unique_ptr<Light> makeSkyLight(const SkyLightParams&, const LightContext&, Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,52 @@
+// Light from one point into a cone: even inside the inner angle, falling smoothly to nothing at the outer one.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "render/light.h"
+
+#include <memory>
+
+namespace abbe {
+
+struct SpotLightParams : AmountParams {
+    Vec3d position;
+    std::optional<Vec3d> lookAt;      // a point on the axis
+    std::optional<Vec3d> toward;      // or its direction; without both: 0 0 -1
+    double angle = kPiD / 4;          // rad, full angle of the outer cone
+    std::optional<double> innerAngle; // rad, full; 0.8 of `angle` when not given
+    Transform transform;              // light to parent
+};
+
+schema::TypeInfo spotLightType();
+
+class SpotLight final : public Light {
+  public:
+    // `axis` is a unit vector, the half angles are in rad, 0 <= inner <= outer <= π, outer > 0. Intensity on the axis
+    // in W·sr⁻¹·nm⁻¹; the curve outlives the light.
+    SpotLight(Vec3 position, Vec3 axis, double innerHalfAngle, double outerHalfAngle, ScaledCurve intensity);
+
+    // ∫ falloff dω, sr.
+    static double solidAngle(double innerHalfAngle, double outerHalfAngle);
+
+    double power() const override { return power_; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3) const noexcept override { return 0; }
+
+  private:
+    float falloff(Vec3 w) const noexcept; // w leaves the light
+    Vec3 position_;
+    Vec3 axis_;
+    float innerOneMinusCos_;
+    float outerOneMinusCos_;
+    ScaledCurve intensity_;
+    double power_;
+};
+
+// Null after an error.
+std::unique_ptr<Light> makeSpotLight(const SpotLightParams&, const LightContext&, Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,56 @@
+// A distant disk of even radiance, or a single direction when its diameter is zero.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "math/frame.h"
+#include "render/light.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Without `toward`, `elevation` and `azimuth`: 45° high in the south-east.
+struct SunLightParams : AmountParams {
+    std::optional<Vec3d> toward;                // direction in which the light travels
+    std::optional<double> elevation;            // rad above the horizon
+    std::optional<double> azimuth;              // rad clockwise from north, seen from above
+    double angularDiameter = 0.53 * kPiD / 180; // rad
+    Transform transform;                        // light to parent; only its rotation matters
+};
+
+schema::TypeInfo sunLightType();
+
+class SunLight final : public Light {
+  public:
+    // Disks of a smaller half angle (rad) are single directions: float directions cannot resolve them.
+    static constexpr double kSmallestHalfAngle = 1e-5;
+
+    // `direction` points to the sun. Spectral irradiance in W·m⁻²·nm⁻¹ on a surface that faces it; the curve outlives
+    // the light. Requires: halfAngle in [0, π/2].
+    SunLight(Vec3d direction, double halfAngle, ScaledCurve irradiance);
+
+    void commit(const Bounds3&) override;
+    double power() const override { return power_; }
+    bool infinite() const override { return !delta_; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
+    Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept override;
+    float pdfEscaped(Vec3 w) const noexcept override;
+
+  private:
+    bool inside(Vec3 w) const noexcept;
+    Frame frame_; // z points to the sun
+    bool delta_;
+    float oneMinusCos_;    // of the half angle
+    float pdf_;            // 1/sr
+    ScaledCurve radiance_; // irradiance for a delta light
+    double irradiance_;    // W/m²
+    double power_;
+};
+
+// Null after an error.
+std::unique_ptr<Light> makeSunLight(const SunLightParams&, const LightContext&, Diagnostics&);
+
+} // namespace abbe
