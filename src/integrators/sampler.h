@@ -19,7 +19,8 @@ struct VertexSample {
 // Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first sixteen
 // dimensions are joint: film 0-1, light and BSDF of the first vertex 2-5, lens 6-7, wavelength 8, time 9, light and
 // lobe choice of the first vertex 10-11, light and BSDF of the second vertex 12-15. Every later vertex has an
-// independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5), which also serves the choices of the second.
+// independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5), which also serves the choices of the
+// second.
 class Sampler final {
   public:
     // `random`: independent random numbers instead, for comparison.
@@ -48,7 +49,8 @@ class Sampler final {
     // For Russian roulette: independent of all other numbers. The survival probability depends on earlier samples of
     // the pixel, and a number that shared their stratification would correlate with it and bias the estimate.
     float roulette(std::uint32_t depth) const {
-        return unitFloat(static_cast<std::uint32_t>(combine64(stream_ ^ 0x5bd1e995u, (std::uint64_t{index_} << 32) | depth) >> 32));
+        return unitFloat(
+            static_cast<std::uint32_t>(combine64(stream_ ^ 0x5bd1e995u, (std::uint64_t{index_} << 32) | depth) >> 32));
     }
 
   private:

@@ -34,8 +34,7 @@ inline UInt8 reverseBits(UInt8 x) {
 
 // Laine and Karras' hash with Vegdahl's constants [Vegdahl2021]: on bit-reversed values a nested uniform (Owen)
 // scramble. Word is std::uint32_t or UInt8.
-template <typename Word>
-inline Word owenScrambleReversed(Word x, Word seed) {
+template <typename Word> inline Word owenScrambleReversed(Word x, Word seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -62,7 +61,7 @@ inline void scrambledSobol8(std::uint32_t shuffled, std::uint32_t seed, int firs
     for (std::uint32_t b = shuffled; b != 0; b &= b - 1)
         bits ^= *reinterpret_cast<const UInt8*>(kSobolDirections.rows[std::countr_zero(b)] + first);
     const UInt8 lane = {1, 2, 3, 4, 5, 6, 7, 8};
-    const UInt8 seeds = mixLanes(UInt8{} + seed ^ ((lane + static_cast<std::uint32_t>(first)) * 0x85ebca6bu));
+    const UInt8 seeds = mixLanes((UInt8{} + seed) ^ ((lane + static_cast<std::uint32_t>(first)) * 0x85ebca6bu));
     bits = reverseBits(owenScrambleReversed(bits, seeds)) >> 8;
     using Int8v = std::int32_t __attribute__((vector_size(32)));
     using Float8v = float __attribute__((vector_size(32)));

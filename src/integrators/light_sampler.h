@@ -1,0 +1,41 @@
+// Which light to ask: discrete probabilities fixed for the whole render.
+#pragma once
+
+#include "render/light.h"
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace abbe {
+
+struct PickedLight {
+    const Light* light = nullptr;
+    float probability = 0;
+};
+
+// Half of the picks go by power, half evenly: power alone would starve a dim lamp near the camera when a bright sky is
+// outside the room. Refers to the scene's lights, which must outlive it.
+class LightSampler {
+  public:
+    explicit LightSampler(const std::vector<std::unique_ptr<const Light>>&);
+
+    bool empty() const { return lights_.empty(); }
+    bool needsChoice() const { return lights_.size() > 1; }
+    // Requires !empty(); u in [0, 1).
+    PickedLight pick(float u) const noexcept;
+    // Probability with which `light`, one of the scene's, is picked.
+    float probability(const Light* light) const noexcept;
+    // Lights that rays which leave the scene meet.
+    const std::vector<const Light*>& infinite() const { return infinite_; }
+
+  private:
+    std::vector<const Light*> lights_;
+    std::vector<double> cumulative_; // of probability_, ends at 1
+    std::vector<float> probability_;
+    std::vector<const Light*> infinite_;
+    std::unordered_map<const Light*, float> byLight_;
+};
+
+} // namespace abbe

@@ -1,0 +1,49 @@
+// What a path carries from vertex to vertex. Members of effects that a scene lacks do not exist.
+#pragma once
+
+#include "render/effects.h"
+#include "render/surface_hit.h"
+#include "spectrum/curve.h"
+
+#include <type_traits>
+
+namespace abbe {
+
+// Effects as a template argument.
+using EffectBits = std::uint8_t;
+
+constexpr bool hasEffect(EffectBits bits, Effect e) { return (bits & static_cast<EffectBits>(e)) != 0; }
+
+namespace path_detail {
+struct Nothing {};
+// Densities of the path so far at each lane's wavelength over that at the hero's: q_j / q_h [Wilkie2014, eq. 5]. The
+// estimate divides by their mean; they stay 1 until a density depends on wavelength.
+struct SpectralDensities {
+    Wavelengths film;             // the wavelengths that the film sees: those at the start of the path
+    Spectrum unidirectional{1.f}; // all vertices
+    Spectrum before{1.f};         // without the last scattering: what next-event estimation shares
+    bool heroOnly = false;        // the secondary wavelengths have ended
+};
+// The curve of absorption of the medium around the present segment; null in air.
+struct Interior {
+    const Curve* absorption = nullptr;
+};
+} // namespace path_detail
+
+template <EffectBits E> struct PathState {
+    Wavelengths lambda;
+    Spectrum beta{1.f};     // f / q_h: throughput over the hero's density
+    Spectrum radiance{0.f}; // estimate of the radiance at the eye, per lane of the film's wavelengths
+    Vec3 from;              // the last vertex, for the densities of lights
+    float bsdfPdf = 1;      // density of the last direction; 1 at the eye
+    bool delta = true;      // the last direction came from a delta lobe (or the eye): no other technique finds it
+    float etaScale = 1;     // what refraction has scaled radiance by, undone for roulette
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::dispersion), path_detail::SpectralDensities,
+                                             path_detail::Nothing>
+        densities;
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::absorption), path_detail::Interior,
+                                             path_detail::Nothing>
+        interior;
+};
+
+} // namespace abbe

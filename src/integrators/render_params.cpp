@@ -1,0 +1,83 @@
+#include "integrators/render_params.h"
+
+namespace abbe {
+
+using namespace schema;
+
+TypeInfo renderType() {
+    using P = RenderParams;
+    return {Kind::render,
+            "settings",
+            "How long and by which means to render.",
+            "render { samples 256; noise 0.5 % }",
+            true,
+            {
+                field(FieldType::choice, "integrator", &P::integrator)
+                    .choices({"path"})
+                    .byDefault("path")
+                    .doc("Algorithm: path tracing with next-event estimation.")
+                    .example("integrator path"),
+                field(FieldType::integer, "samples", &P::samples)
+                    .range(1, 4294967295.0)
+                    .byDefault("64")
+                    .synonyms({"spp", "pixelsamples", "sample_count"})
+                    .doc("Samples per pixel; the render ends here unless another goal is met before.")
+                    .example("samples 256"),
+                field(FieldType::quantity, "noise", &P::noise)
+                    .unit({Dimension::fraction})
+                    .range(0, 1)
+                    .byDefault("0 %")
+                    .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
+                    .doc("Relative error of the image at which to stop; 0: none.")
+                    .example("noise 0.5 %"),
+                field(FieldType::quantity, "time-limit", &P::timeLimit)
+                    .unit({Dimension::time})
+                    .range(0, 1e9)
+                    .byDefault("0 s")
+                    .doc("Wall-clock time after which to stop; 0: none.")
+                    .example("time-limit 45 min"),
+                field(FieldType::integer, "max-depth", &P::maxDepth)
+                    .range(0, 100000)
+                    .byDefault("0")
+                    .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
+                    .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
+                    .example("max-depth 16"),
+                field(FieldType::integer, "seed", &P::seed)
+                    .range(0, 9007199254740992.0)
+                    .byDefault("0")
+                    .doc("Chooses the random numbers; the same seed gives the same bits.")
+                    .example("seed 7"),
+                field(FieldType::integer, "replicates", &P::replicates)
+                    .range(1, 16)
+                    .byDefault("2")
+                    .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
+                    .example("replicates 8"),
+                field(FieldType::choice, "sampler", &P::sampler)
+                    .choices({"sobol", "random"})
+                    .byDefault("sobol")
+                    .doc("Owen-scrambled Sobol points, or independent random numbers for comparison.")
+                    .example("sampler sobol"),
+                field(FieldType::choice, "strategy", &P::strategy)
+                    .choices({"mis", "lights", "bsdf"})
+                    .byDefault("mis")
+                    .doc("How light is found: by both techniques, or by one alone, for comparison.")
+                    .example("strategy mis"),
+            }};
+}
+
+RenderSettings renderSettings(const RenderParams& p) {
+    RenderSettings s;
+    s.samples = static_cast<std::uint32_t>(p.samples);
+    s.seed = static_cast<std::uint64_t>(p.seed);
+    s.maxDepth = static_cast<std::uint32_t>(p.maxDepth);
+    s.noiseTarget = p.noise;
+    s.timeLimit = p.timeLimit;
+    s.randomSampler = p.sampler.word == "random";
+    using Strategy = RenderSettings::Strategy;
+    s.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
+                 : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
+                                             : Strategy::mis;
+    return s;
+}
+
+} // namespace abbe

@@ -1,0 +1,106 @@
+// One tile of one pass: the unit of work, and the only function that exists once per set of effects.
+#pragma once
+
+#include "integrators/path_loop.h"
+#include "spectrum/observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abbe {
+
+// Samples [first, last) of every replicate of every pixel of `pixels`.
+struct TileJob {
+    PixelBounds pixels;
+    std::uint32_t first = 0, last = 0;
+    const RouletteReference* roulette = nullptr;
+};
+
+struct TileResult {
+    PathCounters counters;
+    std::array<std::uint64_t, 3> dropped{}; // by DropCause
+    std::vector<DroppedSample> examples;    // at most a few
+};
+
+// One path: where on the film, which wavelengths, what came back. Gated: a sample that is not finite and non-negative
+// is counted and contributes nothing; the pixel's mean then runs over one sample of value zero fewer.
+template <EffectBits E> class TileKernel {
+  public:
+    TileKernel(const PathContext& context, Film& film, const TileJob& job)
+        : context_(context), film_(film), job_(job) {}
+
+    TileResult run() {
+        for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
+            for (int x = job_.pixels.x0; x < job_.pixels.x1; ++x)
+                for (int r = 0; r < film_.replicates(); ++r) replicate(x, y, r);
+        return std::move(result_);
+    }
+
+  private:
+    void replicate(int x, int y, int r) {
+        const std::uint64_t place =
+            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
+        const std::uint64_t seed = combine64(combine64(context_.settings.seed, place), static_cast<std::uint64_t>(r));
+        const float rouletteScale = job_.roulette->scale(x, y);
+        Xyz sum;
+        std::uint32_t counted = 0;
+        for (std::uint32_t i = job_.first; i < job_.last; ++i) {
+            sampler_.start(seed, i, context_.settings.randomSampler);
+            const Xyz value = sample(x, y, rouletteScale);
+            if (const auto cause = fault(value); cause < 3) {
+                drop({x, y, r, i, static_cast<DropCause>(cause)});
+                continue;
+            }
+            sum += value;
+            ++counted;
+        }
+        film_.add(x, y, r, sum, counted);
+        result_.counters.paths += job_.last - job_.first;
+    }
+
+    Xyz sample(int x, int y, float rouletteScale) {
+        const FilterSample filter = film_.filter(sampler_.film());
+        const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
+                         static_cast<float>(y) + 0.5f + filter.offset.y};
+        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time()});
+        if (!(camera.weight > 0)) return {};
+        const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
+        PathLoop<E> loop(context_, sampler_, arena_, result_.counters);
+        const Spectrum radiance = loop.radiance(camera.ray, lambda, rouletteScale);
+        lowest_ = minLane(radiance);
+        return toXyz(radiance, lambda) * static_cast<double>(camera.weight * filter.weight);
+    }
+
+    static float minLane(Spectrum s) { return -maxLane(-s); }
+
+    // Index of the DropCause, or 3 for a sound sample.
+    unsigned fault(Xyz v) const {
+        const double s = v.x + v.y + v.z;
+        if (std::isfinite(s) && !(lowest_ < 0)) [[likely]]
+            return 3;
+        if (std::isnan(s)) return static_cast<unsigned>(DropCause::nan);
+        return static_cast<unsigned>(std::isinf(s) ? DropCause::infinite : DropCause::negative);
+    }
+
+    void drop(DroppedSample sample) {
+        ++result_.dropped[static_cast<std::size_t>(sample.cause)];
+        if (result_.examples.size() < 4) result_.examples.push_back(sample);
+    }
+
+    const PathContext& context_;
+    Film& film_;
+    const TileJob& job_;
+    Sampler sampler_;
+    Arena arena_;
+    TileResult result_;
+    float lowest_ = 0; // of the last sample's lanes
+};
+
+using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);
+
+// A chain of supersets, one translation unit each (path_kernel_*.cpp). All are always built, so that none rots.
+TileResult renderTilePlain(const PathContext&, Film&, const TileJob&);
+TileResult renderTileAbsorption(const PathContext&, Film&, const TileJob&);
+TileResult renderTileFull(const PathContext&, Film&, const TileJob&);
+
+} // namespace abbe
