@@ -6,6 +6,7 @@
 #include "render/film.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,7 +19,8 @@ using XyzToRgb = std::array<Vec3d, 3>;
 struct ResolvedImage {
     PixelBounds bounds;
     std::vector<float> r, g, b;
-    std::vector<float> variance; // of the mean's Y, scaled like it; empty without replicates
+    std::vector<float>
+        variance; // of the mean's Y, scaled like it; empty with one replicate, infinite where nothing is known
 };
 
 class PixelFilm final : public Film {
@@ -53,7 +55,8 @@ class PixelFilm final : public Film {
     ResolvedImage resolve(const XyzToRgb&, double scale) const;
 
   private:
-    std::size_t pixelIndex(int x, int y) const noexcept;
+    std::size_t firstCell(int x, int y) const noexcept; // of the pixel's replicates
+    double sumOverPixels(const std::function<double(int, int)>& value) const;
 
     PixelBounds bounds_;
     int replicates_;

@@ -1,0 +1,126 @@
+#include "film/film_params.h"
+
+#include "base/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr double kMaxSide = 65536;
+constexpr double kMaxArea = 2147483648.0; // 2³¹
+
+bool isWhole(double x) { return x == std::floor(x); }
+
+std::string_view keyOf(const schema::Text& text, std::string_view key) {
+    for (const auto& [name, value] : text.keys)
+        if (name == key) return value;
+    return {};
+}
+
+void checkSize(const FilmParams& p, std::vector<FilmFault>& faults) {
+    const auto bad = [](double side) { return !(side >= 1 && side <= kMaxSide && isWhole(side)); };
+    if (bad(p.size.x) || bad(p.size.y))
+        faults.push_back({"size", fmt::format("`size` must be two whole numbers from 1 to {}", kMaxSide),
+                          "write the width and the height in pixels: size 1280 720"});
+    else if (p.size.x * p.size.y > kMaxArea)
+        faults.push_back({"size", fmt::format("an image of {} by {} pixels is too large", p.size.x, p.size.y),
+                          "width times height may be 2147483648 at most; render parts of it with `crop`"});
+}
+
+void checkCrop(const FilmParams& p, std::vector<FilmFault>& faults) {
+    if (!p.crop) return;
+    const auto& c = *p.crop;
+    if (c.size() != 4 || !std::all_of(c.begin(), c.end(), isWhole)) {
+        faults.push_back({"crop", "`crop` must be four whole numbers: left, top, right, bottom",
+                          "right and bottom are the first column and row that are left out: crop 0 0 640 360"});
+        return;
+    }
+    if (!(c[0] >= 0 && c[1] >= 0 && c[2] <= p.size.x && c[3] <= p.size.y))
+        faults.push_back(
+            {"crop", fmt::format("the crop reaches outside the image of {} by {}", p.size.x, p.size.y), ""});
+    else if (!(c[0] < c[2] && c[1] < c[3]))
+        faults.push_back(
+            {"crop", "the crop is empty", "give left, top, right, bottom with left < right, top < bottom"});
+}
+
+void checkFilter(const FilmParams& p, std::vector<FilmFault>& faults) {
+    if (p.filter.number && !(*p.filter.number > 0 && *p.filter.number <= 16))
+        faults.push_back({"filter", "the filter's radius must be above 0 and at most 16 pixels", ""});
+}
+
+} // namespace
+
+schema::TypeInfo filmType() {
+    using schema::field, schema::FieldType, schema::Dimension;
+    schema::TypeInfo type{
+        .kind = schema::Kind::film,
+        .name = "image",
+        .doc = "The picture: its size, its pixel filter and the file it goes to.",
+        .example = "film { size 1280 720; output \"hero.exr\" space=acescg }",
+        .isDefault = true,
+        .fields = {},
+    };
+    type.fields.push_back(field(FieldType::vector2, "size", &FilmParams::size)
+                              .doc("Width and height in pixels.")
+                              .example("size 1280 720")
+                              .byDefault("1280 720")
+                              .range(1, kMaxSide)
+                              .synonyms({"resolution", "xresolution", "yresolution", "width", "height"}));
+    type.fields.push_back(field(FieldType::numbers, "crop", &FilmParams::crop)
+                              .doc("Part that is rendered: left, top, right, bottom, the last two exclusive.")
+                              .example("crop 0 0 640 360")
+                              .range(0, kMaxSide)
+                              .synonyms({"cropwindow", "pixelbounds", "region"}));
+    type.fields.push_back(field(FieldType::choice, "filter", &FilmParams::filter)
+                              .doc("Pixel filter and, if wanted, its radius in pixels.")
+                              .example("filter blackman-harris 1.5")
+                              .byDefault("blackman-harris 1.5")
+                              .choices({"box", "triangle", "gaussian", "blackman-harris", "mitchell"})
+                              .range(0, 16)
+                              .synonyms({"pixelfilter", "rfilter", "reconstruction-filter"}));
+    type.fields.push_back(field(FieldType::text, "output", &FilmParams::output)
+                              .doc("OpenEXR file to write; without it, the scene's name with .exr.")
+                              .example("output \"hero.exr\" space=acescg compression=dwab")
+                              .key({"space", {"aces2065-1", "acescg"}, "RGB encoding; aces2065-1 (AP0) if not given."})
+                              .key({"compression",
+                                    {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
+                                    "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
+                              .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
+                              .synonyms({"filename", "file"}));
+    return type;
+}
+
+std::vector<FilmFault> findFaults(const FilmParams& p) {
+    std::vector<FilmFault> faults;
+    checkSize(p, faults);
+    if (faults.empty()) checkCrop(p, faults);
+    checkFilter(p, faults);
+    return faults;
+}
+
+FilmSettings filmSettings(const FilmParams& p) {
+    ABBE_CHECK(findFaults(p).empty());
+    FilmSettings s;
+    s.width = static_cast<int>(p.size.x);
+    s.height = static_cast<int>(p.size.y);
+    s.crop = {0, 0, s.width, s.height};
+    if (p.crop) {
+        const auto at = [&](std::size_t i) { return static_cast<int>((*p.crop)[i]); };
+        s.crop = {at(0), at(1), at(2), at(3)};
+    }
+    const auto shape = findFilter(p.filter.word);
+    ABBE_CHECK(shape.has_value());
+    s.filter = *shape;
+    s.filterRadius = p.filter.number.value_or(defaultRadius(*shape));
+    s.output = p.output.value;
+    if (keyOf(p.output, "space") == "acescg") s.space = OutputSpace::acescg;
+    if (const auto compression = keyOf(p.output, "compression"); !compression.empty()) s.compression = compression;
+    s.half = keyOf(p.output, "half") == "on";
+    return s;
+}
+
+} // namespace abbe

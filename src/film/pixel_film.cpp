@@ -1,0 +1,148 @@
+#include "film/pixel_film.h"
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace abbe {
+
+PixelFilm::PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates)
+    : bounds_(bounds), replicates_(replicates), filter_(filter) {
+    ABBE_CHECK(bounds.width() > 0 && bounds.height() > 0 && replicates >= 1);
+    const std::size_t cells = static_cast<std::size_t>(bounds.area()) * static_cast<std::size_t>(replicates);
+    sums_.resize(cells);
+    samples_.resize(cells);
+}
+
+std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates) {
+    return static_cast<std::uint64_t>(bounds.area()) * static_cast<std::uint64_t>(replicates) *
+           (sizeof(Xyz) + sizeof(std::uint32_t));
+}
+
+std::size_t PixelFilm::firstCell(int x, int y) const noexcept {
+    ABBE_DCHECK(x >= bounds_.x0 && x < bounds_.x1 && y >= bounds_.y0 && y < bounds_.y1);
+    const std::size_t row = static_cast<std::size_t>(y - bounds_.y0), column = static_cast<std::size_t>(x - bounds_.x0);
+    return (row * static_cast<std::size_t>(bounds_.width()) + column) * static_cast<std::size_t>(replicates_);
+}
+
+void PixelFilm::add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept {
+    ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
+    ABBE_DCHECK(std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z));
+    const std::size_t cell = firstCell(x, y) + static_cast<std::size_t>(replicate);
+    sums_[cell] += sum;
+    samples_[cell] += samples;
+    ABBE_DCHECK(samples_[cell] >= samples); // no overflow of the count
+}
+
+Xyz PixelFilm::mean(int x, int y) const noexcept {
+    const std::size_t first = firstCell(x, y);
+    Xyz sum;
+    std::uint64_t count = 0;
+    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell) {
+        sum += sums_[cell];
+        count += samples_[cell];
+    }
+    return count == 0 ? Xyz{} : sum * (1 / static_cast<double>(count));
+}
+
+std::uint64_t PixelFilm::samples(int x, int y) const noexcept {
+    const std::size_t first = firstCell(x, y);
+    std::uint64_t count = 0;
+    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell)
+        count += samples_[cell];
+    return count;
+}
+
+// The mean is Σ w_r m_r with w_r the replicate's share of the samples, so its variance is Σ w_r² Var(m_r); each term
+// is estimated by the squared deviation, and R/(R − 1) makes up for deviations from the mean itself. With equal shares
+// this is s²/R. Deviations of means in double never cancel, unlike E[x²] − E[x]².
+std::optional<double> PixelFilm::variance(int x, int y) const noexcept {
+    const std::size_t first = firstCell(x, y);
+    const double total = static_cast<double>(samples(x, y)), average = mean(x, y).y;
+    double sum = 0;
+    int used = 0;
+    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell) {
+        if (samples_[cell] == 0) continue;
+        const double count = samples_[cell];
+        sum += square((sums_[cell].y / count - average) * (count / total));
+        ++used;
+    }
+    if (used < 2) return std::nullopt;
+    return sum * used / (used - 1);
+}
+
+std::optional<double> PixelFilm::pooledVariance(int x, int y, int radius) const noexcept {
+    double sum = 0;
+    int used = 0;
+    for (int v = std::max(y - radius, bounds_.y0); v <= std::min(y + radius, bounds_.y1 - 1); ++v)
+        for (int u = std::max(x - radius, bounds_.x0); u <= std::min(x + radius, bounds_.x1 - 1); ++u)
+            if (const auto one = variance(u, v)) {
+                sum += *one;
+                ++used;
+            }
+    if (used == 0) return std::nullopt;
+    return sum / used;
+}
+
+// Sums per row, added in the order of the rows: the same bits with any number of threads.
+double PixelFilm::sumOverPixels(const std::function<double(int, int)>& value) const {
+    std::vector<double> rows(static_cast<std::size_t>(bounds_.height()));
+    parallelFor(rows.size(), [&](std::size_t row) {
+        const int y = bounds_.y0 + static_cast<int>(row);
+        for (int x = bounds_.x0; x < bounds_.x1; ++x) rows[row] += value(x, y);
+    });
+    double sum = 0;
+    for (const double row : rows) sum += row;
+    return sum;
+}
+
+double PixelFilm::relativeNoise() const {
+    if (replicates_ < 2) return 0;
+    const double area = static_cast<double>(bounds_.area());
+    const double average = sumOverPixels([&](int x, int y) { return mean(x, y).y; }) / area;
+    const double epsilon = 0.01 * square(average);
+    const double known = sumOverPixels([&](int x, int y) { return variance(x, y) ? 1.0 : 0.0; });
+    const double error = sumOverPixels([&](int x, int y) {
+        const double v = variance(x, y).value_or(0);
+        return v == 0 ? 0 : v / (square(mean(x, y).y) + epsilon);
+    });
+    return known == 0 ? 0 : std::sqrt(error / known);
+}
+
+ResolvedImage PixelFilm::resolve(const XyzToRgb& toRgb, double scale) const {
+    ResolvedImage image{bounds_, {}, {}, {}, {}};
+    const auto area = static_cast<std::size_t>(bounds_.area());
+    for (auto* plane : {&image.r, &image.g, &image.b}) plane->resize(area);
+    if (replicates_ > 1) image.variance.resize(area);
+    parallelFor(static_cast<std::size_t>(bounds_.height()), [&](std::size_t row) {
+        const int y = bounds_.y0 + static_cast<int>(row);
+        std::size_t i = row * static_cast<std::size_t>(bounds_.width());
+        for (int x = bounds_.x0; x < bounds_.x1; ++x, ++i) {
+            const Xyz m = mean(x, y) * scale;
+            const Vec3d xyz{m.x, m.y, m.z};
+            image.r[i] = static_cast<float>(dot(toRgb[0], xyz));
+            image.g[i] = static_cast<float>(dot(toRgb[1], xyz));
+            image.b[i] = static_cast<float>(dot(toRgb[2], xyz));
+            if (replicates_ > 1)
+                image.variance[i] = static_cast<float>(
+                    variance(x, y).value_or(std::numeric_limits<double>::infinity()) * square(scale));
+        }
+    });
+    return image;
+}
+
+double studentFactor95(int degreesOfFreedom) {
+    ABBE_CHECK(degreesOfFreedom >= 1);
+    constexpr std::array<double, 10> kTable{12.7062047, 4.3026527, 3.1824463, 2.7764451, 2.5705818,
+                                            2.4469119,  2.3646243, 2.3060041, 2.2621572, 2.2281389};
+    if (degreesOfFreedom <= 10) return kTable[static_cast<std::size_t>(degreesOfFreedom - 1)];
+    // Expansion about the normal quantile [Abramowitz1964, 26.7.5]; error below 2e-5 from here on.
+    const double z = 1.9599639845, n = degreesOfFreedom, z3 = z * z * z, z5 = z3 * z * z;
+    return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
+           (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
+}
+
+} // namespace abbe
