@@ -100,9 +100,9 @@ Vec3d Transform::point(Vec3d p) const { return vector(p) + t; }
 
 Vec3d Transform::normal(Vec3d n) const {
     const Vec3d c0{a[0][0], a[1][0], a[2][0]}, c1{a[0][1], a[1][1], a[2][1]}, c2{a[0][2], a[1][2], a[2][2]};
-    // det(A) A^-T has the columns c1×c2, c2×c0, c0×c1,
-    // so this is A^-T n sign(det A) times the positive factor |det A|.
-    return cross(c1, c2) * n.x + cross(c2, c0) * n.y + cross(c0, c1) * n.z;
+    // det(A) A^-T has the columns c1×c2, c2×c0, c0×c1; the sign of det(A) is taken off again.
+    const Vec3d cofactor = cross(c1, c2) * n.x + cross(c2, c0) * n.y + cross(c0, c1) * n.z;
+    return determinant() < 0 ? -cofactor : cofactor;
 }
 
 } // namespace abbe

@@ -29,8 +29,8 @@ struct Transform {
 
     Vec3d point(Vec3d p) const;
     Vec3d vector(Vec3d v) const;
-    // A^-T n sign(det A), not normalised: keeps outward normals outward under mirrors. Uses cofactors, so exact for
-    // singular-free A without an inverse.
+    // A^-T n up to a positive factor: outward normals stay outward, under mirrors too (where the cross product of
+    // mapped edges turns inward). From cofactors, without an inverse.
     Vec3d normal(Vec3d n) const;
 };
 

@@ -1,0 +1,58 @@
+#include "geometry/disk.h"
+
+#include "geometry/surface_math.h"
+#include "math/warp.h"
+
+namespace abbe {
+
+Disk::Disk(Vec3d centre, Vec3d normal, double radius) : centre_(centre), z_(normalize(normal)), radius_(radius) {
+    // The float frame only picks a direction; the double one is orthonormal to double precision.
+    const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
+    x_ = normalize(guess - z_ * dot(guess, z_));
+    y_ = cross(z_, x_);
+}
+
+Bounds3 Disk::bounds() const {
+    const auto extent = [this](double n) { return radius_ * safeSqrt(1 - n * n); };
+    const Vec3d half(extent(z_.x), extent(z_.y), extent(z_.z));
+    const Vec3d margin = (abs(centre_) + Vec3d(radius_, radius_, radius_)) * 0x1p-22;
+    return {Vec3(centre_ - half - margin), Vec3(centre_ + half + margin)};
+}
+
+void Disk::commit(GeometrySink& sink) const { sink.analytic(bounds()); }
+
+std::optional<RawHit> Disk::intersect(const Ray& ray) const {
+    const Vec3d o = Vec3d(ray.origin) - centre_, d(ray.direction);
+    const double t = -dot(o, z_) / dot(d, z_); // parallel: infinite or NaN, refused below
+    if (!(t > 0) || !(t <= static_cast<double>(ray.tMax)) || !std::isfinite(t)) return std::nullopt;
+    if (!(lengthSquared(o + d * t) <= radius_ * radius_)) return std::nullopt;
+    return RawHit{.distance = static_cast<float>(t)};
+}
+
+void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d d = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance) - centre_;
+    const double x = dot(d, x_), y = dot(d, y_);
+    const Vec3d p = centre_ + x_ * x + y_ * y;
+    hit.p = Vec3(p);
+    hit.pError = Vec3(abs(p) * 0x1p-23);
+    hit.ng = Vec3(z_);
+    hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
+    const double turn = std::atan2(y, x) / (2 * kPiD);
+    hit.uv = {static_cast<float>(std::sqrt(x * x + y * y) / radius_), static_cast<float>(turn < 0 ? turn + 1 : turn)};
+    hit.primitive = 0;
+}
+
+std::optional<ShapeSample> Disk::sample(Vec3 from, Vec2 u) const {
+    const Vec2 q = squareToDisk(u);
+    const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));
+    ShapeSample s{Vec3(p), Vec3(abs(p) * 0x1p-23), Vec3(z_), 0};
+    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
+    if (!(s.pdfSolidAngle > 0)) return std::nullopt;
+    return s;
+}
+
+float Disk::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+    return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from, hit.ng);
+}
+
+} // namespace abbe

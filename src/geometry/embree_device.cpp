@@ -1,0 +1,32 @@
+#include "geometry/embree_device.h"
+
+#include "base/parallel.h"
+
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace abbe {
+
+namespace {
+
+void remember(void* user, RTCError code, const char* text) {
+    auto& first = *static_cast<std::string*>(user);
+    if (first.empty()) first = fmt::format("Embree error {}: {}", static_cast<int>(code), text ? text : "no text");
+}
+
+} // namespace
+
+EmbreeDevice::EmbreeDevice()
+    : firstError_(std::make_unique<std::string>()),
+      device_(rtcNewDevice(fmt::format("threads={}", threadCount()).c_str())) {
+    if (!device_)
+        throw std::runtime_error(fmt::format("Embree cannot start on this machine (error {})",
+                                             static_cast<int>(rtcGetDeviceError(nullptr))));
+    rtcSetDeviceErrorFunction(device_.get(), remember, firstError_.get());
+}
+
+void EmbreeDevice::throwIfFailed() const {
+    if (!firstError_->empty()) throw std::runtime_error(*firstError_);
+}
+
+} // namespace abbe

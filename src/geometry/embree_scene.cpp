@@ -1,0 +1,340 @@
+#include "geometry/embree_scene.h"
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "geometry/embree_device.h"
+#include "geometry/instance.h"
+#include "geometry/surface_math.h"
+
+#include <atomic>
+#include <cstring>
+#include <embree3/rtcore.h>
+
+namespace abbe {
+
+namespace {
+
+// Coordinates beyond this make Debian's Embree stop the process.
+constexpr float kLargestCoordinate = 1e18f;
+// False hits dropped on one ray before it is given up as a miss.
+constexpr int kMaxRecasts = 32;
+
+// What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
+struct Record {
+    const Shape* shape = nullptr;
+    const Material* material = nullptr;
+    const Light* light = nullptr;
+    std::uint32_t part = 0;
+};
+static_assert(sizeof(Record) == 32);
+
+// NaN fails every comparison.
+bool traceable(const Ray& ray) {
+    const Vec3 o = abs(ray.origin), d = abs(ray.direction);
+    return o.x + o.y + o.z < kLargestCoordinate && d.x + d.y + d.z < kLargestCoordinate && ray.tMax >= 0;
+}
+
+void fill(RTCRay& r, const Ray& ray, float tNear) {
+    r.org_x = ray.origin.x;
+    r.org_y = ray.origin.y;
+    r.org_z = ray.origin.z;
+    r.tnear = tNear;
+    r.dir_x = ray.direction.x;
+    r.dir_y = ray.direction.y;
+    r.dir_z = ray.direction.z;
+    r.time = 0;
+    r.tfar = ray.tMax;
+    r.mask = 0xffffffffu;
+    r.id = 0;
+    r.flags = 0;
+}
+
+// Turns a shape's primitives into Embree geometries of one scene, a record for each.
+class Attacher final : public GeometrySink {
+  public:
+    Attacher(RTCDevice device, RTCScene scene, std::size_t firstRecord, std::vector<Record>& records)
+        : device_(device), scene_(scene), firstRecord_(firstRecord), records_(records) {}
+
+    void add(const Shape& shape, EmbreeSceneBuilder::Binding binding) {
+        next_ = {&shape, binding.material, binding.light, 0};
+        shape.commit(*this);
+    }
+    void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) override {
+        mesh(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, vertices, indices.data(), sizeof(indices[0]),
+             indices.size());
+    }
+    void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) override {
+        mesh(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, vertices, indices.data(), sizeof(indices[0]), indices.size());
+    }
+    void analytic(const Bounds3&) override;
+
+    void attach(RTCGeometry geometry) {
+        rtcSetGeometryMask(geometry, 0xffffffffu);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene_, geometry, static_cast<unsigned>(records_.size() - firstRecord_));
+        rtcReleaseGeometry(geometry);
+        records_.push_back(next_);
+        ++next_.part;
+    }
+
+  private:
+    void mesh(RTCGeometryType type, RTCFormat format, std::span<const Vec3> vertices, const void* indices,
+              std::size_t stride, std::size_t count) {
+        RTCGeometry geometry = rtcNewGeometry(device_, type);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
+                                   sizeof(Vec3), vertices.size());
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
+        attach(geometry);
+    }
+
+    RTCDevice device_;
+    RTCScene scene_;
+    std::size_t firstRecord_;
+    std::vector<Record>& records_;
+    Record next_;
+};
+
+// Callbacks of shapes that intersect themselves. The geometry's user pointer is the shape.
+const Shape& shapeOf(void* user) { return *static_cast<const Shape*>(user); }
+
+void analyticBounds(const RTCBoundsFunctionArguments* args) {
+    const Bounds3 b = shapeOf(args->geometryUserPtr).bounds();
+    *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+}
+
+std::optional<float> analyticHit(const Shape& shape, const RTCRay& r) {
+    const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
+    // Shapes know no near end: a ray cast again past a false hit starts there.
+    const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > 0 ? direction * r.tnear : Vec3());
+    const auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
+    if (!hit) return std::nullopt;
+    return hit->distance + r.tnear;
+}
+
+void analyticIntersect(const RTCIntersectFunctionNArguments* args) {
+    auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    if (args->N != 1 || args->valid[0] == 0) return;
+    const auto t = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
+    if (!t) return;
+    rayHit.ray.tfar = *t;
+    rayHit.hit.u = rayHit.hit.v = 0;
+    rayHit.hit.primID = args->primID;
+    rayHit.hit.geomID = args->geomID;
+    rayHit.hit.instID[0] = args->context->instID[0];
+}
+
+void analyticOccluded(const RTCOccludedFunctionNArguments* args) {
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (args->N != 1 || args->valid[0] == 0) return;
+    if (analyticHit(shapeOf(args->geometryUserPtr), ray)) ray.tfar = -kInfinity;
+}
+
+void Attacher::analytic(const Bounds3&) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+    rtcSetGeometryBoundsFunction(geometry, analyticBounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, analyticIntersect);
+    rtcSetGeometryOccludedFunction(geometry, analyticOccluded);
+    attach(geometry);
+}
+
+class EmbreeScene final : public Intersector {
+  public:
+    bool intersect(const Ray&, SurfaceHit&) const noexcept override;
+    bool occluded(const Ray&) const noexcept override;
+    Bounds3 bounds() const override { return bounds_; }
+    std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
+
+    EmbreeDevice device;
+    std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
+    EmbreeHandle<RTCScene, rtcReleaseScene> scene;
+    std::vector<Record> records; // of the top scene by geometry id, then of each object
+    std::vector<Instance> instances;
+    Bounds3 bounds_;
+
+  private:
+    void surface(const RTCRayHit&, const Ray&, SurfaceHit&) const;
+    bool resolve(RTCRayHit&, const Ray&, SurfaceHit&) const;
+
+    mutable std::atomic<std::uint64_t> rejected_{0};
+};
+
+void cast(RTCScene scene, RTCRayHit& rayHit) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context, &rayHit);
+}
+
+void EmbreeScene::surface(const RTCRayHit& r, const Ray& ray, SurfaceHit& hit) const {
+    const bool instanced = r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+    const Instance* instance = instanced ? &instances[records[r.hit.instID[0]].part] : nullptr;
+    const Record& record = records[r.hit.geomID + (instance ? instance->firstRecord() : 0)];
+    const RawHit raw{r.hit.u, r.hit.v, r.ray.tfar, r.hit.primID, record.part};
+    hit.material = record.material;
+    hit.light = record.light;
+    if (instance) [[unlikely]] {
+        record.shape->surface(raw, instance->toObject(ray), hit);
+        instance->toRender(hit);
+    } else {
+        record.shape->surface(raw, ray, hit);
+    }
+}
+
+// How far the hit point is from the ray's line, squared, and where along the ray it is.
+struct Deviation {
+    float along, offLine2;
+};
+Deviation deviation(const Ray& ray, const SurfaceHit& hit) {
+    const Vec3 e = hit.p - ray.origin;
+    const float along = dot(e, ray.direction);
+    return {along, lengthSquared(e - ray.direction * along)};
+}
+
+bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
+    if (!traceable(ray)) [[unlikely]] {
+        rejected_.fetch_add(1, std::memory_order_relaxed);
+        return false;
+    }
+    RTCRayHit rayHit;
+    fill(rayHit.ray, ray, 0);
+    cast(scene.get(), rayHit);
+    if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    surface(rayHit, ray, hit);
+    // Embree reports hits that are not there, rarely, on thin triangles met at grazing angles; the point from the
+    // barycentrics then lies off the ray (docs/hard_cases.md, case 4).
+    const Deviation off = deviation(ray, hit);
+    const float tolerance = 16 * maxComponent(hit.pError) + 1e-6f * off.along;
+    const bool near = off.offLine2 <= tolerance * tolerance;
+    const bool same = std::abs(off.along - rayHit.ray.tfar) <= 1e-3f * off.along + tolerance;
+    if (!(near && same && off.along > 0)) [[unlikely]]
+        return resolve(rayHit, ray, hit);
+    hit.distance = off.along;
+    return true;
+}
+
+// Decides about a suspicious hit and those behind it, with a tolerance that knows how large the shape is.
+[[gnu::noinline]] bool EmbreeScene::resolve(RTCRayHit& rayHit, const Ray& ray, SurfaceHit& hit) const {
+    bool found = false;
+    SurfaceHit candidate;
+    for (int i = 0; i < kMaxRecasts && rayHit.hit.geomID != RTC_INVALID_GEOMETRY_ID; ++i) {
+        const float t = rayHit.ray.tfar;
+        // A point found before but truly farther than Embree said: now that nothing nearer is left, it is the hit.
+        if (found && hit.distance <= t) return true;
+        surface(rayHit, ray, candidate);
+        const Deviation off = deviation(ray, candidate);
+        const float size = length(bounds_.diagonal());
+        const float slack = std::isfinite(size) ? gammaBound(8) * size : 0.f;
+        const float tolerance = 64 * maxComponent(candidate.pError) + 4e-6f * std::abs(off.along) + slack;
+        const bool real = off.offLine2 <= tolerance * tolerance && off.along > 0 && off.along <= ray.tMax;
+        if (real && (!found || off.along < hit.distance)) {
+            hit = candidate;
+            hit.distance = off.along;
+            found = true;
+        }
+        fill(rayHit.ray, ray, std::nextafter(t, kInfinity));
+        if (!(rayHit.ray.tnear < rayHit.ray.tfar)) break;
+        cast(scene.get(), rayHit);
+    }
+    return found;
+}
+
+bool EmbreeScene::occluded(const Ray& ray) const noexcept {
+    if (!traceable(ray)) [[unlikely]] {
+        rejected_.fetch_add(1, std::memory_order_relaxed);
+        return false;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay r;
+    fill(r, ray, 0);
+    rtcOccluded1(scene.get(), &context, &r);
+    return r.tfar < 0;
+}
+
+Bounds3 finiteBounds(const Shape& shape) { return std::isfinite(shape.area()) ? shape.bounds() : Bounds3(); }
+
+} // namespace
+
+struct EmbreeSceneBuilder::Impl {
+    using Shapes = std::vector<std::pair<const Shape*, Binding>>;
+    Shapes shapes;
+    std::vector<Shapes> objects;
+    std::vector<std::pair<std::uint32_t, Transform>> instances;
+
+    // Makes and commits one scene of shapes; its records are appended.
+    static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(EmbreeScene& target) {
+        EmbreeHandle<RTCScene, rtcReleaseScene> scene(rtcNewScene(target.device.get()));
+        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+        return scene;
+    }
+};
+
+EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}
+EmbreeSceneBuilder::~EmbreeSceneBuilder() = default;
+
+std::uint32_t EmbreeSceneBuilder::addShape(const Shape& shape, Binding binding) {
+    impl_->shapes.emplace_back(&shape, binding);
+    return static_cast<std::uint32_t>(impl_->shapes.size() - 1);
+}
+
+std::uint32_t EmbreeSceneBuilder::addObject(std::vector<std::pair<const Shape*, Binding>> shapes) {
+    impl_->objects.push_back(std::move(shapes));
+    return static_cast<std::uint32_t>(impl_->objects.size() - 1);
+}
+
+void EmbreeSceneBuilder::addInstance(std::uint32_t object, const Transform& objectToRender) {
+    ABBE_CHECK(object < impl_->objects.size());
+    impl_->instances.emplace_back(object, objectToRender);
+}
+
+std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
+    auto result = std::make_unique<EmbreeScene>();
+    EmbreeScene& s = *result;
+    s.scene = Impl::newScene(s);
+    Attacher top(s.device.get(), s.scene.get(), 0, s.records);
+    for (const auto& [shape, binding] : impl_->shapes) {
+        top.add(*shape, binding);
+        s.bounds_.add(finiteBounds(*shape));
+    }
+    // Instances take the next geometry ids of the top scene, so their records come before those of the objects.
+    const std::size_t firstInstance = s.records.size();
+    for (std::size_t i = 0; i < impl_->instances.size(); ++i)
+        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i)});
+
+    std::vector<std::size_t> firstRecords;
+    std::vector<Bounds3> objectBounds;
+    for (const auto& shapes : impl_->objects) {
+        firstRecords.push_back(s.records.size());
+        s.objectScenes.push_back(Impl::newScene(s));
+        Attacher object(s.device.get(), s.objectScenes.back().get(), s.records.size(), s.records);
+        Bounds3& b = objectBounds.emplace_back();
+        for (const auto& [shape, binding] : shapes) {
+            object.add(*shape, binding);
+            b.add(finiteBounds(*shape));
+        }
+        rtcCommitScene(s.objectScenes.back().get());
+    }
+    s.instances.reserve(impl_->instances.size());
+    for (const auto& [object, map] : impl_->instances) {
+        const Instance& instance = s.instances.emplace_back(map, firstRecords[object]);
+        s.bounds_.add(instance.toRender(objectBounds[object]));
+        RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, s.objectScenes[object].get());
+        rtcSetGeometryTimeStepCount(geometry, 1);
+        const auto matrix = instance.rowMajor();
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
+        rtcSetGeometryMask(geometry, 0xffffffffu);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(s.scene.get(), geometry, static_cast<unsigned>(firstInstance + s.instances.size() - 1));
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(s.scene.get());
+    s.device.throwIfFailed();
+    return result;
+}
+
+} // namespace abbe

@@ -1,0 +1,44 @@
+// All geometry of a scene behind one intersector (Embree underneath, hidden in the .cpp).
+#pragma once
+
+#include "math/transform.h"
+#include "render/intersector.h"
+#include "render/shape.h"
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace abbe {
+
+// Collects shapes, then builds the intersector once. Shapes are referred to, not owned: they, and the spans that
+// their commit() hands out, must outlive the intersector. Spans of vertices must be readable for 4 bytes past their
+// end (Embree loads 16 bytes). Not thread-safe; the build itself uses threadCount() threads.
+class EmbreeSceneBuilder {
+  public:
+    struct Binding {
+        const Material* material = nullptr;
+        const Light* light = nullptr;
+    };
+
+    EmbreeSceneBuilder();
+    ~EmbreeSceneBuilder();
+    EmbreeSceneBuilder(const EmbreeSceneBuilder&) = delete;
+    EmbreeSceneBuilder& operator=(const EmbreeSceneBuilder&) = delete;
+
+    // A shape in render space. Returns how many were added before.
+    std::uint32_t addShape(const Shape&, Binding);
+    // Shapes in a space of their own, seen only through instances. Returns the object's number.
+    std::uint32_t addObject(std::vector<std::pair<const Shape*, Binding>>);
+    // Requires an invertible map and an object number from addObject.
+    void addInstance(std::uint32_t object, const Transform& objectToRender);
+    // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
+    std::unique_ptr<Intersector> build();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace abbe

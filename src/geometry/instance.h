@@ -1,0 +1,35 @@
+// The placement of an object in render space: rays inwards, hits outwards.
+#pragma once
+
+#include "math/bounds.h"
+#include "math/transform.h"
+#include "render/ray.h"
+#include "render/surface_hit.h"
+
+#include <array>
+#include <cstddef>
+
+namespace abbe {
+
+// The map is rounded to float once, so that Embree traces exactly the map by which hits are carried back.
+class Instance {
+  public:
+    // Requires an invertible map. `firstRecord` is the builder's own.
+    Instance(const Transform& objectToRender, std::size_t firstRecord);
+
+    std::size_t firstRecord() const { return firstRecord_; }
+    std::array<float, 12> rowMajor() const;
+    // The direction keeps its length in object units, so distances along the ray stay those of render space.
+    Ray toObject(const Ray&) const;
+    // From object to render space: point, error bound, normals, frame. Outward normals stay outward.
+    void toRender(SurfaceHit&) const;
+    Bounds3 toRender(const Bounds3&) const;
+
+  private:
+    Transform objectToRender_, renderToObject_;
+    std::size_t firstRecord_;
+    double absolute_[3][3];  // |A|
+    double roundTrip_[3][3]; // |A| |A⁻¹|: how much the rounding of a ray in object space weighs in render space
+};
+
+} // namespace abbe

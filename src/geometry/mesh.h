@@ -1,0 +1,63 @@
+// Polygon meshes: triangles and quads as they are, no subdivision.
+#pragma once
+
+#include "geometry/quad.h"
+#include "math/mesh_data.h"
+#include "render/shape.h"
+
+#include <memory>
+#include <mutex>
+
+namespace abbe {
+
+// How the vertex normals of a mesh agree with its faces; corners are counted, one per face and vertex.
+struct NormalReport {
+    std::uint64_t missing = 0;  // zero or not finite: the face normal is used
+    std::uint64_t inverted = 0; // on the far side of the face: turned to the near side when shaded
+};
+
+// Flat-shaded without vertex normals. uv are the barycentrics of the primitive when the data have none.
+// Requires data that cleanMesh() has accepted: indices in range, finite positions.
+class Mesh final : public Shape {
+  public:
+    explicit Mesh(MeshData);
+    ~Mesh() override;
+
+    const MeshData& data() const { return data_; }
+    const NormalReport& normalReport() const { return normalReport_; }
+
+    Bounds3 bounds() const override { return bounds_; }
+    void commit(GeometrySink&) const override;
+    // Primitives are numbered triangles first, then quads.
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override { return area_; }
+    // Uniform per area over all faces; a lone quad as Quad does.
+    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+
+  private:
+    struct Corners {
+        std::uint32_t a, b, c;
+        float s, t;           // the point is a + s (b - a) + t (c - a)
+        std::uint32_t normal; // into faceNormals_
+        std::uint32_t primitive;
+    };
+    Corners corners(const RawHit&) const;
+    std::uint64_t triangleCount() const { return data_.triangles.size() + 2 * data_.quads.size(); }
+    std::array<std::uint32_t, 3> triangle(std::uint64_t) const; // quads count as two
+    void shade(const Corners&, SurfaceHit&) const;
+    void countNormals();
+    void buildCdf() const;
+
+    MeshData data_;
+    std::vector<Vec3> faceNormals_; // per triangle, then two per quad
+    Bounds3 bounds_;
+    NormalReport normalReport_;
+    double area_ = 0;
+    std::unique_ptr<const Quad> lone_; // the mesh itself if it is a single quad
+    // Running sums of the areas of the triangles: made when an emitter first asks, because most meshes never emit.
+    mutable std::once_flag cdfOnce_;
+    mutable std::vector<double> cdf_;
+};
+
+} // namespace abbe

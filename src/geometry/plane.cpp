@@ -1,0 +1,42 @@
+#include "geometry/plane.h"
+
+namespace abbe {
+
+Plane::Plane(Vec3d point, Vec3d normal) : point_(point), z_(normalize(normal)) {
+    const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
+    x_ = normalize(guess - z_ * dot(guess, z_));
+    y_ = cross(z_, x_);
+}
+
+Bounds3 Plane::bounds() const {
+    // A plane across an axis is thin along it: the box of an axis-aligned floor is flat.
+    const auto extent = [](double n) { return 1e15 * safeSqrt(1 - n * n); };
+    const Vec3d half(extent(z_.x), extent(z_.y), extent(z_.z));
+    const Vec3d margin = (abs(point_) + Vec3d(1e-6, 1e-6, 1e-6)) * 0x1p-20;
+    return {Vec3(point_ - half - margin), Vec3(point_ + half + margin)};
+}
+
+void Plane::commit(GeometrySink& sink) const { sink.analytic(bounds()); }
+
+std::optional<RawHit> Plane::intersect(const Ray& ray) const {
+    const Vec3d o = Vec3d(ray.origin) - point_, d(ray.direction);
+    const double t = -dot(o, z_) / dot(d, z_); // parallel: infinite or NaN, refused below
+    if (!(t > 0) || !(t <= static_cast<double>(ray.tMax)) || !(t < 1e15)) return std::nullopt;
+    return RawHit{.distance = static_cast<float>(t)};
+}
+
+void Plane::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d d = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance) - point_;
+    const double x = dot(d, x_), y = dot(d, y_);
+    const Vec3d p = point_ + x_ * x + y_ * y;
+    hit.p = Vec3(p);
+    hit.pError = Vec3(abs(p) * 0x1p-23);
+    hit.ng = Vec3(z_);
+    hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
+    hit.uv = {static_cast<float>(x), static_cast<float>(y)};
+    hit.primitive = 0;
+}
+
+double Plane::area() const { return std::numeric_limits<double>::infinity(); }
+
+} // namespace abbe

@@ -1,0 +1,27 @@
+// Infinite planes.
+#pragma once
+
+#include "render/shape.h"
+
+namespace abbe {
+
+// uv are metres along two axes of the plane from `point`. Emits nothing: its area is infinite.
+// Requires normal != 0. Rays may have directions of any length.
+class Plane final : public Shape {
+  public:
+    Plane(Vec3d point, Vec3d normal);
+
+    // Finite because Embree needs it, and so large that no scene sees the edge.
+    Bounds3 bounds() const override;
+    void commit(GeometrySink&) const override;
+    std::optional<RawHit> intersect(const Ray&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override;
+    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+
+  private:
+    Vec3d point_, x_, y_, z_;
+};
+
+} // namespace abbe

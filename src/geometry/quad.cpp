@@ -1,0 +1,129 @@
+#include "geometry/quad.h"
+
+#include "geometry/spherical_rectangle.h"
+#include "geometry/surface_math.h"
+#include "math/warp.h"
+
+namespace abbe {
+
+namespace {
+
+// Beyond this ratio of diagonal² to distance² (to the centre) directions to the rectangle are as good as uniform per
+// area, and the cheap density wins.
+constexpr float kNearRatio = 0.1f;
+// Solid angles come as a difference of angles near 2π: below this their relative error passes 1e-4.
+constexpr float kSmallestSolidAngle = 5e-3f;
+
+// The solid-angle view of the rectangle from a point, or nothing where area sampling serves. sample() and
+// pdfSolidAngle() both decide by this function, hence alike.
+template <typename Rectangle> std::optional<SphericalRectangle> sphericalView(const Rectangle& r, Vec3 from) {
+    const Vec3 d = r.centre - from;
+    if (r.diagonalSquared < kNearRatio * lengthSquared(d)) return std::nullopt;
+    const float x = dot(d, r.x), y = dot(d, r.y), z = dot(d, r.z);
+    const float w = 0.5f * r.width, h = 0.5f * r.height;
+    const SphericalRectangle view(x - w, y - h, x + w, y + h, z);
+    if (!(view.solidAngle() > kSmallestSolidAngle)) return std::nullopt;
+    return view;
+}
+
+} // namespace
+
+Quad::Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01) : corners_{p00, p10, p11, p01, p00} {
+    const std::array<std::array<Vec3, 3>, 2> triangles{{{p00, p10, p01}, {p11, p01, p10}}};
+    std::array<double, 2> areas{};
+    Vec3 magnitude, extent;
+    for (int i = 0; i < 2; ++i) {
+        const auto& [a, b, c] = triangles[i];
+        const Vec3d twice = triangleCross(Vec3d(a), Vec3d(b), Vec3d(c));
+        areas[i] = 0.5 * length(twice);
+        // One triangle of a degenerate quad may be empty: Embree never hits it, but its frame must be finite.
+        const Vec3 n = areas[i] > 0 ? Vec3(normalize(twice)) : Vec3(0, 0, 1);
+        const Vec3 tangent = i == 0 ? b - a : a - b;
+        halves_[i] = {a, b - a, c - a, Frame::fromNormalTangent(n, tangent)};
+        magnitude = max(magnitude, max(abs(a), max(abs(b), abs(c))));
+        extent = max(extent, abs(b - a) + abs(c - a));
+    }
+    // The edges and 1 - u round relative to the edges, the sum relative to the point.
+    pError_ = magnitude * gammaBound(3) + extent * gammaBound(2);
+    area_ = areas[0] + areas[1];
+    pdfArea_ = static_cast<float>(1 / area_);
+    firstHalf_ = static_cast<float>(areas[0] / area_);
+    rectangle_ = asRectangle({p00, p10, p11, p01});
+}
+
+std::optional<Quad::Rectangle> Quad::asRectangle(const std::array<Vec3, 4>& p) {
+    constexpr double tolerance = 1e-5;
+    const Vec3d a(p[0]), ex = Vec3d(p[1]) - a, ey = Vec3d(p[3]) - a;
+    const double width = length(ex), height = length(ey);
+    if (!(width > 0 && height > 0)) return std::nullopt;
+    if (std::abs(dot(ex, ey)) > tolerance * width * height) return std::nullopt;
+    if (length(Vec3d(p[2]) - (a + ex + ey)) > tolerance * std::min(width, height)) return std::nullopt;
+    const Vec3d x = ex * (1 / width), z = normalize(cross(ex, ey)), y = cross(z, x);
+    const Vec3d centre = a + (ex + ey) * 0.5;
+    return Rectangle{Vec3(x),
+                     Vec3(y),
+                     Vec3(z),
+                     static_cast<float>(width),
+                     static_cast<float>(height),
+                     Vec3(centre),
+                     static_cast<float>(square(width) + square(height))};
+}
+
+Bounds3 Quad::bounds() const {
+    Bounds3 b;
+    for (Vec3 p : corners_) b.add(p);
+    return b;
+}
+
+void Quad::commit(GeometrySink& sink) const {
+    static constexpr std::array<std::array<std::uint32_t, 4>, 1> index{{{0, 1, 2, 3}}};
+    sink.quads(std::span(corners_).first<4>(), index);
+}
+
+void Quad::surface(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
+    const bool second = raw.u + raw.v > 1; // Embree's own split
+    const Half& half = halves_[second];
+    const float s = second ? 1 - raw.u : raw.u, t = second ? 1 - raw.v : raw.v;
+    const auto axis = [s, t](float p, float a, float b) { return std::fma(t, b, std::fma(s, a, p)); };
+    hit.p = {axis(half.corner.x, half.edgeS.x, half.edgeT.x), axis(half.corner.y, half.edgeS.y, half.edgeT.y),
+             axis(half.corner.z, half.edgeS.z, half.edgeT.z)};
+    hit.pError = pError_;
+    hit.ng = half.frame.z;
+    hit.shading = half.frame;
+    hit.uv = {raw.u, raw.v};
+    hit.primitive = 0;
+}
+
+ShapeSample Quad::sampleArea(Vec2 u) const {
+    const bool second = !(u.x < firstHalf_);
+    u.x = second ? (u.x - firstHalf_) / (1 - firstHalf_) : u.x / firstHalf_;
+    const Vec2 b = squareToTriangle({std::min(u.x, kOneMinusEpsilon), u.y});
+    const Half& half = halves_[second];
+    return {half.corner + half.edgeS * b.x + half.edgeT * b.y, pError_, half.frame.z, 0};
+}
+
+std::optional<ShapeSample> Quad::sample(Vec3 from, Vec2 u) const {
+    if (rectangle_) {
+        const Rectangle& r = *rectangle_;
+        if (const auto view = sphericalView(r, from)) {
+            const Vec2 q = view->sample(u);
+            const Vec3 d = r.centre - from;
+            const Vec3 p = r.centre + r.x * (q.x - dot(d, r.x)) + r.y * (q.y - dot(d, r.y));
+            return ShapeSample{p, pError_, r.z, 1 / view->solidAngle()};
+        }
+    }
+    ShapeSample s = rectangle_ ? ShapeSample{halves_[0].corner + halves_[0].edgeS * u.x + halves_[0].edgeT * u.y,
+                                             pError_, rectangle_->z, 0}
+                               : sampleArea(u);
+    s.pdfSolidAngle = areaToSolidAngle(pdfArea_, s.p - from, s.ng);
+    if (!(s.pdfSolidAngle > 0)) return std::nullopt;
+    return s;
+}
+
+float Quad::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+    if (rectangle_)
+        if (const auto view = sphericalView(*rectangle_, from)) return 1 / view->solidAngle();
+    return areaToSolidAngle(pdfArea_, hit.p - from, hit.ng);
+}
+
+} // namespace abbe

@@ -1,0 +1,49 @@
+// A four-cornered patch: the usual wall, floor or lamp.
+#pragma once
+
+#include "render/shape.h"
+
+#include <optional>
+
+namespace abbe {
+
+// Corners in order, counter-clockwise seen from outside. Traced as the two triangles (p00, p10, p01) and
+// (p11, p01, p10); uv runs from p00 to p10 (u) and to p01 (v). Requires finite corners and a nonzero area.
+class Quad final : public Shape {
+  public:
+    Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01);
+
+    Bounds3 bounds() const override;
+    void commit(GeometrySink&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override { return area_; }
+    // Rectangles seen large: uniform per solid angle; everything else: uniform per area.
+    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+
+  private:
+    // One of the two triangles: p = corner + s edgeS + t edgeT.
+    struct Half {
+        Vec3 corner, edgeS, edgeT;
+        Frame frame; // z is the normal
+    };
+    // What sampling per solid angle needs.
+    struct Rectangle {
+        Vec3 x, y, z; // orthonormal
+        float width, height;
+        Vec3 centre;
+        float diagonalSquared;
+    };
+    static std::optional<Rectangle> asRectangle(const std::array<Vec3, 4>&);
+    ShapeSample sampleArea(Vec2 u) const;
+
+    std::array<Half, 2> halves_;
+    Vec3 pError_;
+    std::array<Vec3, 5> corners_; // the last is padding for Embree's 16-byte loads
+    std::optional<Rectangle> rectangle_;
+    double area_;
+    float pdfArea_;
+    float firstHalf_; // share of the area in halves_[0]
+};
+
+} // namespace abbe

@@ -1,0 +1,101 @@
+#include "geometry/sphere.h"
+
+#include "geometry/surface_math.h"
+#include "math/warp.h"
+
+namespace abbe {
+
+namespace {
+
+// 1 - cos of the half angle of the cone from a point at distance² d2 > r2, without cancellation
+// (docs/hard_cases.md, case 30).
+double coneOneMinusCos(double d2, double r2) {
+    const double sin2 = r2 / d2, cos2 = (d2 - r2) / d2;
+    return sin2 / (1 + std::sqrt(cos2));
+}
+
+} // namespace
+
+Sphere::Sphere(Vec3d centre, double radius) : centre_(centre), radius_(radius) {}
+
+Bounds3 Sphere::bounds() const {
+    // Rounded outwards: float bounds must hold the double sphere.
+    const Vec3d r(radius_, radius_, radius_);
+    const Vec3d margin = (abs(centre_) + r) * 0x1p-22;
+    return {Vec3(centre_ - r - margin), Vec3(centre_ + r + margin)};
+}
+
+void Sphere::commit(GeometrySink& sink) const { sink.analytic(bounds()); }
+
+std::optional<RawHit> Sphere::intersect(const Ray& ray) const {
+    // The discriminant from the distance of the centre to the line, and the roots without cancellation
+    // [Haines2019, ch. 7].
+    const Vec3d o = Vec3d(ray.origin) - centre_, d(ray.direction);
+    const double a = dot(d, d), b = -dot(o, d), r2 = radius_ * radius_;
+    const Vec3d perpendicular = o + d * (b / a);
+    const double discriminant = r2 - dot(perpendicular, perpendicular);
+    if (!(discriminant >= 0)) return std::nullopt;
+    const double c = dot(o, o) - r2;
+    const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+    double near = q / a, far = near;
+    if (q != 0) near = c / q;
+    if (near > far) std::swap(near, far);
+    const double t = near > 0 ? near : far;
+    if (!(t > 0) || t > static_cast<double>(ray.tMax)) return std::nullopt;
+    return RawHit{.distance = static_cast<float>(t)};
+}
+
+ShapeSample Sphere::at(Vec3d normal) const {
+    const Vec3d p = centre_ + normal * radius_;
+    return {Vec3(p), Vec3(abs(p) * 0x1p-23), Vec3(normal), 0};
+}
+
+void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d along = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance);
+    const ShapeSample s = at(normalize(along - centre_));
+    hit.p = s.p;
+    hit.pError = s.pError;
+    hit.ng = s.ng;
+    const Vec3 n = s.ng;
+    const float longitude = std::atan2(n.x, n.z) * (0.5f * kInvPi);
+    hit.uv = {longitude < 0 ? longitude + 1 : longitude, 1 - std::acos(std::clamp(n.y, -1.f, 1.f)) * kInvPi};
+    hit.shading = Frame::fromNormalTangent(n, {n.z, 0, -n.x});
+    hit.primitive = 0;
+}
+
+double Sphere::area() const { return 4 * kPiD * radius_ * radius_; }
+
+std::optional<ShapeSample> Sphere::sample(Vec3 from, Vec2 u) const {
+    const Vec3d d = centre_ - Vec3d(from);
+    const double d2 = lengthSquared(d), r2 = radius_ * radius_;
+    if (!(d2 > r2)) {
+        ShapeSample s = at(Vec3d(squareToSphere(u)));
+        s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
+        if (!(s.pdfSolidAngle > 0)) return std::nullopt;
+        return s;
+    }
+    // A direction at angle θ in the cone meets the sphere first at the point whose normal is at angle α from the
+    // axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, eq. 6.17].
+    const double oneMinusCosMax = coneOneMinusCos(d2, r2);
+    const double h = static_cast<double>(u.x) * oneMinusCosMax;
+    const double sin2 = h * (2 - h), sin2Max = r2 / d2;
+    const double cosAlpha = sin2 / std::sqrt(sin2Max) + (1 - h) * safeSqrt(1 - sin2 / sin2Max);
+    const double sinAlpha = safeSqrt(1 - cosAlpha * cosAlpha), phi = 2 * kPiD * static_cast<double>(u.y);
+    const Vec3d axis = d * (-1 / std::sqrt(d2));
+    const Frame frame = Frame::fromNormal(Vec3(axis));
+    const Vec3d n =
+        Vec3d(frame.x) * (sinAlpha * std::cos(phi)) + Vec3d(frame.y) * (sinAlpha * std::sin(phi)) + axis * cosAlpha;
+    ShapeSample s = at(normalize(n));
+    s.pdfSolidAngle = static_cast<float>(1 / (2 * kPiD * oneMinusCosMax));
+    if (!std::isfinite(s.pdfSolidAngle)) return std::nullopt;
+    return s;
+}
+
+float Sphere::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+    const double d2 = lengthSquared(centre_ - Vec3d(from)), r2 = radius_ * radius_;
+    if (!(d2 > r2)) return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from, hit.ng);
+    const auto pdf = static_cast<float>(1 / (2 * kPiD * coneOneMinusCos(d2, r2)));
+    return std::isfinite(pdf) ? pdf : 0;
+}
+
+} // namespace abbe

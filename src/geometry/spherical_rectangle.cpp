@@ -1,0 +1,72 @@
+#include "geometry/spherical_rectangle.h"
+
+namespace abbe {
+
+namespace {
+
+// atan on [0, 1], absolute error below 2e-7: minimax polynomial in x², degree 17 in x.
+inline float atanUnit(float x) {
+    const float z = x * x;
+    float r = 0.0028662257f;
+    r = std::fma(r, z, -0.0161657367f);
+    r = std::fma(r, z, 0.0429096138f);
+    r = std::fma(r, z, -0.0752896400f);
+    r = std::fma(r, z, 0.1065626393f);
+    r = std::fma(r, z, -0.1420889944f);
+    r = std::fma(r, z, 0.1999355085f);
+    r = std::fma(r, z, -0.3333314528f);
+    return std::fma(r * z, x, x);
+}
+
+// The angle in [0, π] of (cosine, sine), sine >= 0, not both 0.
+inline float angle(float cosine, float sine) {
+    const float c = std::abs(cosine);
+    const float a = atanUnit(std::min(c, sine) / std::max(c, sine));
+    const float first = sine > c ? kPi / 2 - a : a;
+    return cosine < 0 ? kPi - first : first;
+}
+
+} // namespace
+
+SphericalRectangle::SphericalRectangle(float x0, float y0, float x1, float y1, float z)
+    : x0_(x0), y0_(y0), x1_(x1), y1_(y1), z_(-std::abs(z)), k_(0), solidAngle_(0) {
+    // Planes through the sides in turn: y = y0, x = x1, y = y1, x = x0. cosine[i] is the z component of the unit
+    // normal, sine[i] = sqrt(1 - cosine²).
+    const std::array<float, 4> offset{-y0, x1, y1, -x0};
+    std::array<float, 4> cosine, sine, gamma;
+    for (int i = 0; i < 4; ++i) {
+        const float inverse = 1 / std::sqrt(std::fma(z, z, offset[i] * offset[i]));
+        cosine[i] = offset[i] * inverse;
+        sine[i] = -z_ * inverse;
+    }
+    b0_ = cosine[0];
+    b1_ = cosine[2];
+    sine0_ = sine[0];
+    if (!(z_ < 0)) return;
+    for (int i = 0; i < 4; ++i) {
+        const int j = (i + 1) % 4;
+        const float a2 = sine[i] * sine[i], b2 = sine[j] * sine[j];
+        gamma[i] = angle(-cosine[i] * cosine[j], std::sqrt(std::max(0.f, a2 + b2 - a2 * b2)));
+    }
+    k_ = 2 * kPi - gamma[2] - gamma[3];
+    solidAngle_ = std::max(0.f, gamma[0] + gamma[1] - k_);
+}
+
+Vec2 SphericalRectangle::sample(Vec2 u) const {
+    // [Urena2013, sec. 4.2]; 1 - c_u² is written as (f_u² - sine0²) / (f_u² + b0²), which does not cancel.
+    const float a = std::fma(u.x, solidAngle_, k_);
+    const float sinA = std::sin(a), cosA = std::cos(a);
+    const float f = (cosA * b0_ - b1_) / sinA;
+    const float along = std::sqrt(std::max(0.f, (f - sine0_) * (f + sine0_)));
+    // along = 0 is x at infinity and sinA = 0 is x = 0; the clamp settles the first, the signs the second.
+    float x = -std::copysign(z_, f) / along;
+    if (!(x == x)) x = 0;
+    x = std::clamp(x, x0_, x1_);
+    const float d2 = std::fma(x, x, z_ * z_);
+    const float h0 = y0_ / std::sqrt(std::fma(y0_, y0_, d2)), h1 = y1_ / std::sqrt(std::fma(y1_, y1_, d2));
+    const float h = std::fma(u.y, h1 - h0, h0);
+    const float y = h * std::sqrt(d2 / std::max(1e-30f, (1 - h) * (1 + h)));
+    return {x, std::clamp(y, y0_, y1_)};
+}
+
+} // namespace abbe

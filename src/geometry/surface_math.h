@@ -1,0 +1,49 @@
+// Small formulas shared by the shapes: rounding bounds, triangle normals, the change from area to solid angle.
+#pragma once
+
+#include "math/vec.h"
+
+namespace abbe {
+
+// Relative error of n float operations: n ε / (1 - n ε) with ε half an ulp [Pharr2023, sec. 6.8.1].
+constexpr float gammaBound(int n) {
+    const double e = n * 0x1p-24;
+    return static_cast<float>(e / (1 - e));
+}
+
+// A point p0 + s (p1 - p0) + t (p2 - p0) and a bound on its error per axis. The differences round relative to
+// |p0| + |p1|, and every term but p0 carries s or t, hence the weights.
+struct TrianglePoint {
+    Vec3 p;
+    Vec3 pError;
+};
+inline TrianglePoint trianglePoint(Vec3 p0, Vec3 p1, Vec3 p2, float s, float t) {
+    constexpr float bound = gammaBound(6);
+    const auto axis = [s, t](float a, float b, float c) { return std::fma(t, c - a, std::fma(s, b - a, a)); };
+    const auto error = [s, t](float a, float b, float c) {
+        return bound * std::fma(t, std::abs(c), std::fma(s, std::abs(b), std::abs(a)));
+    };
+    return {{axis(p0.x, p1.x, p2.x), axis(p0.y, p1.y, p2.y), axis(p0.z, p1.z, p2.z)},
+            {error(p0.x, p1.x, p2.x), error(p0.y, p1.y, p2.y), error(p0.z, p1.z, p2.z)}};
+}
+
+// Twice the vector area of a triangle, from the two edges that meet opposite the longest one, which loses least on
+// slivers (docs/hard_cases.md, case 9).
+inline Vec3d triangleCross(Vec3d p0, Vec3d p1, Vec3d p2) {
+    const Vec3d e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0;
+    const double l0 = lengthSquared(e0), l1 = lengthSquared(e1), l2 = lengthSquared(e2);
+    if (l0 >= l1 && l0 >= l2) return cross(e1, e2);
+    return l1 >= l2 ? cross(e2, e0) : cross(e0, e1);
+}
+
+// Solid-angle density at distance² `d2` of a density per area, for the unit normal `ng` and the vector `d` to the
+// point; 0 edge-on or at the point itself.
+inline float areaToSolidAngle(float pdfArea, Vec3 d, Vec3 ng) {
+    const float d2 = lengthSquared(d);
+    const float projected = std::abs(dot(d, ng));
+    if (!(d2 > 0) || !(projected > 0)) return 0;
+    const float pdf = pdfArea * d2 * std::sqrt(d2) / projected;
+    return std::isfinite(pdf) ? pdf : 0;
+}
+
+} // namespace abbe

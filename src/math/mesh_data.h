@@ -1,0 +1,22 @@
+// A polygon mesh as files and scenes state it; geometry/ renders it, io/ reads it.
+#pragma once
+
+#include "math/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace abbe {
+
+// Vertices shared by triangles and quads; counter-clockwise seen from outside. `normals` and `uvs` are per vertex:
+// each is empty or as long as `positions`.
+struct MeshData {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<std::array<std::uint32_t, 4>> quads;
+};
+
+} // namespace abbe
