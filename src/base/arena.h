@@ -13,8 +13,7 @@ namespace abbe {
 // One per thread; objects live until reset(). Requires trivially destructible types and alignment up to 32.
 class Arena {
   public:
-    template <typename T, typename... Args>
-    T* make(Args&&... args) {
+    template <typename T, typename... Args> T* make(Args&&... args) {
         static_assert(std::is_trivially_destructible_v<T>, "arena objects are never destroyed");
         static_assert(alignof(T) <= 32);
         constexpr std::size_t size = (sizeof(T) + 31) / 32 * 32;

@@ -5,8 +5,7 @@
 
 namespace abbe {
 
-template <typename Enum>
-class Flags {
+template <typename Enum> class Flags {
   public:
     using Bits = std::underlying_type_t<Enum>;
 

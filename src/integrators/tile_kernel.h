@@ -22,8 +22,8 @@ struct TileResult {
     std::vector<DroppedSample> examples;    // at most a few
 };
 
-// One path: where on the film, which wavelengths, what came back. Gated: a sample that is not finite and non-negative
-// is counted and contributes nothing; the pixel's mean then runs over one sample of value zero fewer.
+// Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite and
+// non-negative is counted by cause and left out of the pixel's mean.
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)

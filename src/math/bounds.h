@@ -5,8 +5,7 @@
 
 namespace abbe {
 
-template <typename T>
-struct Bounds3T {
+template <typename T> struct Bounds3T {
     Vec3T<T> lower{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(),
                    std::numeric_limits<T>::infinity()};
     Vec3T<T> upper{-std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity(),

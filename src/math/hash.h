@@ -5,7 +5,8 @@
 
 namespace abbe {
 
-// Bijective mixers; the 64-bit one is Stafford's variant 13 of the MurmurHash3 finaliser, the 32-bit one Wellons' lowbias32.
+// Bijective mixers; the 64-bit one is Stafford's variant 13 of the MurmurHash3 finaliser, the 32-bit one Wellons'
+// lowbias32.
 constexpr std::uint64_t mix64(std::uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;

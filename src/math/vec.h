@@ -13,8 +13,7 @@ inline constexpr float kPi = static_cast<float>(kPiD);
 inline constexpr float kInvPi = static_cast<float>(1 / kPiD);
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f; // largest float below 1
 
-template <typename T>
-struct Vec2T {
+template <typename T> struct Vec2T {
     T x = 0, y = 0;
 
     constexpr Vec2T operator+(Vec2T b) const { return {x + b.x, y + b.y}; }
@@ -23,8 +22,7 @@ struct Vec2T {
     constexpr bool operator==(const Vec2T&) const = default;
 };
 
-template <typename T>
-struct Vec3T {
+template <typename T> struct Vec3T {
     T x = 0, y = 0, z = 0;
 
     constexpr Vec3T() = default;
@@ -42,57 +40,26 @@ struct Vec3T {
     constexpr bool operator==(const Vec3T&) const = default;
 };
 
-template <typename T>
-constexpr Vec3T<T> operator*(T s, Vec3T<T> v) {
-    return v * s;
-}
-template <typename T>
-constexpr T dot(Vec3T<T> a, Vec3T<T> b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <typename T>
-constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
+template <typename T> constexpr Vec3T<T> operator*(T s, Vec3T<T> v) { return v * s; }
+template <typename T> constexpr T dot(Vec3T<T> a, Vec3T<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <typename T> constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <typename T>
-constexpr Vec3T<T> multiply(Vec3T<T> a, Vec3T<T> b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-template <typename T>
-T lengthSquared(Vec3T<T> v) {
-    return dot(v, v);
-}
-template <typename T>
-T length(Vec3T<T> v) {
-    return std::sqrt(dot(v, v));
-}
+template <typename T> constexpr Vec3T<T> multiply(Vec3T<T> a, Vec3T<T> b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+template <typename T> T lengthSquared(Vec3T<T> v) { return dot(v, v); }
+template <typename T> T length(Vec3T<T> v) { return std::sqrt(dot(v, v)); }
 // Requires v != 0.
-template <typename T>
-Vec3T<T> normalize(Vec3T<T> v) {
-    return v * (T(1) / length(v));
-}
-template <typename T>
-Vec3T<T> abs(Vec3T<T> v) {
-    return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
-}
-template <typename T>
-T maxComponent(Vec3T<T> v) {
-    return std::max(v.x, std::max(v.y, v.z));
-}
-template <typename T>
-T minComponent(Vec3T<T> v) {
-    return std::min(v.x, std::min(v.y, v.z));
-}
-template <typename T>
-Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
+template <typename T> Vec3T<T> normalize(Vec3T<T> v) { return v * (T(1) / length(v)); }
+template <typename T> Vec3T<T> abs(Vec3T<T> v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+template <typename T> T maxComponent(Vec3T<T> v) { return std::max(v.x, std::max(v.y, v.z)); }
+template <typename T> T minComponent(Vec3T<T> v) { return std::min(v.x, std::min(v.y, v.z)); }
+template <typename T> Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
 }
-template <typename T>
-Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
+template <typename T> Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
-template <typename T>
-bool isFinite(Vec3T<T> v) {
+template <typename T> bool isFinite(Vec3T<T> v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 inline bool isFinite(float v) { return std::isfinite(v); }
@@ -108,9 +75,6 @@ inline constexpr double square(double x) { return x * x; }
 // sqrt that treats the small negatives of cancellation as 0.
 inline float safeSqrt(float x) { return std::sqrt(std::max(0.f, x)); }
 inline double safeSqrt(double x) { return std::sqrt(std::max(0.0, x)); }
-template <typename T>
-constexpr T lerp(T a, T b, T t) {
-    return a + (b - a) * t;
-}
+template <typename T> constexpr T lerp(T a, T b, T t) { return a + (b - a) * t; }
 
 } // namespace abbe

@@ -41,7 +41,7 @@ struct RenderStatistics {
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
     std::uint64_t rays() const { return vertices + shadowRays; }
-    std::uint32_t samplesPerPixel = 0; // finished
+    std::uint32_t samplesPerPixel = 0;      // finished
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
     std::uint64_t cappedPaths = 0;          // reached the safety cap of 100 000 vertices
@@ -56,8 +56,8 @@ struct Progress {
     double fraction = 0; // of the work that will end the render
     std::uint32_t pass = 0, passes = 0;
     std::uint32_t samplesPerPixel = 0, totalSamples = 0;
-    double noise = 0;          // relative; 0 while unknown
-    double pathsPerSecond = 0; // all threads
+    double noise = 0;              // relative; 0 while unknown
+    double pathsPerSecond = 0;     // all threads
     double elapsed = 0, left = -1; // s; left < 0: unknown yet
 };
 

@@ -15,13 +15,13 @@ namespace abbe {
 
 // What the command line may change.
 struct BuildOptions {
-    std::string camera;                  // name; empty: the only or first one
-    std::optional<Vec2i> size;           // film size in pixels
+    std::string camera;        // name; empty: the only or first one
+    std::optional<Vec2i> size; // film size in pixels
     std::optional<std::int64_t> samples;
     std::optional<std::int64_t> seed;
-    std::optional<double> noise;         // relative
-    std::optional<double> timeLimit;     // s
-    bool geometry = true; // false: check only; no acceleration structure is built
+    std::optional<double> noise;     // relative
+    std::optional<double> timeLimit; // s
+    bool geometry = true;            // false: check only; no acceleration structure is built
 };
 
 // Facts for `abbe info` and the summary of a render.

@@ -1,11 +1,22 @@
 // The only list of types: every material, light, shape, camera, film and render type that a scene can name.
 #pragma once
 
+#include "render/material.h"
 #include "schema/type.h"
+
+#include <functional>
+#include <memory>
+#include <string_view>
 
 namespace abbe {
 
 // All field tables, in the order of the manual.
 schema::TypeTable makeTypeTable();
+
+// Fills the parameter struct of a type.
+using BindParams = std::function<void(void* params)>;
+
+// A material of a registered type from bound parameters. Requires a name out of the table.
+std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
 
 } // namespace abbe

@@ -1,0 +1,158 @@
+#include "scene/build.h"
+
+#include "cameras/perspective.h"
+#include "scene/registry.h"
+#include "scene/scene_builder.h"
+#include "spectrum/observer.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe {
+
+using schema::Kind;
+
+SceneBuilder::SceneBuilder(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
+                           Diagnostics& diagnostics)
+    : tree_(tree), types_(types), options_(options), diagnostics_(diagnostics) {}
+
+const Curve* SceneBuilder::curve(const schema::SpectrumValue& value, schema::SpectrumRole role, Diagnostics& d) {
+    return curves_.curve(value, role, d);
+}
+
+schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagnostics& d) {
+    return curves_.metal(name, span, d);
+}
+
+schema::Reference SceneBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
+    if (definition.kind != Kind::material) return {};
+    const bool named = !definition.name.empty();
+    if (named)
+        if (const auto found = materialIndex_.find(&definition); found != materialIndex_.end()) return found->second;
+    const std::size_t before = diagnostics.errorCount();
+    const auto bindInto = [&](void* params) { schema::bind(definition, tree_, types_, *this, params, diagnostics); };
+    schema::Reference result;
+    if (!definition.type) {
+        bindInto(nullptr);
+    } else {
+        auto material = makeMaterial(definition.type->name, bindInto);
+        if (diagnostics.errorCount() == before) {
+            result.index = static_cast<std::uint32_t>(materials_.size());
+            materials_.push_back(std::move(material));
+            materialAskers_.emplace_back(result.index, definition.span);
+        }
+    }
+    if (named) materialIndex_[&definition] = result;
+    return result;
+}
+
+const schema::Definition* SceneBuilder::only(Kind kind, std::string_view name) {
+    const Definition* first = nullptr;
+    for (const Definition& d : tree_.definitions) {
+        if (d.kind != kind) continue;
+        if (!name.empty() && d.name == name) return &d;
+        if (name.empty() && !first)
+            first = &d;
+        else if (name.empty() && kind != Kind::camera) {
+            Diagnostic& e = diagnostics_.error(
+                "E0608", d.nameSpan, fmt::format("a scene has one `{}`", schema::keyword(kind)), "second one");
+            e.related.push_back({first->nameSpan, "the first one is here"});
+        }
+    }
+    return first;
+}
+
+void SceneBuilder::buildSettings(BuiltScene& built) {
+    if (const Definition* film = only(Kind::film, ""))
+        if (auto params = bound<FilmParams>(*film)) {
+            built.film = std::move(*params);
+            for (const FilmFault& fault : findFaults(built.film))
+                diagnostics_.error("E0609", film->span, fault.message, std::string(fault.field)).help = fault.help;
+        }
+    if (const Definition* render = only(Kind::render, ""))
+        if (const auto params = bound<RenderParams>(*render)) built.render = *params;
+    if (options_.size) {
+        built.film.size = {static_cast<double>(options_.size->x), static_cast<double>(options_.size->y)};
+        built.film.crop.reset();
+    }
+    if (options_.samples) built.render.samples = *options_.samples;
+    if (options_.seed) built.render.seed = *options_.seed;
+    if (options_.noise) built.render.noise = *options_.noise;
+    if (options_.timeLimit) built.render.timeLimit = *options_.timeLimit;
+}
+
+void SceneBuilder::buildCamera(BuiltScene& built) {
+    const Definition* definition = only(Kind::camera, options_.camera);
+    if (!definition) {
+        diagnostics_
+            .error("E0601", tree_.header.span,
+                   options_.camera.empty() ? std::string("the scene has no camera")
+                                           : fmt::format("no camera is named `{}`", options_.camera))
+            .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0 }`";
+        return;
+    }
+    const auto params = bound<PerspectiveParams>(*definition);
+    if (!params) return;
+    const Vec2i size{static_cast<int>(built.film.size.x), static_cast<int>(built.film.size.y)};
+    auto placed = makePerspective(*params, {{}, tree_.header.zUp, size, definition->span}, diagnostics_);
+    if (!placed) return;
+    built.scene.camera = std::move(placed->camera);
+    built.scene.origin = placed->origin;
+    built.exposure = std::exp2(params->exposure);
+}
+
+void SceneBuilder::noteEffects(BuiltScene& built) {
+    for (const auto& [index, span] : materialAskers_) {
+        const Effects needs = materials_[index]->needs();
+        built.scene.effects |= needs;
+        if (needs.has(Effect::dispersion))
+            built.scene.reasons.push_back({Effect::dispersion, span, "its refractive index varies with wavelength"});
+        if (needs.has(Effect::absorption))
+            built.scene.reasons.push_back({Effect::absorption, span, "light is absorbed inside it"});
+    }
+}
+
+void SceneBuilder::finish(BuiltScene& built) {
+    built.facts.lights = lights_.size();
+    built.facts.materials = materials_.size();
+    built.facts.bounds =
+        bounds_.empty() ? bounds_ : Bounds3d{bounds_.lower + built.scene.origin, bounds_.upper + built.scene.origin};
+    double emitted = 0;
+    const Bounds3 box = bounds_.empty() ? Bounds3{} : Bounds3{Vec3(bounds_.lower), Vec3(bounds_.upper)};
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        lights_[i]->commit(box);
+        emitted += lights_[i]->power();
+        built.facts.lightList.push_back({lightNames_[i].first, lightNames_[i].second, lights_[i]->power(), 0});
+    }
+    if (!(emitted > 0) && !diagnostics_.hasErrors())
+        diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
+            "add one, for example `light sky { luminance 5000 nits }`";
+    noteEffects(built);
+    if (options_.geometry && !diagnostics_.hasErrors()) built.scene.intersector = embree_.build();
+    built.scene.curves = curves_.release();
+    built.scene.materials = std::move(materials_);
+    built.scene.shapes = std::move(shapes_);
+    for (auto& light : lights_) built.scene.lights.push_back(std::move(light));
+}
+
+void SceneBuilder::build(BuiltScene& built) {
+    built_ = &built;
+    buildSettings(built);
+    buildCamera(built);
+    placeAll(tree_.definitions, Transform::translate(-built.scene.origin));
+    // What nothing refers to is checked all the same.
+    for (const Definition& d : tree_.definitions) {
+        if (d.kind == Kind::material) reference(d, diagnostics_);
+        if (d.kind == Kind::object) objectGeometry(d);
+    }
+    finish(built);
+}
+
+BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
+                      Diagnostics& diagnostics) {
+    BuiltScene built;
+    SceneBuilder(tree, types, options, diagnostics).build(built);
+    return built;
+}
+
+} // namespace abbe

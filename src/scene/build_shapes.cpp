@@ -1,0 +1,236 @@
+#include "geometry/mesh_cleanup.h"
+#include "scene/scene_builder.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+using schema::Kind;
+
+namespace {
+
+// More instances than any machine holds: nested objects multiply quickly.
+constexpr std::size_t kMaxInstances = 100'000'000;
+
+} // namespace
+
+const Shape* SceneBuilder::keepShape(std::unique_ptr<const Shape> shape) {
+    return shapes_.emplace_back(std::move(shape)).get();
+}
+
+Transform SceneBuilder::ownTransform(const Definition& d) {
+    Transform result;
+    for (const schema::Node& property : d.properties) {
+        if (property.name() == "transform")
+            result = schema::bindTransform(property, tree_.header, diagnostics_);
+        else
+            diagnostics_.error("E0201", property.nameSpan(),
+                               fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
+                               "only `transform` is possible here");
+    }
+    return result;
+}
+
+const Material* SceneBuilder::materialOf(const ShapeParams& params) {
+    if (params.material.valid()) return materials_[params.material.index].get();
+    if (!defaultMaterial_) {
+        defaultMaterial_ = static_cast<std::uint32_t>(materials_.size());
+        const auto* type = types_.find(Kind::material, "diffuse");
+        Definition plain;
+        plain.kind = Kind::material;
+        plain.type = type;
+        materials_.push_back(
+            makeMaterial("diffuse", [&](void* p) { schema::bind(plain, tree_, types_, *this, p, diagnostics_); }));
+    }
+    return materials_[*defaultMaterial_].get();
+}
+
+SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
+    const auto [found, isNew] = loaded_.try_emplace(&d);
+    LoadedShape& shape = found->second;
+    if (!isNew) return shape;
+    shape.definition = &d;
+    const auto take = [&](const auto& params) -> const auto& {
+        shape.common = params;
+        shape.sound = true;
+        return params;
+    };
+    const std::string_view type = d.type ? d.type->name : "";
+    const Vec3d up = tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+    Diagnostics& diagnostics = diagnostics_;
+    const Span span = d.span;
+    if (type == "quad") {
+        if (const auto p = bound<QuadParams>(d))
+            shape.place = [&diagnostics, span, q = take(*p)](const Transform& t) {
+                return makeQuad(q.points, q.size, t, span, diagnostics);
+            };
+    } else if (type == "sphere") {
+        if (const auto p = bound<SphereParams>(d))
+            shape.place = [&diagnostics, span, s = take(*p)](const Transform& t) {
+                return makeSphere(s.center, s.radius, t, span, diagnostics);
+            };
+    } else if (type == "disk") {
+        if (const auto p = bound<DiskParams>(d))
+            shape.place = [&diagnostics, span, up, s = take(*p)](const Transform& t) {
+                return makeDisk(s.center, s.normal.value_or(up), s.radius, t, span, diagnostics);
+            };
+    } else if (type == "plane") {
+        shape.infinite = true;
+        if (const auto p = bound<PlaneParams>(d))
+            shape.place = [&diagnostics, span, up, s = take(*p)](const Transform& t) {
+                return makePlane(s.center, s.normal.value_or(up), t, span, diagnostics);
+            };
+    } else if (type == "mesh") {
+        loadMeshShape(d, shape);
+    } else {
+        bound<ShapeParams>(d); // unknown type: report what is wrong besides
+    }
+    if (shape.sound && shape.infinite && shape.common.emission) {
+        diagnostics_.error("E0606", d.span, "an infinite plane cannot emit", "give it an end: use a quad or a disk");
+        shape.sound = false;
+    }
+    return shape;
+}
+
+void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
+    const auto params = bound<MeshParams>(d);
+    if (!params) return;
+    shape.common = *params;
+    auto mesh = loadMesh(params->file, params->points, params->faces, d.span, diagnostics_);
+    if (!mesh) return;
+    if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
+    shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
+    shape.sound = true;
+    shape.place = [this, &shape, span = d.span](const Transform& t) {
+        return placeMesh(*shape.mesh, t, span, diagnostics_);
+    };
+}
+
+void SceneBuilder::countShape(const LoadedShape& shape) {
+    SceneFacts& facts = built_->facts;
+    ++facts.shapes;
+    if (shape.mesh) {
+        facts.triangles += shape.mesh->triangles.size();
+        facts.quads += shape.mesh->quads.size();
+    } else if (shape.definition->type->name == "quad") {
+        ++facts.quads;
+    } else {
+        ++facts.analytic;
+    }
+}
+
+void SceneBuilder::placeShape(const Definition& d, const Transform& toRender) {
+    LoadedShape& loaded = loadedShape(d);
+    if (!loaded.sound) return;
+    auto shape = loaded.place(loaded.common.transform.then(toRender));
+    if (!shape) return;
+    countShape(loaded);
+    const Shape* placed = keepShape(std::move(shape));
+    if (!loaded.infinite) bounds_.add(Bounds3d{Vec3d(placed->bounds().lower), Vec3d(placed->bounds().upper)});
+    embree_.addShape(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed)});
+}
+
+void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Transform& toRender) {
+    for (const Definition& d : definitions) {
+        switch (d.kind) {
+        case Kind::shape:
+            placeShape(d, toRender);
+            break;
+        case Kind::light:
+            placeLight(d, toRender);
+            break;
+        case Kind::group:
+            placeAll(d.children, ownTransform(d).then(toRender));
+            break;
+        case Kind::instance:
+            placeInstance(d, toRender);
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+void SceneBuilder::placeInstance(const Definition& d, const Transform& toRender) {
+    const Definition* object = tree_.find(Kind::object, d.target);
+    const Transform place = ownTransform(d).then(toRender);
+    if (object) expand(*object, place, d.targetSpan); // an unknown name has been reported by resolve()
+}
+
+// The parts of an object that its instances share are built once, in the object's own space. Emitters are made anew for
+// every instance, because each is a light of its own; so are planes, which have no end to transform.
+void SceneBuilder::collect(const std::vector<Definition>& definitions, const Transform& toObject, ObjectGeometry& out,
+                           std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared) {
+    for (const Definition& d : definitions) {
+        if (d.kind == Kind::group) {
+            collect(d.children, ownTransform(d).then(toObject), out, shared);
+        } else if (d.kind == Kind::instance) {
+            out.instances.emplace_back(&d, toObject);
+        } else if (d.kind == Kind::light) {
+            out.unshared.push_back(&d);
+            out.unsharedPlace.push_back(toObject);
+        } else if (d.kind == Kind::shape) {
+            LoadedShape& loaded = loadedShape(d);
+            if (!loaded.sound) continue;
+            if (loaded.common.emission || loaded.infinite) {
+                out.unshared.push_back(&d);
+                out.unsharedPlace.push_back(toObject);
+            } else if (auto shape = loaded.place(loaded.common.transform.then(toObject))) {
+                countShape(loaded);
+                shared.emplace_back(keepShape(std::move(shape)),
+                                    EmbreeSceneBuilder::Binding{materialOf(loaded.common), nullptr});
+            }
+        }
+    }
+}
+
+SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& object) {
+    const auto [found, isNew] = objects_.try_emplace(&object);
+    ObjectGeometry& geometry = found->second;
+    if (!isNew) return geometry;
+    ++built_->facts.objects;
+    std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>> shared;
+    collect(object.children, ownTransform(object), geometry, shared);
+    for (const auto& [shape, binding] : shared)
+        geometry.bounds.add(Bounds3d{Vec3d(shape->bounds().lower), Vec3d(shape->bounds().upper)});
+    if (!shared.empty()) geometry.embreeObject = embree_.addObject(std::move(shared));
+    return geometry;
+}
+
+void SceneBuilder::expand(const Definition& object, const Transform& toRender, Span asker) {
+    ObjectGeometry& geometry = objectGeometry(object);
+    if (geometry.busy) {
+        std::string chain;
+        for (const Definition* d : chain_) chain += fmt::format("`{}` → ", d->name);
+        diagnostics_.error("E0602", asker, fmt::format("object `{}` contains itself", object.name),
+                           fmt::format("{}`{}`", chain, object.name));
+        return;
+    }
+    if (++instanceCount_ > kMaxInstances) {
+        if (instanceCount_ == kMaxInstances + 1)
+            diagnostics_.error("E0607", asker, "nested objects expand to more than 100 million instances");
+        return;
+    }
+    geometry.busy = true;
+    chain_.push_back(&object);
+    if (geometry.embreeObject) {
+        embree_.addInstance(*geometry.embreeObject, toRender);
+        ++built_->facts.instances;
+        for (int corner = 0; corner < 8; ++corner)
+            bounds_.add(toRender.point({corner & 1 ? geometry.bounds.upper.x : geometry.bounds.lower.x,
+                                        corner & 2 ? geometry.bounds.upper.y : geometry.bounds.lower.y,
+                                        corner & 4 ? geometry.bounds.upper.z : geometry.bounds.lower.z}));
+    }
+    for (std::size_t i = 0; i < geometry.unshared.size(); ++i) {
+        const Transform place = geometry.unsharedPlace[i].then(toRender);
+        if (geometry.unshared[i]->kind == Kind::light)
+            placeLight(*geometry.unshared[i], place);
+        else
+            placeShape(*geometry.unshared[i], place);
+    }
+    for (const auto& [instance, place] : geometry.instances) placeInstance(*instance, place.then(toRender));
+    chain_.pop_back();
+    geometry.busy = false;
+}
+
+} // namespace abbe

@@ -1,0 +1,34 @@
+// Turns the spectra of a scene into curves, and owns them.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "schema/scene_tree.h"
+#include "spectrum/curve.h"
+
+#include <memory>
+#include <vector>
+
+namespace abbe {
+
+// Reports what cannot be: unknown names with suggestions, light used as reflectance, colours without a spectrum.
+class CurveLibrary {
+  public:
+    // Null after a diagnostic.
+    const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    schema::ComplexIndex metal(std::string_view name, Span, Diagnostics&);
+    // Illuminant D65, scaled to Y = 1.
+    const Curve* daylight();
+
+    std::vector<std::unique_ptr<const Curve>> release() { return std::move(curves_); }
+
+  private:
+    const Curve* keep(std::unique_ptr<const Curve>);
+    const Curve* named(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    const Curve* rgb(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    const Curve* table(const schema::SpectrumValue&, schema::SpectrumRole);
+
+    std::vector<std::unique_ptr<const Curve>> curves_;
+    const Curve* daylight_ = nullptr;
+};
+
+} // namespace abbe

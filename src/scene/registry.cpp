@@ -1,0 +1,62 @@
+#include "scene/registry.h"
+
+#include "base/check.h"
+#include "cameras/perspective.h"
+#include "film/film_params.h"
+#include "integrators/render_params.h"
+#include "lights/area_light_types.h"
+#include "lights/environment_light.h"
+#include "lights/point_light.h"
+#include "lights/sky_light.h"
+#include "lights/spot_light.h"
+#include "lights/sun_light.h"
+#include "materials/conductor.h"
+#include "materials/dielectric.h"
+#include "materials/diffuse.h"
+#include "scene/shape_types.h"
+
+namespace abbe {
+
+namespace {
+
+struct MaterialEntry {
+    schema::TypeInfo (*type)();
+    std::unique_ptr<const Material> (*make)(const BindParams&);
+};
+
+template <typename Params, auto make> std::unique_ptr<const Material> bound(const BindParams& bind) {
+    Params params;
+    bind(&params);
+    return make(params);
+}
+
+// A material is one line here (docs/adding_a_material.md).
+constexpr MaterialEntry kMaterials[] = {
+    {diffuseType, bound<DiffuseParams, makeDiffuse>},
+    {conductorType, bound<ConductorParams, makeConductor>},
+    {dielectricType, bound<DielectricParams, makeDielectric>},
+};
+
+constexpr schema::TypeInfo (*kOthers[])() = {
+    perspectiveType, quadType,      sphereType,           diskType,      planeType,      meshType,
+    lightQuadType,   lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType,
+    sunLightType,    skyLightType,  environmentLightType, filmType,      renderType,
+};
+
+} // namespace
+
+schema::TypeTable makeTypeTable() {
+    schema::TypeTable table;
+    for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
+    for (const auto type : kOthers) table.add(type());
+    return table;
+}
+
+std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams& bind) {
+    for (const MaterialEntry& entry : kMaterials)
+        if (entry.type().name == type) return entry.make(bind);
+    ABBE_CHECK(!"a registered material type");
+    return nullptr;
+}
+
+} // namespace abbe

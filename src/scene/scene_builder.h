@@ -1,0 +1,115 @@
+// The work of buildScene(): one pass over the definitions, split by what is built.
+#pragma once
+
+#include "geometry/embree_scene.h"
+#include "lights/area_light_types.h"
+#include "lights/light_context.h"
+#include "render/shape.h"
+#include "scene/build.h"
+#include "scene/curve_library.h"
+#include "scene/shape_types.h"
+
+#include <map>
+#include <set>
+#include <unordered_map>
+
+namespace abbe {
+
+class SceneBuilder final : public schema::Resolver {
+  public:
+    SceneBuilder(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&);
+
+    // Fills `built`; see buildScene().
+    void build(BuiltScene& built);
+
+    const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&) override;
+    schema::ComplexIndex metal(std::string_view name, Span, Diagnostics&) override;
+    schema::Reference reference(const schema::Definition&, Diagnostics&) override;
+
+  private:
+    using Definition = schema::Definition;
+
+    // A shape whose geometry is made but not yet placed: made once per definition, placed once or, in objects with
+    // emitters and planes, once per instance.
+    struct LoadedShape {
+        const Definition* definition = nullptr;
+        ShapeParams common;
+        std::shared_ptr<const MeshData> mesh; // mesh shapes
+        std::function<std::unique_ptr<const Shape>(const Transform&)> place;
+        bool infinite = false;
+        bool sound = false;
+    };
+    // The geometry of an object that instances share.
+    struct ObjectGeometry {
+        std::optional<std::uint32_t> embreeObject; // absent: nothing in it can be shared
+        std::vector<const Definition*> unshared;   // emitters, planes and lights, with the transform of their group
+        std::vector<Transform> unsharedPlace;
+        std::vector<std::pair<const Definition*, Transform>> instances; // nested
+        Bounds3d bounds;                                                // of the shared shapes, object space
+        bool busy = false;                                              // being expanded: meeting it again is a cycle
+    };
+
+    template <typename P> std::optional<P> bound(const Definition&);
+
+    // build.cpp
+    void buildCamera(BuiltScene&);
+    void buildSettings(BuiltScene&);
+    void finish(BuiltScene&);
+    void noteEffects(BuiltScene&);
+    const Definition* only(schema::Kind, std::string_view name);
+
+    // build_shapes.cpp
+    void placeAll(const std::vector<Definition>&, const Transform& toRender);
+    void placeShape(const Definition&, const Transform& toRender);
+    void placeInstance(const Definition&, const Transform& toRender);
+    void expand(const Definition& object, const Transform& toRender, Span asker);
+    ObjectGeometry& objectGeometry(const Definition& object);
+    void collect(const std::vector<Definition>&, const Transform& toObject, ObjectGeometry&,
+                 std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared);
+    LoadedShape& loadedShape(const Definition&);
+    void loadMeshShape(const Definition&, LoadedShape&);
+    const Shape* keepShape(std::unique_ptr<const Shape>);
+    Transform ownTransform(const Definition&);
+    const Material* materialOf(const ShapeParams&);
+    void countShape(const LoadedShape&);
+
+    // build_lights.cpp
+    void placeLight(const Definition&, const Transform& toRender);
+    void placeAreaLight(const Definition&, const Transform& toRender);
+    void placeEnvironment(const Definition&, const LightContext&);
+    std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
+    void addLight(std::unique_ptr<Light>, const Definition&);
+    const Light* emitterOf(const LoadedShape&, const Shape&);
+    LightContext lightContext(const Definition&, const Transform& toRender);
+
+    const schema::SceneTree& tree_;
+    const schema::TypeTable& types_;
+    const BuildOptions& options_;
+    Diagnostics& diagnostics_;
+    CurveLibrary curves_;
+    EmbreeSceneBuilder embree_;
+    BuiltScene* built_ = nullptr;
+
+    std::vector<std::unique_ptr<const Material>> materials_;
+    std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
+    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;             // who made it, for effects
+    std::optional<std::uint32_t> defaultMaterial_;
+    std::vector<std::unique_ptr<const Shape>> shapes_;
+    std::vector<std::unique_ptr<Light>> lights_;
+    std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
+    std::map<const Definition*, LoadedShape> loaded_;
+    std::map<const Definition*, ObjectGeometry> objects_;
+    std::vector<const Definition*> chain_; // objects being expanded
+    std::size_t instanceCount_ = 0;
+    Bounds3d bounds_; // of finite geometry, render space
+};
+
+template <typename P> std::optional<P> SceneBuilder::bound(const Definition& definition) {
+    P params;
+    const std::size_t before = diagnostics_.errorCount();
+    schema::bind(definition, tree_, types_, *this, definition.type ? &params : nullptr, diagnostics_);
+    if (!definition.type || diagnostics_.errorCount() != before) return std::nullopt;
+    return params;
+}
+
+} // namespace abbe

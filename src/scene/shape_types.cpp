@@ -1,0 +1,128 @@
+#include "scene/shape_types.h"
+
+namespace abbe {
+
+using namespace schema;
+
+namespace {
+
+template <typename P> void addShapeFields(std::vector<FieldInfo>& fields) {
+    fields.push_back(field<P, Reference>(FieldType::reference, "material", &P::material)
+                         .to(Kind::material)
+                         .synonyms({"bsdf", "shader", "surface"})
+                         .doc("Name of a material, or one written in place; grey and matte when absent.")
+                         .example("material diffuse { reflectance 0.5 }"));
+    fields.push_back(field<P, const Curve*>(FieldType::spectrum, "emission", &P::emission)
+                         .role(SpectrumRole::emission)
+                         .synonyms({"emitter", "glow", "Le"})
+                         .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm.")
+                         .example("emission 0.5"));
+    fields.push_back(field<P, Transform>(FieldType::transform, "transform", &P::transform)
+                         .synonyms({"to_world", "toWorld", "xform"})
+                         .doc("Places the shape: steps from top to bottom, as applied to the object.")
+                         .example("transform { scale 2; rotate y 45 deg; translate 0 1 0 }"));
+}
+
+template <typename P> FieldInfo centerField(std::string_view what) {
+    return field<P, Vec3d>(FieldType::vector3, "center", &P::center)
+        .unit({Dimension::length})
+        .byDefault("0 0 0")
+        .synonyms({"centre", "position", "origin"})
+        .doc(what)
+        .example("center 0 0.5 0");
+}
+
+template <typename P> FieldInfo radiusField() {
+    return field<P, double>(FieldType::quantity, "radius", &P::radius)
+        .unit({Dimension::length})
+        .range(1e-30, 1e15)
+        .byDefault("0.5")
+        .synonyms({"r", "size"})
+        .doc("Radius.")
+        .example("radius 0.5 m");
+}
+
+template <typename P> FieldInfo normalField() {
+    return field<P, std::optional<Vec3d>>(FieldType::vector3, "normal", &P::normal)
+        .unit({Dimension::none})
+        .doc("Direction of the outer side, of any length; up when absent.")
+        .example("normal 0 1 0");
+}
+
+} // namespace
+
+TypeInfo quadType() {
+    using P = QuadParams;
+    std::vector<FieldInfo> fields = {
+        field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
+            .unit({Dimension::length})
+            .group("extent")
+            .doc("Four corners, counter-clockwise seen from the outer side.")
+            .example("points 0 0 0   1 0 0   1 1 0   0 1 0"),
+        field<P, Vec2d>(FieldType::vector2, "size", &P::size)
+            .unit({Dimension::length})
+            .range(1e-30, 1e15)
+            .group("extent")
+            .doc("Width and height of a rectangle about the origin in the xy-plane, facing +z; 1 1 when absent.")
+            .example("size 60 120 cm"),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape, "quad",           "Flat four-cornered surface.", "shape quad { size 2 1; material diffuse }",
+            false,       std::move(fields)};
+}
+
+TypeInfo sphereType() {
+    using P = SphereParams;
+    std::vector<FieldInfo> fields = {centerField<P>("Centre."), radiusField<P>()};
+    addShapeFields<P>(fields);
+    return {Kind::shape, "sphere",         "Exact sphere.", "shape sphere { center 0 0.5 0; radius 0.5 }",
+            false,       std::move(fields)};
+}
+
+TypeInfo diskType() {
+    using P = DiskParams;
+    std::vector<FieldInfo> fields = {centerField<P>("Centre."), normalField<P>(), radiusField<P>()};
+    addShapeFields<P>(fields);
+    return {
+        Kind::shape, "disk",           "Flat round surface.", "shape disk { center 0 2 0; normal 0 -1 0; radius 0.3 }",
+        false,       std::move(fields)};
+}
+
+TypeInfo planeType() {
+    using P = PlaneParams;
+    std::vector<FieldInfo> fields = {centerField<P>("A point of the plane."), normalField<P>()};
+    addShapeFields<P>(fields);
+    return {Kind::shape, "plane",          "Infinite plane, the ground by default.", "shape plane { material diffuse }",
+            false,       std::move(fields)};
+}
+
+TypeInfo meshType() {
+    using P = MeshParams;
+    std::vector<FieldInfo> fields = {
+        field<P, Text>(FieldType::file, "file", &P::file)
+            .argument(0)
+            .group("source")
+            .synonyms({"filename", "path"})
+            .doc("OBJ or PLY file, binary or text; quads are kept.")
+            .example("file \"bunny.ply\""),
+        field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
+            .unit({Dimension::length})
+            .group("source")
+            .synonyms({"vertices", "P", "positions"})
+            .doc("Vertex positions, one row of three numbers each, or one long list.")
+            .example("points { - 0 0 0; - 1 0 0; - 0 1 0 }"),
+        field<P, IndexRows>(FieldType::indexRows, "faces", &P::faces)
+            .synonyms({"indices", "triangles", "polygons"})
+            .doc("Rows of vertex numbers from 0, counter-clockwise seen from outside; polygons of any size.")
+            .example("faces { - 0 1 2 }"),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape,
+            "mesh",
+            "Polygon mesh from a file or written in place.",
+            "shape mesh \"teapot.obj\" { material diffuse }",
+            false,
+            std::move(fields)};
+}
+
+} // namespace abbe

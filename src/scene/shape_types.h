@@ -1,0 +1,65 @@
+// The shapes of the language: what they may say, and how they become render-space geometry.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "math/mesh_data.h"
+#include "math/transform.h"
+#include "render/shape.h"
+#include "schema/type.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace abbe {
+
+// What every shape has. The transform takes the shape to its parent (object, group or world).
+struct ShapeParams {
+    schema::Reference material;      // unset: grey diffuse
+    const Curve* emission = nullptr; // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
+    Transform transform;
+};
+
+struct QuadParams : ShapeParams {
+    std::vector<Vec3d> points; // four corners, or empty
+    Vec2d size{1, 1};
+};
+struct SphereParams : ShapeParams {
+    Vec3d center;
+    double radius = 0.5;
+};
+struct DiskParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> normal; // unset: up
+    double radius = 0.5;
+};
+struct PlaneParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> normal; // unset: up
+};
+struct MeshParams : ShapeParams {
+    schema::Text file; // resolved path, or empty: points and faces
+    std::vector<Vec3d> points;
+    schema::IndexRows faces;
+};
+
+schema::TypeInfo quadType();
+schema::TypeInfo sphereType();
+schema::TypeInfo diskType();
+schema::TypeInfo planeType();
+schema::TypeInfo meshType();
+
+// Shapes in the space that `place` leads to. Each returns null, or nothing, after an error located at `span`.
+std::unique_ptr<const Shape> makeQuad(const std::vector<Vec3d>& points, Vec2d size, const Transform& place, Span,
+                                      Diagnostics&);
+std::unique_ptr<const Shape> makeSphere(Vec3d center, double radius, const Transform& place, Span, Diagnostics&);
+std::unique_ptr<const Shape> makeDisk(Vec3d center, Vec3d normal, double radius, const Transform& place, Span,
+                                      Diagnostics&);
+std::unique_ptr<const Shape> makePlane(Vec3d point, Vec3d normal, const Transform& place, Span, Diagnostics&);
+// A mesh in its own space: from a file (OBJ or PLY by extension) or from points and faces. Cleaned and checked.
+std::optional<MeshData> loadMesh(const schema::Text& file, const std::vector<Vec3d>& points,
+                                 const schema::IndexRows& faces, Span, Diagnostics&);
+// Normals stay outward under mirrors.
+std::unique_ptr<const Shape> placeMesh(MeshData, const Transform& place, Span, Diagnostics&);
+
+} // namespace abbe
