@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -112,7 +113,7 @@ double PixelFilm::relativeNoise() const {
     return known == 0 ? 0 : std::sqrt(error / known);
 }
 
-ResolvedImage PixelFilm::resolve(const XyzToRgb& toRgb, double scale) const {
+ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale) const {
     ResolvedImage image{bounds_, {}, {}, {}, {}};
     const auto area = static_cast<std::size_t>(bounds_.area());
     for (auto* plane : {&image.r, &image.g, &image.b}) plane->resize(area);
@@ -121,11 +122,10 @@ ResolvedImage PixelFilm::resolve(const XyzToRgb& toRgb, double scale) const {
         const int y = bounds_.y0 + static_cast<int>(row);
         std::size_t i = row * static_cast<std::size_t>(bounds_.width());
         for (int x = bounds_.x0; x < bounds_.x1; ++x, ++i) {
-            const Xyz m = mean(x, y) * scale;
-            const Vec3d xyz{m.x, m.y, m.z};
-            image.r[i] = static_cast<float>(dot(toRgb[0], xyz));
-            image.g[i] = static_cast<float>(dot(toRgb[1], xyz));
-            image.b[i] = static_cast<float>(dot(toRgb[2], xyz));
+            const auto rgb = fromXyz.apply<Vec3d>(mean(x, y) * scale);
+            image.r[i] = static_cast<float>(rgb.x);
+            image.g[i] = static_cast<float>(rgb.y);
+            image.b[i] = static_cast<float>(rgb.z);
             if (replicates_ > 1)
                 image.variance[i] = static_cast<float>(
                     variance(x, y).value_or(std::numeric_limits<double>::infinity()) * square(scale));

@@ -2,25 +2,21 @@
 #pragma once
 
 #include "film/pixel_filter.h"
-#include "math/vec.h"
 #include "render/film.h"
+#include "spectrum/matrix3.h"
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
 
 namespace abbe {
 
-// Rows of a 3×3 matrix from XYZ to linear RGB.
-using XyzToRgb = std::array<Vec3d, 3>;
-
 // Planes of the film's bounds, row by row from the top.
 struct ResolvedImage {
     PixelBounds bounds;
     std::vector<float> r, g, b;
-    std::vector<float>
-        variance; // of the mean's Y, scaled like it; empty with one replicate, infinite where nothing is known
+    // Of the mean's Y, scaled with it: empty with one replicate, infinite where fewer than two have samples.
+    std::vector<float> variance;
 };
 
 class PixelFilm final : public Film {
@@ -51,8 +47,9 @@ class PixelFilm final : public Film {
     // Pixels without a variance are left out; 0 if there is none. No thread may be adding.
     double relativeNoise() const override;
 
-    // Linear RGB of mean · scale; negative components stay. No thread may be adding. Pixels without samples are black.
-    ResolvedImage resolve(const XyzToRgb&, double scale) const;
+    // Linear RGB of mean · scale, by the matrix of an RgbSpace (spectrum/color_space.h); negative components stay. No
+    // thread may be adding. Pixels without samples are black.
+    ResolvedImage resolve(const Matrix3& fromXyz, double scale) const;
 
   private:
     std::size_t firstCell(int x, int y) const noexcept; // of the pixel's replicates

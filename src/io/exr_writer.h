@@ -15,6 +15,7 @@ namespace abbe {
 enum class ExrCompression : std::uint8_t { none, rle, zips, zip, piz, pxr24, dwaa, dwab };
 // By the name in a scene file, which is the enumerator's.
 std::optional<ExrCompression> findExrCompression(std::string_view name);
+std::string_view name(ExrCompression);
 
 // One fact about how an image was made. Numbers beyond int are given as text.
 struct ImageAttribute {

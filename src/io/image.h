@@ -1,6 +1,8 @@
 // Images in memory, and reading them from files.
 #pragma once
 
+#include "spectrum/color_space.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,15 +10,16 @@
 
 namespace abbe {
 
-// CIE xy of the primaries and the white of an RGB encoding.
+// The primaries and the white of an RGB encoding, as image headers state them.
 struct Chromaticities {
-    double redX = 0, redY = 0, greenX = 0, greenY = 0, blueX = 0, blueY = 0, whiteX = 0, whiteY = 0;
+    Chromaticity red, green, blue, white;
 
+    static Chromaticities of(const RgbSpace& s) { return {s.red, s.green, s.blue, s.white}; }
     // Equal as far as the single precision of image headers can tell.
-    bool matches(const Chromaticities&) const;
+    bool matches(const RgbSpace&) const;
+    // The space of this project that matches, or a nameless one.
+    RgbSpace space() const;
 };
-inline constexpr Chromaticities kAp0Chromaticities{0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767};
-inline constexpr Chromaticities kAp1Chromaticities{0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767};
 
 // Half-open pixel rectangle; x to the right, y down.
 struct PixelWindow {
@@ -42,6 +45,9 @@ struct RgbImage {
 
 // No image with more pixels is read.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t(1) << 28;
+
+// Sets `nonFinite` and `negative` from the pixels.
+void countFaults(RgbImage&);
 
 // OpenEXR (R G B, or Y alone for grey) or Radiance .hdr, told apart by content. Throws IoError.
 RgbImage readImage(const std::string& path);

@@ -1,0 +1,53 @@
+#include "io/image.h"
+
+#include "io/exr_reader.h"
+#include "io/hdr_reader.h"
+#include "io/io_error.h"
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fmt/format.h>
+#include <memory>
+#include <string_view>
+
+namespace abbe {
+
+bool Chromaticities::matches(const RgbSpace& space) const {
+    const auto near = [](Chromaticity a, Chromaticity b) {
+        return std::abs(a.x - b.x) < 1e-5 && std::abs(a.y - b.y) < 1e-5;
+    };
+    return near(red, space.red) && near(green, space.green) && near(blue, space.blue) && near(white, space.white);
+}
+
+RgbSpace Chromaticities::space() const {
+    for (const RgbSpace* known : {&rgb::rec709, &rgb::ap1, &rgb::ap0, &rgb::rec2020, &rgb::p3d65})
+        if (matches(*known)) return *known;
+    return {"", red, green, blue, white, ""};
+}
+
+void countFaults(RgbImage& image) {
+    image.nonFinite = image.negative = 0;
+    for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+        const float r = image.rgb[i], g = image.rgb[i + 1], b = image.rgb[i + 2];
+        image.nonFinite += !(std::isfinite(r) && std::isfinite(g) && std::isfinite(b));
+        image.negative += r < 0 || g < 0 || b < 0;
+    }
+}
+
+RgbImage readImage(const std::string& path) {
+    std::array<char, 4> magic{};
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (!file) throw IoError(fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
+    if (std::fread(magic.data(), 1, magic.size(), file.get()) != magic.size())
+        throw IoError(std::ferror(file.get()) ? fmt::format("cannot read `{}`: {}", path, std::strerror(errno))
+                                              : fmt::format("cannot read `{}`: it is cut short", path));
+    const std::string_view start(magic.data(), magic.size());
+    if (start == std::string_view("\x76\x2f\x31\x01", 4)) return readExr(path);
+    if (start.substr(0, 2) == "#?") return readHdr(path);
+    throw IoError(fmt::format("cannot read `{}`: it is neither OpenEXR nor Radiance HDR", path));
+}
+
+} // namespace abbe
