@@ -27,6 +27,10 @@ struct AmountParams {
 enum class AmountField : std::uint8_t { power = 1, radiance = 2, luminance = 4, intensity = 8, irradiance = 16 };
 using AmountFields = Flags<AmountField>;
 
+// Those of lights with an area.
+inline constexpr AmountFields kAreaAmounts =
+    AmountFields(AmountField::power) | AmountField::radiance | AmountField::luminance;
+
 // A curve times a number.
 struct ScaledCurve {
     const Curve* curve = nullptr; // not owned

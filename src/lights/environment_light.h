@@ -61,7 +61,8 @@ class EnvironmentLight final : public Light {
     Vec3 lookup(Vec2 point) const noexcept;
     Distribution2D density(bool compensated) const;
     double cellSolidAngle(int row) const noexcept;
-    double meanRadiantExitance() const;
+    Vec3d cellMean(int column, int row) const noexcept;
+    double integratedRadiance() const; // ∫∫ L dω dλ for a scale of 1, W/m²
 
     EnvironmentImage image_;
     std::unique_ptr<const RgbRadiance> upsampling_;
@@ -77,7 +78,7 @@ class EnvironmentLight final : public Light {
 // warning. False after an error.
 bool checkEnvironmentImage(EnvironmentImage&, Span, Diagnostics&);
 
-// Null after an error. `white` is the absolute meaning of the image's (1, 1, 1) through RgbRadiance.
+// Null after an error.
 std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,
                                             std::unique_ptr<const RgbRadiance>, bool compensated, const LightContext&,
                                             Diagnostics&);

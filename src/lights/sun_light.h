@@ -44,6 +44,7 @@ class SunLight final : public Light {
     Frame frame_; // z points to the sun
     bool delta_;
     float oneMinusCos_;    // of the half angle
+    float chord_;          // from the disk's middle to its edge, on the unit sphere
     float pdf_;            // 1/sr
     ScaledCurve radiance_; // irradiance for a delta light
     double irradiance_;    // W/m²

@@ -1,0 +1,87 @@
+#include "lights/amount.h"
+
+#include "spectrum/observer.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+bool isLuminous(schema::Dimension d) {
+    using enum schema::Dimension;
+    return d == luminousFlux || d == luminousIntensity || d == illuminance || d == luminance;
+}
+
+// The one quantity that is set, and what turns the curve into it.
+struct StatedQuantity {
+    schema::Quantity quantity;
+    double factor;
+};
+StatedQuantity statedQuantity(const AmountParams& params, const EmitterFactors& factors) {
+    if (params.power) return {*params.power, factors.power};
+    if (params.irradiance) return {*params.irradiance, factors.irradiance};
+    return {params.luminance ? *params.luminance : *params.intensity, 1};
+}
+
+} // namespace
+
+double radiantIntegral(const Curve& curve) {
+    // Trapezoids at whole nanometres: exact for tables of that step.
+    constexpr int first = static_cast<int>(kMinWavelength), last = static_cast<int>(kMaxWavelength);
+    double total = 0.5 * (curve.at(first) + curve.at(last));
+    for (int nm = first + 1; nm < last; ++nm) total += curve.at(nm);
+    return total;
+}
+
+double luminousIntegral(const Curve& curve) { return kLuminousEfficacy * kYIntegral * integrate(curve).y; }
+
+std::optional<double> scaleFor(const schema::Quantity& quantity, const Curve& shape, double factor) {
+    const double integral = isLuminous(quantity.dimension) ? luminousIntegral(shape) : radiantIntegral(shape);
+    // A spectrum that is almost all invisible could need a scale beyond float.
+    const double scale = quantity.value / (factor * integral);
+    if (!(integral > 0) || !(scale <= std::numeric_limits<float>::max())) return std::nullopt;
+    return scale;
+}
+
+std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Curve& defaultColor,
+                                            const EmitterFactors& factors, Span span, Diagnostics& diagnostics) {
+    if (params.radiance) {
+        if (!params.color) return ScaledCurve{params.radiance, 1};
+        Diagnostic& d = diagnostics.error("E0312", span, "`color` has no effect beside `radiance`");
+        d.notes.push_back("`radiance` is an absolute spectrum; `color` shapes the spectrum of the other amounts");
+        return std::nullopt;
+    }
+    const Curve& color = params.color ? *params.color : defaultColor;
+    const auto [quantity, factor] = statedQuantity(params, factors);
+    const Span place = quantity.span.valid() ? quantity.span : span;
+    if (!(factor > 0 && std::isfinite(factor))) {
+        diagnostics.error("E0313", place, "a light without finite area cannot state its power",
+                          "state its luminance or radiance");
+        return std::nullopt;
+    }
+    const std::optional<double> scale = scaleFor(quantity, color, factor);
+    if (!scale) {
+        Diagnostic& d = diagnostics.error("E0314", place, "no amount of this `color` makes that much light");
+        d.notes.push_back(isLuminous(quantity.dimension) ? "lm, cd, lx and nits count visible light only"
+                                                         : "the spectrum is zero between 360 and 830 nm");
+        return std::nullopt;
+    }
+    return ScaledCurve{&color, *scale};
+}
+
+void reportMissingAmount(AmountFields allowed, Span span, Diagnostics& diagnostics) {
+    constexpr std::pair<AmountField, std::string_view> kExamples[] = {
+        {AmountField::power, "`power 800 lm`"},
+        {AmountField::luminance, "`luminance 5000 nits`"},
+        {AmountField::intensity, "`intensity 120 cd`"},
+        {AmountField::irradiance, "`irradiance 100 klx`"},
+        {AmountField::radiance, "an absolute `radiance`"}};
+    std::string list;
+    for (const auto& [field, example] : kExamples)
+        if (allowed.has(field)) list += fmt::format("{}{}", list.empty() ? "" : " or ", example);
+    Diagnostic& d = diagnostics.error("E0311", span, "the light does not say how much it emits");
+    d.help = fmt::format("write {}", list);
+}
+
+} // namespace abbe

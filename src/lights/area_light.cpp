@@ -1,0 +1,53 @@
+#include "lights/area_light.h"
+
+#include "lights/area_light_types.h"
+#include "lights/light_context.h"
+
+namespace abbe {
+
+AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
+    : shape_(shape), radiance_(radiance), twoSided_(twoSided) {
+    const double area = shape.area();
+    power_ =
+        std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiantIntegral(*radiance.curve) * radiance.scale : 0;
+}
+
+std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda) const noexcept {
+    const std::optional<ShapeSample> s = shape_.sample(from, u);
+    if (!s || !(s->pdfSolidAngle > 0) || !(s->pdfSolidAngle < kInfinity)) return std::nullopt;
+    const Vec3 offset = s->p - from;
+    if (!(lengthSquared(offset) > 0)) return std::nullopt;
+    LightSample result;
+    result.wi = normalize(offset);
+    if (!emits(s->ng, -result.wi)) return std::nullopt;
+    result.p = spawnOrigin(s->p, s->pError, s->ng, -result.wi);
+    result.distance = length(result.p - from);
+    result.radiance = radiance_.at(lambda);
+    result.pdfSolidAngle = s->pdfSolidAngle;
+    return result;
+}
+
+Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {
+    return emits(hit.ng, w) ? radiance_.at(lambda) : Spectrum(0.f);
+}
+
+float AreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept {
+    if (!emits(hit.ng, from - hit.p)) return 0;
+    const float pdf = shape_.pdfSolidAngle(from, hit);
+    return pdf < kInfinity ? pdf : 0; // as in sample
+}
+
+std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape& shape, const LightContext& context,
+                                     Diagnostics& diagnostics) {
+    if (!params.stated()) {
+        reportMissingAmount(kAreaAmounts, context.span, diagnostics);
+        return nullptr;
+    }
+    const double sides = params.twoSided ? 2 : 1;
+    const auto radiance = absoluteSpectrum(params, *context.defaultColor, {.power = sides * kPiD * shape.area()},
+                                           context.span, diagnostics);
+    if (!radiance) return nullptr;
+    return std::make_unique<AreaLight>(shape, *radiance, params.twoSided);
+}
+
+} // namespace abbe

@@ -1,0 +1,242 @@
+#include "lights/environment_light.h"
+
+#include "base/check.h"
+#include "lights/scene_disk.h"
+#include "spectrum/observer.h"
+#include "spectrum/sampled_curve.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+using schema::Dimension;
+using schema::FieldType;
+
+constexpr double kUnitLuminance = kLuminousEfficacy * kYIntegral; // cd/m² of Y = 1
+
+// What a triple emits as a curve, for the integrals of setup.
+SampledCurve emittedCurve(const RgbRadiance& upsampling, Vec3 rgb) {
+    return SampledCurve([&](double nm) { return upsampling.at(rgb, Wavelengths::single(static_cast<float>(nm)))[0]; });
+}
+
+// Weight of each channel in the sampling density: its luminance, and never so little that a saturated texel could be
+// missed.
+Vec3d channelWeights(const RgbRadiance& upsampling) {
+    const auto weight = [&](Vec3 rgb) { return std::max(integrate(emittedCurve(upsampling, rgb)).y, 0.02); };
+    return {weight({1, 0, 0}), weight({0, 1, 0}), weight({0, 0, 1})};
+}
+
+Frame imageAxes(const Transform& toRender) {
+    const auto axis = [&](Vec3d v) { return Vec3(normalize(toRender.vector(v))); };
+    return {axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})};
+}
+
+std::vector<double> rowCosines(int rows) {
+    std::vector<double> result(static_cast<std::size_t>(rows) + 1);
+    for (int row = 0; row <= rows; ++row) result[static_cast<std::size_t>(row)] = std::cos(kPiD * row / rows);
+    return result;
+}
+
+} // namespace
+
+schema::TypeInfo environmentLightType() {
+    schema::TypeInfo type{.kind = schema::Kind::light,
+                          .name = "environment",
+                          .doc =
+                              "Light from a latitude-longitude image all around: its middle lies towards -z (+y in a "
+                              "z-up scene), its right half towards +x, its top row overhead.",
+                          .example = "light environment \"studio.exr\" { exposure 0.5 stops }",
+                          .fields = {}};
+    type.fields.push_back(schema::field(FieldType::file, "image", &EnvironmentLightParams::image)
+                              .argument(0)
+                              .required()
+                              .key({"space", {}, "colour space of the pixels; without it, linear in the scene's own"})
+                              .doc("The image: linear values in an EXR or Radiance HDR file.")
+                              .example("image \"studio.exr\"")
+                              .synonyms({"file", "filename", "map", "texture"}));
+    type.fields.push_back(schema::field(FieldType::quantity, "luminance", &EnvironmentLightParams::luminance)
+                              .unit({Dimension::luminance})
+                              .range(0, std::numeric_limits<float>::max())
+                              .doc("Luminance of a white pixel (1 1 1). Default: 72 983 nits, which renders as 1.")
+                              .example("luminance 10000 nits")
+                              .synonyms({"scale", "intensity", "strength"}));
+    type.fields.push_back(schema::field(FieldType::quantity, "exposure", &EnvironmentLightParams::exposure)
+                              .unit({Dimension::stops})
+                              .byDefault("0 stops")
+                              .range(-100, 100)
+                              .doc("Brightens or darkens the image; each stop doubles it.")
+                              .example("exposure 0.5 stops")
+                              .synonyms({"ev", "gain"}));
+    type.fields.push_back(schema::field(FieldType::transform, "transform", &EnvironmentLightParams::transform)
+                              .doc("Turns the image; moving it has no effect.")
+                              .example("transform { rotate y 25 deg }")
+                              .synonyms({"to-world", "rotation"}));
+    return type;
+}
+
+EnvironmentLight::EnvironmentLight(EnvironmentImage image, std::unique_ptr<const RgbRadiance> upsampling, double scale,
+                                   const Transform& toRender, bool compensated)
+    : image_(std::move(image)), upsampling_(std::move(upsampling)), scale_(static_cast<float>(scale)),
+      axes_(imageAxes(toRender)), rowCosine_(rowCosines(image_.height)), distribution_(density(compensated)),
+      fluence_(integratedRadiance() * scale), power_(0) {
+    commit(Bounds3{});
+}
+
+void EnvironmentLight::commit(const Bounds3& bounds) { power_ = fluence_ * sceneDiskArea(bounds); }
+
+Vec3 EnvironmentLight::texel(int column, int row) const noexcept {
+    const int wrapped = column < 0 ? column + image_.width : column >= image_.width ? column - image_.width : column;
+    const int clamped = std::clamp(row, 0, image_.height - 1);
+    const float* p =
+        image_.rgb.data() + 3 * (static_cast<std::size_t>(clamped) * static_cast<std::size_t>(image_.width) +
+                                 static_cast<std::size_t>(wrapped));
+    return {p[0], p[1], p[2]};
+}
+
+double EnvironmentLight::cellSolidAngle(int row) const noexcept {
+    const auto r = static_cast<std::size_t>(row);
+    return 2 * kPiD / image_.width * (rowCosine_[r] - rowCosine_[r + 1]);
+}
+
+Vec3d EnvironmentLight::cellMean(int column, int row) const noexcept {
+    // The mean of bilinear interpolation over a cell takes 6/8 of its own texel and 1/8 of each neighbour, per axis.
+    // (That sin θ varies over the cell is left out: this is for densities only.)
+    constexpr double kShare[3] = {0.125, 0.75, 0.125};
+    Vec3d mean;
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+            mean += Vec3d(texel(column + dx, row + dy)) * (kShare[dx + 1] * kShare[dy + 1]);
+    return mean;
+}
+
+Distribution2D EnvironmentLight::density(bool compensated) const {
+    const Vec3d channels = channelWeights(*upsampling_);
+    std::vector<double> luminance;
+    luminance.reserve(image_.rgb.size() / 3);
+    double total = 0;
+    for (int row = 0; row < image_.height; ++row)
+        for (int column = 0; column < image_.width; ++column) {
+            luminance.push_back(dot(cellMean(column, row), channels));
+            total += luminance.back() * cellSolidAngle(row);
+        }
+    const auto weights = [&](double threshold) {
+        std::vector<double> result(luminance.size());
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            const int row = static_cast<int>(i / static_cast<std::size_t>(image_.width));
+            result[i] = std::max(0.0, luminance[i] - threshold) * cellSolidAngle(row);
+        }
+        return result;
+    };
+    // BSDF sampling already covers the mean well, so that only what exceeds it is worth aiming at [Karlik2019, eq. 14].
+    // An even image has no excess but rounding: it keeps its plain density.
+    const double mean = total / (4 * kPiD), kEven = 1e-6 * total;
+    if (compensated) {
+        const std::vector<double> excess = weights(mean);
+        double sum = 0;
+        for (double w : excess) sum += w;
+        if (sum > kEven) return {excess, static_cast<std::size_t>(image_.width)};
+    }
+    return {weights(0), static_cast<std::size_t>(image_.width)};
+}
+
+double EnvironmentLight::integratedRadiance() const {
+    Vec3d total;
+    for (int row = 0; row < image_.height; ++row) {
+        Vec3d rowSum;
+        for (int column = 0; column < image_.width; ++column) rowSum += cellMean(column, row);
+        total += rowSum * cellSolidAngle(row);
+    }
+    const double most = maxComponent(total);
+    if (!(most > 0)) return 0;
+    return most * radiantIntegral(emittedCurve(*upsampling_, Vec3(total / most)));
+}
+
+Vec2 EnvironmentLight::imagePoint(Vec3 local) const noexcept {
+    const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
+    const float v = std::atan2(std::sqrt(local.x * local.x + local.z * local.z), local.y) * kInvPi;
+    return {u * static_cast<float>(image_.width), v * static_cast<float>(image_.height)};
+}
+
+Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
+    const float x = point.x - 0.5f, y = point.y - 0.5f; // texel centres at whole numbers
+    const float x0 = std::floor(x), y0 = std::floor(y);
+    const float fx = x - x0, fy = y - y0;
+    const int column = static_cast<int>(x0), row = static_cast<int>(y0);
+    const auto mix = [](Vec3 a, Vec3 b, float t) { return a + (b - a) * t; };
+    const Vec3 upper = mix(texel(column, row), texel(column + 1, row), fx);
+    const Vec3 lower = mix(texel(column, row + 1), texel(column + 1, row + 1), fx);
+    return mix(upper, lower, fy);
+}
+
+std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+    const CellSample cell = distribution_.sample(u);
+    // Uniform in the cosine within the cell, so that its density is constant even at the poles.
+    const double cosTheta = lerp(rowCosine_[cell.row], rowCosine_[cell.row + 1], static_cast<double>(cell.offset.y));
+    const float sinTheta = static_cast<float>(safeSqrt((1 - cosTheta) * (1 + cosTheta)));
+    const float turn = (static_cast<float>(cell.column) + cell.offset.x) / static_cast<float>(image_.width) - 0.5f;
+    const float phi = 2 * kPi * turn;
+    const Vec3 local{sinTheta * std::sin(phi), static_cast<float>(cosTheta), -sinTheta * std::cos(phi)};
+    LightSample result;
+    result.wi = normalize(axes_.toWorld(local));
+    result.distance = kInfinity;
+    result.radiance = escaped(result.wi, lambda);
+    result.pdfSolidAngle = static_cast<float>(cell.probability / cellSolidAngle(static_cast<int>(cell.row)));
+    return result;
+}
+
+Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {
+    return upsampling_->at(lookup(imagePoint(axes_.toLocal(w))), lambda) * scale_;
+}
+
+float EnvironmentLight::pdfEscaped(Vec3 w) const noexcept {
+    const Vec2 point = imagePoint(axes_.toLocal(w));
+    const int column = std::clamp(static_cast<int>(point.x), 0, image_.width - 1);
+    const int row = std::clamp(static_cast<int>(point.y), 0, image_.height - 1);
+    const double p = distribution_.probability(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+    return static_cast<float>(p / cellSolidAngle(row));
+}
+
+bool checkEnvironmentImage(EnvironmentImage& image, Span span, Diagnostics& diagnostics) {
+    const std::size_t count =
+        static_cast<std::size_t>(std::max(image.width, 0)) * static_cast<std::size_t>(std::max(image.height, 0));
+    if (count == 0 || image.rgb.size() != 3 * count) {
+        diagnostics.error("E0420", span, "the environment image is empty");
+        return false;
+    }
+    std::size_t broken = 0, negative = 0;
+    for (float& v : image.rgb) {
+        if (!std::isfinite(v)) ++broken;
+        if (v < 0) {
+            ++negative;
+            v = 0;
+        }
+    }
+    if (broken > 0) {
+        diagnostics.error("E0421", span,
+                          fmt::format("the environment image has {} values that are not finite", broken));
+        return false;
+    }
+    if (negative > 0)
+        diagnostics.warning("W0422", span,
+                            fmt::format("{} negative values of the environment image are taken as 0", negative));
+    return true;
+}
+
+std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
+                                            std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
+                                            const LightContext& context, Diagnostics& diagnostics) {
+    if (!checkEnvironmentImage(image, context.span, diagnostics)) return nullptr;
+    const Transform upright = context.zUp ? Transform::rotate({1, 0, 0}, kPiD / 2) : Transform{};
+    const Transform toRender = upright.then(params.transform).then(context.toRender);
+    if (!toRender.uniformScale()) {
+        diagnostics.error("E0319", context.span, "an environment can be turned, but not stretched");
+        return nullptr;
+    }
+    const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;
+    const double scale = luminance / kUnitLuminance * std::exp2(params.exposure);
+    return std::make_unique<EnvironmentLight>(std::move(image), std::move(upsampling), scale, toRender, compensated);
+}
+
+} // namespace abbe

@@ -1,0 +1,56 @@
+#include "lights/sky_light.h"
+
+#include "lights/amount_fields.h"
+#include "lights/scene_disk.h"
+#include "math/warp.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+constexpr AmountFields kSkyAmounts =
+    AmountFields(AmountField::radiance) | AmountField::luminance | AmountField::irradiance;
+}
+
+schema::TypeInfo skyLightType() {
+    schema::TypeInfo type{.kind = schema::Kind::light,
+                          .name = "sky",
+                          .doc =
+                              "The same light from all directions. Without an amount: 20 000 nits, a bright hazy sky; "
+                              "`irradiance` is that of an open surface.",
+                          .example = "light sky { luminance 8000 nits }",
+                          .fields = {}};
+    addAmountFields<SkyLightParams>(type.fields, kSkyAmounts);
+    return type;
+}
+
+SkyLight::SkyLight(ScaledCurve radiance)
+    : radiance_(radiance), radiant_(radiantIntegral(*radiance.curve) * radiance.scale), power_(0) {
+    commit(Bounds3{});
+}
+
+void SkyLight::commit(const Bounds3& bounds) { power_ = 4 * kPiD * radiant_ * sceneDiskArea(bounds); }
+
+std::optional<LightSample> SkyLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+    LightSample result;
+    result.wi = squareToSphere(u);
+    result.distance = kInfinity;
+    result.radiance = radiance_.at(lambda);
+    result.pdfSolidAngle = kSpherePdf;
+    return result;
+}
+
+float SkyLight::pdfEscaped(Vec3) const noexcept { return kSpherePdf; }
+
+std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightContext& context,
+                                    Diagnostics& diagnostics) {
+    AmountParams amount = params;
+    if (!amount.stated()) amount.luminance = {kDefaultSkyLuminance, schema::Dimension::luminance, {}};
+    const auto radiance =
+        absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD}, context.span, diagnostics);
+    if (!radiance) return nullptr;
+    return std::make_unique<SkyLight>(*radiance);
+}
+
+} // namespace abbe

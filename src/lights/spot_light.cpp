@@ -1,0 +1,133 @@
+#include "lights/spot_light.h"
+
+#include "lights/amount_fields.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+using schema::Dimension;
+using schema::FieldType;
+
+constexpr AmountFields kSpotAmounts = AmountFields(AmountField::power) | AmountField::intensity;
+
+// 1 - cos x without cancellation.
+double oneMinusCosine(double x) { return 2 * square(std::sin(x / 2)); }
+
+std::vector<schema::FieldInfo> coneFields() {
+    constexpr double kDegree = kPiD / 180;
+    return {schema::field(FieldType::quantity, "angle", &SpotLightParams::angle)
+                .unit({Dimension::angle})
+                .byDefault("45 deg")
+                .range(0.01 * kDegree, 360 * kDegree)
+                .doc("Full angle of the cone outside of which there is no light.")
+                .example("angle 40 deg")
+                .synonyms({"coneangle", "cone-angle", "cutoff", "outer-angle", "spot-size"}),
+            schema::field(FieldType::quantity, "inner-angle", &SpotLightParams::innerAngle)
+                .unit({Dimension::angle})
+                .range(0, 360 * kDegree)
+                .doc("Full angle of the cone with even light; towards `angle` it falls smoothly. Default: 0.8 `angle`.")
+                .example("inner-angle 30 deg")
+                .synonyms({"penumbra", "conedeltaangle", "beam-width", "blend"})};
+}
+
+} // namespace
+
+schema::TypeInfo spotLightType() {
+    schema::TypeInfo type{.kind = schema::Kind::light,
+                          .name = "spot",
+                          .doc = "A point that emits into a cone with a soft edge.",
+                          .example = "light spot { position 0 3 0; look-at 0 0 0; angle 40 deg; intensity 500 cd }",
+                          .fields = {}};
+    type.fields.push_back(schema::field(FieldType::vector3, "position", &SpotLightParams::position)
+                              .unit({Dimension::length})
+                              .byDefault("0 0 0")
+                              .doc("Where the light is.")
+                              .example("position 0 3 0")
+                              .synonyms({"from", "center", "location"}));
+    type.fields.push_back(schema::field(FieldType::vector3, "look-at", &SpotLightParams::lookAt)
+                              .unit({Dimension::length})
+                              .group("axis")
+                              .doc("A point on the axis of the cone.")
+                              .example("look-at 0 0 0")
+                              .synonyms({"to", "target"}));
+    type.fields.push_back(schema::field(FieldType::vector3, "toward", &SpotLightParams::toward)
+                              .group("axis")
+                              .doc("Direction of the axis, of any length. Without `look-at`: 0 0 -1.")
+                              .example("toward 0 -1 0")
+                              .synonyms({"direction", "axis"}));
+    for (schema::FieldInfo& f : coneFields()) type.fields.push_back(std::move(f));
+    addAmountFields<SpotLightParams>(type.fields, kSpotAmounts);
+    type.fields.push_back(schema::field(FieldType::transform, "transform", &SpotLightParams::transform)
+                              .doc("Places the light: steps from top to bottom, as applied to it.")
+                              .example("transform { translate 0 2 0 }")
+                              .synonyms({"to-world", "matrix"}));
+    return type;
+}
+
+SpotLight::SpotLight(Vec3 position, Vec3 axis, double innerHalfAngle, double outerHalfAngle, ScaledCurve intensity)
+    : position_(position), axis_(axis), innerOneMinusCos_(static_cast<float>(oneMinusCosine(innerHalfAngle))),
+      outerOneMinusCos_(static_cast<float>(oneMinusCosine(outerHalfAngle))), intensity_(intensity),
+      power_(solidAngle(innerHalfAngle, outerHalfAngle) * radiantIntegral(*intensity.curve) * intensity.scale) {}
+
+double SpotLight::solidAngle(double innerHalfAngle, double outerHalfAngle) {
+    // The falloff is a cubic step in cos θ, whose mean is 1/2.
+    return kPiD * (oneMinusCosine(innerHalfAngle) + oneMinusCosine(outerHalfAngle));
+}
+
+float SpotLight::falloff(Vec3 w) const noexcept {
+    const float h = lengthSquared(w - axis_) / 2; // 1 - cos θ of unit vectors, exact for small angles
+    if (h >= outerOneMinusCos_) return 0;
+    if (h <= innerOneMinusCos_) return 1;
+    const float t = (outerOneMinusCos_ - h) / (outerOneMinusCos_ - innerOneMinusCos_);
+    return t * t * (3 - 2 * t);
+}
+
+std::optional<LightSample> SpotLight::sample(Vec3 from, Vec2, const Wavelengths& lambda) const noexcept {
+    const Vec3 offset = position_ - from;
+    const float d2 = lengthSquared(offset);
+    if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
+    LightSample result;
+    result.distance = std::sqrt(d2);
+    result.wi = offset / result.distance;
+    const float f = falloff(-result.wi);
+    if (f == 0) return std::nullopt;
+    result.p = position_;
+    result.radiance = intensity_.at(lambda) * (f / d2);
+    result.pdfSolidAngle = 1;
+    result.delta = true;
+    return result;
+}
+
+std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightContext& context,
+                                     Diagnostics& diagnostics) {
+    if (!params.stated()) {
+        reportMissingAmount(kSpotAmounts, context.span, diagnostics);
+        return nullptr;
+    }
+    const Transform toRender = params.transform.then(context.toRender);
+    const Vec3d local = params.lookAt ? *params.lookAt - params.position : params.toward.value_or(Vec3d{0, 0, -1});
+    const Vec3d axis = toRender.vector(local);
+    const double norm = length(axis);
+    if (!(norm > 0 && std::isfinite(norm))) {
+        diagnostics.error("E0315", context.span, "the axis of the light has no direction",
+                          params.lookAt ? "`look-at` is `position`" : "`toward` is zero");
+        return nullptr;
+    }
+    const double outer = params.angle / 2, inner = params.innerAngle.value_or(0.8 * params.angle) / 2;
+    if (inner > outer) {
+        Diagnostic& d = diagnostics.error("E0316", context.span, "`inner-angle` is larger than `angle`");
+        d.notes.push_back(
+            fmt::format("{:.4g} deg inside {:.4g} deg; both are full angles", inner * 360 / kPiD, outer * 360 / kPiD));
+        return nullptr;
+    }
+    const auto intensity = absoluteSpectrum(params, *context.defaultColor,
+                                            {.power = SpotLight::solidAngle(inner, outer)}, context.span, diagnostics);
+    if (!intensity) return nullptr;
+    return std::make_unique<SpotLight>(Vec3(toRender.point(params.position)), Vec3(axis / norm), inner, outer,
+                                       *intensity);
+}
+
+} // namespace abbe

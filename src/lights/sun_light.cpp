@@ -1,0 +1,140 @@
+#include "lights/sun_light.h"
+
+#include "lights/amount_fields.h"
+#include "lights/scene_disk.h"
+#include "math/warp.h"
+
+namespace abbe {
+
+namespace {
+
+using schema::Dimension;
+using schema::FieldType;
+
+constexpr double kDegree = kPiD / 180;
+constexpr AmountFields kSunAmounts =
+    AmountFields(AmountField::irradiance) | AmountField::luminance | AmountField::radiance;
+constexpr double kDefaultIrradiance = 100000; // lx: the sun in a clear sky
+
+// Towards the sun, in the axes of the file: north is -z and east +x, or north +y where z is up.
+Vec3d sunDirection(const SunLightParams& params, bool zUp) {
+    if (params.toward) return -*params.toward;
+    const double elevation = params.elevation.value_or(45 * kDegree), azimuth = params.azimuth.value_or(135 * kDegree);
+    const double east = std::cos(elevation) * std::sin(azimuth), north = std::cos(elevation) * std::cos(azimuth);
+    const double up = std::sin(elevation);
+    return zUp ? Vec3d{east, north, up} : Vec3d{east, up, -north};
+}
+
+std::vector<schema::FieldInfo> directionFields() {
+    return {schema::field(FieldType::vector3, "toward", &SunLightParams::toward)
+                .group("direction")
+                .doc("Direction in which the light travels, of any length.")
+                .example("toward 1 -2 0")
+                .synonyms({"direction", "to"}),
+            schema::field(FieldType::quantity, "elevation", &SunLightParams::elevation)
+                .unit({Dimension::angle})
+                .range(-90 * kDegree, 90 * kDegree)
+                .doc("Height above the horizon. Default: 45 deg.")
+                .example("elevation 30 deg")
+                .synonyms({"altitude", "sun-elevation"}),
+            schema::field(FieldType::quantity, "azimuth", &SunLightParams::azimuth)
+                .unit({Dimension::angle})
+                .range(-360 * kDegree, 360 * kDegree)
+                .doc("Clockwise from north, seen from above. North is -z (+y in a z-up scene), east is +x; the sun at "
+                     "90 deg stands in the east. Default: 135 deg.")
+                .example("azimuth 240 deg")
+                .synonyms({"sun-azimuth", "rotation"}),
+            schema::field(FieldType::quantity, "angular-diameter", &SunLightParams::angularDiameter)
+                .unit({Dimension::angle})
+                .byDefault("0.53 deg")
+                .range(0, 180 * kDegree)
+                .doc("Full angle of the disk; below 0.001 deg the light comes from a single direction.")
+                .example("angular-diameter 2 deg")
+                .synonyms({"angle", "size"})};
+}
+
+} // namespace
+
+schema::TypeInfo sunLightType() {
+    schema::TypeInfo type{.kind = schema::Kind::light,
+                          .name = "sun",
+                          .doc =
+                              "A distant disk of even radiance. Without an amount: 100 klx on a surface that faces it.",
+                          .example = "light sun { elevation 30 deg; azimuth 240 deg; irradiance 100 klx }",
+                          .fields = directionFields()};
+    addAmountFields<SunLightParams>(type.fields, kSunAmounts);
+    type.fields.push_back(schema::field(FieldType::transform, "transform", &SunLightParams::transform)
+                              .doc("Turns the light; only the rotation matters.")
+                              .example("transform { rotate y 30 deg }")
+                              .synonyms({"to-world", "matrix"}));
+    return type;
+}
+
+SunLight::SunLight(Vec3d direction, double halfAngle, ScaledCurve irradiance)
+    : frame_(Frame::fromNormal(Vec3(normalize(direction)))), delta_(halfAngle < kSmallestHalfAngle),
+      irradiance_(radiantIntegral(*irradiance.curve) * irradiance.scale) {
+    // 1 - cos by the half-angle formula, in double: no cancellation for small disks.
+    const double oneMinusCosine = 2 * square(std::sin(halfAngle / 2));
+    oneMinusCos_ = delta_ ? 0 : static_cast<float>(oneMinusCosine);
+    chord_ = static_cast<float>(2 * std::sin(halfAngle / 2));
+    pdf_ = delta_ ? 0 : static_cast<float>(1 / (2 * kPiD * oneMinusCosine));
+    radiance_ = irradiance;
+    if (!delta_) radiance_.scale /= kPiD * square(std::sin(halfAngle));
+    commit(Bounds3{});
+}
+
+void SunLight::commit(const Bounds3& bounds) { power_ = irradiance_ * sceneDiskArea(bounds); }
+
+bool SunLight::inside(Vec3 w) const noexcept {
+    // The chord of the angle: the small difference is formed before squaring, so that nothing cancels.
+    return length(w - frame_.z) <= chord_;
+}
+
+std::optional<LightSample> SunLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+    LightSample result;
+    result.wi = delta_ ? frame_.z : frame_.toWorld(squareToCone(u, oneMinusCos_));
+    result.distance = kInfinity;
+    result.radiance = radiance_.at(lambda);
+    result.pdfSolidAngle = delta_ ? 1 : pdf_;
+    result.delta = delta_;
+    return result;
+}
+
+Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {
+    return !delta_ && inside(w) ? radiance_.at(lambda) : Spectrum(0.f);
+}
+
+float SunLight::pdfEscaped(Vec3 w) const noexcept { return inside(w) ? pdf_ : 0; }
+
+std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
+                                    Diagnostics& diagnostics) {
+    if (params.toward && (params.elevation || params.azimuth)) {
+        diagnostics.error("E0317", context.span, "the sun's direction is stated twice",
+                          "keep `toward`, or `elevation` and `azimuth`");
+        return nullptr;
+    }
+    const Transform toRender = params.transform.then(context.toRender);
+    const Vec3d direction = toRender.vector(sunDirection(params, context.zUp));
+    const double norm = length(direction);
+    if (!(norm > 0 && std::isfinite(norm))) {
+        diagnostics.error("E0315", context.span, "the sun has no direction", "`toward` is zero");
+        return nullptr;
+    }
+    const double halfAngle = params.angularDiameter / 2;
+    const double projected = kPiD * square(std::sin(halfAngle)); // ∫ cos dω over the disk
+    const bool delta = halfAngle < SunLight::kSmallestHalfAngle;
+    if (delta && (params.luminance || params.radiance)) {
+        diagnostics.error("E0318", context.span, "a sun without a diameter has no luminance",
+                          "state its `irradiance`, or an `angular-diameter`");
+        return nullptr;
+    }
+    AmountParams amount = params;
+    if (!amount.stated()) amount.irradiance = {kDefaultIrradiance, Dimension::illuminance, {}};
+    // The spectrum of the irradiance: for the other amounts, radiance times the projected solid angle.
+    auto irradiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = 1}, context.span, diagnostics);
+    if (!irradiance) return nullptr;
+    if (!amount.irradiance) irradiance->scale *= projected;
+    return std::make_unique<SunLight>(direction, halfAngle, *irradiance);
+}
+
+} // namespace abbe
