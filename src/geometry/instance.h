@@ -18,6 +18,7 @@ class Instance {
     Instance(const Transform& objectToRender, std::size_t firstRecord);
 
     std::size_t firstRecord() const { return firstRecord_; }
+    const Transform& map() const { return objectToRender_; } // as rounded
     std::array<float, 12> rowMajor() const;
     // The direction keeps its length in object units, so distances along the ray stay those of render space.
     Ray toObject(const Ray&) const;

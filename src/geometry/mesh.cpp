@@ -27,12 +27,12 @@ Mesh::Mesh(MeshData data) : data_(std::move(data)) {
     ABBE_CHECK(data_.uvs.empty() || data_.uvs.size() == data_.positions.size());
     ABBE_CHECK(triangleCount() < 0xffffffffu);
     data_.positions.reserve(data_.positions.size() + 2); // Embree reads vertices as 16 bytes
-    for (Vec3 p : data_.positions) bounds_.add(p);
     faceNormals_.resize(triangleCount());
     for (std::uint64_t i = 0; i < triangleCount(); ++i) {
         const auto [a, b, c] = triangle(i);
         const Vec3d twice =
             triangleCross(Vec3d(data_.positions[a]), Vec3d(data_.positions[b]), Vec3d(data_.positions[c]));
+        for (std::uint32_t v : {a, b, c}) bounds_.add(data_.positions[v]); // unused vertices do not count
         const double l = length(twice);
         faceNormals_[i] = l > 0 ? Vec3(twice * (1 / l)) : Vec3(0, 0, 1);
         area_ += 0.5 * l;
@@ -129,35 +129,29 @@ void Mesh::shade(const Corners& c, SurfaceHit& hit) const {
     hit.shading = defined ? Frame::fromNormalTangent(n, tangent) : Frame::fromNormal(n);
 }
 
-void Mesh::buildCdf() const {
-    cdf_.resize(triangleCount());
-    double sum = 0;
+void Mesh::weighByArea() const {
+    std::vector<double> areas(triangleCount());
     for (std::uint64_t i = 0; i < triangleCount(); ++i) {
         const auto [a, b, c] = triangle(i);
         const auto& p = data_.positions;
-        sum += 0.5 * length(triangleCross(Vec3d(p[a]), Vec3d(p[b]), Vec3d(p[c])));
-        cdf_[i] = sum;
+        areas[i] = 0.5 * length(triangleCross(Vec3d(p[a]), Vec3d(p[b]), Vec3d(p[c])));
     }
+    byArea_.emplace(areas);
 }
 
 std::optional<ShapeSample> Mesh::sample(Vec3 from, Vec2 u) const {
     if (lone_) return lone_->sample(from, u);
     if (!(area_ > 0)) return std::nullopt;
-    std::call_once(cdfOnce_, [this] { buildCdf(); });
-    const double target = static_cast<double>(u.x) * cdf_.back();
-    // The first triangle whose sum exceeds the target has a positive area.
-    auto it = std::upper_bound(cdf_.begin(), cdf_.end(), target);
-    if (it == cdf_.end()) --it;
-    const auto i = static_cast<std::uint64_t>(it - cdf_.begin());
-    const double below = i > 0 ? cdf_[i - 1] : 0;
-    const auto within = static_cast<float>((target - below) / (*it - below));
-    const Vec2 b = squareToTriangle({std::clamp(within, 0.f, kOneMinusEpsilon), u.y});
-    const auto [i0, i1, i2] = triangle(i);
+    std::call_once(byAreaOnce_, [this] { weighByArea(); });
+    const BinSample bin = byArea_->sample(u.x);
+    const Vec2 b = squareToTriangle({bin.offset, u.y});
+    const auto [i0, i1, i2] = triangle(bin.index);
     const auto& p = data_.positions;
     const TrianglePoint point = trianglePoint(p[i0], p[i1], p[i2], b.x, b.y);
-    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point.p - from, faceNormals_[i]);
+    const Vec3 n = faceNormals_[bin.index];
+    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point.p - from, n);
     if (!(pdf > 0)) return std::nullopt;
-    return ShapeSample{point.p, point.pError, faceNormals_[i], pdf};
+    return ShapeSample{point.p, point.pError, n, pdf};
 }
 
 float Mesh::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {

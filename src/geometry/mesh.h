@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/quad.h"
+#include "math/distribution_1d.h"
 #include "math/mesh_data.h"
 #include "render/shape.h"
 
@@ -47,7 +48,7 @@ class Mesh final : public Shape {
     std::array<std::uint32_t, 3> triangle(std::uint64_t) const; // quads count as two
     void shade(const Corners&, SurfaceHit&) const;
     void countNormals();
-    void buildCdf() const;
+    void weighByArea() const;
 
     MeshData data_;
     std::vector<Vec3> faceNormals_; // per triangle, then two per quad
@@ -55,9 +56,9 @@ class Mesh final : public Shape {
     NormalReport normalReport_;
     double area_ = 0;
     std::unique_ptr<const Quad> lone_; // the mesh itself if it is a single quad
-    // Running sums of the areas of the triangles: made when an emitter first asks, because most meshes never emit.
-    mutable std::once_flag cdfOnce_;
-    mutable std::vector<double> cdf_;
+    // Over the triangles, by area: made when an emitter first asks, because most meshes never emit.
+    mutable std::once_flag byAreaOnce_;
+    mutable std::optional<Distribution1D> byArea_;
 };
 
 } // namespace abbe

@@ -1,0 +1,39 @@
+// Round shapes under maps that do not keep them round: ellipsoids and ellipses.
+#pragma once
+
+#include "geometry/disk.h"
+#include "geometry/instance.h"
+#include "geometry/sphere.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Requires an invertible map. Sampled as the shape itself is, from the point's preimage; the density is carried over
+// exactly by the Jacobian of the map of directions.
+class Transformed final : public Shape {
+  public:
+    Transformed(std::unique_ptr<const Sphere>, const Transform& toRender);
+    Transformed(std::unique_ptr<const Disk>, const Transform& toRender);
+
+    Bounds3 bounds() const override { return bounds_; }
+    void commit(GeometrySink&) const override;
+    std::optional<RawHit> intersect(const Ray&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override { return area_; }
+    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+
+  private:
+    double directionJacobian(Vec3 objectDirection) const;
+    void setBounds(Vec3d centre, Vec3d halfExtent);
+
+    std::unique_ptr<const Shape> shape_;
+    Instance map_;
+    Transform inverse_;
+    double determinant_;
+    Bounds3 bounds_;
+    double area_ = 0;
+};
+
+} // namespace abbe
