@@ -1,0 +1,58 @@
+// Linear RGB spaces, derived from the chromaticities of their primaries and white, and the sRGB transfer function.
+#pragma once
+
+#include "math/vec.h"
+#include "spectrum/matrix3.h"
+#include "spectrum/xyz.h"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+// CIE 1931 x, y.
+struct Chromaticity {
+    double x = 0, y = 0;
+};
+Chromaticity chromaticity(const Xyz&);
+// The XYZ of a white with Y = 1. Requires y > 0.
+Xyz whiteXyz(Chromaticity);
+
+// A linear RGB space. RGB (1, 1, 1) is its white with Y = 1. No chromatic adaptation happens on conversion: colours
+// keep their chromaticity, so a D65 grey is bluish in a D60 space.
+struct RgbSpace {
+    std::string_view name; // identifier of the Color Interop Forum, "lin_rec709_scene"
+    Chromaticity red, green, blue, white;
+    std::string_view illuminant; // the named illuminant of that white
+
+    Matrix3 toXyz() const;
+    Matrix3 fromXyz() const { return toXyz().inverse(); }
+};
+
+namespace rgb {
+extern const RgbSpace rec709;  // ITU-R BT.709, also sRGB (IEC 61966-2-1)
+extern const RgbSpace rec2020; // ITU-R BT.2020
+extern const RgbSpace p3d65;   // SMPTE EG 432-1 primaries with D65: Display P3
+extern const RgbSpace ap1;     // ACEScg (Academy S-2014-004)
+extern const RgbSpace ap0;     // ACES2065-1 (SMPTE ST 2065-1)
+} // namespace rgb
+
+// By identifier or alias, any case: "acescg", "srgb-linear", "aces2065-1", …
+std::optional<RgbSpace> findRgbSpace(std::string_view name);
+// Every name that findRgbSpace knows.
+std::vector<std::string_view> rgbSpaceNames();
+
+inline Vec3d toRgb(const Xyz& xyz, const RgbSpace& space) { return space.fromXyz().apply<Vec3d>(xyz); }
+inline Xyz toXyz(const Vec3d& rgb, const RgbSpace& space) { return space.toXyz().apply<Xyz>(rgb); }
+
+// sRGB's piecewise transfer function, odd-symmetric for negative values.
+double srgbToLinear(double encoded);
+double linearToSrgb(double linear);
+
+enum class ConeModel { bradford, cat02 };
+// The matrix on XYZ that takes colours seen under one white to corresponding colours under another (von Kries in the
+// model's cone space). Only for declared uses: the film never applies it by itself.
+Matrix3 adaptation(const Xyz& fromWhite, const Xyz& toWhite, ConeModel = ConeModel::bradford);
+
+} // namespace abbe
