@@ -1,0 +1,95 @@
+#include "film/film_params.h"
+
+#include <doctest/doctest.h>
+
+using namespace abbe;
+
+namespace {
+
+std::string_view faultyField(const FilmParams& p) {
+    const auto faults = findFaults(p);
+    return faults.empty() ? std::string_view() : faults.front().field;
+}
+
+FilmParams sized(double w, double h) {
+    FilmParams p;
+    p.size = {w, h};
+    return p;
+}
+
+FilmParams cropped(std::vector<double> crop) {
+    FilmParams p;
+    p.crop = std::move(crop);
+    return p;
+}
+
+} // namespace
+
+TEST_CASE("film defaults") {
+    const FilmSettings s = filmSettings({});
+    CHECK(s.width == 1280);
+    CHECK(s.height == 720);
+    CHECK(s.crop.area() == 1280 * 720);
+    CHECK(s.filter == FilterShape::blackmanHarris);
+    CHECK(s.filterRadius == 1.5);
+    CHECK(s.space == OutputSpace::aces2065_1);
+    CHECK(s.compression == "zip");
+    CHECK(!s.half);
+}
+
+TEST_CASE("film values that a field table cannot check") {
+    CHECK(faultyField({}).empty());
+    CHECK(faultyField(sized(1, 1)).empty());
+    CHECK(faultyField(sized(32768, 1)).empty());
+    CHECK(faultyField(sized(65536, 32768)).empty());
+    CHECK(faultyField(sized(65536, 32769)) == "size");
+    CHECK(faultyField(sized(0, 5)) == "size");
+    CHECK(faultyField(sized(5, 70000)) == "size");
+    CHECK(faultyField(sized(5.5, 5)) == "size");
+    CHECK(faultyField(sized(std::nan(""), 5)) == "size");
+    CHECK(faultyField(cropped({0, 0, 1280, 720})).empty());
+    CHECK(faultyField(cropped({0, 0, 1281, 720})) == "crop");
+    CHECK(faultyField(cropped({-1, 0, 10, 10})) == "crop");
+    CHECK(faultyField(cropped({10, 0, 10, 10})) == "crop");
+    CHECK(faultyField(cropped({0, 0, 10})) == "crop");
+    CHECK(faultyField(cropped({0, 0, 10, 9.5})) == "crop");
+    FilmParams p;
+    p.filter = {"gaussian", 0.0};
+    CHECK(faultyField(p) == "filter");
+    p.filter = {"gaussian", std::nan("")};
+    CHECK(faultyField(p) == "filter");
+    p.filter = {"gaussian", 2.0};
+    CHECK(filmSettings(p).filterRadius == 2);
+}
+
+TEST_CASE("film fields store what is written") {
+    const schema::TypeInfo type = filmType();
+    CHECK(type.kind == schema::Kind::film);
+    CHECK(type.isDefault);
+    FilmParams p;
+    const auto store = [&](std::string_view name, schema::BoundValue value) {
+        for (const schema::FieldInfo& f : type.fields)
+            if (f.name == name) return f.store(&p, value);
+        FAIL("no such field");
+    };
+    store("size", Vec2d{640, 480});
+    store("crop", std::vector<double>{1, 2, 30, 40});
+    store("filter", schema::Choice{"mitchell", std::nullopt});
+    store("output", schema::Text{"a.exr", {{"space", "acescg"}, {"compression", "dwab"}, {"half", "on"}}, {}});
+    const FilmSettings s = filmSettings(p);
+    CHECK(s.width == 640);
+    CHECK(s.crop.x0 == 1);
+    CHECK(s.crop.y1 == 40);
+    CHECK(s.filter == FilterShape::mitchell);
+    CHECK(s.filterRadius == 2);
+    CHECK(s.output == "a.exr");
+    CHECK(s.space == OutputSpace::acescg);
+    CHECK(s.compression == "dwab");
+    CHECK(s.half);
+}
+
+TEST_CASE("every choice of a field has a meaning") {
+    for (const schema::FieldInfo& f : filmType().fields)
+        if (f.name == "filter")
+            for (const std::string_view word : f.choices) CHECK(findFilter(word).has_value());
+}
