@@ -60,14 +60,11 @@ void SceneBuilder::placeEnvironment(const Definition& d, const LightContext& con
         return;
     }
     built_->facts.files.push_back(path);
-    const RgbSpace* space = &rgb::rec709;
-    if (file.chromaticities && file.chromaticities->matches(kAp0Chromaticities)) space = &rgb::ap0;
-    if (file.chromaticities && file.chromaticities->matches(kAp1Chromaticities)) space = &rgb::ap1;
-    std::optional<RgbSpace> stated;
+    RgbSpace space = file.chromaticities ? file.chromaticities->space() : rgb::rec709;
     for (const auto& [key, word] : params->image.keys)
-        if (key == "space" && (stated = findRgbSpace(word))) space = &*stated;
+        if (key == "space") space = findRgbSpace(word).value_or(space);
     std::string reason;
-    auto upsampling = makeRgbRadiance(*space, reason);
+    auto upsampling = makeRgbRadiance(space, reason);
     if (!upsampling) {
         diagnostics_.error("E0403", params->image.span, reason);
         return;
@@ -101,7 +98,7 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     } else if (type == "mesh") {
         const auto p = bound<LightMeshParams>(d);
         if (!p) return nullptr;
-        auto mesh = loadMesh(p->file, p->points, p->faces, d.span, diagnostics_);
+        auto mesh = loadMesh(p->file, tree_.header.length, p->points, p->faces, d.span, diagnostics_);
         if (!mesh) return nullptr;
         if (!p->file.value.empty()) built_->facts.files.push_back(p->file.value);
         return placeMesh(std::move(*mesh), take(*p), d.span, diagnostics_);

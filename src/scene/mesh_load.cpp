@@ -1,0 +1,75 @@
+#include "geometry/mesh_cleanup.h"
+#include "io/io_error.h"
+#include "io/mesh_file.h"
+#include "scene/shape_types.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+std::optional<MeshData> fromFile(const schema::Text& file, double unit, Span span, Diagnostics& diagnostics) {
+    try {
+        MeshData mesh = readMesh(file.value).mesh;
+        for (Vec3& p : mesh.positions) p = Vec3(Vec3d(p) * unit);
+        return mesh;
+    } catch (const IoError& e) {
+        diagnostics.error("E0402", file.span.valid() ? file.span : span, e.what(), "cannot be read");
+    } catch (const std::bad_alloc&) {
+        diagnostics.error("E0404", file.span.valid() ? file.span : span,
+                          fmt::format("`{}` does not fit into memory", file.value));
+    }
+    return std::nullopt;
+}
+
+std::optional<MeshData> fromRows(const std::vector<Vec3d>& points, const schema::IndexRows& faces, Span span,
+                                 Diagnostics& diagnostics) {
+    MeshData mesh;
+    mesh.positions.reserve(points.size());
+    for (Vec3d p : points) mesh.positions.push_back(Vec3(p));
+    const std::span<const std::uint32_t> all(faces.indices);
+    std::size_t first = 0;
+    for (std::size_t face = 0; face < faces.counts.size(); ++face) {
+        const std::span<const std::uint32_t> corners = all.subspan(first, faces.counts[face]);
+        first += corners.size();
+        for (const std::uint32_t index : corners)
+            if (index >= points.size()) {
+                diagnostics.error(
+                    "E0611", span,
+                    fmt::format("face {} names vertex {}, but there are {} points", face, index, points.size()),
+                    "counted from 0");
+                return std::nullopt;
+            }
+        if (corners.size() < 3 || !addPolygon(mesh, corners)) {
+            diagnostics.error("E0611", span,
+                              fmt::format("face {} is no polygon that can be split into triangles", face),
+                              fmt::format("{} corners", corners.size()));
+            return std::nullopt;
+        }
+    }
+    return mesh;
+}
+
+} // namespace
+
+std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
+                                 const schema::IndexRows& faces, Span span, Diagnostics& diagnostics) {
+    auto mesh =
+        file.value.empty() ? fromRows(points, faces, span, diagnostics) : fromFile(file, unit, span, diagnostics);
+    if (!mesh) return std::nullopt;
+    const MeshCleanup cleanup = cleanMesh(*mesh);
+    if (cleanup.error) {
+        diagnostics.error("E0611", span, *cleanup.error, "damaged mesh");
+        return std::nullopt;
+    }
+    if (mesh->triangles.empty() && mesh->quads.empty()) {
+        diagnostics.error("E0604", span, "this mesh has no faces with an area", "nothing to see here");
+        return std::nullopt;
+    }
+    if (cleanup.removed() > 0)
+        diagnostics.warning("W0603", span, fmt::format("{} faces without area are left out", cleanup.removed()));
+    return mesh;
+}
+
+} // namespace abbe
