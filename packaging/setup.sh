@@ -1,0 +1,79 @@
+# shellcheck shell=bash
+# Shared by ./abbe and ./test: packages and builds. Everything is said on stderr, because stdout belongs to the program.
+# Requires: `root` is the top of the source tree.
+
+say() { printf 'abbe: %s\n' "$*" >&2; }
+fail() { say "$@"; exit 3; }
+
+# The packages of the given lists that are not installed, one a line.
+missing_packages() {
+    local wanted installed
+    wanted=$(sed 's/#.*//' "$@" | tr -s ' \t' '\n' | sed '/^$/d' | sort -u)
+    installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' 2>/dev/null | sed -n 's/^installed //p' | sort -u)
+    comm -23 <(printf '%s\n' "$wanted") <(printf '%s\n' "$installed")
+}
+
+# Installs what is missing from the given lists. Never waits for an answer.
+install_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        say "this system has no apt; the packages to have are listed in ${*#"$root/"}"
+        return 0
+    fi
+    local missing admin=()
+    mapfile -t missing < <(missing_packages "$@")
+    [[ ${#missing[@]} -eq 0 ]] && return 0
+    [[ $(id -u) -eq 0 ]] || admin=(sudo -n)
+    local update=("${admin[@]}" apt-get update -q)
+    local install=("${admin[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}")
+    say "${#missing[@]} packages are missing and are installed now:"
+    say "  ${install[*]}"
+    local by_hand="apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
+    [[ $(id -u) -eq 0 ]] || by_hand="sudo sh -c '$by_hand'"
+    mkdir -p "$root/build"
+    local log=$root/build/install.log
+    if { "${update[@]}" && "${install[@]}"; } >"$log" 2>&1 </dev/null; then
+        say "packages installed"
+    else
+        tail -n 15 "$log" >&2
+        say "the packages could not be installed (all output: $log). Type this, then try again:"
+        fail "  $by_hand"
+    fi
+}
+
+# build_preset PRESET TARGET…: configures and builds below build/PRESET, output in build.log there.
+build_preset() {
+    local preset=$1 directory=$root/build/$1
+    shift
+    mkdir -p "$directory"
+    local log=$directory/build.log
+    say "building build/$preset (a few minutes the first time; all output: $log)"
+    if ! (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 </dev/null; then
+        build_failed "$log" "configuring"
+        return 1
+    fi
+    if ! cmake --build "$directory" --target "$@" 2>&1 </dev/null | tee -a "$log" | show_progress; then
+        build_failed "$log" "building"
+        return 1
+    fi
+}
+
+build_failed() {
+    grep -E -m 20 '(error|Error|ERROR|FAILED)' "$1" >&2 || tail -n 30 "$1" >&2
+    say "$2 failed; all output is in $1. If the tree was changed lately, remove ${1%/*} and try again."
+}
+
+# Turns ninja's "[12/80] …" into one line that is rewritten on a terminal, or a line per fifth.
+show_progress() {
+    local line fifth=0 shown=0
+    while IFS= read -r line; do
+        [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+        if [[ -t 2 ]]; then
+            printf '\rabbe: compiled %d of %d ' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" >&2
+            shown=1
+        elif (( BASH_REMATCH[1] * 5 / BASH_REMATCH[2] > fifth )); then
+            fifth=$(( BASH_REMATCH[1] * 5 / BASH_REMATCH[2] ))
+            say "compiled ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]}"
+        fi
+    done
+    (( shown == 0 )) || printf '\n' >&2
+}
