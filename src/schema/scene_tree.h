@@ -32,12 +32,24 @@ struct Definition {
     std::string name; // empty: unnamed
     Span nameSpan;    // of the name, else of the keyword
     Span span;        // of the head
-    const TypeInfo* type = nullptr;          // null for group, object, instance
-    std::vector<Value> arguments;            // after the type word
+    const TypeInfo* type = nullptr;          // null for group, object, instance, spectrum, and after an unknown type
+    std::vector<Value> arguments;            // after the type word; spectrum: everything after the name
+    std::vector<Key> keys;                   // key=value after the arguments
+    bool damaged = false;                    // a syntax error took something out of the head
     std::vector<Node> properties;            // everything in the block that is not a nested definition
     std::vector<Definition> children;        // nested definitions of group and object
     std::string target;                      // instance: the object it places
     Span targetSpan;
+};
+
+// Named definitions in sorted order, for SceneTree::find. A copied tree starts without one and searches linearly.
+struct NameIndex {
+    NameIndex() = default;
+    NameIndex(const NameIndex&) noexcept {}
+    NameIndex(NameIndex&&) noexcept = default;
+    NameIndex& operator=(const NameIndex&) noexcept { return sorted.clear(), *this; }
+    NameIndex& operator=(NameIndex&&) noexcept = default;
+    std::vector<const Definition*> sorted;
 };
 
 // Everything that one file defines. Holds views into `document`.
@@ -46,7 +58,9 @@ struct SceneTree {
     std::vector<Definition> definitions;
     std::filesystem::path directory; // files are looked up here
     std::shared_ptr<const Document> document;
+    NameIndex index; // filled by resolve()
 
+    // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
 };
 
@@ -80,7 +94,9 @@ class Resolver {
     virtual const Curve* curve(const SpectrumValue&, SpectrumRole, Diagnostics&) = 0;
     // n and k of a metal by name; both null after a diagnostic.
     virtual ComplexIndex metal(std::string_view name, Span, Diagnostics&) = 0;
-    // The index of a definition, building it first if need be; invalid after a diagnostic.
+    // The index of a definition, building it first if need be; invalid after a diagnostic. An unnamed definition is an
+    // inline one: it lives only during the call, so its address must not be remembered. A definition with an unknown
+    // type (type == nullptr) has been reported already.
     virtual Reference reference(const Definition&, Diagnostics&) = 0;
 };
 
@@ -89,10 +105,11 @@ class Resolver {
 SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesystem::path directory, Diagnostics&);
 
 // Second pass: checks every property and argument of one definition against its type (names, units, ranges, arity,
-// groups, required ones, existing files) and stores what is given, and the defaults, into `params`.
+// groups, required ones, existing files) and stores what is given, and the defaults, into `params`. A definition whose
+// type is unknown is bound with params == nullptr: what is wrong in every type of its kind is still reported.
 void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
 
-// The transform of a `transform { … }` block, top to bottom as applied to the object.
+// The transform of a `transform { … }` block, top to bottom as applied to the object; the identity after an error.
 Transform bindTransform(const Node& block, const Header&, Diagnostics&);
 
 // The names offered by `did you mean`: the nearest candidate within a third of the word's length, or empty.

@@ -1,0 +1,224 @@
+#include "schema/binding.h"
+#include "schema/default_text.h"
+#include "schema/definition_reader.h"
+#include "schema/suggest.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace abbe::schema {
+
+namespace {
+
+bool isPrivate(std::string_view name) { return name.starts_with("x-"); }
+
+// The argument fields of a type in their order.
+std::vector<const FieldInfo*> argumentFields(const TypeInfo& type) {
+    std::vector<const FieldInfo*> fields;
+    for (const FieldInfo& field : type.fields)
+        if (field.argument >= 0) fields.push_back(&field);
+    std::ranges::sort(fields, {}, [](const FieldInfo* f) { return f->argument; });
+    return fields;
+}
+
+Span spanOf(const std::vector<Value>& values) { return join(place(values.front()), place(values.back())); }
+
+class Binding {
+  public:
+    Binding(const Definition& definition, const BindContext& context, void* params)
+        : definition_(definition), type_(*definition.type), context_(context), params_(params) {}
+
+    void run() {
+        arguments();
+        for (const Node& property : definition_.properties) this->property(property);
+        required();
+        defaults();
+    }
+
+  private:
+    // Notes that a field is given, and reports a second time. False if it must not be bound.
+    bool give(const FieldInfo& field, Span span) {
+        const auto [first, fresh] = given_.emplace(&field, span);
+        if (!fresh) {
+            auto& d =
+                report(context_.diagnostics, span, "E0208", fmt::format("`{}` is given twice", field.name), "second");
+            d.related.push_back({first->second, "first"});
+            return false;
+        }
+        if (field.group.empty()) return true;
+        const auto [member, alone] = groups_.emplace(field.group, std::pair{&field, span});
+        if (alone) return true;
+        auto& d = report(context_.diagnostics, span, "E0310",
+                         fmt::format("{} states its {} twice", title(definition_), field.group),
+                         fmt::format("second {}", field.group));
+        d.related.push_back({member->second.second, fmt::format("first {}", field.group)});
+        d.notes.push_back(fmt::format("keep one of `{}` and `{}`", member->second.first->name, field.name));
+        // Its value is still checked, but not stored.
+        return true;
+    }
+
+    bool isSecondOfGroup(const FieldInfo& field) const {
+        const auto found = groups_.find(field.group);
+        return found != groups_.end() && found->second.first != &field;
+    }
+
+    void store(const FieldInfo& field, const std::optional<BoundValue>& value) {
+        if (value && params_ && field.store) field.store(params_, *value);
+    }
+
+    void arguments() {
+        if (definition_.damaged) return;
+        for (const Key& key : definition_.keys)
+            report(context_.diagnostics, key.nameSpan, "E0210",
+                   fmt::format("{} has no key `{}`", title(definition_), key.name), "unknown key");
+        const auto fields = argumentFields(type_);
+        const auto& values = definition_.arguments;
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < fields.size() && next < values.size(); ++i) {
+            // The last field takes what is left; the ones before it take one value each.
+            const std::size_t end = i + 1 == fields.size() ? values.size() : next + 1;
+            const std::vector<Value> part(values.begin() + static_cast<std::ptrdiff_t>(next),
+                                          values.begin() + static_cast<std::ptrdiff_t>(end));
+            const Entry entry(fields[i]->name, spanOf(part), part);
+            if (give(*fields[i], entry.span())) store(*fields[i], bindField(*fields[i], entry, context_));
+            next = end;
+        }
+        if (next == values.size()) return;
+        auto& d = reportAt(context_.diagnostics, values[next], "E0306",
+                           fmt::format("`{} {}` takes no arguments", keyword(type_.kind), type_.name), "unexpected");
+        d.help = "properties stand in the block: `{ property value }`";
+    }
+
+    void property(const Node& node) {
+        if (isPrivate(node.name())) return;
+        const FieldInfo* const field = type_.find(node.name());
+        if (!field) return unknown(node);
+        if (!give(*field, node.headSpan()) || node.damaged()) return;
+        const auto value = bindField(*field, Entry(node), context_);
+        if (!isSecondOfGroup(*field)) store(*field, value);
+    }
+
+    void unknown(const Node& node) {
+        const std::string_view name = node.name();
+        if (name == "at" || isPlanned(name))
+            return reportPlanned(name == "at" ? "at (motion)" : name, node.nameSpan(), context_.diagnostics);
+        const bool byType = !type_.isDefault;
+        auto& d = report(context_.diagnostics, node.nameSpan(), "E0201",
+                         byType ? fmt::format("`{} {}` has no property `{}`", keyword(type_.kind), type_.name, name)
+                                : fmt::format("`{}` has no property `{}`", keyword(type_.kind), name),
+                         "unknown property");
+        if (const FieldInfo* meant = suggestField(type_, name)) {
+            d.help = fmt::format("did you mean {}?", fieldHint(*meant));
+            d.fixes.push_back({node.nameSpan(), std::string(meant->name)});
+            meant_.push_back(meant);
+            return;
+        }
+        std::vector<std::string_view> names;
+        for (const FieldInfo& field : type_.fields) names.push_back(field.name);
+        d.help = names.empty() ? "it has no properties" : "its properties are " + quotedList(names);
+    }
+
+    // A misspelt property is not also a missing one.
+    bool isGiven(const FieldInfo& field) const {
+        return given_.contains(&field) || std::ranges::find(meant_, &field) != meant_.end();
+    }
+
+    bool groupGiven(std::string_view group) const {
+        return std::ranges::any_of(type_.fields, [&](const FieldInfo& f) { return f.group == group && isGiven(f); });
+    }
+
+    void required() {
+        if (definition_.damaged) return;
+        std::vector<std::string_view> reported; // groups
+        for (const FieldInfo& field : type_.fields) {
+            if (!field.required || isGiven(field)) continue;
+            if (field.group.empty()) {
+                missing(fmt::format("`{}`", field.name), field);
+            } else if (!groupGiven(field.group) && std::ranges::find(reported, field.group) == reported.end()) {
+                reported.push_back(field.group);
+                std::vector<std::string_view> names;
+                for (const FieldInfo& other : type_.fields)
+                    if (other.group == field.group) names.push_back(other.name);
+                missing(quotedList(names, "or"), field);
+            }
+        }
+    }
+
+    void missing(const std::string& what, const FieldInfo& field) {
+        auto& d = report(context_.diagnostics, definition_.span, "E0207",
+                         fmt::format("{} needs {}", title(definition_), what), "is missing here");
+        if (!field.example.empty()) d.help = fmt::format("for example `{}`", field.example);
+    }
+
+    void defaults() {
+        for (const FieldInfo& field : type_.fields) {
+            if (field.defaultText.empty() || isGiven(field)) continue;
+            if (!field.group.empty() && groupGiven(field.group)) continue;
+            const auto document = documentOf(field.name, field.defaultText);
+            store(field, bindField(field, Entry(*document->roots().begin()), context_));
+        }
+    }
+
+    const Definition& definition_;
+    const TypeInfo& type_;
+    const BindContext& context_;
+    void* params_;
+    std::map<const FieldInfo*, Span> given_;
+    std::map<std::string_view, std::pair<const FieldInfo*, Span>> groups_; // the first given field of each group
+    std::vector<const FieldInfo*> meant_;                                  // by misspelt properties
+};
+
+// The type is unknown, but what every type of the kind would refuse is wrong all the same.
+class UntypedBinding {
+  public:
+    UntypedBinding(const Definition& definition, const BindContext& context)
+        : definition_(definition), context_(context) {}
+
+    void run() {
+        if (!definition_.damaged && !definition_.arguments.empty()) {
+            const Value argument = definition_.arguments[0];
+            const Entry entry(keyword(definition_.kind), place(argument), {argument});
+            check(entry, [](const FieldInfo& field) { return field.argument == 0; });
+        }
+        for (const Node& node : definition_.properties)
+            if (!isPrivate(node.name()) && !node.damaged())
+                check(Entry(node), [&](const FieldInfo& field) { return field.name == node.name(); });
+    }
+
+  private:
+    template <typename Matches> void check(const Entry& entry, Matches matches) {
+        Diagnostics first;
+        bool any = false;
+        for (const TypeInfo* type : context_.table.of(definition_.kind))
+            for (const FieldInfo& field : type->fields) {
+                if (!matches(field)) continue;
+                if (field.type == FieldType::reference) { // alike in every type, and built only once
+                    bindField(field, entry, context_);
+                    return;
+                }
+                Diagnostics found;
+                bindField(field, entry, {context_.tree, context_.table, context_.resolver, found});
+                if (!found.hasErrors()) return;
+                if (!any) first = std::move(found);
+                any = true;
+            }
+        for (const Diagnostic& d : first.all()) context_.diagnostics.add(d);
+    }
+
+    const Definition& definition_;
+    const BindContext& context_;
+};
+
+} // namespace
+
+void bind(const Definition& definition, const SceneTree& tree, const TypeTable& table, Resolver& resolver, void* params,
+          Diagnostics& diagnostics) {
+    const BindContext context{tree, table, resolver, diagnostics};
+    if (definition.type)
+        Binding(definition, context, params).run();
+    else
+        UntypedBinding(definition, context).run();
+}
+
+} // namespace abbe::schema

@@ -1,0 +1,119 @@
+#include "schema/binding.h"
+#include "schema/measure.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe::schema {
+
+namespace {
+
+bool takesBlock(FieldType type) {
+    switch (type) {
+    case FieldType::points:
+    case FieldType::numbers:
+    case FieldType::indexRows:
+    case FieldType::spectrum: // rows of a table
+    case FieldType::complexIndex:
+    case FieldType::reference:
+    case FieldType::transform:
+        return true;
+    default:
+        return false;
+    }
+}
+
+// Keys are read by those who know them: texts, spectra (`space=`) and inline definitions.
+bool readsKeys(FieldType type) {
+    return type == FieldType::text || type == FieldType::file || type == FieldType::spectrum ||
+           type == FieldType::reference;
+}
+
+bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
+    if (entry.hasBlock() && !takesBlock(field.type)) {
+        report(diagnostics, entry.span(), "E0214", fmt::format("`{}` takes no block", field.name), "remove the block");
+        return false;
+    }
+    if (readsKeys(field.type)) return true;
+    for (const Key& key : entry.keys()) {
+        report(diagnostics, key.nameSpan, "E0210", fmt::format("`{}` has no key `{}`", field.name, key.name),
+               "unknown key");
+        return false;
+    }
+    return true;
+}
+
+std::optional<BoundValue> bindTransformField(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    if (!entry.hasBlock() || entry.count() > 0) {
+        report(context.diagnostics, entry.span(), "E0313", fmt::format("`{}` needs a block of steps", field.name),
+               "write `{ rotate y 45 deg; translate 0 1 0 }`, say");
+        return std::nullopt;
+    }
+    const std::size_t before = context.diagnostics.errorCount();
+    const Transform transform = bindTransform(*entry.node(), context.tree.header, context.diagnostics);
+    return context.diagnostics.errorCount() > before ? std::nullopt : std::optional<BoundValue>(transform);
+}
+
+std::optional<BoundValue> bindInteger(const MeasureReader& reader, const Entry& entry, const BindContext& context,
+                                      std::string_view name) {
+    constexpr double kExact = 9007199254740992.0; // 2^53: beyond it doubles skip integers
+    const auto row = reader.row(entry, 0, 1);
+    if (!row) return std::nullopt;
+    const double x = row->values[0];
+    if (x == std::floor(x) && std::abs(x) <= kExact) return static_cast<std::int64_t>(x);
+    reportAt(context.diagnostics, entry.value(0), "E0305", fmt::format("`{}` must be a whole number", name),
+             fmt::format("is {}", entry.value(0).text));
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    const MeasureReader reader(measureOf(field), context.tree.header, context.diagnostics);
+    if (field.type == FieldType::integer) return bindInteger(reader, entry, context, field.name);
+    const std::size_t count = field.type == FieldType::vector2 ? 2 : field.type == FieldType::vector3 ? 3 : 1;
+    const auto row = reader.row(entry, 0, count);
+    if (!row) return std::nullopt;
+    const auto& v = row->values;
+    switch (field.type) {
+    case FieldType::quantity:
+        return Quantity{v[0], row->scale.dimension, entry.span()};
+    case FieldType::vector2:
+        return Vec2d{v[0], v[1]};
+    case FieldType::vector3:
+        return Vec3d{v[0], v[1], v[2]};
+    default:
+        return v[0];
+    }
+}
+
+std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    if (!checkBlockAndKeys(field, entry, context.diagnostics)) return std::nullopt;
+    switch (field.type) {
+    case FieldType::integer:
+    case FieldType::number:
+    case FieldType::quantity:
+    case FieldType::vector2:
+    case FieldType::vector3:
+        return bindNumeric(field, entry, context);
+    case FieldType::toggle:
+    case FieldType::choice:
+    case FieldType::text:
+    case FieldType::file:
+        return bindWord(field, entry, context);
+    case FieldType::points:
+    case FieldType::numbers:
+    case FieldType::indexRows:
+        return bindList(field, entry, context);
+    case FieldType::spectrum:
+    case FieldType::complexIndex:
+        return bindOptical(field, entry, context);
+    case FieldType::reference:
+        return bindReference(field, entry, context);
+    case FieldType::transform:
+        return bindTransformField(field, entry, context);
+    }
+    return std::nullopt;
+}
+
+} // namespace abbe::schema

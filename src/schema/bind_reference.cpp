@@ -1,0 +1,76 @@
+#include "schema/binding.h"
+#include "schema/definition_reader.h"
+#include "schema/suggest.h"
+
+#include <fmt/format.h>
+
+namespace abbe::schema {
+
+namespace {
+
+void unknownName(Kind kind, const Value& word, const BindContext& context) {
+    std::vector<std::string_view> names;
+    for (const Definition* d : context.tree.index.sorted)
+        if (d->kind == kind) names.push_back(d->name);
+    const std::string message = fmt::format("no {} is named `{}`", keyword(kind), word.text);
+    for (int i = 0; i <= static_cast<int>(Kind::render); ++i)
+        if (const Definition* other = context.tree.find(static_cast<Kind>(i), word.text)) {
+            auto& d = reportAt(context.diagnostics, word, "E0202", message,
+                               fmt::format("this names {} {}",
+                                           other->kind == Kind::object || other->kind == Kind::instance ? "an" : "a",
+                                           keyword(other->kind)));
+            d.related.push_back({other->nameSpan, "defined here"});
+            return;
+        }
+    auto meant = nearest(word.text, names);
+    const auto types = typeNames(context.table, kind);
+    if (meant.empty()) meant = nearest(word.text, types);
+    auto& d = reportAt(context.diagnostics, word, "E0202", message, meant.empty() ? "unknown name" : didYouMean(meant));
+    if (const Definition* definition = context.tree.find(kind, meant))
+        d.related.push_back({definition->nameSpan, "defined here"});
+    else if (meant.empty())
+        d.help = fmt::format("the types of `{}` are {}", keyword(kind), quotedList(types));
+}
+
+std::optional<BoundValue> valid(Reference reference) {
+    return reference.valid() ? std::optional<BoundValue>(reference) : std::nullopt;
+}
+
+} // namespace
+
+// A bare word is first a defined name, then a type; with arguments or a block it is always a type.
+std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    const Kind kind = field.referenceKind;
+    const bool bare = entry.count() == 1 && !entry.hasBlock() && entry.keys().empty();
+    if (entry.count() == 0 && !entry.hasBlock()) {
+        report(context.diagnostics, entry.span(), "E0306",
+               fmt::format("`{}` needs the name or the type of a {}", field.name, keyword(kind)), "has no value");
+        return std::nullopt;
+    }
+    const Value first = entry.count() > 0 ? entry.value(0) : Value{};
+    if (entry.count() > 0 && !first.isText()) {
+        reportAt(context.diagnostics, first, "E0314",
+                 fmt::format("`{}` needs the name or the type of a {}", field.name, keyword(kind)), "not a name");
+        return std::nullopt;
+    }
+    if (bare) {
+        if (const Definition* named = context.tree.find(kind, first.text))
+            return valid(context.resolver.reference(*named, context.diagnostics));
+        if (!context.table.find(kind, first.text)) {
+            unknownName(kind, first, context);
+            return std::nullopt;
+        }
+    }
+    if (entry.count() > 0 && !bare && !context.table.find(kind, first.text) && context.tree.find(kind, first.text)) {
+        reportAt(context.diagnostics, first, "E0214",
+                 fmt::format("`{}` is a name: it takes no arguments and no block", first.text),
+                 fmt::format("write `{} {}` alone", field.name, first.text));
+        return std::nullopt;
+    }
+    const DefinitionReader reader(context.table, context.diagnostics);
+    if (!entry.node()) return std::nullopt;
+    const auto inlined = reader.readInline(kind, *entry.node());
+    return inlined ? valid(context.resolver.reference(*inlined, context.diagnostics)) : std::nullopt;
+}
+
+} // namespace abbe::schema

@@ -1,0 +1,165 @@
+#include "schema/definition_reader.h"
+#include "schema/measure.h"
+#include "schema/suggest.h"
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe::schema {
+
+namespace {
+
+constexpr std::array kPlain = {Dimension::none};
+constexpr std::array kLength = {Dimension::length};
+constexpr std::array kAngle = {Dimension::angle};
+constexpr auto kSteps = std::to_array<std::string_view>({"translate", "rotate", "scale", "matrix", "look-at"});
+
+class StepReader {
+  public:
+    StepReader(const Node& step, const Header& header, Diagnostics& diagnostics)
+        : entry_(step), header_(header), diagnostics_(diagnostics) {}
+
+    // Nothing after a diagnostic.
+    std::optional<Transform> read() {
+        if (entry_.name() == "matrix") return matrix();
+        if (entry_.hasBlock() || !entry_.keys().empty()) {
+            report(diagnostics_, entry_.span(), "E0214", fmt::format("`{}` takes numbers only", entry_.name()),
+                   "remove the block or key");
+            return std::nullopt;
+        }
+        if (entry_.name() == "translate") return translate();
+        if (entry_.name() == "rotate") return rotate();
+        if (entry_.name() == "scale") return scale();
+        if (entry_.name() == "look-at") return lookAt();
+        unknown();
+        return std::nullopt;
+    }
+
+  private:
+    std::optional<Row> row(std::span<const Dimension> dimensions, std::size_t first, std::size_t count,
+                           std::string_view example) {
+        return MeasureReader({entry_.name(), dimensions, -HUGE_VAL, HUGE_VAL, {}, example}, header_, diagnostics_)
+            .row(entry_, first, count);
+    }
+
+    std::optional<Transform> fault(std::string message, std::string label) {
+        report(diagnostics_, entry_.span(), "E0313", std::move(message), std::move(label));
+        return std::nullopt;
+    }
+
+    void unknown() {
+        const std::string_view name = entry_.name();
+        if (name == "at") return reportPlanned("at (motion)", entry_.node()->nameSpan(), diagnostics_);
+        const auto meant = nearest(name, {kSteps.begin(), kSteps.end()});
+        report(diagnostics_, entry_.node()->nameSpan(), "E0313", fmt::format("`transform` has no step `{}`", name),
+               meant.empty() ? "unknown step" : didYouMean(meant))
+            .help = "the steps are " + quotedList(kSteps);
+    }
+
+    std::optional<Transform> translate() {
+        const auto r = row(kLength, 0, 3, "translate 0 1 0");
+        if (!r) return std::nullopt;
+        return Transform::translate({r->values[0], r->values[1], r->values[2]});
+    }
+
+    std::optional<Transform> rotate() {
+        const std::string_view example = "rotate y 45 deg";
+        if (entry_.count() > 0 && entry_.value(0).isText() && !parseFraction(entry_.value(0).text)) {
+            const Value axis = entry_.value(0);
+            if (axis.text != "x" && axis.text != "y" && axis.text != "z") {
+                reportAt(diagnostics_, axis, "E0313", "`rotate` needs an axis", "write `x`, `y`, `z` or three numbers");
+                return std::nullopt;
+            }
+            const auto r = row(kAngle, 1, 1, example);
+            if (!r) return std::nullopt;
+            const Vec3d direction{axis.text == "x" ? 1. : 0., axis.text == "y" ? 1. : 0., axis.text == "z" ? 1. : 0.};
+            return Transform::rotate(direction, r->values[0]);
+        }
+        // Three numbers without a unit, then an angle: read as four in the unit of the angle, and the axis has no size.
+        const auto r = row(kAngle, 0, 4, "rotate 0 1 0 45 deg");
+        if (!r) return std::nullopt;
+        const double factor = r->scale.factor;
+        const Vec3d axis{r->values[0] / factor, r->values[1] / factor, r->values[2] / factor};
+        const double size = maxComponent(abs(axis));
+        if (!(size > 0)) return fault("the axis of a rotation cannot be 0 0 0", "has no direction");
+        return Transform::rotate(axis / size, r->values[3]); // scaled: squares of tiny components would vanish
+    }
+
+    std::optional<Transform> scale() {
+        const bool three = entry_.count() > 1;
+        const auto r = row(kPlain, 0, three ? 3 : 1, three ? "scale 1 2 1" : "scale 2");
+        if (!r) return std::nullopt;
+        const auto& v = r->values;
+        return Transform::scale(three ? Vec3d{v[0], v[1], v[2]} : Vec3d{v[0], v[0], v[0]});
+    }
+
+    // `look-at from(3) to(3) [up(3)]`
+    std::optional<Transform> lookAt() {
+        const bool hasUp = entry_.count() > 7; // six numbers and a unit are seven
+        const auto r = row(kLength, 0, hasUp ? 9 : 6, "look-at 0 1 4  0 0 0");
+        if (!r) return std::nullopt;
+        const auto& v = r->values;
+        const Vec3d up = hasUp ? Vec3d{v[6], v[7], v[8]} : header_.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+        const auto transform = Transform::lookAt({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, up);
+        if (!transform)
+            return fault("`look-at` needs two different points and an up that is not between them", "has no direction");
+        return transform;
+    }
+
+    // 16 numbers, in one line or four rows; the last row is 0 0 0 1, and the last column a translation in lengths.
+    std::optional<Transform> matrix() {
+        std::vector<double> m;
+        const MeasureReader reader({"matrix", kPlain, -HUGE_VAL, HUGE_VAL, {}, {}}, header_, diagnostics_);
+        if (!reader.append(entry_, 0, m)) return std::nullopt;
+        if (entry_.hasBlock())
+            for (const Node child : entry_.node()->children()) {
+                if (child.name() != "-") return fault("`matrix` holds rows of numbers", "a row begins with `-`");
+                if (!reader.append(Entry(child), 0, m)) return std::nullopt;
+            }
+        if (m.size() != 16) return fault("`matrix` takes 16 numbers", fmt::format("has {}", m.size()));
+        if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+            return fault("the last row of a matrix must be 0 0 0 1",
+                         "rows are written one after another, with column vectors");
+        Transform t;
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j) t.a[i][j] = m[4 * i + j];
+        t.t = Vec3d{m[3], m[7], m[11]} * header_.length;
+        return t;
+    }
+
+    Entry entry_;
+    const Header& header_;
+    Diagnostics& diagnostics_;
+};
+
+} // namespace
+
+Transform bindTransform(const Node& block, const Header& header, Diagnostics& diagnostics) {
+    Transform result;
+    bool good = true;
+    for (const Node step : block.children()) {
+        if (step.name().starts_with("x-")) continue;
+        if (step.damaged()) {
+            good = false;
+            continue;
+        }
+        const auto transform = StepReader(step, header, diagnostics).read();
+        good = good && transform;
+        if (!good) continue;
+        if (!transform->inverse()) {
+            report(diagnostics, step.headSpan(), "E0313", fmt::format("`{}` flattens the object", step.name()),
+                   "cannot be undone: its determinant is 0");
+            good = false;
+            continue;
+        }
+        result = result.then(*transform);
+    }
+    if (!good) return {};
+    if (result.isFinite() && result.inverse()) return result;
+    report(diagnostics, block.headSpan(), "E0313", "the transform has no inverse in floating point",
+           "its steps are too large or too small together");
+    return {};
+}
+
+} // namespace abbe::schema

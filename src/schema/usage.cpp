@@ -1,0 +1,172 @@
+#include "schema/usage.h"
+
+#include "schema/entry.h"
+#include "schema/suggest.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace abbe::schema {
+
+namespace {
+
+using Definitions = std::vector<Definition>;
+using Texts = std::unordered_set<std::string_view>;
+
+void collectTexts(const Node& node, Texts& out) {
+    if (!node.allNumbers())
+        for (std::size_t i = 0; i < node.valueCount(); ++i)
+            if (const Value value = node.value(i); value.isText()) out.insert(value.text);
+    for (const Node child : node.children()) collectTexts(child, out);
+}
+
+void collectTexts(const Definitions& definitions, Texts& out) {
+    for (const Definition& d : definitions) {
+        for (const Node& property : d.properties) collectTexts(property, out);
+        collectTexts(d.children, out);
+    }
+}
+
+void collectInstances(const Definitions& definitions, std::vector<const Definition*>& out) {
+    for (const Definition& d : definitions) {
+        if (d.kind == Kind::instance) out.push_back(&d);
+        collectInstances(d.children, out);
+    }
+}
+
+// The instances that appear wherever `owner` appears. An object inside of it is only defined there.
+void collectPlaced(const Definition& owner, std::vector<const Definition*>& out) {
+    for (const Definition& d : owner.children) {
+        if (d.kind == Kind::instance) out.push_back(&d);
+        if (d.kind == Kind::group) collectPlaced(d, out);
+    }
+}
+
+void checkTargets(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
+    std::vector<std::string_view> objects;
+    for (const Definition* d : tree.index.sorted)
+        if (d->kind == Kind::object) objects.push_back(d->name);
+    for (const Definition* instance : instances) {
+        if (instance->target.empty() || tree.find(Kind::object, instance->target)) continue;
+        const auto meant = nearest(instance->target, objects);
+        auto& d =
+            report(diagnostics, instance->targetSpan, "E0202", fmt::format("no object is named `{}`", instance->target),
+                   meant.empty() ? "unknown name" : didYouMean(meant));
+        if (!meant.empty())
+            d.related.push_back({tree.find(Kind::object, meant)->nameSpan, "defined here"});
+        else if (tree.find(Kind::shape, instance->target))
+            d.help = fmt::format("`{0}` is a shape; wrap it: `object {0} {{ … }}`", instance->target);
+    }
+}
+
+// Depth-first search with its own stack: a long chain of objects must not exhaust the program's.
+class CycleCheck {
+  public:
+    CycleCheck(const SceneTree& tree, Diagnostics& diagnostics) : tree_(tree), diagnostics_(diagnostics) {}
+
+    void from(const Definition* root) {
+        if (state_[root] != State::unseen) return;
+        enter(root);
+        while (!stack_.empty()) {
+            Level& top = stack_.back();
+            if (top.next == top.placed.size()) {
+                state_[top.object] = State::done;
+                stack_.pop_back();
+                continue;
+            }
+            const Definition* const instance = top.placed[top.next++];
+            const Definition* const target = tree_.find(Kind::object, instance->target);
+            if (!target || state_[target] == State::done) continue;
+            if (state_[target] == State::open)
+                reportCycle(*instance, target);
+            else
+                enter(target);
+        }
+    }
+
+  private:
+    enum class State : std::uint8_t { unseen, open, done };
+    struct Level {
+        const Definition* object;
+        std::vector<const Definition*> placed;
+        std::size_t next = 0;
+    };
+
+    void enter(const Definition* object) {
+        state_[object] = State::open;
+        Level level{object, {}};
+        collectPlaced(*object, level.placed);
+        stack_.push_back(std::move(level));
+    }
+
+    void reportCycle(const Definition& instance, const Definition* target) {
+        std::string chain;
+        const auto first = std::ranges::find(stack_, target, &Level::object);
+        for (auto level = first; level != stack_.end(); ++level) chain += level->object->name + " → ";
+        auto& d = report(diagnostics_, instance.targetSpan, "E0213",
+                         fmt::format("object `{}` contains itself", target->name), "placed inside of itself");
+        d.related.push_back({target->nameSpan, "the object"});
+        d.notes.push_back("the chain is " + chain + target->name);
+    }
+
+    const SceneTree& tree_;
+    Diagnostics& diagnostics_;
+    std::unordered_map<const Definition*, State> state_;
+    std::vector<Level> stack_;
+};
+
+// True if some used text is so near to `name` that a typing error may be why the name is unused. `budget` bounds the
+// comparisons of one file.
+bool mayBeMisspelt(std::string_view name, const Texts& texts, std::size_t& budget) {
+    if (texts.size() > budget) return false;
+    budget -= texts.size();
+    return std::ranges::any_of(texts, [&](std::string_view t) { return !nearest(t, {name}).empty(); });
+}
+
+void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
+    std::size_t budget = 1'000'000;
+    Texts texts, targets;
+    collectTexts(tree.definitions, texts);
+    for (const Definition* instance : instances) targets.insert(instance->target);
+    for (const Definition* d : tree.index.sorted) {
+        const bool slot = d->kind == Kind::material || d->kind == Kind::spectrum;
+        if (!slot && d->kind != Kind::object) continue;
+        const Texts& uses = slot ? texts : targets;
+        if (uses.contains(d->name) || mayBeMisspelt(d->name, uses, budget)) continue;
+        diagnostics.warning("W0201", d->nameSpan, fmt::format("{} `{}` is never used", keyword(d->kind), d->name),
+                            "unused");
+    }
+}
+
+} // namespace
+
+void checkNames(const SceneTree& tree, const TypeTable& table, Diagnostics& diagnostics) {
+    const Definition* first = nullptr; // sorted stably: the first of equals is the first of the file
+    for (const Definition* d : tree.index.sorted) {
+        if (!first || first->kind != d->kind || first->name != d->name) {
+            first = d;
+            if (d->kind == Kind::material && table.find(d->kind, d->name))
+                diagnostics.warning("W0202", d->nameSpan,
+                                    fmt::format("the name `{}` hides a type of material", d->name),
+                                    "names win over types");
+            continue;
+        }
+        auto& error = report(diagnostics, d->nameSpan, "E0203",
+                             fmt::format("{} `{}` is defined twice", keyword(d->kind), d->name), "second definition");
+        error.related.push_back({first->nameSpan, "the first definition is here"});
+    }
+}
+
+void checkUsage(const SceneTree& tree, Diagnostics& diagnostics) {
+    std::vector<const Definition*> instances;
+    collectInstances(tree.definitions, instances);
+    checkTargets(tree, instances, diagnostics);
+    CycleCheck cycles(tree, diagnostics);
+    for (const Definition* d : tree.index.sorted)
+        if (d->kind == Kind::object) cycles.from(d);
+    if (!diagnostics.hasErrors()) checkUnused(tree, instances, diagnostics);
+}
+
+} // namespace abbe::schema
