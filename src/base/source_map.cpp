@@ -22,8 +22,10 @@ const std::vector<std::uint32_t>& SourceMap::lineStarts(FileId id) const {
     const File& file = files_[static_cast<std::size_t>(id)];
     if (file.lineStarts.empty()) {
         file.lineStarts.push_back(0);
+        // Line feed, carriage return, or both: what editors count.
         for (std::size_t i = 0; i < file.text.size(); ++i)
-            if (file.text[i] == '\n') file.lineStarts.push_back(static_cast<std::uint32_t>(i + 1));
+            if (file.text[i] == '\n' || (file.text[i] == '\r' && file.text[i + 1] != '\n'))
+                file.lineStarts.push_back(static_cast<std::uint32_t>(i + 1));
     }
     return file.lineStarts;
 }

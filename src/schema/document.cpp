@@ -48,7 +48,31 @@ Span spanOfNumber(const Document& document, const Document::NodeRecord& node, st
     return span;
 }
 
+Value numberValue(const Document& document, double number, Span span) {
+    Value value;
+    value.kind = ValueKind::number;
+    value.number = number;
+    value.span = span;
+    value.text = document.source.substr(span.begin, span.end - span.begin);
+    return value;
+}
+
 } // namespace
+
+void Document::unpack(NodeRecord& node) {
+    if (node.numberCount == 0) return;
+    ABBE_DCHECK(node.firstNumber + node.numberCount == numbers.size() && node.valueCount == 0);
+    node.firstValue = static_cast<std::uint32_t>(values.size());
+    node.valueCount = node.numberCount;
+    Span span = {file, node.nameSpan.end, node.nameSpan.end};
+    for (std::size_t i = 0; i < node.numberCount; ++i) {
+        span = nextNumber(*this, span.end);
+        values.push_back(numberValue(*this, numbers[node.firstNumber + i], span));
+    }
+    numbers.resize(node.firstNumber);
+    marks.resize((numbers.size() + markStep - 1) / markStep);
+    node.firstNumber = node.numberCount = 0;
+}
 
 std::string_view Node::name() const { return document_->nodes[index_].name; }
 
@@ -70,12 +94,7 @@ Value Node::value(std::size_t i) const {
     ABBE_DCHECK(i < valueCount());
     const Document::NodeRecord& node = document_->nodes[index_];
     if (node.numberCount == 0) return document_->values[node.firstValue + i];
-    Value value;
-    value.kind = ValueKind::number;
-    value.number = document_->numbers[node.firstNumber + i];
-    value.span = spanOfNumber(*document_, node, i);
-    value.text = document_->source.substr(value.span.begin, value.span.end - value.span.begin);
-    return value;
+    return numberValue(*document_, document_->numbers[node.firstNumber + i], spanOfNumber(*document_, node, i));
 }
 
 bool Node::allNumbers() const { return document_->nodes[index_].numberCount > 0; }

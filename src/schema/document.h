@@ -127,6 +127,8 @@ class Document {
     static constexpr std::size_t markStep = 64;
 
     NodeRange roots() const { return {this, nodes.empty() ? kNone : 0u}; }
+    // Turns a packed row into values again; only for the node whose numbers are the last ones.
+    void unpack(NodeRecord&);
     std::string_view intern(std::string text) { return pool.emplace_back(std::move(text)); }
 
     std::vector<NodeRecord> nodes; // the first one is the first root

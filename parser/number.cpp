@@ -1,0 +1,110 @@
+#include "parser/number.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace abbe::parser {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Whether a decimal that does not fit is too small rather than too large: the power of ten of its first digit other
+// than zero decides.
+bool isTiny(std::string_view text) {
+    const std::size_t exponentAt = std::min(text.find_first_of("eE"), text.size());
+    const std::string_view mantissa = text.substr(0, exponentAt);
+    const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+    const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
+    std::int64_t power = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
+    std::int64_t exponent = 0;
+    for (const char c : text.substr(exponentAt))
+        if (isDigit(c) && exponent < 1'000'000'000'000) exponent = 10 * exponent + (c - '0');
+    const bool down = exponentAt + 1 < text.size() && text[exponentAt + 1] == '-';
+    power += down ? -exponent : exponent;
+    return power < 0;
+}
+
+int digitValue(char c) {
+    if (isDigit(c)) return c - '0';
+    const char lower = static_cast<char>(c | 0x20);
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : 16;
+}
+
+// An integer in base 2^bits, rounded once: its bits are regrouped into hexadecimal digits, which from_chars converts.
+NumberResult parseBased(std::string_view digits, int bits) {
+    if (digits.empty() || digitValue(digits[0]) >= 1 << bits) return {0, NumberError::malformed};
+    std::string binary;
+    for (const char c : digits) {
+        if (c == '_') continue;
+        const int digit = digitValue(c);
+        if (digit >= 1 << bits) return {0, NumberError::malformed};
+        for (int i = bits - 1; i >= 0; --i) binary.push_back(digit >> i & 1 ? '1' : '0');
+    }
+    binary.insert(0, (4 - binary.size() % 4) % 4, '0');
+    std::string hex;
+    for (std::size_t i = 0; i < binary.size(); i += 4) {
+        int digit = 0;
+        for (std::size_t k = i; k < i + 4; ++k) digit = 2 * digit + (binary[k] - '0');
+        hex.push_back("0123456789abcdef"[digit]);
+    }
+    double value = 0;
+    const auto result = std::from_chars(hex.data(), hex.data() + hex.size(), value, std::chars_format::hex);
+    if (result.ec != std::errc{}) return {0, NumberError::overflow};
+    return {value, NumberError::none};
+}
+
+// integer ['.' integer] [('e'|'E') [sign] integer], where integer = digit {digit | '_'}
+bool isDecimalForm(std::string_view text) {
+    std::size_t i = 0;
+    const auto integer = [&] {
+        const bool starts = i < text.size() && isDigit(text[i]);
+        while (i < text.size() && starts && (isDigit(text[i]) || text[i] == '_')) ++i;
+        return starts;
+    };
+    if (!integer()) return false;
+    if (i < text.size() && text[i] == '.') {
+        ++i;
+        if (!integer()) return false;
+    }
+    if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+        ++i;
+        if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+        if (!integer()) return false;
+    }
+    return i == text.size();
+}
+
+} // namespace
+
+double convertDecimal(const char* p, const char* end) {
+    double value = 0;
+    const auto result = std::from_chars(p, end, value);
+    if (result.ec == std::errc::result_out_of_range)
+        return isTiny({p, static_cast<std::size_t>(end - p)}) ? 0 : kInfinity;
+    return value;
+}
+
+NumberResult parseNumber(std::string_view text) {
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    NumberResult result;
+    if (text.starts_with("0x") || text.starts_with("0o") || text.starts_with("0b")) {
+        const int bits = text[1] == 'x' ? 4 : text[1] == 'o' ? 3 : 1;
+        result = parseBased(text.substr(2), bits);
+    } else if (isDecimalForm(text)) {
+        std::string digits(text);
+        std::erase(digits, '_');
+        result.value = convertDecimal(digits.data(), digits.data() + digits.size());
+        if (std::isinf(result.value)) result.error = NumberError::overflow;
+    } else {
+        result.error = NumberError::malformed;
+    }
+    if (negative) result.value = -result.value;
+    return result;
+}
+
+} // namespace abbe::parser

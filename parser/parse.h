@@ -1,0 +1,42 @@
+// The scene language: text in, tree of nodes out. Syntax is KDL 2.0.0 (docs/language/syntax.md); the meaning of the
+// nodes is the schema's business.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "base/source_map.h"
+#include "schema/document.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+// `-D name=value` of the command line. The value is a text of its own in the SourceMap, under the path "-D name", so
+// that diagnostics can show it.
+struct ParameterOverride {
+    std::string name;
+    FileId value = FileId::none;
+};
+
+// Takes `name=value` apart; nothing after a diagnostic.
+std::optional<ParameterOverride> readOverride(SourceMap&, std::string_view nameAndValue, Diagnostics&);
+
+struct ParseOptions {
+    std::vector<ParameterOverride> overrides; // of equal names the last one counts
+    std::uint32_t maxDepth = 256;             // blocks inside blocks
+};
+
+// Reads one file into a tree, reports everything that is wrong with its syntax, and puts the values of parameters where
+// `$name` stood. Never null: what could be understood is in the tree, and nodes that lost something say so (damaged()).
+// The SourceMap must outlive the document, whose texts point into it.
+std::shared_ptr<schema::Document> parse(const SourceMap&, FileId, const ParseOptions&, Diagnostics&);
+
+// Adds the file at `path` to the map. Nothing after a diagnostic: missing, unreadable, larger than 4 GiB, not UTF-8.
+std::optional<FileId> readSceneFile(SourceMap&, const std::filesystem::path& path, Diagnostics&);
+
+} // namespace abbe

@@ -1,0 +1,63 @@
+#include "parser/parse.h"
+#include "parser/source_text.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+namespace abbe {
+
+namespace {
+
+// A file that could not be read has no text; its diagnostic points at the beginning of an empty one.
+std::optional<FileId> refuse(SourceMap& sources, const std::filesystem::path& path, Diagnostics& diagnostics,
+                             const char* code, std::string message, std::string help = {}) {
+    const FileId file = sources.add(path.string(), {});
+    diagnostics.error(code, {file, 0, 0}, std::move(message)).help = std::move(help);
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::path& path, Diagnostics& diagnostics) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status))
+        return refuse(sources, path, diagnostics, "E0410", fmt::format("file not found: `{}`", path.string()));
+    if (std::filesystem::is_directory(status))
+        return refuse(sources, path, diagnostics, "E0410", fmt::format("`{}` is a directory", path.string()),
+                      "name the scene file in it");
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream)
+        return refuse(sources, path, diagnostics, "E0410",
+                      fmt::format("cannot read `{}`: {}", path.string(), std::strerror(errno)));
+    const std::uintmax_t size = std::filesystem::file_size(path, error); // pipes have none
+    constexpr std::uintmax_t limit = std::numeric_limits<std::uint32_t>::max();
+    const auto tooLarge = [&] {
+        return refuse(sources, path, diagnostics, "E0411", fmt::format("`{}` is larger than 4 GiB", path.string()),
+                      "keep meshes in PLY or OBJ files");
+    };
+    if (!error && size >= limit) return tooLarge();
+    std::string text;
+    if (!error) text.reserve(size + 1);
+    constexpr std::size_t step = std::size_t{1} << 20;
+    while (stream) {
+        const std::size_t had = text.size();
+        text.resize(had + (error || had >= size ? step : std::min<std::uintmax_t>(size - had, std::size_t{1} << 30)));
+        stream.read(text.data() + had, static_cast<std::streamsize>(text.size() - had));
+        text.resize(had + static_cast<std::size_t>(stream.gcount()));
+        if (text.size() >= limit) return tooLarge();
+    }
+    if (stream.bad())
+        return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
+    const FileId file = sources.add(path.string(), std::move(text));
+    const std::string_view added = sources.text(file);
+    parser::SyntaxErrors errors({file, added.data(), added.data() + added.size()}, diagnostics);
+    return parser::checkUtf8(errors) ? std::optional(file) : std::nullopt;
+}
+
+} // namespace abbe

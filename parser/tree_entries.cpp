@@ -1,0 +1,305 @@
+// Entries of a node: arguments, keys, and the rows of plain numbers that are kept packed.
+#include "parser/characters.h"
+#include "parser/number.h"
+#include "parser/text_literal.h"
+#include "parser/tree_reader.h"
+#include "parser/whitespace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+#include <string_view>
+#include <unordered_map>
+
+namespace abbe::parser {
+
+using schema::Document;
+using schema::Value;
+using schema::ValueKind;
+
+void TreeReader::skipSpace() {
+    bool lineComment = false;
+    at_ = skipNodeSpace(at_, errors_, lineComment);
+    packing_ = packing_ && !lineComment;
+}
+
+void TreeReader::touch(Record& node, const char* end) const { node.headSpan.end = text_.offset(end); }
+
+// At white space's end: whether the node ends here.
+bool TreeReader::atEndOfNode() const {
+    if (*at_ == ';' || *at_ == '}' || (*at_ == '/' && at_[1] == '/')) return true;
+    return at_ == text_.end || newlineLength(at_, text_.end) > 0;
+}
+
+// Reads entries up to the end of the node or to its block.
+void TreeReader::readEntries(const OpenNode& open) {
+    Record& node = document_.nodes[open.index];
+    packing_ = true;
+    inBrackets_ = false;
+    commas_.clear();
+    for (;;) {
+        if (packing_) {
+            while (readNumber(node)) {
+            }
+        }
+        skipSpace();
+        if (!packing_) document_.unpack(node);
+        if (*at_ == '{') {
+            checkSpace();
+            endEntries(node);
+            return openBlock(open, false);
+        }
+        if (at_[0] == '/' && at_[1] == '-') {
+            if (readSlashdashEntry(open)) return;
+        } else if (!readEntry(node, open.index)) {
+            break;
+        }
+    }
+    endEntries(node);
+    if (*at_ == ';') ++at_;
+    finish(open);
+}
+
+// The fast path: white space, a plain decimal number, and white space or the node's end behind it.
+bool TreeReader::readNumber(Record& node) {
+    const char* p = at_;
+    while (*p == ' ' || *p == '\t') ++p;
+    if (p == entryEnd_ || !(isDigit(*p) || ((*p == '-' || *p == '+') && isDigit(p[1])))) return false;
+    double number;
+    const char* const end = scanDecimal(p, number);
+    if (!has(*end, kValueEnd) || !std::isfinite(number)) return false;
+    if (node.numberCount++ == 0) node.firstNumber = static_cast<std::uint32_t>(document_.numbers.size());
+    if (document_.numbers.size() % Document::markStep == 0) document_.marks.push_back(text_.offset(p));
+    document_.numbers.push_back(number);
+    node.headSpan.end = text_.offset(end);
+    at_ = entryEnd_ = end;
+    return true;
+}
+
+// One argument or key. False at the end of the node.
+bool TreeReader::readEntry(Record& node, std::uint32_t index) {
+    if (atEndOfNode()) return false;
+    if (*at_ == ',') return noteComma(), true;
+    packing_ = false;
+    document_.unpack(node);
+    if (*at_ == '=') return readEquals(node), true;
+    if (*at_ == '(') {
+        const char* const open = at_;
+        if (!readAnnotation(node)) return at_ > open || (readValue(node, index), true);
+        if (open == entryEnd_) reportMissingSpace(open);
+        if (atEndOfNode() || *at_ == '{' || *at_ == '=') return true;
+        entryEnd_ = nullptr;
+    }
+    if (const bool list = *at_ == '['; list || (*at_ == ']' && inBrackets_)) {
+        if (list)
+            readValue(node, index);
+        else
+            entryEnd_ = nullptr, ++at_;
+        inBrackets_ = list;
+        return true;
+    }
+    const bool named = startsText(at_) || (!startsNumber(at_) && wordEnd(at_, text_.end) > at_);
+    if (named || startsNumber(at_) || *at_ == '#') checkSpace();
+    return named ? readTextOrKey(node, index) : readValue(node, index), true;
+}
+
+// A word or text is an argument, unless `=` follows: then it was the name of a key.
+void TreeReader::readTextOrKey(Record& node, std::uint32_t index) {
+    const char* const begin = at_;
+    const std::size_t valueCount = document_.values.size();
+    readValue(node, index);
+    const char* const end = at_;
+    skipSpace();
+    if (*at_ != '=' || document_.values.size() != valueCount + 1) return;
+    const std::string_view name = document_.values.back().text;
+    document_.values.resize(valueCount);
+    --node.valueCount;
+    const ParameterUse asValue{index, node.valueCount, false};
+    if (!uses_.empty() && uses_.back() == asValue) uses_.pop_back();
+    readKey(node, index, {begin, end, name});
+}
+
+void TreeReader::readValue(Record& node, std::uint32_t index) {
+    at_ = scanner_.scan(at_, Place::argument);
+    // After something that was no value, and after the `=` of `5=3`, no space is missed.
+    entryEnd_ = scanner_.values().empty() ? nullptr : at_;
+    touch(node, at_);
+    node.damaged |= scanner_.lost();
+    for (const Value& value : scanner_.values()) {
+        if (node.valueCount == 0) node.firstValue = static_cast<std::uint32_t>(document_.values.size());
+        if (value.kind == ValueKind::word && value.text.starts_with('$'))
+            uses_.push_back({index, node.valueCount, false});
+        document_.values.push_back(value);
+        ++node.valueCount;
+    }
+}
+
+// At the `=` behind the name of a key.
+void TreeReader::readKey(Record& node, std::uint32_t index, const KeyName& name) {
+    const char* const equals = at_++;
+    skipSpace();
+    if (at_[0] == '/' && at_[1] == '-') {
+        errors_.error("E0122", at_, at_ + 2, "`/-` cannot remove the value of a key", "put it before the key");
+        at_ += 2;
+        skipSpace();
+    }
+    if (*at_ == '(') readAnnotation(node);
+    if (atEndOfNode() || *at_ == '{' || *at_ == '=' || *at_ == ',') {
+        errors_.error("E0113", name.begin, equals + 1, fmt::format("the key `{}` has no value", name.text),
+                      "a value must follow");
+        node.damaged = true;
+        if (*at_ == '=') ++at_;
+        entryEnd_ = nullptr;
+        return touch(node, equals + 1);
+    }
+    entryEnd_ = at_ = scanner_.scan(at_, Place::key);
+    touch(node, at_);
+    node.damaged |= scanner_.lost();
+    if (scanner_.values().empty()) return;
+    const Value& value = scanner_.values().front();
+    if (node.keyCount == 0) node.firstKey = static_cast<std::uint32_t>(document_.keys.size());
+    if (value.kind == ValueKind::word && value.text.starts_with('$')) uses_.push_back({index, node.keyCount, true});
+    document_.keys.push_back({name.text, text_.span(name.begin, name.end), value});
+    ++node.keyCount;
+}
+
+// `/-` before an entry or block. True when a block was opened: the node goes on behind it.
+bool TreeReader::readSlashdashEntry(const OpenNode& open) {
+    Record& node = document_.nodes[open.index];
+    const char* const dash = at_;
+    checkSpace();
+    at_ = skipLineSpace(at_ + 2, errors_);
+    if (*at_ == '{') {
+        endEntries(node);
+        openBlock(open, true);
+        return true;
+    }
+    packing_ = false;
+    document_.unpack(node);
+    entryEnd_ = nullptr; // no space is needed behind a slashdash
+    const Sizes before = sizes();
+    const std::uint32_t values = node.valueCount, keys = node.keyCount;
+    const bool twice = at_[0] == '/' && at_[1] == '-';
+    const std::uint32_t head = node.headSpan.end;
+    if (twice || !readEntry(node, open.index)) {
+        errors_.error("E0122", dash, dash + 2, "`/-` has nothing to switch off",
+                      twice ? "another `/-` follows" : "nothing follows");
+        return false;
+    }
+    rollBack(before);
+    node.valueCount = values;
+    node.keyCount = keys;
+    node.headSpan.end = head;
+    return false;
+}
+
+// `fov = 40`: an equals sign without a key.
+void TreeReader::readEquals(Record& node) {
+    const char* const equals = at_++;
+    entryEnd_ = nullptr; // the value behind it needs no space
+    skipSpace();
+    const bool first = node.headSpan.end == node.nameSpan.end;
+    if (!first) {
+        errors_.error("E0113", equals, equals + 1, "`=` needs the name of a key before it", "stands behind a value");
+        node.damaged = true;
+        return;
+    }
+    const char* const name = text_.begin + node.nameSpan.end;
+    Diagnostic& d = errors_.error("E0113", equals, equals + 1, "a property and its value are separated by a space",
+                                  fmt::format("write `{} …`", node.name));
+    if (findLineEnd(name, at_) == at_) errors_.fix(d, name, at_, " ");
+}
+
+// At `(`. Skips a type annotation and the space behind it. False where there is none: then `at_` is unchanged, unless a
+// mistake inside was reported already.
+bool TreeReader::readAnnotation(Record& node) {
+    const char* const open = at_++;
+    const std::size_t errorCount = errors_.count();
+    skipSpace();
+    std::string_view name;
+    const bool named =
+        startsText(at_) || (!startsNumber(at_) && !startsPointNumber(at_) && wordEnd(at_, text_.end) > at_);
+    if (named) at_ = scanner_.scanName(at_, name);
+    skipSpace();
+    if (!named || *at_ != ')') {
+        if (errors_.count() == errorCount) at_ = open;
+        node.damaged = true;
+        return false;
+    }
+    ++at_;
+    skipSpace();
+    if (!atEndOfNode() && *at_ != '{' && *at_ != '=') return true;
+    errors_.error("E0123", open, at_, "a type annotation stands before a name or value", "nothing follows it");
+    node.damaged = true;
+    return true;
+}
+
+void TreeReader::noteComma() {
+    commas_.push_back(at_);
+    ++at_;
+    entryEnd_ = nullptr; // no space is missed behind a comma
+}
+
+void TreeReader::checkSpace() {
+    if (at_ == entryEnd_) reportMissingSpace(at_);
+}
+
+void TreeReader::reportMissingSpace(const char* place) {
+    Diagnostic& d = errors_.error("E0120", place, place, "a space is missing", "write a space here");
+    errors_.fix(d, place, place, " ");
+}
+
+void TreeReader::endEntries(Record& node) {
+    node.end = node.headSpan.end;
+    if (!commas_.empty()) reportCommas(node);
+    if (node.keyCount > 1) removeDoubleKeys(node);
+}
+
+// One report for all commas of a node. A single one between two digits may be meant as a decimal point.
+void TreeReader::reportCommas(Record& node) {
+    const char* const first = commas_.front();
+    Diagnostic& d =
+        errors_.error("E0112", first, first + 1, "values are separated by spaces, not by commas", "remove the comma");
+    if (commas_.size() == 1 && first > text_.begin && isDigit(first[-1]) && isDigit(first[1])) {
+        d.label = "write a space, or a point if this is a decimal";
+        node.damaged = true;
+    } else {
+        for (const char* comma : commas_) {
+            const bool spaced = has(comma[1], kValueEnd) || blankLength(comma + 1, text_.end) > 0;
+            errors_.fix(d, comma, comma + 1, spaced ? "" : " ");
+        }
+    }
+    commas_.clear();
+}
+
+// Of several keys with one name the last one counts; the others are reported and removed.
+void TreeReader::removeDoubleKeys(Record& node) {
+    std::unordered_map<std::string_view, std::uint32_t> last;
+    const auto first = document_.keys.begin() + node.firstKey;
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < node.keyCount; ++i) last[first[i].name] = i;
+    if (last.size() == node.keyCount) return;
+    for (std::uint32_t i = 0; i < node.keyCount; ++i) {
+        const schema::Key key = first[i];
+        if (last[key.name] != i) {
+            errors_.diagnostics()
+                .warning("W0101", key.nameSpan, fmt::format("the key `{}` is given twice", key.name), "has no effect")
+                .related.push_back({first[last[key.name]].nameSpan, "this one counts"});
+        } else {
+            first[kept++] = key;
+        }
+    }
+    node.keyCount = kept;
+    document_.keys.resize(node.firstKey + kept);
+    // The keys have moved: note their uses of parameters again.
+    const auto index = static_cast<std::uint32_t>(&node - document_.nodes.data());
+    auto own = uses_.end();
+    while (own != uses_.begin() && std::prev(own)->node == index) --own;
+    uses_.erase(std::remove_if(own, uses_.end(), [](const ParameterUse& use) { return use.key; }), uses_.end());
+    for (std::uint32_t i = 0; i < kept; ++i)
+        if (first[i].value.kind == ValueKind::word && first[i].value.text.starts_with('$'))
+            uses_.push_back({index, i, true});
+}
+
+} // namespace abbe::parser

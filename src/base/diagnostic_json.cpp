@@ -1,0 +1,84 @@
+#include "base/diagnostic_format.h"
+#include "base/diagnostic_order.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+std::string quoted(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            out += fmt::format("\\{}", c);
+        else if (c == '\n')
+            out += "\\n";
+        else if (byte < 0x20 || byte == 0x7f)
+            out += fmt::format("\\u{:04x}", byte);
+        else
+            out += c;
+    }
+    return out + "\"";
+}
+
+// LSP counts lines from 0 and characters in UTF-16 units.
+std::string position(const SourceMap& sources, FileId file, std::uint32_t offset) {
+    const std::uint32_t line = sources.lineColumn(file, offset).line;
+    const std::string_view text = sources.text(file);
+    std::size_t i = static_cast<std::size_t>(sources.line(file, line).data() - text.data());
+    std::size_t units = 0;
+    for (; i < offset && i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        units += (byte & 0xc0u) != 0x80u ? 1 : 0;
+        units += byte >= 0xf0u ? 1 : 0; // beyond the basic plane: two units
+    }
+    return fmt::format("{{\"line\":{},\"character\":{}}}", line - 1, units);
+}
+
+std::string range(const SourceMap& sources, Span span) {
+    return fmt::format("{{\"start\":{},\"end\":{}}}", position(sources, span.file, span.begin),
+                       position(sources, span.file, span.end));
+}
+
+std::string relatedInformation(const Diagnostic& d, const SourceMap& sources) {
+    std::string list;
+    for (const Label& label : d.related) {
+        if (!label.span.valid()) continue;
+        list += fmt::format("{}{{\"location\":{{\"uri\":{},\"range\":{}}},\"message\":{}}}", list.empty() ? "" : ",",
+                            quoted(sources.path(label.span.file)), range(sources, label.span), quoted(label.text));
+    }
+    return list;
+}
+
+std::string extraData(const Diagnostic& d, const SourceMap& sources) {
+    std::string notes, fixes;
+    for (const std::string& note : d.notes) notes += fmt::format("{}{}", notes.empty() ? "" : ",", quoted(note));
+    for (const FixIt& fix : d.fixes)
+        fixes += fmt::format("{}{{\"range\":{},\"newText\":{}}}", fixes.empty() ? "" : ",", range(sources, fix.span),
+                             quoted(fix.replacement));
+    return fmt::format("{{\"label\":{},\"notes\":[{}],\"help\":{},\"fixes\":[{}]}}", quoted(d.label), notes,
+                       quoted(d.help), fixes);
+}
+
+} // namespace
+
+std::string formatJson(const Diagnostics& diagnostics, const SourceMap& sources) {
+    std::string list;
+    for (const Diagnostic* d : sortedByPlace(diagnostics)) {
+        list += list.empty() ? "\n" : ",\n";
+        const std::string path = d->span.valid() ? quoted(sources.path(d->span.file)) : "null";
+        const std::string place = d->span.valid() ? range(sources, d->span)
+                                                  : "{\"start\":{\"line\":0,\"character\":0},\"end\":{\"line\":0,"
+                                                    "\"character\":0}}";
+        const std::string message = d->label.empty() ? d->message : fmt::format("{} ({})", d->message, d->label);
+        list += fmt::format("{{\"path\":{},\"range\":{},\"severity\":{},\"code\":{},\"source\":\"abbe\",\"message\":{},"
+                            "\"relatedInformation\":[{}],\"data\":{}}}",
+                            path, place, d->severity == Severity::error ? 1 : 2, quoted(d->code), quoted(message),
+                            relatedInformation(*d, sources), extraData(*d, sources));
+    }
+    return fmt::format("[{}{}]\n", list, list.empty() ? "" : "\n");
+}
+
+} // namespace abbe
