@@ -33,11 +33,11 @@ struct ExrPicture {
     PixelWindow window;  // data window: the rendered part
     PixelWindow display; // the whole picture
     std::span<const float> r, g, b;
-    std::vector<ExrChannel> more; // "variance.Y", …; always float
-    Chromaticities chromaticities;
+    std::vector<ExrChannel> more = {}; // "variance.Y", …; always float
+    Chromaticities chromaticities = {};
     ExrCompression compression = ExrCompression::zip;
     bool half = false; // R G B in 16 bits
-    std::vector<ImageAttribute> attributes;
+    std::vector<ImageAttribute> attributes = {};
 };
 
 struct ExrReport {

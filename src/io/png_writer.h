@@ -13,7 +13,7 @@ struct PngPicture {
     std::span<const float> rgb; // interleaved, display-encoded; quantising clamps to 0 … 1 (NaN becomes 0)
     int bits = 8;               // 8 or 16 per component
     bool srgb = true;           // the values are sRGB-encoded: tagged so
-    std::vector<std::pair<std::string, std::string>> texts; // keyword (1 … 79 Latin-1 characters) and text
+    std::vector<std::pair<std::string, std::string>> texts = {}; // keyword (1 … 79 Latin-1 characters) and text
 };
 
 // The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
