@@ -75,6 +75,15 @@ TEST_CASE("variance from two equal replicates is unbiased; pooling narrows it") 
     CHECK(film.relativeNoise() == doctest::Approx(std::sqrt(0.5 / 9.09)).epsilon(0.1));
 }
 
+TEST_CASE("noise of two pixels by hand") {
+    PixelFilm film({0, 0, 2, 1}, box(), 2);
+    const double means[2][2] = {{3, 5}, {-1, 1}}; // 4 ± 1 and 0 ± 1
+    for (int x = 0; x < 2; ++x)
+        for (int r = 0; r < 2; ++r) film.add(x, 0, r, {0, means[x][r] * 8, 0}, 8);
+    // The image's mean is 2, so ε = 0.04.
+    CHECK(film.relativeNoise() == doctest::Approx(std::sqrt((1 / 16.04 + 1 / 0.04) / 2)));
+}
+
 TEST_CASE("noise needs two replicates with samples") {
     PixelFilm one({0, 0, 2, 2}, box(), 1);
     one.add(0, 0, 0, {1, 1, 1}, 1);
