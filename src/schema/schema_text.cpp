@@ -1,0 +1,167 @@
+#include "schema/describe.h"
+#include "schema/spectrum_reader.h"
+#include "schema/suggest.h"
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe::schema {
+
+namespace {
+
+constexpr std::array kFieldTypes = {"integer",  "number",       "quantity",  "vector2",  "vector3", "toggle",
+                                    "choice",   "text",         "file",      "points",   "numbers", "indexRows",
+                                    "spectrum", "complexIndex", "reference", "transform"};
+constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
+constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
+                                      "temperature", "power",      "luminousFlux", "luminousIntensity",
+                                      "illuminance", "irradiance", "luminance",    "inverseLength",
+                                      "stops",       "fraction",   "pixels"};
+
+const char* id(FieldType type) { return kFieldTypes[static_cast<std::size_t>(type)]; }
+const char* id(SpectrumRole role) { return kRoles[static_cast<std::size_t>(role)]; }
+const char* id(Dimension d) { return kDimensionIds[static_cast<std::size_t>(d)]; }
+
+std::string cell(std::string text) {
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+    return text;
+}
+
+std::string markdownField(const FieldInfo& field) {
+    std::string doc(field.doc);
+    const std::string range = describeRange(field);
+    if (!range.empty()) doc += fmt::format(" Range: {}.", range);
+    if (!field.group.empty()) doc += fmt::format(" At most one way to state the {}.", field.group);
+    for (const FieldKey& key : field.keys) doc += fmt::format(" Key `{}=`: {}", key.name, key.doc);
+    if (!field.example.empty()) doc += fmt::format(" Example: `{}`.", field.example);
+    const std::string value = field.required              ? "required"
+                              : field.defaultText.empty() ? ""
+                                                          : fmt::format("`{}`", field.defaultText);
+    return fmt::format("| `{}` | {} | {} | {} |\n", field.name, cell(describeField(field)), value, cell(doc));
+}
+
+std::string markdownType(const TypeInfo& type) {
+    std::string text = fmt::format("### `{} {}`{}\n\n{}\n", keyword(type.kind), type.name,
+                                   type.isDefault ? " (default)" : "", type.doc);
+    if (!type.example.empty()) text += fmt::format("\n```kdl\n{}\n```\n", type.example);
+    if (type.fields.empty()) return text + "\n";
+    text += "\n| property | takes | default | |\n|---|---|---|---|\n";
+    for (const FieldInfo& field : type.fields) text += markdownField(field);
+    return text + "\n";
+}
+
+std::string jsonString(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out += '\\';
+        if (static_cast<unsigned char>(c) < 0x20)
+            out += fmt::format("\\u{:04x}", c);
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+template <typename Range, typename Text> std::string array(const Range& range, Text text) {
+    std::string out = "[";
+    for (const auto& item : range) out += (out.size() > 1 ? "," : "") + text(item);
+    return out + "]";
+}
+
+std::string jsonView(std::string_view text) { return jsonString(text); }
+
+std::string jsonField(const FieldInfo& field) {
+    std::string out = fmt::format(R"({{"name":{},"type":"{}","doc":{})", jsonString(field.name), id(field.type),
+                                  jsonString(field.doc));
+    out += fmt::format(R"(,"dimensions":{})", array(field.dimensions, [](Dimension d) { return jsonString(id(d)); }));
+    if (!field.example.empty()) out += fmt::format(R"(,"example":{})", jsonString(field.example));
+    if (!field.defaultText.empty()) out += fmt::format(R"(,"default":{})", jsonString(field.defaultText));
+    if (std::isfinite(field.lower)) out += fmt::format(R"(,"minimum":{})", field.lower);
+    if (std::isfinite(field.upper)) out += fmt::format(R"(,"maximum":{})", field.upper);
+    if (field.type == FieldType::spectrum) out += fmt::format(R"(,"role":"{}")", id(field.role));
+    if (field.type == FieldType::reference) out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
+    if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", array(field.choices, jsonView));
+    if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", array(field.synonyms, jsonView));
+    if (!field.keys.empty())
+        out += fmt::format(R"(,"keys":{})", array(field.keys, [](const FieldKey& key) {
+                               return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonString(key.name),
+                                                  jsonString(key.doc), array(key.choices, jsonView));
+                           }));
+    if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
+    if (field.required) out += R"(,"required":true)";
+    if (field.argument >= 0) out += fmt::format(R"(,"argument":{})", field.argument);
+    return out + "}";
+}
+
+std::string jsonType(const TypeInfo& type) {
+    return fmt::format(R"({{"kind":"{}","name":{},"doc":{},"example":{},"default":{},"fields":{}}})",
+                       keyword(type.kind), jsonString(type.name), jsonString(type.doc), jsonString(type.example),
+                       type.isDefault ? "true" : "false", array(type.fields, jsonField));
+}
+
+std::string jsonUnits() {
+    std::string out = "[";
+    for (std::size_t i = 1; i < kDimensionIds.size(); ++i)
+        for (const std::string_view name : spellings(static_cast<Dimension>(i)))
+            out += fmt::format(R"({}{{"name":{},"dimension":"{}","scale":{}}})", out.size() > 1 ? "," : "",
+                               jsonString(name), kDimensionIds[i], findUnit(name)->scale);
+    return out + "]";
+}
+
+} // namespace
+
+std::string schemaMarkdown(const TypeTable& table) {
+    std::string text =
+        "# Reference\n\nGenerated from the field tables; see `docs/language/values.md` for what the values mean.\n\n";
+    for (int i = 0; i <= static_cast<int>(Kind::render); ++i) {
+        const auto types = table.of(static_cast<Kind>(i));
+        if (types.empty()) continue;
+        text += fmt::format("## {}\n\n", keyword(static_cast<Kind>(i)));
+        for (const TypeInfo* type : types) text += markdownType(*type);
+    }
+    text += "## spectrum\n\nA plain number, a name, or one of these forms.\n\n| form | example | |\n|---|---|---|\n";
+    for (const SpectrumForm& form : spectrumForms())
+        text += fmt::format("| `{}` | `{}` | {} |\n", form.name, form.example, form.doc);
+    text += "\n## Units\n\n| | units |\n|---|---|\n";
+    for (std::size_t i = 1; i < kDimensionIds.size(); ++i) {
+        const auto d = static_cast<Dimension>(i);
+        text += fmt::format("| {} | {} |\n", describe(d), quotedList(spellings(d), "or"));
+    }
+    return text;
+}
+
+std::string schemaJson(const TypeTable& table) {
+    const auto form = [](const SpectrumForm& f) {
+        return fmt::format(R"({{"name":{},"example":{},"doc":{}}})", jsonString(f.name), jsonString(f.example),
+                           jsonString(f.doc));
+    };
+    return fmt::format("{{\"edition\":1,\"types\":{},\"spectra\":{},\"units\":{}}}\n", array(table.all(), jsonType),
+                       array(spectrumForms(), form), jsonUnits());
+}
+
+std::string schemaListing(const TypeTable& table) {
+    std::string text;
+    for (const TypeInfo& type : table.all()) {
+        text += fmt::format("{} {}{}\n", keyword(type.kind), type.name, type.isDefault ? " default" : "");
+        for (const FieldInfo& field : type.fields) {
+            text += fmt::format("{} {} {} {}", keyword(type.kind), type.name, field.name, id(field.type));
+            for (const Dimension d : field.dimensions)
+                if (d != Dimension::none) text += fmt::format(" [{}]", id(d));
+            if (field.type == FieldType::spectrum) text += fmt::format(" role={}", id(field.role));
+            if (field.type == FieldType::reference) text += fmt::format(" kind={}", keyword(field.referenceKind));
+            if (!field.defaultText.empty()) text += fmt::format(" default=\"{}\"", field.defaultText);
+            if (std::isfinite(field.lower)) text += fmt::format(" min={}", field.lower);
+            if (std::isfinite(field.upper)) text += fmt::format(" max={}", field.upper);
+            for (const std::string_view choice : field.choices) text += fmt::format(" |{}", choice);
+            for (const FieldKey& key : field.keys) text += fmt::format(" {}=", key.name);
+            if (!field.group.empty()) text += fmt::format(" group=\"{}\"", field.group);
+            if (field.required) text += " required";
+            if (field.argument >= 0) text += fmt::format(" argument={}", field.argument);
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+} // namespace abbe::schema
