@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace abbe {
 
@@ -60,19 +61,27 @@ std::uint64_t PixelFilm::samples(int x, int y) const noexcept {
 // The mean is Σ w_r m_r with w_r the replicate's share of the samples, so its variance is Σ w_r² Var(m_r); each term
 // is estimated by the squared deviation, and R/(R − 1) makes up for deviations from the mean itself. With equal shares
 // this is s²/R. Deviations of means in double never cancel, unlike E[x²] − E[x]².
-std::optional<double> PixelFilm::variance(int x, int y) const noexcept {
-    const std::size_t first = firstCell(x, y);
-    const double total = static_cast<double>(samples(x, y)), average = mean(x, y).y;
-    double sum = 0;
+PixelFilm::Luminance PixelFilm::luminance(int x, int y) const noexcept {
+    const std::size_t first = firstCell(x, y), end = first + static_cast<std::size_t>(replicates_);
+    double total = 0, sum = 0;
     int used = 0;
-    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell) {
-        if (samples_[cell] == 0) continue;
-        const double count = samples_[cell];
-        sum += square((sums_[cell].y / count - average) * (count / total));
-        ++used;
+    for (std::size_t cell = first; cell < end; ++cell) {
+        sum += sums_[cell].y;
+        total += samples_[cell];
+        used += samples_[cell] > 0;
     }
-    if (used < 2) return std::nullopt;
-    return sum * used / (used - 1);
+    if (used == 0) return {};
+    Luminance result{sum / total, 0, used > 1};
+    if (!result.known) return result;
+    for (std::size_t cell = first; cell < end; ++cell) // w (m − mean) = (sum − count · mean) / total
+        result.variance += square((sums_[cell].y - samples_[cell] * result.mean) / total);
+    result.variance *= static_cast<double>(used) / (used - 1);
+    return result;
+}
+
+std::optional<double> PixelFilm::variance(int x, int y) const noexcept {
+    const Luminance l = luminance(x, y);
+    return l.known ? std::optional(l.variance) : std::nullopt;
 }
 
 std::optional<double> PixelFilm::pooledVariance(int x, int y, int radius) const noexcept {
@@ -89,28 +98,37 @@ std::optional<double> PixelFilm::pooledVariance(int x, int y, int radius) const 
 }
 
 // Sums per row, added in the order of the rows: the same bits with any number of threads.
-double PixelFilm::sumOverPixels(const std::function<double(int, int)>& value) const {
+double PixelFilm::sumOverRows(const std::function<double(int)>& row) const {
     std::vector<double> rows(static_cast<std::size_t>(bounds_.height()));
-    parallelFor(rows.size(), [&](std::size_t row) {
-        const int y = bounds_.y0 + static_cast<int>(row);
-        for (int x = bounds_.x0; x < bounds_.x1; ++x) rows[row] += value(x, y);
-    });
+    parallelFor(rows.size(), [&](std::size_t i) { rows[i] = row(bounds_.y0 + static_cast<int>(i)); });
     double sum = 0;
-    for (const double row : rows) sum += row;
+    for (const double r : rows) sum += r;
     return sum;
 }
 
 double PixelFilm::relativeNoise() const {
     if (replicates_ < 2) return 0;
-    const double area = static_cast<double>(bounds_.area());
-    const double average = sumOverPixels([&](int x, int y) { return mean(x, y).y; }) / area;
+    const double average = sumOverRows([&](int y) {
+                               double sum = 0;
+                               for (int x = bounds_.x0; x < bounds_.x1; ++x) sum += luminance(x, y).mean;
+                               return sum;
+                           }) /
+                           static_cast<double>(bounds_.area());
     const double epsilon = 0.01 * square(average);
-    const double known = sumOverPixels([&](int x, int y) { return variance(x, y) ? 1.0 : 0.0; });
-    const double error = sumOverPixels([&](int x, int y) {
-        const double v = variance(x, y).value_or(0);
-        return v == 0 ? 0 : v / (square(mean(x, y).y) + epsilon);
+    std::vector<std::int64_t> known(static_cast<std::size_t>(bounds_.height())); // pixels with a variance, by row
+    const double error = sumOverRows([&](int y) {
+        double sum = 0;
+        std::int64_t count = 0;
+        for (int x = bounds_.x0; x < bounds_.x1; ++x) {
+            const Luminance l = luminance(x, y);
+            count += l.known;
+            if (l.variance > 0) sum += l.variance / (square(l.mean) + epsilon); // 0/0 in black images
+        }
+        known[static_cast<std::size_t>(y - bounds_.y0)] = count;
+        return sum;
     });
-    return known == 0 ? 0 : std::sqrt(error / known);
+    const auto pixels = std::accumulate(known.begin(), known.end(), std::int64_t{0});
+    return pixels == 0 ? 0 : std::sqrt(error / static_cast<double>(pixels));
 }
 
 ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale) const {

@@ -53,7 +53,13 @@ class PixelFilm final : public Film {
 
   private:
     std::size_t firstCell(int x, int y) const noexcept; // of the pixel's replicates
-    double sumOverPixels(const std::function<double(int, int)>& value) const;
+    // Mean Y of a pixel and the variance of that mean.
+    struct Luminance {
+        double mean = 0, variance = 0;
+        bool known = false; // the variance
+    };
+    Luminance luminance(int x, int y) const noexcept;
+    double sumOverRows(const std::function<double(int)>& row) const;
 
     PixelBounds bounds_;
     int replicates_;
