@@ -20,7 +20,9 @@ std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelength
     LightSample result;
     result.wi = normalize(offset);
     if (!emits(s->ng, -result.wi)) return std::nullopt;
-    result.p = spawnOrigin(s->p, s->pError, s->ng, -result.wi);
+    // The end of a long shadow ray is as uncertain as its direction: a few roundings of the distance.
+    const float rounding = 0x1p-21f * length(offset);
+    result.p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -result.wi);
     result.distance = length(result.p - from);
     result.radiance = radiance_.at(lambda);
     result.pdfSolidAngle = s->pdfSolidAngle;

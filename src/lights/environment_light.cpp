@@ -49,13 +49,16 @@ schema::TypeInfo environmentLightType() {
                               "z-up scene), its right half towards +x, its top row overhead.",
                           .example = "light environment \"studio.exr\" { exposure 0.5 stops }",
                           .fields = {}};
-    type.fields.push_back(schema::field(FieldType::file, "image", &EnvironmentLightParams::image)
-                              .argument(0)
-                              .required()
-                              .key({"space", {}, "colour space of the pixels; without it, linear in the scene's own"})
-                              .doc("The image: linear values in an EXR or Radiance HDR file.")
-                              .example("image \"studio.exr\"")
-                              .synonyms({"file", "filename", "map", "texture"}));
+    type.fields.push_back(
+        schema::field(FieldType::file, "image", &EnvironmentLightParams::image)
+            .argument(0)
+            .required()
+            .key({"space",
+                  {},
+                  "colour space of the pixels; without it, that of the file's chromaticities, else lin_rec709_scene"})
+            .doc("The image: linear values in an EXR or Radiance HDR file.")
+            .example("image \"studio.exr\"")
+            .synonyms({"file", "filename", "map", "texture"}));
     type.fields.push_back(schema::field(FieldType::quantity, "luminance", &EnvironmentLightParams::luminance)
                               .unit({Dimension::luminance})
                               .range(0, std::numeric_limits<float>::max())

@@ -1,7 +1,5 @@
 // Environment images: orientation, interpolation, sampling against what is looked up.
 #include "lights/environment_light.h"
-#include "lights/upsampled_radiance.h"
-#include "spectrum/named_spectra.h"
 #include "spectrum/observer.h"
 #include "spectrum/sampled_curve.h"
 #include "support/chi_square.h"
@@ -238,26 +236,6 @@ TEST_CASE("amounts: luminance of a white texel, and stops") {
         return sky->escaped({1, 0, 0}, Wavelengths::single(static_cast<float>(nm)))[0];
     });
     CHECK(luminousIntegral(radiance) == doctest::Approx(4000).epsilon(1e-4));
-}
-
-TEST_CASE("upsampled radiance: white is the illuminant, colours and scale come back") {
-    const UpsampledRadiance upsampling(UpsamplingTable::build(rgb::rec709, 16),
-                                       illuminantCurve(*findIlluminant(rgb::rec709.illuminant)));
-    const auto back = [&](Vec3 color) {
-        return toRgb(integrate(SampledCurve([&](double nm) {
-                         return upsampling.at(color, Wavelengths::single(static_cast<float>(nm)))[0];
-                     })),
-                     rgb::rec709);
-    };
-    for (const Vec3 color :
-         {Vec3{1, 1, 1}, Vec3{0.2f, 0.4f, 0.1f}, Vec3{5000, 3000, 2500}, Vec3{0.001f, 0.002f, 0.004f}}) {
-        const Vec3d got = back(color);
-        CHECK(length(got - Vec3d(color)) < 0.01 * length(Vec3d(color)));
-    }
-    const auto d65 = illuminantCurve(*findIlluminant("D65"));
-    const Wavelengths w = Wavelengths::sample(0.2f);
-    CHECK(upsampling.at({1, 1, 1}, w)[3] == doctest::Approx(d65->at(w)[3]).epsilon(1e-6));
-    CHECK(upsampling.at({0, 0, 0}, w)[0] == 0);
 }
 
 } // namespace
