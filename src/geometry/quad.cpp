@@ -10,7 +10,7 @@ namespace {
 
 // Beyond this ratio of diagonal² to distance² (to the centre) directions to the rectangle are as good as uniform per
 // area, and the cheap density wins.
-constexpr float kNearRatio = 0.1f;
+constexpr float kNearRatio = 0.3f;
 // Solid angles come as a difference of angles near 2π: below this their relative error passes 1e-4.
 constexpr float kSmallestSolidAngle = 5e-3f;
 

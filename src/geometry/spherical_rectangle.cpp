@@ -1,5 +1,10 @@
 #include "geometry/spherical_rectangle.h"
 
+#include "math/warp.h"
+
+#include <bit>
+#include <cstdint>
+
 namespace abbe {
 
 namespace {
@@ -24,6 +29,21 @@ inline float angle(float cosine, float sine) {
     const float a = atanUnit(std::min(c, sine) / std::max(c, sine));
     const float first = sine > c ? kPi / 2 - a : a;
     return cosine < 0 ? kPi - first : first;
+}
+
+// Sine and cosine of x in [-2π, 2π]: quarter turns are taken off in two steps, the second for the digits that π/2 as
+// a float lacks.
+inline SinCos sinCosTurn(float x) {
+    const float turns = std::nearbyint(x * (2 / kPi));
+    const float rest = std::fma(turns, 4.371139e-8f, std::fma(turns, -1.57079637f, x));
+    const SinCos r = sinCosEighth(rest);
+    // The quarter turns swap and negate; written without branches, which random angles would mispredict.
+    const auto quarter = static_cast<std::uint32_t>(static_cast<std::int32_t>(turns));
+    const std::array<float, 2> table{r.sin, r.cos};
+    const auto negated = [](float v, std::uint32_t bit1) {
+        return std::bit_cast<float>(std::bit_cast<std::uint32_t>(v) ^ ((bit1 & 2) << 30));
+    };
+    return {negated(table[quarter & 1], quarter), negated(table[~quarter & 1], quarter + 1)};
 }
 
 } // namespace
@@ -53,13 +73,13 @@ SphericalRectangle::SphericalRectangle(float x0, float y0, float x1, float y1, f
 }
 
 Vec2 SphericalRectangle::sample(Vec2 u) const {
-    // [Urena2013, sec. 4.2]; 1 - c_u² is written as (f_u² - sine0²) / (f_u² + b0²), which does not cancel.
-    const float a = std::fma(u.x, solidAngle_, k_);
-    const float sinA = std::sin(a), cosA = std::cos(a);
-    const float f = (cosA * b0_ - b1_) / sinA;
-    const float along = std::sqrt(std::max(0.f, (f - sine0_) * (f + sine0_)));
-    // along = 0 is x at infinity and sinA = 0 is x = 0; the clamp settles the first, the signs the second.
-    float x = -std::copysign(z_, f) / along;
+    // [Urena2013, sec. 4.2] with both sides of the fraction under x multiplied by sin a, so that sin a = 0 is x = 0
+    // and nothing is divided twice, and with 1 - c_u² as a product that does not cancel.
+    const SinCos angle = sinCosTurn(std::fma(u.x, solidAngle_, k_));
+    const float f = angle.cos * b0_ - b1_, s = sine0_ * angle.sin;
+    const float along = std::sqrt(std::max(0.f, (f - s) * (f + s)));
+    // along = 0 is x at infinity: the clamp settles it; 0 / 0 is only met when the rectangle has no width.
+    float x = std::copysign(z_, f) * angle.sin / along;
     if (!(x == x)) x = 0;
     x = std::clamp(x, x0_, x1_);
     const float d2 = std::fma(x, x, z_ * z_);
