@@ -102,7 +102,7 @@ void OcioView::apply(std::span<float> rgb) const {
     });
 }
 
-bool OcioView::isSrgb() const { return display_ == defaultDisplay; }
+bool OcioView::isSrgb() const { return display_ == defaultDisplay && view_ != "Raw"; }
 
 std::vector<DisplayViews> OcioView::list(const std::string& configFile) {
     return guarded([&] { return listViews(*loadConfig(configFile)); });

@@ -36,7 +36,8 @@ class OcioView {
 
     const std::string& display() const { return display_; }
     const std::string& view() const { return view_; }
-    // Whether the display's encoding is sRGB (IEC 61966-2-1), so that files can be tagged.
+    // Whether the values are sRGB-encoded (IEC 61966-2-1), so that files can be tagged: by the names that the built-in
+    // and the ACES configurations use.
     bool isSrgb() const;
 
     // Throws IoError if the file cannot be used.

@@ -29,16 +29,17 @@ shared_views:
   - !<View> {name: ACES 1.1 - SDR Video (P3 lim), view_transform: ACES 1.1 - SDR Video (P3 lim), display_colorspace: <USE_DISPLAY_NAME>}
   - !<View> {name: ACES 1.1 - HDR Video (1000 nits & Rec.2020 lim), view_transform: ACES 1.1 - HDR Video (1000 nits & Rec.2020 lim), display_colorspace: <USE_DISPLAY_NAME>}
   - !<View> {name: Un-tone-mapped, view_transform: Un-tone-mapped, display_colorspace: <USE_DISPLAY_NAME>}
+  - !<View> {name: Raw, colorspace: Raw}
 
 displays:
   sRGB - Display:
-    - !<Views> [ACES 1.0 - SDR Video, Un-tone-mapped]
+    - !<Views> [ACES 1.0 - SDR Video, Un-tone-mapped, Raw]
   Rec.1886 Rec.709 - Display:
-    - !<Views> [ACES 1.0 - SDR Video, Un-tone-mapped]
+    - !<Views> [ACES 1.0 - SDR Video, Un-tone-mapped, Raw]
   P3-D65 - Display:
-    - !<Views> [ACES 1.1 - SDR Video (P3 lim), ACES 1.0 - SDR Video, Un-tone-mapped]
+    - !<Views> [ACES 1.1 - SDR Video (P3 lim), ACES 1.0 - SDR Video, Un-tone-mapped, Raw]
   Rec.2100-PQ - Display:
-    - !<Views> [ACES 1.1 - HDR Video (1000 nits & Rec.2020 lim), Un-tone-mapped]
+    - !<Views> [ACES 1.1 - HDR Video (1000 nits & Rec.2020 lim), Un-tone-mapped, Raw]
 
 active_displays: [sRGB - Display, Rec.1886 Rec.709 - Display, P3-D65 - Display, Rec.2100-PQ - Display]
 active_views: []
@@ -95,6 +96,10 @@ colorspaces:
     name: ACEScct
     encoding: log
     to_scene_reference: !<BuiltinTransform> {style: ACEScct_to_ACES2065-1}
+  - !<ColorSpace>
+    name: Raw
+    encoding: data
+    isdata: true
 )ocio";
 
 } // namespace abbe

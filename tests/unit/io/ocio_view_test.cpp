@@ -45,6 +45,9 @@ TEST_CASE("views for other displays") {
     checkGrey(pq, 0.18f, 0.33259);
     checkGrey(pq, 10, 0.68009);
     CHECK(!pq.isSrgb());
+    const OcioView raw(ViewInput::acescg, "sRGB - Display", "Raw");
+    checkGrey(raw, 0.18f, 0.18);
+    CHECK(!raw.isSrgb());
 }
 
 TEST_CASE("AP0 and AP1 of one colour look the same") {
