@@ -94,6 +94,8 @@ schema::TypeInfo filmType() {
     return type;
 }
 
+const RgbSpace& rgbSpace(OutputSpace space) { return space == OutputSpace::acescg ? rgb::ap1 : rgb::ap0; }
+
 std::vector<FilmFault> findFaults(const FilmParams& p) {
     std::vector<FilmFault> faults;
     checkSize(p, faults);

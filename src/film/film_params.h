@@ -4,6 +4,7 @@
 #include "film/pixel_filter.h"
 #include "render/film.h"
 #include "schema/type.h"
+#include "spectrum/color_space.h"
 
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ schema::TypeInfo filmType();
 
 // Linear RGB encodings of the written image.
 enum class OutputSpace : std::uint8_t { aces2065_1, acescg };
+const RgbSpace& rgbSpace(OutputSpace);
 
 // FilmParams as the renderer uses them.
 struct FilmSettings {
