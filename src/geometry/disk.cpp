@@ -34,7 +34,7 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     const double x = dot(d, x_), y = dot(d, y_);
     const Vec3d p = centre_ + x_ * x + y_ * y;
     hit.p = Vec3(p);
-    hit.pError = Vec3(abs(p) * 0x1p-23);
+    hit.pError = Vec3(abs(p) * 0x1p-22);
     hit.ng = Vec3(z_);
     hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
     const double turn = std::atan2(y, x) / (2 * kPiD);
@@ -45,7 +45,7 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
 std::optional<ShapeSample> Disk::sample(Vec3 from, Vec2 u) const {
     const Vec2 q = squareToDisk(u);
     const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));
-    ShapeSample s{Vec3(p), Vec3(abs(p) * 0x1p-23), Vec3(z_), 0};
+    ShapeSample s{Vec3(p), Vec3(abs(p) * 0x1p-22), Vec3(z_), 0};
     s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
     if (!(s.pdfSolidAngle > 0)) return std::nullopt;
     return s;

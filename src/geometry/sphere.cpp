@@ -47,7 +47,7 @@ std::optional<RawHit> Sphere::intersect(const Ray& ray) const {
 
 ShapeSample Sphere::at(Vec3d normal) const {
     const Vec3d p = centre_ + normal * radius_;
-    return {Vec3(p), Vec3(abs(p) * 0x1p-23), Vec3(normal), 0};
+    return {Vec3(p), Vec3(abs(p) * 0x1p-22), Vec3(normal), 0};
 }
 
 void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {

@@ -3,7 +3,6 @@
 
 #include "math/frame.h"
 
-#include <bit>
 #include <cstdint>
 
 namespace abbe {
@@ -24,24 +23,13 @@ struct SurfaceHit {
     std::uint32_t primitive = 0;  // within its shape
 };
 
-// The next float away from zero in the direction of `away` for a coordinate offset (256 ulp, or 2^-16 near zero)
-// [Wachter2019].
-inline float offsetUlps(float x, float n) {
-    const auto steps = static_cast<std::int32_t>(256.f * n);
-    const float moved = std::bit_cast<float>(std::bit_cast<std::int32_t>(x) + (x < 0 ? -steps : steps));
-    return std::abs(x) < 1.f / 32 ? x + n * (1.f / 65536) : moved;
-}
-
-// An origin on the side of the surface towards which `w` leaves, far enough that no ray meets the surface again: the
-// larger of the error bound of the point [Pharr2023, ch. 6.8] and Wächter and Binder's integer offset, per axis.
+// An origin on the side of the surface towards which `w` leaves, so far that no ray meets the surface again and no
+// farther, because the next surface may be a sheet of paper: the error bound of the point along the normal
+// [Pharr2023, ch. 6.8]. It scales with the coordinates, so there is no smallest offset (docs/hard_cases.md, cases
+// 1-3 and 8).
 inline Vec3 spawnOrigin(Vec3 p, Vec3 pError, Vec3 ng, Vec3 w) {
-    const Vec3 n = dot(w, ng) < 0 ? -ng : ng;
-    const float bound = dot(abs(n), pError);
-    const auto axis = [bound](float x, float nx) {
-        const float a = x + nx * bound, b = offsetUlps(x, nx);
-        return nx < 0 ? std::min(a, b) : std::max(a, b);
-    };
-    return {axis(p.x, n.x), axis(p.y, n.y), axis(p.z, n.z)};
+    const float bound = dot(abs(ng), pError);
+    return p + ng * (dot(w, ng) < 0 ? -bound : bound);
 }
 
 inline Vec3 spawnOrigin(const SurfaceHit& hit, Vec3 w) { return spawnOrigin(hit.p, hit.pError, hit.ng, w); }
