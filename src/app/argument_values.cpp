@@ -1,0 +1,58 @@
+#include "app/argument_values.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace abbe {
+
+namespace {
+
+std::optional<Vec2i> readPair(std::string_view text, std::string_view separator, int lowest) {
+    const std::size_t at = text.find(separator);
+    if (at == std::string_view::npos) return std::nullopt;
+    const auto number = [&](std::string_view digits) -> std::optional<int> {
+        int value = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        if (error != std::errc() || end != digits.data() + digits.size() || value < lowest) return std::nullopt;
+        return value;
+    };
+    const auto x = number(text.substr(0, at)), y = number(text.substr(at + separator.size()));
+    if (!x || !y) return std::nullopt;
+    return Vec2i{*x, *y};
+}
+
+} // namespace
+
+std::optional<Vec2i> readSize(std::string_view text) {
+    if (const auto size = readPair(text, "x", 1)) return size;
+    return readPair(text, "×", 1);
+}
+
+std::optional<Vec2i> readPixel(std::string_view text) { return readPair(text, ",", 0); }
+
+std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+    std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
+    if (unit.empty()) return value;
+    const auto found = schema::findUnit(unit);
+    if (!found || found->dimension != dimension) return std::nullopt;
+    return value * found->scale;
+}
+
+std::string shellQuoted(std::string_view argument) {
+    constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=:,./@%";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) return std::string(argument);
+    std::string quoted = "'";
+    for (const char c : argument) {
+        if (c == '\'')
+            quoted += "'\\''";
+        else
+            quoted += c;
+    }
+    return quoted + "'";
+}
+
+} // namespace abbe

@@ -1,0 +1,23 @@
+// Values on the command line that are more than a number or a word. Each reads the whole text or returns nothing.
+#pragma once
+
+#include "math/vec.h"
+#include "schema/unit.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace abbe {
+
+// "640x480", "640×480"; both positive.
+std::optional<Vec2i> readSize(std::string_view text);
+// "12,34"; not negative.
+std::optional<Vec2i> readPixel(std::string_view text);
+// "45min", "0.5 %", "90": in SI units; a bare number is already in them.
+std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension);
+
+// The argument as a shell would need it.
+std::string shellQuoted(std::string_view argument);
+
+} // namespace abbe

@@ -1,0 +1,67 @@
+#include "app/options.h"
+#include "base/diagnostic_fixes.h"
+#include "io/atomic_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+std::unique_ptr<LoadedScene> checkScene(const SceneInput& input) {
+    auto loaded = loadScene(input);
+    BuildOptions options;
+    options.geometry = false;
+    if (loaded->readable) buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
+    return loaded;
+}
+
+// Applies what can be applied, again and again until nothing is left: one fix may uncover the next.
+std::size_t fixScene(const SceneInput& input) {
+    constexpr int kRounds = 8;
+    std::size_t applied = 0;
+    for (int round = 0; round < kRounds; ++round) {
+        const auto loaded = checkScene(input);
+        if (!loaded->readable) return applied;
+        const FileId file{0};
+        const FixResult fixed = applyFixes(loaded->sources.text(file), file, loaded->diagnostics);
+        if (fixed.applied == 0) return applied;
+        applied += fixed.applied;
+        AtomicFile out(input.path);
+        out.write(fixed.text);
+        out.commit();
+    }
+    return applied;
+}
+
+ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
+    const std::size_t fixed = options.fix ? fixScene(input) : 0;
+    const auto loaded = checkScene(input);
+    console.report(loaded->diagnostics, loaded->sources);
+    if (console.format() == MessageFormat::human) {
+        if (fixed > 0) console.line(fmt::format("{}: {} repaired", input.path, fixed));
+        if (loaded->diagnostics.all().empty()) console.line(fmt::format("{}: no errors, no warnings", input.path));
+    }
+    if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
+    return options.strict && loaded->diagnostics.warningCount() > 0 ? ExitCode::threshold : ExitCode::done;
+}
+
+// The one that matters more when several files fail in different ways.
+ExitCode worse(ExitCode a, ExitCode b) {
+    const auto rank = [](ExitCode c) {
+        return c == ExitCode::done ? 0 : c == ExitCode::threshold ? 1 : c == ExitCode::faulty ? 2 : 3;
+    };
+    return rank(a) >= rank(b) ? a : b;
+}
+
+} // namespace
+
+ExitCode run(const CheckOptions& options, const CommonOptions& common) {
+    ExitCode result = ExitCode::done;
+    for (const std::string& path : options.paths)
+        result = worse(result, checkOne({path, options.defines}, options, common.console));
+    return result;
+}
+
+} // namespace abbe

@@ -1,0 +1,352 @@
+#include "app/command_line.h"
+
+#include "app/argument_values.h"
+#include "app/version.h"
+#include "schema/scene_tree.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare"};
+
+constexpr const char* kAbout = R"(A spectral, physically based film renderer.
+
+Examples:
+  abbe render room.scene                       the image goes where the scene says, else to room.exr
+  abbe room.scene --samples 1024 --png         the same command; a PNG beside the EXR
+  abbe check room.scene                        everything that is wrong, without rendering
+  abbe explain camera.f-stop                   what a property means; also: explain glass, explain E0310
+  abbe info room.exr                           how an image was made)";
+
+constexpr const char* kRenderHelp = R"(Renders a scene to an OpenEXR image.
+
+Examples:
+  abbe render room.scene -o room.exr
+  abbe render room.scene --size 640x360 --samples 64 --png=look.png
+  abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
+  abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
+  abbe render room.scene --json                        progress as JSON lines on stdout
+
+Ctrl-C writes the image so far; a second one leaves at once.)";
+
+constexpr const char* kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
+
+Examples:
+  abbe check room.scene
+  abbe check --fix room.scene                  repairs what can be repaired safely
+  abbe check --strict --format=short *.scene   for editors and CI)";
+
+constexpr const char* kExplainHelp = R"(Explains a scene, a property, a type, a unit or a diagnostic.
+
+Examples:
+  abbe explain room.scene                      the effects it asks for, and what is not simulated
+  abbe explain camera.lens
+  abbe explain dielectric
+  abbe explain E0310
+  abbe explain unit nits)";
+
+constexpr const char* kInfoHelp = R"(Tells what is in a scene or in an image.
+
+Examples:
+  abbe info room.scene
+  abbe info --json room.exr)";
+
+constexpr const char* kConvertHelp = R"(Turns an EXR into a PNG through a display view of OpenColorIO.
+
+Examples:
+  abbe convert room.exr room.png
+  abbe convert room.exr room.png --exposure 1.5 --view Raw)";
+
+constexpr const char* kCompareHelp = R"(Measures how much two images differ.
+
+Examples:
+  abbe compare room.exr reference.exr
+  abbe compare room.exr a.exr --ref b.exr      a and b from different seeds: their noise cancels
+  abbe compare --threshold 0 a.exr b.exr       fails unless all pixels are equal)";
+
+// One reader per command line: holds the library's parser and what it writes into.
+class Reader {
+  public:
+    Reader() {
+        app_.name("abbe");
+        app_.set_version_flag("-V,--version", versionText(), "Print the version and what it was built with");
+        app_.set_help_flag("-h,--help", "Print this help");
+        app_.require_subcommand(1);
+        app_.get_formatter()->column_width(28);
+        addRender();
+        addCheck();
+        addExplain();
+        addInfo();
+        addConvert();
+        addCompare();
+    }
+
+    std::variant<Command, EarlyEnd> read(const Words& words) {
+        Words reversed(words.rbegin(), words.rend()); // as the library takes them
+        try {
+            app_.parse(std::move(reversed));
+        } catch (const CLI::CallForHelp&) {
+            return EarlyEnd{ExitCode::done, helpText()};
+        } catch (const CLI::CallForVersion&) {
+            return EarlyEnd{ExitCode::done, versionText() + "\n"};
+        } catch (const CLI::ParseError& e) {
+            return EarlyEnd{ExitCode::usage, errorText(e)};
+        }
+        return command(words);
+    }
+
+    std::string helpText() const {
+        const CLI::App* chosen = chosenCommand();
+        return chosen == &app_ ? app_.help() : chosen->help("abbe");
+    }
+
+  private:
+    using Texts = std::vector<std::string>;
+
+    CLI::App* add(const char* name, const char* help) {
+        CLI::App* command = app_.add_subcommand(name, help);
+        command->set_help_flag("-h,--help", "Print this help");
+        command->add_option("--color", color_, "Colours: auto, always or never")
+            ->check(CLI::IsMember({"auto", "always", "never"}))
+            ->type_name("WHEN");
+        command->get_formatter()->column_width(28);
+        return command;
+    }
+    void addJson(CLI::App* c) { c->add_flag("--json", common_.json, "JSON on stdout"); }
+    void addDefines(CLI::App* c, Texts& defines) {
+        c->add_option("-D", defines, "Set a parameter of the scene; may be repeated")
+            ->allow_extra_args(false)
+            ->type_name("NAME=VALUE");
+    }
+    void addView(CLI::App* c, ViewOptions& view) {
+        c->add_option("--display", view.display, "OCIO display of the PNG")->type_name("NAME");
+        c->add_option("--view", view.view, "OCIO view of the PNG")->type_name("NAME");
+        c->add_option("--ocio", view.config, "OCIO configuration to use instead of the built-in one")
+            ->type_name("FILE");
+        c->add_option("--exposure", view.exposure, "Brighten the PNG by so many stops")->type_name("STOPS");
+    }
+    // An option whose text is read by one of our own functions.
+    template <typename Value, typename Function>
+    void addRead(CLI::App* c, const char* name, std::optional<Value>& place, const char* type, const char* help,
+                 const char* expected, Function readValue) {
+        const auto store = [&place, expected, readValue, name](const std::string& text) {
+            if (!(place = readValue(text)))
+                throw CLI::ValidationError(name, fmt::format("`{}` is not {}", text, expected));
+        };
+        c->add_option_function<std::string>(name, store, help)->type_name(type);
+    }
+    void addGoals(CLI::App* c);
+    void addRender();
+    void addCheck();
+    void addExplain();
+    void addInfo();
+    void addConvert();
+    void addCompare();
+
+    const CLI::App* chosenCommand() const {
+        const auto chosen = app_.get_subcommands();
+        return chosen.empty() ? &app_ : chosen.front();
+    }
+    std::string errorText(const CLI::ParseError&) const;
+    Command command(const Words& words);
+
+    CLI::App app_{kAbout};
+    std::string color_ = "auto", format_ = "human", kernel_ = "auto", png_;
+    CommonOptions common_;
+    RenderOptions render_;
+    CheckOptions check_;
+    ExplainOptions explain_;
+    InfoOptions info_;
+    ConvertOptions convert_;
+    CompareOptions compare_;
+};
+
+void Reader::addGoals(CLI::App* c) {
+    BuildOptions& b = render_.build;
+    c->add_option("--camera", b.camera, "Camera to render; without it the first one")->type_name("NAME");
+    addRead(c, "--size", b.size, "WxH", "Size of the image in pixels", "a size such as 640x480", readSize);
+    c->add_option("--samples", b.samples, "Samples per pixel")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{4294967295}).description(""))
+        ->type_name("N");
+    addRead(c, "--noise", b.noise, "ERROR", "Stop at this relative error: 0.5%", "a relative error such as 0.5%",
+            [](const std::string& text) -> std::optional<double> {
+                const auto value = readQuantity(text, schema::Dimension::fraction);
+                return value && *value >= 0 && *value <= 1 ? value : std::nullopt;
+            });
+    addRead(c, "--time", b.timeLimit, "TIME", "Stop after this time: 90, 45min, 2h", "a time such as 45min",
+            [](const std::string& text) -> std::optional<double> {
+                const auto value = readQuantity(text, schema::Dimension::time);
+                return value && *value >= 0 && *value <= 1e9 ? value : std::nullopt;
+            });
+    c->add_option("--seed", b.seed, "Choose other random numbers")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
+        ->type_name("N");
+}
+
+void Reader::addRender() {
+    CLI::App* c = add("render", kRenderHelp);
+    RenderOptions& r = render_;
+    c->add_option("scene", r.input.path, "Scene file")->required()->type_name("");
+    c->add_option("-o,--output", r.output, "Image to write (EXR)")->type_name("FILE");
+    addGoals(c);
+    addDefines(c, r.input.defines);
+    c->add_option("-t,--threads", common_.threads, "Threads; without it one per core")
+        ->check(CLI::Range(1, 4096).description(""))
+        ->type_name("N");
+    c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
+    addView(c, r.view);
+    c->add_flag("--json", common_.json, "Progress as JSON lines on stdout");
+    c->add_flag("--quiet,-q", r.quiet, "Say nothing but warnings and errors");
+    c->add_flag("--strict", r.strict, "Exit with 4 when there were warnings");
+    const std::string studies = "For studies";
+    c->add_option("--kernel", kernel_, "auto, or all: the path loop with every effect")
+        ->check(CLI::IsMember({"auto", "all"}).description(""))
+        ->type_name("NAME")
+        ->group(studies);
+    c->add_option("--strategy", r.strategy, "mis, lights or bsdf: how light is found")
+        ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
+        ->type_name("NAME")
+        ->group(studies);
+    c->add_option("--sampler", r.sampler, "sobol or random")
+        ->check(CLI::IsMember({"sobol", "random"}).description(""))
+        ->type_name("NAME")
+        ->group(studies);
+    addRead(c, "--pixel", r.pixel, "X,Y", "Render one pixel and print its value", "a pixel such as 12,34", readPixel);
+}
+
+void Reader::addCheck() {
+    CLI::App* c = add("check", kCheckHelp);
+    c->add_option("scenes", check_.paths, "Scene files")->required()->type_name("");
+    addDefines(c, check_.defines);
+    c->add_flag("--fix", check_.fix, "Apply the repairs that are certain, in place");
+    c->add_flag("--strict", check_.strict, "Exit with 4 when there are warnings");
+    c->add_option("--format", format_, "human, short (path:line:column: text) or json")
+        ->check(CLI::IsMember({"human", "short", "json"}).description(""))
+        ->type_name("FORMAT");
+    c->add_flag_callback(
+        "--json", [this] { format_ = "json"; }, "The same as --format=json");
+}
+
+void Reader::addExplain() {
+    CLI::App* c = add("explain", kExplainHelp);
+    c->add_option_function<Texts>(
+         "topic", [this](const Texts& words) { explain_.topic = fmt::format("{}", fmt::join(words, " ")); },
+         "Scene file, or words of the language")
+        ->required()
+        ->type_name("");
+    addDefines(c, explain_.defines);
+}
+
+void Reader::addInfo() {
+    CLI::App* c = add("info", kInfoHelp);
+    c->add_option("file", info_.path, "Scene (.scene) or image (.exr)")->required()->type_name("");
+    addDefines(c, info_.defines);
+    addJson(c);
+}
+
+void Reader::addConvert() {
+    CLI::App* c = add("convert", kConvertHelp);
+    c->add_option("input", convert_.input, "EXR in ACES2065-1 or ACEScg")->required()->type_name("");
+    c->add_option("output", convert_.output, "PNG")->required()->type_name("");
+    addView(c, convert_.view);
+    c->add_option("--bits", convert_.bits, "8 or 16 bits per component")
+        ->check(CLI::IsMember({8, 16}).description(""))
+        ->type_name("N");
+}
+
+void Reader::addCompare() {
+    CLI::App* c = add("compare", kCompareHelp);
+    c->add_option("image", compare_.image, "EXR")->required()->type_name("");
+    c->add_option("other", compare_.other, "EXR to compare with")->required()->type_name("");
+    c->add_option("--ref", compare_.reference, "Second reference of another seed: the references' noise cancels")
+        ->type_name("FILE");
+    c->add_option("--threshold", compare_.threshold, "Exit with 4 when relMSE is larger")
+        ->check(CLI::NonNegativeNumber.description(""))
+        ->type_name("RELMSE");
+    addJson(c);
+}
+
+// The flag that an unknown one probably means.
+std::string flagSuggestion(const CLI::App& command, const std::string& flag) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    return std::string(schema::nearest(flag, candidates));
+}
+
+std::string Reader::errorText(const CLI::ParseError& error) const {
+    const CLI::App* command = chosenCommand();
+    const std::string where = command == &app_ ? "abbe" : "abbe " + command->get_name();
+    for (const std::string& word : command->remaining()) {
+        if (word.size() < 2 || word[0] != '-') continue;
+        const std::string flag = word.substr(0, word.find('='));
+        const std::string near = flagSuggestion(*command, flag);
+        return fmt::format("abbe: unknown flag `{}`{}\n  `{} --help` lists the flags\n", flag,
+                           near.empty() ? "" : fmt::format("; did you mean `{}`?", near), where);
+    }
+    const Words extra = command->remaining();
+    const std::string message =
+        extra.empty() ? std::string(error.what()) : fmt::format("unexpected argument `{}`", extra.front());
+    return fmt::format("abbe: {}\n  `{} --help` shows how it is used\n", message, where);
+}
+
+Command Reader::command(const Words& words) {
+    const ColorMode color = color_ == "always"  ? ColorMode::always
+                            : color_ == "never" ? ColorMode::never
+                                                : ColorMode::automatic;
+    const MessageFormat format = format_ == "json"    ? MessageFormat::json
+                                 : format_ == "short" ? MessageFormat::brief
+                                                      : MessageFormat::human;
+    common_.console = Console(color, format);
+    common_.commandLine = "abbe";
+    for (const std::string& word : words) common_.commandLine += " " + shellQuoted(word);
+    render_.largestKernel = kernel_ == "all";
+    if (!png_.empty()) render_.png = png_ == "." ? std::string() : png_;
+    const std::string name = chosenCommand()->get_name();
+    if (name == "render") return {render_, common_};
+    if (name == "check") return {check_, common_};
+    if (name == "explain") return {explain_, common_};
+    if (name == "info") return {info_, common_};
+    if (name == "convert") return {convert_, common_};
+    return {compare_, common_};
+}
+
+bool isCommand(const std::string& word) {
+    return std::find(std::begin(kCommands), std::end(kCommands), word) != std::end(kCommands);
+}
+
+// A first word that is neither a command nor a file but looks like a command.
+std::string commandSuggestion(const std::string& word) {
+    std::error_code error;
+    if (word.find_first_of("./-") != std::string::npos || std::filesystem::exists(word, error)) return {};
+    return std::string(schema::nearest(word, {std::begin(kCommands), std::end(kCommands)}));
+}
+
+} // namespace
+
+std::variant<Command, EarlyEnd> readCommandLine(std::span<const char* const> arguments) {
+    Reader reader;
+    Words words(arguments.begin(), arguments.end());
+    if (words.empty()) return EarlyEnd{ExitCode::usage, reader.helpText()};
+    const bool global = words[0] == "-h" || words[0] == "--help" || words[0] == "-V" || words[0] == "--version";
+    if (!isCommand(words[0]) && !global) {
+        if (const std::string near = commandSuggestion(words[0]); !near.empty())
+            return EarlyEnd{ExitCode::usage,
+                            fmt::format("abbe: no command is named `{}`; did you mean `{}`?\n", words[0], near)};
+        words.insert(words.begin(), "render");
+    }
+    return reader.read(words);
+}
+
+} // namespace abbe

@@ -1,0 +1,105 @@
+#include "app/progress_text.h"
+#include "app/render_report.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+class HumanReport final : public RenderReport {
+  public:
+    HumanReport(const Console& console, bool quiet) : console_(console), quiet_(quiet) {}
+    ~HumanReport() override { clearBar(); }
+
+    void start(const RenderStart& s) override {
+        noiseTarget_ = s.noiseTarget;
+        if (quiet_) return;
+        console_.line(fmt::format("{}  {}×{}  {} thread{}  image {}", s.scene, s.width, s.height, s.threads,
+                                  s.threads == 1 ? "" : "s", s.image));
+    }
+
+    void phase(const std::string& name, double seconds) override {
+        clearBar();
+        if (quiet_ || seconds < 1) return; // short ones are told in the summary alone
+        console_.line(fmt::format("{} {:.1f} s", name, seconds));
+    }
+
+    void progress(const Progress& p) override {
+        if (quiet_) return;
+        console_.interactive() ? showBar(p) : showLine(p);
+    }
+
+    void image(const std::string& path, bool partial) override {
+        clearBar();
+        if (!quiet_ && partial) console_.line(fmt::format("interrupted; {} holds the image so far", path));
+    }
+
+    void diagnostics(const Diagnostics& d, const SourceMap& sources) override {
+        clearBar();
+        console_.report(d, sources);
+    }
+
+    void done(const RenderSummary&) override;
+
+  private:
+    // Four times a second, after a minute once a second.
+    void showBar(const Progress& p) {
+        if (p.elapsed - lastShown_ < (p.elapsed < 60 ? 0.25 : 1.0)) return;
+        lastShown_ = p.elapsed;
+        fmt::print(stderr, "\r\x1b[K{}", progressBar(p, noiseTarget_, console_.width()));
+        std::fflush(stderr);
+        barShown_ = true;
+    }
+
+    void showLine(const Progress& p) {
+        const int tenth = static_cast<int>(10 * p.fraction);
+        if (tenth <= lastTenth_ && p.elapsed - lastShown_ < 30) return;
+        if (p.fraction >= 1 && lastTenth_ < 0) return; // over before anything was said
+        lastTenth_ = std::max(tenth, lastTenth_);
+        lastShown_ = p.elapsed;
+        console_.line(progressLine(p, noiseTarget_));
+    }
+
+    void clearBar() {
+        if (!barShown_) return;
+        fmt::print(stderr, "\r\x1b[K");
+        std::fflush(stderr);
+        barShown_ = false;
+    }
+
+    Console console_;
+    bool quiet_;
+    double noiseTarget_ = 0;
+    double lastShown_ = -1;
+    int lastTenth_ = 0;
+    bool barShown_ = false;
+};
+
+void HumanReport::done(const RenderSummary& s) {
+    clearBar();
+    if (quiet_) return;
+    const RenderStatistics& r = s.statistics;
+    std::string phases;
+    for (const auto& [name, seconds] : s.phases) phases += fmt::format("{} {:.2f} s   ", name, seconds);
+    console_.line(fmt::format("  {}total {:.2f} s", phases, s.totalSeconds));
+    const double rate = r.seconds > 0 ? static_cast<double>(r.paths) / r.seconds : 0;
+    console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
+                              countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
+                              countText(rate), r.samplesPerPixel, r.kernel));
+    const std::string noise = s.noise > 0 ? fmt::format("noise {:.3g} %   ", 100 * s.noise) : std::string();
+    console_.line(fmt::format("  {}memory {} MB   {} warning{}", noise, s.memoryBytes / 1000000, s.warnings,
+                              s.warnings == 1 ? "" : "s"));
+    console_.line(
+        fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
+    if (!s.png.empty()) console_.line(fmt::format("image {}", s.png));
+}
+
+} // namespace
+
+std::unique_ptr<RenderReport> makeHumanReport(const Console& console, bool quiet) {
+    return std::make_unique<HumanReport>(console, quiet);
+}
+
+} // namespace abbe

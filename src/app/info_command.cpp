@@ -1,0 +1,154 @@
+#include "app/hash128.h"
+#include "app/json.h"
+#include "app/options.h"
+#include "app/provenance.h"
+#include "io/exr_reader.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+Json json(const Vec3d& v) {
+    Json list = Json::list();
+    list.push(v.x).push(v.y).push(v.z);
+    return list;
+}
+
+Json json(const PixelWindow& w) { return Json::object({{"x0", w.x0}, {"y0", w.y0}, {"x1", w.x1}, {"y1", w.y1}}); }
+
+Json json(const ImageAttribute& a) {
+    return std::visit([](const auto& v) { return Json(v); }, a.value);
+}
+
+std::string text(const ImageAttribute& a) {
+    return std::visit([](const auto& v) { return fmt::format("{}", v); }, a.value);
+}
+
+// --- scenes
+
+struct SceneInfo {
+    const LoadedScene& loaded;
+    const BuiltScene& built;
+    std::string hash;
+};
+
+std::string sceneJson(const SceneInfo& info) {
+    const SceneFacts& f = info.built.facts;
+    Json lights = Json::list(), files = Json::list();
+    for (const auto& l : f.lightList)
+        lights.push(Json::object({{"name", l.name}, {"type", l.type}, {"watts", l.watts}, {"lumens", l.lumens}}));
+    for (const std::string& file : f.files) files.push(file);
+    const FilmParams& film = info.built.film;
+    Json object = Json::object({{"hash", info.hash},
+                                {"shapes", std::uint64_t{f.shapes}},
+                                {"triangles", std::uint64_t{f.triangles}},
+                                {"quads", std::uint64_t{f.quads}},
+                                {"analytic", std::uint64_t{f.analytic}},
+                                {"objects", std::uint64_t{f.objects}},
+                                {"instances", std::uint64_t{f.instances}},
+                                {"materials", std::uint64_t{f.materials}},
+                                {"lights", std::move(lights)},
+                                {"width", static_cast<int>(film.size.x)},
+                                {"height", static_cast<int>(film.size.y)},
+                                {"samples", info.built.render.samples},
+                                {"effects", effectNames(info.built.scene.effects)},
+                                {"files", std::move(files)}});
+    if (!f.bounds.empty())
+        object.set("bounds_m", Json::object({{"lower", json(f.bounds.lower)}, {"upper", json(f.bounds.upper)}}));
+    return object.text(true) + "\n";
+}
+
+std::string sceneText(const SceneInfo& info) {
+    const SceneFacts& f = info.built.facts;
+    std::string s = fmt::format("shapes     {} ({} triangles, {} quads, {} analytic)\n", f.shapes, f.triangles, f.quads,
+                                f.analytic);
+    if (f.objects > 0) s += fmt::format("objects    {}, placed {} times\n", f.objects, f.instances);
+    s += fmt::format("materials  {}\n", f.materials);
+    if (!f.bounds.empty()) {
+        const Vec3d &a = f.bounds.lower, &b = f.bounds.upper;
+        s += fmt::format("bounds     {:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m\n", a.x, a.y, a.z, b.x, b.y, b.z);
+    }
+    for (const auto& l : f.lightList) {
+        s += fmt::format("light      {} {}  {:.4g} W", l.name.empty() ? "(no name)" : l.name, l.type, l.watts);
+        s += l.lumens > 0 ? fmt::format("  {:.4g} lm\n", l.lumens) : "\n";
+    }
+    s += fmt::format("film       {}×{}, {} samples per pixel\n", static_cast<int>(info.built.film.size.x),
+                     static_cast<int>(info.built.film.size.y), info.built.render.samples);
+    s += fmt::format("effects    {}\n", effectNames(info.built.scene.effects));
+    for (const std::string& file : f.files) s += fmt::format("file       {}\n", file);
+    return s + fmt::format("hash       {}\n", info.hash);
+}
+
+ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
+    const SceneInput input{options.path, options.defines};
+    const auto loaded = loadScene(input);
+    BuildOptions build;
+    build.geometry = false;
+    BuiltScene built;
+    if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
+    common.console.report(loaded->diagnostics, loaded->sources);
+    if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
+    const SceneInfo info{*loaded, built, sceneHash(*loaded, input)};
+    common.console.data(common.json ? sceneJson(info) : sceneText(info));
+    return ExitCode::done;
+}
+
+// --- images
+
+// Fingerprint of the values of all channels: equal for equal pictures, whatever the header says.
+std::string pixelHash(const std::string& path, const ExrInfo& info) {
+    Hash128 hash;
+    for (const ExrInfo::Channel& channel : info.channels) {
+        hash.addField(channel.name);
+        const std::vector<float> values = readExrChannel(path, channel.name);
+        hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+    }
+    return hash.digits();
+}
+
+std::string_view spaceOf(const ExrInfo& info) {
+    if (!info.chromaticities) return "unknown";
+    if (info.chromaticities->matches(rgb::ap0)) return "ACES2065-1";
+    if (info.chromaticities->matches(rgb::ap1)) return "ACEScg";
+    if (info.chromaticities->matches(rgb::rec709)) return "linear Rec. 709";
+    return "other";
+}
+
+ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
+    const ExrInfo info = readExrInfo(options.path);
+    const std::string hash = pixelHash(options.path, info);
+    if (common.json) {
+        Json channels = Json::list(), attributes = Json::object();
+        for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
+        for (const ImageAttribute& a : info.attributes) attributes.set(a.name, json(a));
+        const Json object = Json::object({{"window", json(info.window)},
+                                          {"display", json(info.display)},
+                                          {"channels", std::move(channels)},
+                                          {"compression", info.compression},
+                                          {"space", spaceOf(info)},
+                                          {"aces_container", info.acesContainer},
+                                          {"pixels", hash},
+                                          {"attributes", std::move(attributes)}});
+        common.console.data(object.text(true) + "\n");
+        return ExitCode::done;
+    }
+    std::string s = fmt::format("size         {}×{}\nspace        {}\ncompression  {}\nchannels    ",
+                                info.window.width(), info.window.height(), spaceOf(info), info.compression);
+    for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
+    s += fmt::format("\npixels       {}\n", hash);
+    for (const ImageAttribute& a : info.attributes) s += fmt::format("{} = {}\n", a.name, text(a));
+    common.console.data(s);
+    return ExitCode::done;
+}
+
+} // namespace
+
+ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+    return std::filesystem::path(options.path).extension() == ".exr" ? imageInfo(options, common)
+                                                                     : sceneInfo(options, common);
+}
+
+} // namespace abbe

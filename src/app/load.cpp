@@ -1,0 +1,33 @@
+#include "app/load.h"
+
+#include "app/stopwatch.h"
+#include "parser/parse.h"
+#include "scene/registry.h"
+
+namespace abbe {
+
+ExitCode LoadedScene::exitCode() const {
+    if (!readable) return ExitCode::system;
+    return diagnostics.hasErrors() ? ExitCode::faulty : ExitCode::done;
+}
+
+std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
+    auto loaded = std::make_unique<LoadedScene>();
+    Stopwatch watch;
+    loaded->types = makeTypeTable();
+    const auto file = readSceneFile(loaded->sources, input.path, loaded->diagnostics);
+    if (!file) return loaded;
+    loaded->readable = true;
+    ParseOptions options;
+    for (const std::string& define : input.defines)
+        if (auto override = readOverride(loaded->sources, define, loaded->diagnostics))
+            options.overrides.push_back(std::move(*override));
+    const auto document = parse(loaded->sources, *file, options, loaded->diagnostics);
+    loaded->parseSeconds = watch.lap();
+    loaded->tree =
+        schema::resolve(document, loaded->types, std::filesystem::path(input.path).parent_path(), loaded->diagnostics);
+    loaded->resolveSeconds = watch.lap();
+    return loaded;
+}
+
+} // namespace abbe

@@ -1,0 +1,41 @@
+// Parse and check: from the words of the command line to the meaning of a scene file.
+#pragma once
+
+#include "app/exit_code.h"
+#include "base/diagnostic.h"
+#include "base/source_map.h"
+#include "schema/scene_tree.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// The scene of a command line.
+struct SceneInput {
+    std::string path;
+    std::vector<std::string> defines; // "name=value" of -D
+};
+
+// A scene file that was read and resolved. Not movable: the tree refers to sources and types.
+struct LoadedScene {
+    LoadedScene() = default;
+    LoadedScene(const LoadedScene&) = delete;
+    LoadedScene& operator=(const LoadedScene&) = delete;
+
+    SourceMap sources;
+    schema::TypeTable types;
+    schema::SceneTree tree;
+    Diagnostics diagnostics;
+    bool readable = false;                       // the file itself could be read
+    double parseSeconds = 0, resolveSeconds = 0; // wall clock
+
+    // How a command ends that met these diagnostics: done without errors.
+    ExitCode exitCode() const;
+};
+
+// Never null and never throws on bad input; what is wrong is in `diagnostics`.
+std::unique_ptr<LoadedScene> loadScene(const SceneInput&);
+
+} // namespace abbe

@@ -1,0 +1,82 @@
+// What each command was asked to do.
+#pragma once
+
+#include "app/console.h"
+#include "app/load.h"
+#include "scene/build.h"
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace abbe {
+
+// Of every command.
+struct CommonOptions {
+    std::string commandLine; // as it would be typed in a shell
+    Console console;
+    bool json = false;
+    int threads = 0; // 0: one per core
+};
+
+// A display rendering for PNG files.
+struct ViewOptions {
+    std::string display, view, config; // empty: our own defaults
+    double exposure = 0;               // stops
+};
+
+struct RenderOptions {
+    SceneInput input;
+    std::string output;             // EXR; empty: from the scene
+    std::optional<std::string> png; // empty text: named after the EXR
+    ViewOptions view;
+    BuildOptions build;
+    std::optional<std::string> strategy, sampler; // override the scene's
+    bool largestKernel = false;                   // run the instantiation with all effects
+    bool quiet = false;
+    bool strict = false;
+    std::optional<Vec2i> pixel; // render this one alone and print it
+};
+
+struct CheckOptions {
+    std::vector<std::string> paths;
+    std::vector<std::string> defines;
+    bool fix = false;
+    bool strict = false;
+};
+
+struct ExplainOptions {
+    std::string topic; // a scene file, or words of the language
+    std::vector<std::string> defines;
+};
+
+struct InfoOptions {
+    std::string path;
+    std::vector<std::string> defines;
+};
+
+struct ConvertOptions {
+    std::string input, output;
+    ViewOptions view;
+    int bits = 8;
+};
+
+struct CompareOptions {
+    std::string image, other;
+    std::optional<std::string> reference;
+    std::optional<double> threshold; // of relMSE
+};
+
+using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions>;
+
+// One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
+// system errors (IoError, std::bad_alloc) or bugs.
+ExitCode run(const RenderOptions&, const CommonOptions&);
+ExitCode run(const CheckOptions&, const CommonOptions&);
+ExitCode run(const ExplainOptions&, const CommonOptions&);
+ExitCode run(const InfoOptions&, const CommonOptions&);
+ExitCode run(const ConvertOptions&, const CommonOptions&);
+ExitCode run(const CompareOptions&, const CommonOptions&);
+
+} // namespace abbe

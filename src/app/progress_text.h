@@ -1,0 +1,24 @@
+// Progress in words.
+#pragma once
+
+#include "render/integrator.h"
+
+#include <string>
+
+namespace abbe {
+
+// "03:12", "1:02:45"; requires seconds >= 0.
+std::string clockText(double seconds);
+// "11.8 M", "950", "2.30 k": three digits.
+std::string countText(double count);
+
+// Whether the time left can be told yet: too early it would jump about.
+bool knowsTimeLeft(const Progress&);
+
+// "[####----]  58 %   pass 5   noise 0.71 -> 0.50 %   11.8 M paths/s   03:12 elapsed   02:20 left", cut to `width`
+// columns by leaving out the bar and then the last items. `noiseTarget` 0: none.
+std::string progressBar(const Progress&, double noiseTarget, int width);
+// The same in plain words for a log.
+std::string progressLine(const Progress&, double noiseTarget);
+
+} // namespace abbe

@@ -1,0 +1,74 @@
+#include "app/provenance.h"
+
+#include "app/hash128.h"
+#include "app/version.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+int asInt(std::uint64_t v) { return static_cast<int>(std::min<std::uint64_t>(v, 0x7fffffff)); }
+
+std::string_view strategyName(RenderSettings::Strategy s) {
+    using Strategy = RenderSettings::Strategy;
+    return s == Strategy::lightsOnly ? "lights" : s == Strategy::bsdfOnly ? "bsdf" : "mis";
+}
+
+} // namespace
+
+std::string effectNames(Effects effects) {
+    std::string names;
+    const auto add = [&](Effect e, const char* name) {
+        if (effects.has(e)) names += (names.empty() ? "" : "+") + std::string(name);
+    };
+    add(Effect::absorption, "absorption");
+    add(Effect::dispersion, "dispersion");
+    return names.empty() ? "none" : names;
+}
+
+std::string sceneHash(const LoadedScene& loaded, const SceneInput& input) {
+    Hash128 hash;
+    if (loaded.sources.fileCount() > 0) hash.addField(loaded.sources.text(FileId{0}));
+    std::vector<std::string> defines = input.defines;
+    std::sort(defines.begin(), defines.end());
+    for (const std::string& define : defines) hash.addField(define);
+    return hash.digits();
+}
+
+std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
+    const RenderSettings& settings = *p.settings;
+    const RenderStatistics& statistics = *p.statistics;
+    std::vector<ImageAttribute> list;
+    const auto text = [&](const char* name, std::string value) { list.push_back({name, std::move(value)}); };
+    const auto whole = [&](const char* name, std::uint64_t value) { list.push_back({name, asInt(value)}); };
+    const auto real = [&](const char* name, double value) { list.push_back({name, value}); };
+    text("abbe.version", versionNumber());
+    whole("abbe.edition", kLanguageEdition);
+    text("abbe.scene", p.input->path);
+    text("abbe.sceneHash", sceneHash(*p.loaded, *p.input));
+    text("abbe.command", p.commandLine);
+    text("abbe.seed", std::to_string(settings.seed));
+    whole("abbe.samples", statistics.samplesPerPixel);
+    whole("abbe.replicates", static_cast<std::uint64_t>(p.replicates));
+    text("abbe.sampler", settings.randomSampler ? "random" : "sobol");
+    text("abbe.strategy", std::string(strategyName(settings.strategy)));
+    if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
+    text("abbe.effects", effectNames(p.built->scene.effects));
+    text("abbe.kernel", statistics.kernel);
+    real("abbe.noise", p.noise);
+    real("abbe.seconds", p.seconds);
+    real("abbe.coreSeconds", statistics.coreSeconds);
+    whole("abbe.droppedNan", statistics.dropped[static_cast<std::size_t>(DropCause::nan)]);
+    whole("abbe.droppedInfinite", statistics.dropped[static_cast<std::size_t>(DropCause::infinite)]);
+    whole("abbe.droppedNegative", statistics.dropped[static_cast<std::size_t>(DropCause::negative)]);
+    whole("abbe.partial", statistics.stopped ? 1 : 0);
+    text("abbe.space", p.space);
+    text("abbe.sceneRgb", std::string(schema::rgbSpaceId(p.loaded->tree.header.rgb)));
+    real("abbe.exposure", p.built->exposure);
+    return list;
+}
+
+} // namespace abbe

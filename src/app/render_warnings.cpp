@@ -1,0 +1,38 @@
+#include "app/render_warnings.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace abbe {
+
+void warnOfDroppedSamples(const RenderStatistics& statistics, Diagnostics& diagnostics) {
+    const auto& [nan, infinite, negative] = statistics.dropped;
+    if (nan + infinite + negative > 0) {
+        Diagnostic& d =
+            diagnostics.warning("W0640", {},
+                                fmt::format("{} of {} samples were dropped: {} not a number, {} infinite, {} negative",
+                                            nan + infinite + negative, statistics.paths, nan, infinite, negative));
+        for (const DroppedSample& s : statistics.examples)
+            d.notes.push_back(fmt::format("pixel {},{} replicate {} sample {}", s.x, s.y, s.replicate, s.index));
+        if (!statistics.examples.empty())
+            d.help = fmt::format("`--pixel {},{}` repeats the first one; please report the scene",
+                                 statistics.examples[0].x, statistics.examples[0].y);
+    }
+    if (statistics.cappedPaths > 0)
+        diagnostics.warning("W0642", {},
+                            fmt::format("{} paths were cut at the safety cap of 100000 vertices; the image is a "
+                                        "little too dark there",
+                                        statistics.cappedPaths));
+}
+
+void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {
+    const auto black = [](const std::vector<float>& plane) {
+        return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0; });
+    };
+    if (black(image.r) && black(image.g) && black(image.b))
+        diagnostics.warning("W0641", {}, "every pixel of the image is black").help =
+            "no light reaches the camera: check where the camera looks, which side the lights face, and what "
+            "encloses them";
+}
+
+} // namespace abbe

@@ -1,0 +1,14 @@
+// What is suspicious about a finished image. Nothing that went wrong stays unsaid.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "film/pixel_film.h"
+#include "render/integrator.h"
+
+namespace abbe {
+
+// Samples left out because they were not finite or negative, and paths that met the safety cap.
+void warnOfDroppedSamples(const RenderStatistics&, Diagnostics&);
+void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
+
+} // namespace abbe
