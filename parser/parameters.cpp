@@ -56,20 +56,20 @@ void checkValues(std::vector<Value>& values, Diagnostics& diagnostics) {
     values.resize(kMostValues);
 }
 
-std::vector<Value> valuesOf(const Document& document, const Document::NodeRecord& node) {
-    const auto first = document.values.begin() + node.firstValue;
-    return {first, first + node.valueCount};
+std::vector<Value> valuesOf(const schema::Node& node) {
+    std::vector<Value> values;
+    for (std::size_t i = 0; i < node.valueCount(); ++i) values.push_back(node.value(i));
+    return values;
 }
 
 } // namespace
 
-void defineParameter(Document& document, const Document::NodeRecord& record, Diagnostics& diagnostics) {
-    Document::NodeRecord node = record;
-    document.unpack(node);
-    std::vector<Value> values = valuesOf(document, node);
+void defineParameter(Document& document, std::uint32_t index, Diagnostics& diagnostics) {
+    const schema::Node node = document.node(index);
+    std::vector<Value> values = valuesOf(node);
     if (values.empty() || !values[0].isText() || values[0].text.starts_with('$')) {
-        if (!node.damaged || !values.empty())
-            diagnostics.error("E0222", values.empty() ? node.nameSpan : values[0].span, "a parameter needs a name",
+        if (!node.damaged() || !values.empty())
+            diagnostics.error("E0222", values.empty() ? node.nameSpan() : values[0].span, "a parameter needs a name",
                               "write `param name value`");
         return;
     }
@@ -81,12 +81,12 @@ void defineParameter(Document& document, const Document::NodeRecord& record, Dia
         parameter.doc = values.back().text;
         values.pop_back();
     }
-    if (values.empty() && !node.damaged)
+    if (values.empty() && !node.damaged())
         diagnostics.error("E0222", parameter.nameSpan, fmt::format("the parameter `{}` has no value", parameter.name),
                           "a value must follow");
-    if (node.hasBlock || node.keyCount > 0)
-        diagnostics.error("E0222", node.headSpan, "a parameter has neither a block nor keys",
-                          node.hasBlock ? "remove the block" : "remove the keys");
+    if (node.hasBlock() || !node.keys().empty())
+        diagnostics.error("E0222", node.headSpan(), "a parameter has neither a block nor keys",
+                          node.hasBlock() ? "remove the block" : "remove the keys");
     if (!values.empty()) {
         const Span all = join(values.front().span, values.back().span);
         parameter.defaultText = document.source.substr(all.begin, all.end - all.begin);
@@ -116,7 +116,8 @@ Parameter* ParameterTable::find(std::string_view name) {
     return found == index_.end() ? nullptr : &document_.parameters[found->second];
 }
 
-std::string_view ParameterTable::nearest(std::string_view name) const {
+std::string_view ParameterTable::nearest(std::string_view name) {
+    if (document_.parameters.size() > 1000 || ++searches_ > 100) return {}; // takes long, and helps no one any more
     std::vector<std::string_view> names;
     for (const Parameter& p : document_.parameters) names.push_back(p.name);
     return schema::nearest(name, names);

@@ -13,7 +13,7 @@
 namespace abbe::parser {
 
 // Keeps a top-level `param` node as a parameter of the document.
-void defineParameter(schema::Document&, const schema::Document::NodeRecord&, Diagnostics&);
+void defineParameter(schema::Document&, std::uint32_t node, Diagnostics&);
 
 // The parameters of a document, once all of it has been read.
 class ParameterTable {
@@ -31,7 +31,7 @@ class ParameterTable {
 
     Parameter* find(std::string_view name);
     const Parameter* lookUp(const schema::Value& word);
-    std::string_view nearest(std::string_view name) const;
+    std::string_view nearest(std::string_view name);
     std::string listNames() const;
     std::vector<schema::Value> readValues(const SourceText&, const Parameter&);
     void replaceKey(schema::Document::NodeRecord&, std::uint32_t key);
@@ -41,6 +41,7 @@ class ParameterTable {
     Diagnostics& diagnostics_;
     std::unordered_map<std::string_view, std::size_t> index_;
     std::vector<bool> used_;
+    int searches_ = 0;
 };
 
 } // namespace abbe::parser

@@ -21,7 +21,9 @@ std::string quoted(std::string_view text) {
     for (const char* p = text.data(); p < end;) {
         const parser::CodePoint c = parser::decode(p, end);
         const parser::Wide kind = parser::wideKind(c.value);
-        if (*p == '"' || *p == '\\')
+        if (*p == '\n')
+            out += "\\n";
+        else if (*p == '"' || *p == '\\')
             out += fmt::format("\\{}", *p);
         else if (kind == parser::Wide::newline || kind == parser::Wide::disallowed)
             out += fmt::format("\\u{{{:x}}}", c.value);

@@ -142,6 +142,18 @@ TextLiteral recoverLine(const char* open, const char* body, const char* stop, Sy
     return {cut, between(body, cut), true};
 }
 
+// Whether an odd number of quotes stands on the line from `p` on: then one of them is missing.
+bool hasOddQuotes(const char* p, const char* end) {
+    bool odd = false;
+    for (const char* const line = findNearLineEnd(p, end); p < line; ++p) {
+        if (*p == '\\' && p + 1 < line)
+            ++p;
+        else if (*p == '"')
+            odd = !odd;
+    }
+    return odd;
+}
+
 struct Line {
     std::string text;
     const char* source;
@@ -207,7 +219,7 @@ std::string dedent(std::vector<Line> lines, const char* closing, const char* end
 void reportSameLine(const char* open, const char* body, const char* close, SyntaxErrors& errors, bool raw) {
     Diagnostic& d = errors.error("E0116", open, body, "a text of several lines begins on the line after its quotes",
                                  "a line end must follow");
-    const bool single = findLineEnd(body, close) == close && std::find(body, close, '"') == close;
+    const bool single = findNearLineEnd(body, close) == close && std::find(body, close, '"') == close;
     if (!single || raw) return;
     d.help = "a text of one line has one quote on each side";
     errors.fix(d, open, close + 3, fmt::format("\"{}\"", between(body, close)));
@@ -253,6 +265,9 @@ TextLiteral scanText(const char* p, SyntaxErrors& errors, schema::Document& docu
     const char* stop = nullptr;
     const char* const after = findClosing(body, errors.text().end, 1, hashes, stop);
     if (after == nullptr) return recoverLine(open, body, stop, errors);
+    // `"foo { b "c" }`: the text runs into the next one, whose opening quote seemed to close it.
+    if (hashes == 0 && has(*after, kWord) && hasOddQuotes(open, errors.text().end))
+        return recoverLine(open, body, findLineEnd(body, errors.text().end), errors);
     const std::string_view text = between(body, after - 1 - hashes);
     if (hashes > 0 || text.find('\\') == std::string_view::npos) return {after, text, false};
     checkEscapes(body, after - 1, errors);

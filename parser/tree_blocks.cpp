@@ -135,15 +135,17 @@ void TreeReader::reportUnclosed() {
         errors_.error("E0110", blocks_[i].brace, blocks_[i].brace + 1, "this block is not closed", "no matching `}`");
 }
 
-// Blocks that are still open end with the text.
+// Blocks that are still open end with the text. What they hold is doubtful, so their nodes count as damaged.
 void TreeReader::closeAtEnd() {
     while (blocks_.size() > 1) {
         const Block block = blocks_.back();
         blocks_.pop_back();
-        if (block.discard)
+        if (block.discard) {
             rollBack(block.before);
-        else
+        } else {
             document_.nodes[block.owner.index].end = text_.offset(text_.end);
+            document_.nodes[block.owner.index].damaged = true;
+        }
         finish(block.owner);
     }
 }

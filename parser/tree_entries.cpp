@@ -21,7 +21,13 @@ using schema::ValueKind;
 void TreeReader::skipSpace() {
     bool lineComment = false;
     at_ = skipNodeSpace(at_, errors_, lineComment);
-    packing_ = packing_ && !lineComment;
+}
+
+// Packed numbers are found again in the text, which must hold nothing odd between them.
+void TreeReader::skipSpace(Record& node) {
+    bool lineComment = false;
+    at_ = skipNodeSpace(at_, errors_, lineComment);
+    if (lineComment) document_.unpack(node);
 }
 
 void TreeReader::touch(Record& node, const char* end) const { node.headSpan.end = text_.offset(end); }
@@ -35,16 +41,12 @@ bool TreeReader::atEndOfNode() const {
 // Reads entries up to the end of the node or to its block.
 void TreeReader::readEntries(const OpenNode& open) {
     Record& node = document_.nodes[open.index];
-    packing_ = true;
     inBrackets_ = false;
     commas_.clear();
     for (;;) {
-        if (packing_) {
-            while (readNumber(node)) {
-            }
+        while (readNumber(node)) {
         }
-        skipSpace();
-        if (!packing_) document_.unpack(node);
+        skipSpace(node);
         if (*at_ == '{') {
             checkSpace();
             endEntries(node);
@@ -69,7 +71,10 @@ bool TreeReader::readNumber(Record& node) {
     double number;
     const char* const end = scanDecimal(p, number);
     if (!has(*end, kValueEnd) || !std::isfinite(number)) return false;
-    if (node.numberCount++ == 0) node.firstNumber = static_cast<std::uint32_t>(document_.numbers.size());
+    if (node.numberCount++ == 0) {
+        node.firstNumber = static_cast<std::uint32_t>(document_.numbers.size());
+        node.packedBegin = text_.offset(p);
+    }
     if (document_.numbers.size() % Document::markStep == 0) document_.marks.push_back(text_.offset(p));
     document_.numbers.push_back(number);
     node.headSpan.end = text_.offset(end);
@@ -81,7 +86,6 @@ bool TreeReader::readNumber(Record& node) {
 bool TreeReader::readEntry(Record& node, std::uint32_t index) {
     if (atEndOfNode()) return false;
     if (*at_ == ',') return noteComma(), true;
-    packing_ = false;
     document_.unpack(node);
     if (*at_ == '=') return readEquals(node), true;
     if (*at_ == '(') {
@@ -108,7 +112,7 @@ bool TreeReader::readEntry(Record& node, std::uint32_t index) {
 void TreeReader::readTextOrKey(Record& node, std::uint32_t index) {
     const char* const begin = at_;
     const std::size_t valueCount = document_.values.size();
-    readValue(node, index);
+    if (!readPlainWord(node, index)) readValue(node, index);
     const char* const end = at_;
     skipSpace();
     if (*at_ != '=' || document_.values.size() != valueCount + 1) return;
@@ -120,19 +124,36 @@ void TreeReader::readTextOrKey(Record& node, std::uint32_t index) {
     readKey(node, index, {begin, end, name});
 }
 
+// The fast path of words: letters first, and no keyword.
+bool TreeReader::readPlainWord(Record& node, std::uint32_t index) {
+    const char lower = static_cast<char>(*at_ | 0x20);
+    if ((lower < 'a' || lower > 'z') && *at_ != '$') return false;
+    const char* const end = wordEnd(at_, text_.end);
+    Value value;
+    value.kind = ValueKind::word;
+    value.text = between(at_, end);
+    value.span = text_.span(at_, end);
+    if (isBareKeyword(value.text)) return false;
+    addValue(node, index, value);
+    entryEnd_ = at_ = end;
+    touch(node, end);
+    return true;
+}
+
 void TreeReader::readValue(Record& node, std::uint32_t index) {
     at_ = scanner_.scan(at_, Place::argument);
     // After something that was no value, and after the `=` of `5=3`, no space is missed.
     entryEnd_ = scanner_.values().empty() ? nullptr : at_;
     touch(node, at_);
     node.damaged |= scanner_.lost();
-    for (const Value& value : scanner_.values()) {
-        if (node.valueCount == 0) node.firstValue = static_cast<std::uint32_t>(document_.values.size());
-        if (value.kind == ValueKind::word && value.text.starts_with('$'))
-            uses_.push_back({index, node.valueCount, false});
-        document_.values.push_back(value);
-        ++node.valueCount;
-    }
+    for (const Value& value : scanner_.values()) addValue(node, index, value);
+}
+
+void TreeReader::addValue(Record& node, std::uint32_t index, const Value& value) {
+    if (node.valueCount == 0) node.firstValue = static_cast<std::uint32_t>(document_.values.size());
+    if (value.kind == ValueKind::word && value.text.starts_with('$')) uses_.push_back({index, node.valueCount, false});
+    document_.values.push_back(value);
+    ++node.valueCount;
 }
 
 // At the `=` behind the name of a key.
@@ -175,7 +196,6 @@ bool TreeReader::readSlashdashEntry(const OpenNode& open) {
         openBlock(open, true);
         return true;
     }
-    packing_ = false;
     document_.unpack(node);
     entryEnd_ = nullptr; // no space is needed behind a slashdash
     const Sizes before = sizes();
@@ -207,7 +227,7 @@ void TreeReader::readEquals(Record& node) {
     }
     const char* const name = text_.begin + node.nameSpan.end;
     Diagnostic& d = errors_.error("E0113", equals, equals + 1, "a property and its value are separated by a space",
-                                  fmt::format("write `{} …`", node.name));
+                                  "write a space instead");
     if (findLineEnd(name, at_) == at_) errors_.fix(d, name, at_, " ");
 }
 

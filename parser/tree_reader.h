@@ -71,7 +71,9 @@ class TreeReader {
 
     void readEntries(const OpenNode&);
     bool readEntry(Record&, std::uint32_t index);
+    bool readPlainWord(Record&, std::uint32_t index);
     void readValue(Record&, std::uint32_t index);
+    void addValue(Record&, std::uint32_t index, const schema::Value&);
     void readTextOrKey(Record&, std::uint32_t index);
     void readKey(Record&, std::uint32_t index, const KeyName&);
     bool readNumber(Record&);
@@ -86,6 +88,7 @@ class TreeReader {
     void removeDoubleKeys(Record&);
     bool atEndOfNode() const;
     void skipSpace();
+    void skipSpace(Record&);
     void touch(Record&, const char* end) const;
 
     void readLooseBlock(bool discard);
@@ -110,7 +113,6 @@ class TreeReader {
     std::vector<ParameterUse> uses_;
     std::vector<const char*> commas_;   // of the current node
     const char* lastClosing_ = nullptr; // the brace that closed the last top-level block
-    bool packing_ = false;              // the current node holds plain numbers only, so far
     bool inBrackets_ = false;           // behind a `[` of the current node, reported already
 };
 

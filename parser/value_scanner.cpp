@@ -173,7 +173,7 @@ const char* ValueScanner::scanForeignQuotes(const char* p) {
     constexpr std::string_view closing = "\xe2\x80\x9d"; // ”
     const bool single = *p == '\'';
     const char* const body = p + (single ? 1 : 3);
-    const char* const line = findLineEnd(body, errors_.text().end);
+    const char* const line = findNearLineEnd(body, errors_.text().end);
     const std::string_view mark = single ? std::string_view{"'"} : closing;
     const char* const close = std::search(body, line, mark.begin(), mark.end());
     if (close == line) {
@@ -248,7 +248,7 @@ const char* ValueScanner::scanUnknownKeyword(const char* p, const char* end) {
 
 // `rgb(0.8, 0.2, 0.1)`: everything up to the closing parenthesis on the line is one mistake.
 const char* ValueScanner::scanParentheses(const char* p) {
-    const char* const line = findLineEnd(p, errors_.text().end);
+    const char* const line = findNearLineEnd(p, errors_.text().end);
     const char* const close =
         std::find_if(p, line, [](char c) { return c == ')' || c == '{' || c == '}' || c == ';'; });
     const char* const end = *close == ')' ? close + 1 : p + 1;

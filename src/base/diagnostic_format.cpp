@@ -106,7 +106,8 @@ std::string summary(const Diagnostics& diagnostics, const std::vector<const Diag
     std::string line = name.empty() ? std::string{} : name + ": ";
     line += fmt::format("{}, {}. ", counted(diagnostics.errorCount(), "error"),
                         counted(diagnostics.warningCount(), "warning"));
-    if (fixable > 0) line += fmt::format("`abbe check --fix` repairs {} of them; ", fixable);
+    const std::string all = sorted.size() == 1 ? "it" : fmt::format("{} of them", fixable);
+    if (fixable > 0) line += fmt::format("`abbe check --fix` repairs {}; ", all);
     return line + fmt::format("`abbe explain {}` says more.\n", explained.code);
 }
 

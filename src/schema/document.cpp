@@ -41,7 +41,7 @@ Span spanOfNumber(const Document& document, const Document::NodeRecord& node, st
         at = document.marks[mark];
     } else {
         known = node.firstNumber;
-        at = node.nameSpan.end;
+        at = node.packedBegin;
     }
     Span span = nextNumber(document, at);
     for (; known < index; ++known) span = nextNumber(document, span.end);
@@ -61,10 +61,10 @@ Value numberValue(const Document& document, double number, Span span) {
 
 void Document::unpack(NodeRecord& node) {
     if (node.numberCount == 0) return;
-    ABBE_DCHECK(node.firstNumber + node.numberCount == numbers.size() && node.valueCount == 0);
-    node.firstValue = static_cast<std::uint32_t>(values.size());
-    node.valueCount = node.numberCount;
-    Span span = {file, node.nameSpan.end, node.nameSpan.end};
+    ABBE_DCHECK(node.firstNumber + node.numberCount == numbers.size());
+    if (node.valueCount == 0) node.firstValue = static_cast<std::uint32_t>(values.size());
+    node.valueCount += node.numberCount;
+    Span span = {file, node.packedBegin, node.packedBegin};
     for (std::size_t i = 0; i < node.numberCount; ++i) {
         span = nextNumber(*this, span.end);
         values.push_back(numberValue(*this, numbers[node.firstNumber + i], span));
@@ -87,17 +87,21 @@ Span Node::span() const {
 
 std::size_t Node::valueCount() const {
     const Document::NodeRecord& node = document_->nodes[index_];
-    return node.numberCount > 0 ? node.numberCount : node.valueCount;
+    return std::size_t{node.valueCount} + node.numberCount;
 }
 
 Value Node::value(std::size_t i) const {
     ABBE_DCHECK(i < valueCount());
     const Document::NodeRecord& node = document_->nodes[index_];
-    if (node.numberCount == 0) return document_->values[node.firstValue + i];
+    if (i < node.valueCount) return document_->values[node.firstValue + i];
+    i -= node.valueCount;
     return numberValue(*document_, document_->numbers[node.firstNumber + i], spanOfNumber(*document_, node, i));
 }
 
-bool Node::allNumbers() const { return document_->nodes[index_].numberCount > 0; }
+bool Node::allNumbers() const {
+    const Document::NodeRecord& node = document_->nodes[index_];
+    return node.numberCount > 0 && node.valueCount == 0;
+}
 
 std::span<const double> Node::numbers() const {
     const Document::NodeRecord& node = document_->nodes[index_];

@@ -47,7 +47,7 @@ class Node {
     Span span() const;     // everything, with the block
     std::size_t valueCount() const;
     Value value(std::size_t i) const; // by value: rows of numbers are stored packed and unpacked here
-    // Rows made of numbers alone keep no Value per number: the fast path of points and faces.
+    // Numbers at the end of a row keep no Value each. A row made of them alone has a fast path, for points and faces.
     bool allNumbers() const;
     std::span<const double> numbers() const; // requires allNumbers()
     std::span<const Key> keys() const;
@@ -104,7 +104,8 @@ class Document {
         Span headSpan;
         std::uint32_t end = 0; // end offset of the whole node
         std::uint32_t firstValue = 0, valueCount = 0;
-        std::uint32_t firstNumber = 0, numberCount = 0; // used instead of values for packed rows
+        std::uint32_t firstNumber = 0, numberCount = 0; // packed values that follow the others
+        std::uint32_t packedBegin = 0;                  // where the text of the packed values begins
         std::uint32_t firstKey = 0, keyCount = 0;
         std::uint32_t firstChild = kNone, nextSibling = kNone;
         bool hasBlock = false;
@@ -126,8 +127,9 @@ class Document {
     // Every markStep-th packed number has its offset kept, so that the span of any of them is found in a few steps.
     static constexpr std::size_t markStep = 64;
 
+    Node node(std::uint32_t index) const { return {this, index}; }
     NodeRange roots() const { return {this, nodes.empty() ? kNone : 0u}; }
-    // Turns a packed row into values again; only for the node whose numbers are the last ones.
+    // Turns packed numbers into values again; only for the node whose values and numbers are the last ones.
     void unpack(NodeRecord&);
     std::string_view intern(std::string text) { return pool.emplace_back(std::move(text)); }
 
