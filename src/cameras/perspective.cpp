@@ -94,13 +94,13 @@ std::optional<Transform> placement(const PerspectiveParams& params, const Camera
                                    Diagnostics& diagnostics) {
     if (params.transform) {
         if (params.from || params.lookAt || params.up) {
-            diagnostics.error("E0320", context.span, "the camera is placed twice",
+            diagnostics.error("E0350", context.span, "the camera is placed twice",
                               "keep `transform`, or `from`, `look-at` and `up`");
             return std::nullopt;
         }
         const auto scale = params.transform->uniformScale();
         if (scale && *scale > 0 && params.transform->determinant() > 0) return params.transform;
-        diagnostics.error("E0321", context.span, "a camera can be moved and turned, but not stretched or mirrored");
+        diagnostics.error("E0351", context.span, "a camera can be moved and turned, but not stretched or mirrored");
         return std::nullopt;
     }
     const Vec3d from = params.from.value_or(Vec3d{});
@@ -108,7 +108,7 @@ std::optional<Transform> placement(const PerspectiveParams& params, const Camera
     const Vec3d up = params.up.value_or(context.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0});
     const auto result = Transform::lookAt(from, to, up);
     if (!result)
-        diagnostics.error("E0322", context.span, "the camera has no direction",
+        diagnostics.error("E0352", context.span, "the camera has no direction",
                           from == to ? "`look-at` is `from`" : "it looks along `up`");
     return result;
 }

@@ -48,7 +48,7 @@ std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Cu
                                             const EmitterFactors& factors, Span span, Diagnostics& diagnostics) {
     if (params.radiance) {
         if (!params.color) return ScaledCurve{params.radiance, 1};
-        Diagnostic& d = diagnostics.error("E0312", span, "`color` has no effect beside `radiance`");
+        Diagnostic& d = diagnostics.error("E0341", span, "`color` has no effect beside `radiance`");
         d.notes.push_back("`radiance` is an absolute spectrum; `color` shapes the spectrum of the other amounts");
         return std::nullopt;
     }
@@ -56,13 +56,13 @@ std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Cu
     const auto [quantity, factor] = statedQuantity(params, factors);
     const Span place = quantity.span.valid() ? quantity.span : span;
     if (!(factor > 0 && std::isfinite(factor))) {
-        diagnostics.error("E0313", place, "a light without finite area cannot state its power",
+        diagnostics.error("E0342", place, "a light without finite area cannot state its power",
                           "state its luminance or radiance");
         return std::nullopt;
     }
     const std::optional<double> scale = scaleFor(quantity, color, factor);
     if (!scale) {
-        Diagnostic& d = diagnostics.error("E0314", place, "no amount of this `color` makes that much light");
+        Diagnostic& d = diagnostics.error("E0343", place, "no amount of this `color` makes that much light");
         d.notes.push_back(isLuminous(quantity.dimension) ? "lm, cd, lx and nits count visible light only"
                                                          : "the spectrum is zero between 360 and 830 nm");
         return std::nullopt;
@@ -80,7 +80,7 @@ void reportMissingAmount(AmountFields allowed, Span span, Diagnostics& diagnosti
     std::string list;
     for (const auto& [field, example] : kExamples)
         if (allowed.has(field)) list += fmt::format("{}{}", list.empty() ? "" : " or ", example);
-    Diagnostic& d = diagnostics.error("E0311", span, "the light does not say how much it emits");
+    Diagnostic& d = diagnostics.error("E0340", span, "the light does not say how much it emits");
     d.help = fmt::format("write {}", list);
 }
 

@@ -205,7 +205,7 @@ bool checkEnvironmentImage(EnvironmentImage& image, Span span, Diagnostics& diag
     const std::size_t count =
         static_cast<std::size_t>(std::max(image.width, 0)) * static_cast<std::size_t>(std::max(image.height, 0));
     if (count == 0 || image.rgb.size() != 3 * count) {
-        diagnostics.error("E0420", span, "the environment image is empty");
+        diagnostics.error("E0440", span, "the environment image is empty");
         return false;
     }
     std::size_t broken = 0, negative = 0;
@@ -217,12 +217,12 @@ bool checkEnvironmentImage(EnvironmentImage& image, Span span, Diagnostics& diag
         }
     }
     if (broken > 0) {
-        diagnostics.error("E0421", span,
+        diagnostics.error("E0441", span,
                           fmt::format("the environment image has {} values that are not finite", broken));
         return false;
     }
     if (negative > 0)
-        diagnostics.warning("W0422", span,
+        diagnostics.warning("W0440", span,
                             fmt::format("{} negative values of the environment image are taken as 0", negative));
     return true;
 }
@@ -234,7 +234,7 @@ std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params
     const Transform upright = context.zUp ? Transform::rotate({1, 0, 0}, kPiD / 2) : Transform{};
     const Transform toRender = upright.then(params.transform).then(context.toRender);
     if (!toRender.uniformScale()) {
-        diagnostics.error("E0319", context.span, "an environment can be turned, but not stretched");
+        diagnostics.error("E0348", context.span, "an environment can be turned, but not stretched");
         return nullptr;
     }
     const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;

@@ -112,13 +112,13 @@ std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightC
     const Vec3d axis = toRender.vector(local);
     const double norm = length(axis);
     if (!(norm > 0 && std::isfinite(norm))) {
-        diagnostics.error("E0315", context.span, "the axis of the light has no direction",
+        diagnostics.error("E0344", context.span, "the axis of the light has no direction",
                           params.lookAt ? "`look-at` is `position`" : "`toward` is zero");
         return nullptr;
     }
     const double outer = params.angle / 2, inner = params.innerAngle.value_or(0.8 * params.angle) / 2;
     if (inner > outer) {
-        Diagnostic& d = diagnostics.error("E0316", context.span, "`inner-angle` is larger than `angle`");
+        Diagnostic& d = diagnostics.error("E0345", context.span, "`inner-angle` is larger than `angle`");
         d.notes.push_back(
             fmt::format("{:.4g} deg inside {:.4g} deg; both are full angles", inner * 360 / kPiD, outer * 360 / kPiD));
         return nullptr;

@@ -109,7 +109,7 @@ float SunLight::pdfEscaped(Vec3 w) const noexcept { return inside(w) ? pdf_ : 0;
 std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {
     if (params.toward && (params.elevation || params.azimuth)) {
-        diagnostics.error("E0317", context.span, "the sun's direction is stated twice",
+        diagnostics.error("E0346", context.span, "the sun's direction is stated twice",
                           "keep `toward`, or `elevation` and `azimuth`");
         return nullptr;
     }
@@ -117,14 +117,14 @@ std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightCon
     const Vec3d direction = toRender.vector(sunDirection(params, context.zUp));
     const double norm = length(direction);
     if (!(norm > 0 && std::isfinite(norm))) {
-        diagnostics.error("E0315", context.span, "the sun has no direction", "`toward` is zero");
+        diagnostics.error("E0344", context.span, "the sun has no direction", "`toward` is zero");
         return nullptr;
     }
     const double halfAngle = params.angularDiameter / 2;
     const double projected = kPiD * square(std::sin(halfAngle)); // ∫ cos dω over the disk
     const bool delta = halfAngle < SunLight::kSmallestHalfAngle;
     if (delta && (params.luminance || params.radiance)) {
-        diagnostics.error("E0318", context.span, "a sun without a diameter has no luminance",
+        diagnostics.error("E0347", context.span, "a sun without a diameter has no luminance",
                           "state its `irradiance`, or an `angular-diameter`");
         return nullptr;
     }

@@ -181,16 +181,16 @@ TEST_CASE("impossible placements are reported") {
     };
     PerspectiveParams p;
     p.lookAt = Vec3d{};
-    CHECK(code(p) == "E0322");
+    CHECK(code(p) == "E0352");
     p.lookAt = Vec3d{0, 2, 0}; // along `up`
-    CHECK(code(p) == "E0322");
+    CHECK(code(p) == "E0352");
     p.transform = Transform{};
-    CHECK(code(p) == "E0320");
+    CHECK(code(p) == "E0350");
     PerspectiveParams mirrored;
     mirrored.transform = Transform::scale({-1, 1, 1});
-    CHECK(code(mirrored) == "E0321");
+    CHECK(code(mirrored) == "E0351");
     mirrored.transform = Transform::scale({1, 2, 1});
-    CHECK(code(mirrored) == "E0321");
+    CHECK(code(mirrored) == "E0351");
 }
 
 TEST_CASE("a camera far from the origin has the same rays") {

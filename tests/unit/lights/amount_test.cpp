@@ -84,13 +84,13 @@ TEST_CASE("amounts that contradict themselves are reported") {
     };
     AmountParams p;
     p.radiance = p.color = &kLamp;
-    CHECK(code(p, {}) == "E0312");
+    CHECK(code(p, {}) == "E0341");
     p = {};
     p.power = Quantity{1, Dimension::power, {}};
-    CHECK(code(p, {.power = 0}) == "E0313");
-    CHECK(code(p, {.power = HUGE_VAL}) == "E0313");
+    CHECK(code(p, {.power = 0}) == "E0342");
+    CHECK(code(p, {.power = HUGE_VAL}) == "E0342");
     p.color = &kDark;
-    CHECK(code(p, {.power = 1}) == "E0314");
+    CHECK(code(p, {.power = 1}) == "E0343");
 }
 
 TEST_CASE("every light says when it states no amount") {
@@ -100,7 +100,7 @@ TEST_CASE("every light says when it states no amount") {
     CHECK(makePointLight({}, context, diagnostics) == nullptr);
     CHECK(makeSpotLight({}, context, diagnostics) == nullptr);
     REQUIRE(diagnostics.all().size() == 2);
-    CHECK(diagnostics.all()[0].code == "E0311");
+    CHECK(diagnostics.all()[0].code == "E0340");
     CHECK(diagnostics.all()[0].help == "write `power 800 lm` or `intensity 120 cd`");
 }
 
