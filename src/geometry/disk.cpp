@@ -5,7 +5,8 @@
 
 namespace abbe {
 
-Disk::Disk(Vec3d centre, Vec3d normal, double radius) : centre_(centre), z_(normalize(normal)), radius_(radius) {
+Disk::Disk(Vec3d centre, Vec3d normal, double radius)
+    : centre_(centre), z_(normalize(normal)), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {
     // The float frame only picks a direction; the double one is orthonormal to double precision.
     const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
     x_ = normalize(guess - z_ * dot(guess, z_));
@@ -34,7 +35,7 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     const double x = dot(d, x_), y = dot(d, y_);
     const Vec3d p = centre_ + x_ * x + y_ * y;
     hit.p = Vec3(p);
-    hit.pError = Vec3(abs(p) * 0x1p-22);
+    hit.pError = analyticError(p, magnitude_);
     hit.ng = Vec3(z_);
     hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
     const double turn = std::atan2(y, x) / (2 * kPiD);
@@ -45,7 +46,7 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
 std::optional<ShapeSample> Disk::sample(Vec3 from, Vec2 u) const {
     const Vec2 q = squareToDisk(u);
     const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));
-    ShapeSample s{Vec3(p), Vec3(abs(p) * 0x1p-22), Vec3(z_), 0};
+    ShapeSample s{Vec3(p), analyticError(p, magnitude_), Vec3(z_), 0};
     s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
     if (!(s.pdfSolidAngle > 0)) return std::nullopt;
     return s;

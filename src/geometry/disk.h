@@ -27,6 +27,7 @@ class Disk final : public Shape {
   private:
     Vec3d centre_, x_, y_, z_;
     double radius_;
+    double magnitude_; // largest coordinate in size
 };
 
 } // namespace abbe

@@ -16,6 +16,9 @@ namespace {
 
 // Coordinates beyond this make Debian's Embree stop the process.
 constexpr float kLargestCoordinate = 1e18f;
+// Embree accepts hits at the near end itself: without this a ray that starts on a plane through the origin, where the
+// error bound is 0, would meet it again at distance 0.
+constexpr float kNear = std::numeric_limits<float>::min();
 // False hits dropped on one ray before it is given up as a miss.
 constexpr int kMaxRecasts = 32;
 
@@ -105,7 +108,7 @@ void analyticBounds(const RTCBoundsFunctionArguments* args) {
 std::optional<float> analyticHit(const Shape& shape, const RTCRay& r) {
     const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
     // Shapes know no near end: a ray cast again past a false hit starts there.
-    const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > 0 ? direction * r.tnear : Vec3());
+    const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > kNear ? direction * r.tnear : Vec3());
     const auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
     if (!hit) return std::nullopt;
     return hit->distance + r.tnear;
@@ -199,7 +202,7 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
         return false;
     }
     RTCRayHit rayHit;
-    fill(rayHit.ray, ray, 0);
+    fill(rayHit.ray, ray, kNear);
     cast(scene.get(), rayHit);
     if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     surface(rayHit, ray, hit);
@@ -249,7 +252,7 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay r;
-    fill(r, ray, 0);
+    fill(r, ray, kNear);
     rtcOccluded1(scene.get(), &context, &r);
     return r.tfar < 0;
 }

@@ -1,5 +1,7 @@
 #include "geometry/plane.h"
 
+#include "geometry/surface_math.h"
+
 namespace abbe {
 
 Plane::Plane(Vec3d point, Vec3d normal) : point_(point), z_(normalize(normal)) {
@@ -30,7 +32,7 @@ void Plane::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     const double x = dot(d, x_), y = dot(d, y_);
     const Vec3d p = point_ + x_ * x + y_ * y;
     hit.p = Vec3(p);
-    hit.pError = Vec3(abs(p) * 0x1p-22);
+    hit.pError = analyticError(p, maxComponent(abs(point_)) + std::abs(x) + std::abs(y));
     hit.ng = Vec3(z_);
     hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
     hit.uv = {static_cast<float>(x), static_cast<float>(y)};

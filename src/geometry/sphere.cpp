@@ -16,7 +16,8 @@ double coneOneMinusCos(double d2, double r2) {
 
 } // namespace
 
-Sphere::Sphere(Vec3d centre, double radius) : centre_(centre), radius_(radius) {}
+Sphere::Sphere(Vec3d centre, double radius)
+    : centre_(centre), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {}
 
 Bounds3 Sphere::bounds() const {
     // Rounded outwards: float bounds must hold the double sphere.
@@ -47,7 +48,7 @@ std::optional<RawHit> Sphere::intersect(const Ray& ray) const {
 
 ShapeSample Sphere::at(Vec3d normal) const {
     const Vec3d p = centre_ + normal * radius_;
-    return {Vec3(p), Vec3(abs(p) * 0x1p-22), Vec3(normal), 0};
+    return {Vec3(p), analyticError(p, magnitude_), Vec3(normal), 0};
 }
 
 void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {

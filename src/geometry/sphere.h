@@ -28,6 +28,7 @@ class Sphere final : public Shape {
 
     Vec3d centre_;
     double radius_;
+    double magnitude_; // largest coordinate in size
 };
 
 } // namespace abbe

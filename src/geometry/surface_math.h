@@ -27,6 +27,14 @@ inline TrianglePoint trianglePoint(Vec3 p0, Vec3 p1, Vec3 p2, float s, float t) 
             {error(p0.x, p1.x, p2.x), error(p0.y, p1.y, p2.y), error(p0.z, p1.z, p2.z)}};
 }
 
+// Bound on the error of a point of an analytic shape computed in double and rounded to float: two roundings of the
+// result, and some of the magnitudes in double that went into it, which cancel near the origin.
+inline Vec3 analyticError(Vec3d p, double magnitude) {
+    const Vec3d e = abs(p) * 0x1p-22;
+    const double least = magnitude * 0x1p-48;
+    return Vec3(e + Vec3d(least, least, least));
+}
+
 // Twice the vector area of a triangle, from the two edges that meet opposite the longest one, which loses least on
 // slivers (docs/hard_cases.md, case 9).
 inline Vec3d triangleCross(Vec3d p0, Vec3d p1, Vec3d p2) {
