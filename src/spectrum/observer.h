@@ -31,17 +31,21 @@ Spectrum zbar(const Wavelengths&);
 inline Xyz toXyz(const Spectrum& radiance, const Wavelengths& w) {
     constexpr float scale = static_cast<float>(1 / (kLanes * kYIntegral));
     const Float8 weight = radiance.v / w.pdf.v * scale;
-    const Float8 end = weight * w.fraction.v;
-    alignas(32) float atStart[8], atEnd[8];
-    alignas(32) std::int32_t cell[8];
-    _mm256_store_ps(atStart, weight - end);
-    _mm256_store_ps(atEnd, end);
-    _mm256_store_si256(reinterpret_cast<__m256i*>(cell), reinterpret_cast<__m256i>(w.cell));
-    const auto lane = [&](int j) {
-        const __m256 pair = _mm256_blend_ps(_mm256_broadcast_ss(atStart + j), _mm256_broadcast_ss(atEnd + j), 0xf0);
-        return _mm256_mul_ps(_mm256_load_ps(detail::kObserver[static_cast<std::size_t>(cell[j])].value), pair);
+    const Float8 end = weight * w.fraction.v, start = weight - end;
+    // Lane j's weights of both ends of its cell, four times each, are one in-half permutation of these.
+    const __m256 low = _mm256_permute2f128_ps(start, end, 0x20), high = _mm256_permute2f128_ps(start, end, 0x31);
+    const auto cell = [&](int j) {
+        return _mm256_load_ps(detail::kObserver[static_cast<std::size_t>(w.cell[j])].value);
     };
-    const Float8 total = ((lane(0) + lane(1)) + (lane(2) + lane(3))) + ((lane(4) + lane(5)) + (lane(6) + lane(7)));
+    const __m256 even =
+        _mm256_fmadd_ps(cell(0), _mm256_permute_ps(low, 0x00), _mm256_mul_ps(cell(2), _mm256_permute_ps(low, 0xaa)));
+    const __m256 odd =
+        _mm256_fmadd_ps(cell(1), _mm256_permute_ps(low, 0x55), _mm256_mul_ps(cell(3), _mm256_permute_ps(low, 0xff)));
+    const __m256 evenHigh =
+        _mm256_fmadd_ps(cell(4), _mm256_permute_ps(high, 0x00), _mm256_mul_ps(cell(6), _mm256_permute_ps(high, 0xaa)));
+    const __m256 oddHigh =
+        _mm256_fmadd_ps(cell(5), _mm256_permute_ps(high, 0x55), _mm256_mul_ps(cell(7), _mm256_permute_ps(high, 0xff)));
+    const Float8 total = (even + odd) + (evenHigh + oddHigh);
     const __m128 xyz = _mm_add_ps(_mm256_castps256_ps128(total), _mm256_extractf128_ps(total, 1));
     const __m256d wide = _mm256_cvtps_pd(xyz);
     return {wide[0], wide[1], wide[2]};

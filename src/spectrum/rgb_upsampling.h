@@ -20,7 +20,7 @@ struct ReflectanceFit {
 // Finds the reflectance whose colour under the white of an RGB space is the one wanted. Colours outside the solid of
 // object colours get the nearest curve (least CIE 1976 difference) and its residual. White is exactly 1, black exactly
 // 0 and greys are exactly flat: each channel is measured relative to the tabulated illuminant, whose white agrees with
-// that of the space to about 1e-4.
+// that of the space to about 1e-4. Everywhere here: requires finite RGB.
 class ReflectanceFitter {
   public:
     // stepNm is the spacing of the quadrature, 1 or 5.

@@ -98,6 +98,15 @@ TEST_CASE("the sigmoid in eight lanes equals the sigmoid in double, for dark col
     }
 }
 
+TEST_CASE("colours next to grey have nearly flat curves") {
+    for (const RgbSpace* space : {&rgb::rec709, &rgb::rec2020, &rgb::ap0}) {
+        const ReflectanceFitter fitter(*space);
+        CHECK(largestError(fitter.rgb(SigmoidCurve::flat(0.5)), Vec3d(0.5, 0.5, 0.5)) < 1e-12);
+        const auto up = reflectanceFromRgb(Vec3d(0.6, 0.6, 0.600001), *space);
+        CHECK(up.curve->maximum() - up.curve->minimum() < 1e-4);
+    }
+}
+
 TEST_CASE("very dark and very bright colours are fitted") {
     const ReflectanceFitter fitter(rgb::rec709);
     for (const double scale : {1e-6, 1e-4, 1e-2}) {
