@@ -2,6 +2,7 @@
 #include "schema/measure.h"
 #include "schema/suggest.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -22,6 +23,10 @@ class StepReader {
 
     // Nothing after a diagnostic.
     std::optional<Transform> read() {
+        if (std::ranges::find(kSteps, entry_.name()) == kSteps.end()) {
+            unknown();
+            return std::nullopt;
+        }
         if (entry_.name() == "matrix") return matrix();
         if (entry_.hasBlock() || !entry_.keys().empty()) {
             report(diagnostics_, entry_.span(), "E0214", fmt::format("`{}` takes numbers only", entry_.name()),
@@ -31,9 +36,7 @@ class StepReader {
         if (entry_.name() == "translate") return translate();
         if (entry_.name() == "rotate") return rotate();
         if (entry_.name() == "scale") return scale();
-        if (entry_.name() == "look-at") return lookAt();
-        unknown();
-        return std::nullopt;
+        return lookAt();
     }
 
   private:
@@ -87,7 +90,7 @@ class StepReader {
     }
 
     std::optional<Transform> scale() {
-        const bool three = entry_.count() > 1;
+        const bool three = entry_.count() > 2; // one number and a wrong unit are two values
         const auto r = row(kPlain, 0, three ? 3 : 1, three ? "scale 1 2 1" : "scale 2");
         if (!r) return std::nullopt;
         const auto& v = r->values;

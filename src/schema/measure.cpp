@@ -69,7 +69,10 @@ std::optional<double> parseFraction(std::string_view text) {
     return parts[0] / parts[1];
 }
 
-std::string plain(double value) { return fmt::format("{:.6g}", value); }
+std::string plain(double value) {
+    const bool large = std::abs(value) >= 1e6 && std::abs(value) < 1e15 && value == std::floor(value);
+    return large ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+}
 
 std::string rangeText(double lower, double upper, double factor, std::string_view unit) {
     const std::string suffix = unit.empty() || unit == "%" ? std::string(unit) : fmt::format(" {}", unit);
