@@ -51,7 +51,7 @@ Chromaticity chromaticity(const Xyz& c) {
 Xyz whiteXyz(Chromaticity c) { return {c.x / c.y, 1, (1 - c.x - c.y) / c.y}; }
 
 Matrix3 RgbSpace::toXyz() const {
-    // Columns are the primaries, scaled so that their sum is the white [SMPTE RP 177].
+    // Columns are the primaries, scaled so that their sum is the white [SMPTE1993].
     const Matrix3 primaries{{{red.x, green.x, blue.x},
                              {red.y, green.y, blue.y},
                              {1 - red.x - red.y, 1 - green.x - green.y, 1 - blue.x - blue.y}}};
