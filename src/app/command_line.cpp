@@ -105,7 +105,11 @@ class Reader {
 
     std::string helpText() const {
         const CLI::App* chosen = chosenCommand();
-        return chosen == &app_ ? app_.help() : chosen->help("abbe");
+        std::string text = chosen == &app_ ? app_.help() : chosen->help("abbe");
+        constexpr std::string_view kInternal = "--png{.}      "; // how the library writes an optional value
+        if (const auto at = text.find(kInternal); at != std::string::npos)
+            text.replace(at, kInternal.size(), "--png[=FILE]  ");
+        return text;
     }
 
   private:
@@ -211,11 +215,11 @@ void Reader::addRender() {
         ->check(CLI::IsMember({"auto", "all"}).description(""))
         ->type_name("NAME")
         ->group(studies);
-    c->add_option("--strategy", r.strategy, "mis, lights or bsdf: how light is found")
+    c->add_option("--strategy", r.build.strategy, "mis, lights or bsdf: how light is found")
         ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
         ->type_name("NAME")
         ->group(studies);
-    c->add_option("--sampler", r.sampler, "sobol or random")
+    c->add_option("--sampler", r.build.sampler, "sobol or random")
         ->check(CLI::IsMember({"sobol", "random"}).description(""))
         ->type_name("NAME")
         ->group(studies);

@@ -14,6 +14,7 @@ class HumanReport final : public RenderReport {
     ~HumanReport() override { clearBar(); }
 
     void start(const RenderStart& s) override {
+        started_ = true;
         noiseTarget_ = s.noiseTarget;
         if (quiet_) return;
         console_.line(fmt::format("{}  {}×{}  {} thread{}  image {}", s.scene, s.width, s.height, s.threads,
@@ -22,7 +23,7 @@ class HumanReport final : public RenderReport {
 
     void phase(const std::string& name, double seconds) override {
         clearBar();
-        if (quiet_ || seconds < 1) return; // short ones are told in the summary alone
+        if (quiet_ || started_ || seconds < 1) return; // short ones are told in the summary alone
         console_.line(fmt::format("{} {:.1f} s", name, seconds));
     }
 
@@ -55,9 +56,9 @@ class HumanReport final : public RenderReport {
 
     void showLine(const Progress& p) {
         const int tenth = static_cast<int>(10 * p.fraction);
-        if (tenth <= lastTenth_ && p.elapsed - lastShown_ < 30) return;
-        if (p.fraction >= 1 && lastTenth_ < 0) return; // over before anything was said
-        lastTenth_ = std::max(tenth, lastTenth_);
+        const double since = p.elapsed - lastShown_;
+        if (since < 2 || (tenth <= lastTenth_ && since < 30)) return;
+        lastTenth_ = tenth;
         lastShown_ = p.elapsed;
         console_.line(progressLine(p, noiseTarget_));
     }
@@ -72,8 +73,9 @@ class HumanReport final : public RenderReport {
     Console console_;
     bool quiet_;
     double noiseTarget_ = 0;
-    double lastShown_ = -1;
+    double lastShown_ = 0;
     int lastTenth_ = 0;
+    bool started_ = false; // rendering
     bool barShown_ = false;
 };
 

@@ -4,6 +4,8 @@
 #include "app/provenance.h"
 #include "io/exr_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -68,7 +70,15 @@ std::string sceneText(const SceneInfo& info) {
     if (f.objects > 0) s += fmt::format("objects    {}, placed {} times\n", f.objects, f.instances);
     s += fmt::format("materials  {}\n", f.materials);
     if (!f.bounds.empty()) {
-        const Vec3d &a = f.bounds.lower, &b = f.bounds.upper;
+        // Coordinates are stored from the camera; what is left of a zero is rounding.
+        const Vec3d size = f.bounds.upper - f.bounds.lower;
+        const double least = 1e-6 * std::max({size.x, size.y, size.z});
+        const auto snapped = [&](Vec3d v) {
+            for (double* c : {&v.x, &v.y, &v.z})
+                if (std::abs(*c) < least) *c = 0;
+            return v;
+        };
+        const Vec3d a = snapped(f.bounds.lower), b = snapped(f.bounds.upper);
         s += fmt::format("bounds     {:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m\n", a.x, a.y, a.z, b.x, b.y, b.z);
     }
     for (const auto& l : f.lightList) {

@@ -32,8 +32,7 @@ struct RenderOptions {
     std::optional<std::string> png; // empty text: named after the EXR
     ViewOptions view;
     BuildOptions build;
-    std::optional<std::string> strategy, sampler; // override the scene's
-    bool largestKernel = false;                   // run the instantiation with all effects
+    bool largestKernel = false; // run the instantiation with all effects
     bool quiet = false;
     bool strict = false;
     std::optional<Vec2i> pixel; // render this one alone and print it

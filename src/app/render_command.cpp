@@ -76,7 +76,9 @@ ExitCode RenderRun::load() {
     endPhase("checking", loaded_->resolveSeconds);
     if (loaded_->readable) {
         built_ = buildScene(loaded_->tree, loaded_->types, options_.build, loaded_->diagnostics);
-        endPhase("building", watch_.lap());
+        const double seconds = watch_.lap();
+        endPhase("building", seconds - built_.commitSeconds);
+        endPhase("committing", built_.commitSeconds);
     }
     report_->diagnostics(loaded_->diagnostics, loaded_->sources);
     summary_.warnings = loaded_->diagnostics.warningCount();
@@ -92,7 +94,7 @@ ExitCode RenderRun::refuse(const char* code, std::string message, std::string he
 
 ExitCode RenderRun::checkFilm() {
     for (const FilmFault& fault : findFaults(built_.film))
-        return refuse("E0609", fmt::format("`{}`: {}", fault.field, fault.message), fault.help, ExitCode::faulty);
+        return refuse("E0609", fault.message, fault.help, options_.build.size ? ExitCode::usage : ExitCode::faulty);
     film_ = filmSettings(built_.film);
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
     constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
@@ -134,8 +136,6 @@ ExitCode RenderRun::prepare() {
     if (const ExitCode code = checkFilm(); code != ExitCode::done) return code;
     if (!options_.pixel)
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
-    if (options_.strategy) built_.render.strategy.word = *options_.strategy;
-    if (options_.sampler) built_.render.sampler.word = *options_.sampler;
     settings_ = renderSettings(built_.render);
     integrator_ = makePathTracer(options_.largestKernel ? kAllEffects : built_.scene.effects);
     return ExitCode::done;

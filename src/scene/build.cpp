@@ -5,6 +5,7 @@
 #include "scene/scene_builder.h"
 #include "spectrum/observer.h"
 
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -79,6 +80,8 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
     if (options_.seed) built.render.seed = *options_.seed;
     if (options_.noise) built.render.noise = *options_.noise;
     if (options_.timeLimit) built.render.timeLimit = *options_.timeLimit;
+    if (!options_.strategy.empty()) built.render.strategy.word = options_.strategy;
+    if (!options_.sampler.empty()) built.render.sampler.word = options_.sampler;
 }
 
 void SceneBuilder::buildCamera(BuiltScene& built) {
@@ -128,7 +131,11 @@ void SceneBuilder::finish(BuiltScene& built) {
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";
     noteEffects(built);
-    if (options_.geometry && !diagnostics_.hasErrors()) built.scene.intersector = embree_.build();
+    if (options_.geometry && !diagnostics_.hasErrors()) {
+        const auto start = std::chrono::steady_clock::now();
+        built.scene.intersector = embree_.build();
+        built.commitSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
     built.scene.curves = curves_.release();
     built.scene.materials = std::move(materials_);
     built.scene.shapes = std::move(shapes_);

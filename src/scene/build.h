@@ -21,6 +21,7 @@ struct BuildOptions {
     std::optional<std::int64_t> seed;
     std::optional<double> noise;     // relative
     std::optional<double> timeLimit; // s
+    std::string strategy, sampler;   // words of `render`; empty: the scene's
     bool geometry = true;            // false: check only; no acceleration structure is built
 };
 
@@ -43,6 +44,7 @@ struct BuiltScene {
     RenderParams render;
     double exposure = 1; // factor from the camera's exposure in stops
     SceneFacts facts;
+    double commitSeconds = 0; // of the building, what the acceleration structure took
 };
 
 // Builds everything, or returns what could be built together with errors in `diagnostics`: the caller must not render
