@@ -6,6 +6,7 @@
 #include "geometry/instance.h"
 #include "geometry/surface_math.h"
 
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <embree3/rtcore.h>
@@ -22,14 +23,24 @@ constexpr float kNear = std::numeric_limits<float>::min();
 // False hits dropped on one ray before it is given up as a miss.
 constexpr int kMaxRecasts = 32;
 
+enum class Kind : std::uint32_t { triangles, quads, analytic, instance };
+
 // What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
 struct Record {
     const Shape* shape = nullptr;
     const Material* material = nullptr;
     const Light* light = nullptr;
     std::uint32_t part = 0;
+    Kind kind = Kind::instance;
 };
 static_assert(sizeof(Record) == 32);
+
+// An instance with its object: its scene, and where its records begin.
+struct PlacedObject {
+    Instance instance;
+    RTCScene scene;
+    std::size_t firstRecord;
+};
 
 // NaN fails every comparison.
 bool traceable(const Ray& ray) {
@@ -59,14 +70,16 @@ class Attacher final : public GeometrySink {
         : device_(device), scene_(scene), firstRecord_(firstRecord), records_(records) {}
 
     void add(const Shape& shape, EmbreeSceneBuilder::Binding binding) {
-        next_ = {&shape, binding.material, binding.light, 0};
+        next_ = {&shape, binding.material, binding.light, 0, Kind::analytic};
         shape.commit(*this);
     }
     void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) override {
+        next_.kind = Kind::triangles;
         mesh(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, vertices, indices.data(), sizeof(indices[0]),
              indices.size());
     }
     void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) override {
+        next_.kind = Kind::quads;
         mesh(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, vertices, indices.data(), sizeof(indices[0]), indices.size());
     }
     void analytic(const Bounds3&) override;
@@ -133,6 +146,7 @@ void analyticOccluded(const RTCOccludedFunctionNArguments* args) {
 }
 
 void Attacher::analytic(const Bounds3&) {
+    next_.kind = Kind::analytic;
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
@@ -153,12 +167,15 @@ class EmbreeScene final : public Intersector {
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
     std::vector<Record> records; // of the top scene by geometry id, then of each object
-    std::vector<Instance> instances;
+    std::vector<PlacedObject> placed;
     Bounds3 bounds_;
 
   private:
-    void surface(const RTCRayHit&, const Ray&, SurfaceHit&) const;
+    const PlacedObject* placeOf(const RTCHit&) const;
+    const Record& recordOf(const RTCHit&, const PlacedObject*) const;
+    void surface(const RTCHit&, float distance, const Ray&, SurfaceHit&) const;
     bool resolve(RTCRayHit&, const Ray&, SurfaceHit&) const;
+    bool recompute(RTCHit&, const Ray&, float& distance) const;
 
     mutable std::atomic<std::uint64_t> rejected_{0};
 };
@@ -171,16 +188,23 @@ void cast(RTCScene scene, RTCRayHit& rayHit) {
     rtcIntersect1(scene, &context, &rayHit);
 }
 
-void EmbreeScene::surface(const RTCRayHit& r, const Ray& ray, SurfaceHit& hit) const {
-    const bool instanced = r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-    const Instance* instance = instanced ? &instances[records[r.hit.instID[0]].part] : nullptr;
-    const Record& record = records[r.hit.geomID + (instance ? instance->firstRecord() : 0)];
-    const RawHit raw{r.hit.u, r.hit.v, r.ray.tfar, r.hit.primID, record.part};
+const PlacedObject* EmbreeScene::placeOf(const RTCHit& h) const {
+    return h.instID[0] == RTC_INVALID_GEOMETRY_ID ? nullptr : &placed[records[h.instID[0]].part];
+}
+
+const Record& EmbreeScene::recordOf(const RTCHit& h, const PlacedObject* place) const {
+    return records[h.geomID + (place ? place->firstRecord : 0)];
+}
+
+void EmbreeScene::surface(const RTCHit& h, float distance, const Ray& ray, SurfaceHit& hit) const {
+    const PlacedObject* place = placeOf(h);
+    const Record& record = recordOf(h, place);
+    const RawHit raw{h.u, h.v, distance, h.primID, record.part};
     hit.material = record.material;
     hit.light = record.light;
-    if (instance) [[unlikely]] {
-        record.shape->surface(raw, instance->toObject(ray), hit);
-        instance->toRender(hit);
+    if (place) [[unlikely]] {
+        record.shape->surface(raw, place->instance.toObject(ray), hit);
+        place->instance.toRender(hit);
     } else {
         record.shape->surface(raw, ray, hit);
     }
@@ -205,8 +229,8 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     fill(rayHit.ray, ray, kNear);
     cast(scene.get(), rayHit);
     if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    surface(rayHit, ray, hit);
-    // Embree reports hits that are not there, rarely, on thin triangles met at grazing angles; the point from the
+    surface(rayHit.hit, rayHit.ray.tfar, ray, hit);
+    // On triangles met edge-on Embree reports hits that are not there, and misplaces others; the point from the
     // barycentrics then lies off the ray (docs/hard_cases.md, case 4).
     const Deviation off = deviation(ray, hit);
     const float tolerance = 16 * maxComponent(hit.pError) + 1e-6f * off.along;
@@ -218,30 +242,73 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     return true;
 }
 
-// Decides about a suspicious hit and those behind it, with a tolerance that knows how large the shape is.
+// Decides about a suspicious hit, and about those behind it if it is none, in double.
 [[gnu::noinline]] bool EmbreeScene::resolve(RTCRayHit& rayHit, const Ray& ray, SurfaceHit& hit) const {
     bool found = false;
-    SurfaceHit candidate;
+    RTCHit nearest;
+    float distance = ray.tMax;
     for (int i = 0; i < kMaxRecasts && rayHit.hit.geomID != RTC_INVALID_GEOMETRY_ID; ++i) {
-        const float t = rayHit.ray.tfar;
-        // A point found before but truly farther than Embree said: now that nothing nearer is left, it is the hit.
-        if (found && hit.distance <= t) return true;
-        surface(rayHit, ray, candidate);
-        const Deviation off = deviation(ray, candidate);
-        const float size = length(bounds_.diagonal());
-        const float slack = std::isfinite(size) ? gammaBound(8) * size : 0.f;
-        const float tolerance = 64 * maxComponent(candidate.pError) + 4e-6f * std::abs(off.along) + slack;
-        const bool real = off.offLine2 <= tolerance * tolerance && off.along > 0 && off.along <= ray.tMax;
-        if (real && (!found || off.along < hit.distance)) {
-            hit = candidate;
-            hit.distance = off.along;
+        const float reported = rayHit.ray.tfar;
+        // A hit that truly lies farther than Embree said stands once nothing nearer is left.
+        if (found && distance <= reported) break;
+        float t = reported;
+        if (recompute(rayHit.hit, ray, t) && t <= distance) {
+            nearest = rayHit.hit;
+            distance = t;
             found = true;
         }
-        fill(rayHit.ray, ray, std::nextafter(t, kInfinity));
+        fill(rayHit.ray, ray, std::nextafter(reported, kInfinity));
         if (!(rayHit.ray.tnear < rayHit.ray.tfar)) break;
         cast(scene.get(), rayHit);
     }
-    return found;
+    if (!found) return false;
+    surface(nearest, distance, ray, hit);
+    hit.distance = distance;
+    return true;
+}
+
+// Corners of the triangles that a primitive consists of, in render space: one, or the two halves of a quad.
+struct Corners {
+    std::array<std::array<Vec3d, 3>, 2> triangle;
+    int count = 0;
+};
+Corners cornersOf(RTCScene scene, const RTCHit& h, Kind kind, const PlacedObject* place) {
+    RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
+    const auto* vertices = static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto* indices =
+        static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+    const auto vertex = [&](int i) {
+        const std::size_t corners = kind == Kind::quads ? 4 : 3;
+        const Vec3d p(vertices[indices[corners * h.primID + static_cast<std::size_t>(i)]]);
+        return place ? place->instance.map().point(p) : p;
+    };
+    if (kind == Kind::triangles) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
+    return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
+}
+
+// The true barycentrics and distance of a hit [Moller1997]; false if the ray misses the primitive. Rays that pass an
+// edge within rounding count as hits, so that neighbours leave no crack.
+bool EmbreeScene::recompute(RTCHit& h, const Ray& ray, float& distance) const {
+    constexpr double slack = 1e-6;
+    const PlacedObject* place = placeOf(h);
+    const Kind kind = recordOf(h, place).kind;
+    if (kind == Kind::analytic) return true; // computed in double already
+    const Corners corners = cornersOf(place ? place->scene : scene.get(), h, kind, place);
+    const Vec3d o(ray.origin), d(ray.direction);
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < corners.count; ++i) {
+        const auto& [a, b, c] = corners.triangle[static_cast<std::size_t>(i)];
+        const Vec3d e1 = b - a, e2 = c - a, s = o - a;
+        const Vec3d p = cross(d, e2), q = cross(s, e1);
+        const double inverse = 1 / dot(e1, p); // infinite for rays in the plane: all tests below fail
+        const double u = dot(s, p) * inverse, v = dot(d, q) * inverse, t = dot(e2, q) * inverse;
+        if (!(u >= -slack && v >= -slack && u + v <= 1 + slack && t > 0 && t < best)) continue;
+        best = t;
+        h.u = static_cast<float>(i == 0 ? u : 1 - u);
+        h.v = static_cast<float>(i == 0 ? v : 1 - v);
+    }
+    distance = static_cast<float>(best);
+    return std::isfinite(best) && best <= static_cast<double>(ray.tMax);
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const noexcept {
@@ -306,7 +373,7 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
     // Instances take the next geometry ids of the top scene, so their records come before those of the objects.
     const std::size_t firstInstance = s.records.size();
     for (std::size_t i = 0; i < impl_->instances.size(); ++i)
-        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i)});
+        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i), Kind::instance});
 
     std::vector<std::size_t> firstRecords;
     std::vector<Bounds3> objectBounds;
@@ -321,9 +388,10 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
         }
         rtcCommitScene(s.objectScenes.back().get());
     }
-    s.instances.reserve(impl_->instances.size());
+    s.placed.reserve(impl_->instances.size());
     for (const auto& [object, map] : impl_->instances) {
-        const Instance& instance = s.instances.emplace_back(map, firstRecords[object]);
+        const Instance& instance =
+            s.placed.emplace_back(Instance(map), s.objectScenes[object].get(), firstRecords[object]).instance;
         s.bounds_.add(instance.toRender(objectBounds[object]));
         RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(geometry, s.objectScenes[object].get());
@@ -332,7 +400,7 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
         rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
         rtcSetGeometryMask(geometry, 0xffffffffu);
         rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(s.scene.get(), geometry, static_cast<unsigned>(firstInstance + s.instances.size() - 1));
+        rtcAttachGeometryByID(s.scene.get(), geometry, static_cast<unsigned>(firstInstance + s.placed.size() - 1));
         rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(s.scene.get());

@@ -21,8 +21,7 @@ Vec3d multiply(const double (&m)[3][3], Vec3d v) {
 
 } // namespace
 
-Instance::Instance(const Transform& objectToRender, std::size_t firstRecord)
-    : objectToRender_(roundedToFloat(objectToRender)), firstRecord_(firstRecord) {
+Instance::Instance(const Transform& objectToRender) : objectToRender_(roundedToFloat(objectToRender)) {
     const auto inverse = objectToRender_.inverse();
     ABBE_CHECK(inverse.has_value());
     renderToObject_ = *inverse;

@@ -7,17 +7,15 @@
 #include "render/surface_hit.h"
 
 #include <array>
-#include <cstddef>
 
 namespace abbe {
 
 // The map is rounded to float once, so that Embree traces exactly the map by which hits are carried back.
 class Instance {
   public:
-    // Requires an invertible map. `firstRecord` is the builder's own.
-    Instance(const Transform& objectToRender, std::size_t firstRecord);
+    // Requires an invertible map.
+    explicit Instance(const Transform& objectToRender);
 
-    std::size_t firstRecord() const { return firstRecord_; }
     const Transform& map() const { return objectToRender_; } // as rounded
     std::array<float, 12> rowMajor() const;
     // The direction keeps its length in object units, so distances along the ray stay those of render space.
@@ -28,7 +26,6 @@ class Instance {
 
   private:
     Transform objectToRender_, renderToObject_;
-    std::size_t firstRecord_;
     double absolute_[3][3];  // |A|
     double roundTrip_[3][3]; // |A| |A⁻¹|: how much the rounding of a ray in object space weighs in render space
 };

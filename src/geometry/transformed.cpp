@@ -22,7 +22,7 @@ double ellipsoidArea(const Transform& m) {
 } // namespace
 
 Transformed::Transformed(std::unique_ptr<const Sphere> sphere, const Transform& toRender)
-    : map_(toRender, 0), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
+    : map_(toRender), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
     const Transform& m = map_.map();
     const double r = sphere->radius();
     const auto row = [&m, r](int i) { return r * length(Vec3d(m.a[i][0], m.a[i][1], m.a[i][2])); };
@@ -32,7 +32,7 @@ Transformed::Transformed(std::unique_ptr<const Sphere> sphere, const Transform& 
 }
 
 Transformed::Transformed(std::unique_ptr<const Disk> disk, const Transform& toRender)
-    : map_(toRender, 0), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
+    : map_(toRender), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
     const Transform& m = map_.map();
     const Vec3d n = disk->normal();
     const double r = disk->radius();
