@@ -315,7 +315,7 @@ void checkSpectra(const std::vector<Definition>& definitions, const SceneTree& t
         if (!d.properties.empty())
             report(diagnostics, d.properties[0].headSpan(), "E0214", "`spectrum` takes no block",
                    "write its values in one line");
-        const Entry entry(d.name.empty() ? "spectrum" : d.name, d.span, d.arguments, d.keys);
+        const Entry entry(d.name.empty() ? "spectrum" : std::string_view(d.name), d.span, d.arguments, d.keys);
         const SpectrumUse use{entry.name(), std::nullopt, kEveryDimension};
         readSpectrum(use, entry, tree, diagnostics);
     }
