@@ -43,15 +43,21 @@ template <EffectBits E> class PathLoop {
     static constexpr bool kAbsorption = hasEffect(E, Effect::absorption);
     using Strategy = RenderSettings::Strategy;
 
+    // Towards the eye, in the shading frame and in render space.
+    struct Directions {
+        Vec3 wo;
+        Vec3 woRender;
+    };
+
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
-    void sampleLight(const SurfaceHit&, const Bsdf&, Vec3 wo, const VertexSample&);
-    bool scatter(const SurfaceHit&, const Bsdf&, Vec3 wo, const VertexSample&, Ray&);
+    void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&);
+    bool scatter(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, Ray&);
     bool survives(std::uint32_t depth, float rouletteScale);
     void absorb(const SurfaceHit&, Vec3 direction);
     void endSecondaryWavelengths();
     // False where the shading normal would let light through a surface or keep it from crossing one.
-    static bool sidesAgree(const SurfaceHit&, Vec3 wo, Vec3 wi, Vec3 worldWi);
+    static bool sidesAgree(const SurfaceHit&, const Directions&, Vec3 wi, Vec3 wiRender);
     // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation
     // would have found it with density `lightPdf` (0: could not).
     float scatteringWeight(float lightPdf) const;
@@ -84,17 +90,18 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         }
         arena_.reset();
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
-        const Vec3 wo = hit.shading.toLocal(-ray.direction);
+        const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
         const VertexSample sample = sampler_.vertex(depth, context_.choices);
-        sampleLight(hit, bsdf, wo, sample);
-        if (!scatter(hit, bsdf, wo, sample, ray) || !survives(depth, rouletteScale)) break;
+        sampleLight(hit, bsdf, eye, sample);
+        if (!scatter(hit, bsdf, eye, sample, ray) || !survives(depth, rouletteScale)) break;
     }
     return path_.radiance;
 }
 
-template <EffectBits E> bool PathLoop<E>::sidesAgree(const SurfaceHit& hit, Vec3 wo, Vec3 wi, Vec3 worldWi) {
-    const float woGeometric = dot(hit.shading.toWorld(wo), hit.ng), wiGeometric = dot(worldWi, hit.ng);
-    return (wo.z * wi.z > 0) == (woGeometric * wiGeometric > 0);
+template <EffectBits E>
+bool PathLoop<E>::sidesAgree(const SurfaceHit& hit, const Directions& eye, Vec3 wi, Vec3 wiRender) {
+    const bool reflectsGeometrically = dot(eye.woRender, hit.ng) * dot(wiRender, hit.ng) > 0;
+    return (eye.wo.z * wi.z > 0) == reflectsGeometrically;
 }
 
 template <EffectBits E> float PathLoop<E>::scatteringWeight(float lightPdf) const {
@@ -138,15 +145,16 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
 }
 
 template <EffectBits E>
-void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, Vec3 wo, const VertexSample& sample) {
+void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye,
+                              const VertexSample& sample) {
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick);
     const auto light = picked.light->sample(hit.p, sample.light, path_.lambda);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
-    const BsdfEval eval = bsdf.eval(wo, wi, Transport::radiance);
-    if (!anyNonZero(eval.fcos) || !sidesAgree(hit, wo, wi, light->wi)) return;
+    const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
+    if (!anyNonZero(eval.fcos) || !sidesAgree(hit, eye, wi, light->wi)) return;
     Ray shadow{spawnOrigin(hit, light->wi), light->wi, kInfinity, 0};
     if (light->distance < kInfinity) {
         // Aim at the point itself from the moved origin, and stop short of it: the light must not shadow itself.
@@ -166,8 +174,9 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, Vec3 wo, 
 }
 
 template <EffectBits E>
-bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, Vec3 wo, const VertexSample& sample, Ray& ray) {
-    const auto next = bsdf.sample(wo, sample.lobe, sample.bsdf, Transport::radiance);
+bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye, const VertexSample& sample,
+                          Ray& ray) {
+    const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
     if (!next) return false;
     path_.beta *= next->weight;
     path_.from = hit.p;
@@ -181,7 +190,7 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, Vec3 wo, cons
         if (!path_.delta) d.unidirectional *= next->pdfRatio;
     }
     const Vec3 direction = hit.shading.toWorld(next->wi);
-    if (!sidesAgree(hit, wo, next->wi, direction)) return false;
+    if (!sidesAgree(hit, eye, next->wi, direction)) return false;
     if constexpr (kAbsorption)
         if (next->lobe.has(Lobe::transmission))
             path_.interior.absorption = dot(direction, hit.ng) < 0 ? hit.material->absorption() : nullptr;

@@ -45,7 +45,7 @@ void unknownName(std::string_view what, std::string_view name, Span span, const 
 }
 
 void wrongUse(const SpectrumValue& value, std::string_view what, SpectrumRole role, Diagnostics& diagnostics) {
-    diagnostics.error("E0320", value.span, fmt::format("{} cannot serve as {}", what, purpose(role)),
+    diagnostics.error("E0330", value.span, fmt::format("{} cannot serve as {}", what, purpose(role)),
                       "wrong kind of spectrum");
 }
 
@@ -104,7 +104,7 @@ const Curve* CurveLibrary::rgb(const SpectrumValue& value, SpectrumRole role, Di
                                                            : emissionFromRgb(colour, space);
     if (fit.deltaE > 1)
         diagnostics
-            .warning("W0321", value.span,
+            .warning("W0331", value.span,
                      fmt::format("no smooth spectrum has this colour; the nearest is ΔE {:.1f} away", fit.deltaE),
                      "outside what reflectances can reach")
             .notes.push_back("give a measured `table` for a colour this saturated");
@@ -138,7 +138,7 @@ const Curve* CurveLibrary::named(const SpectrumValue& value, SpectrumRole role, 
         if (role == SpectrumRole::index) return keep(indexCurve(*found));
         if (role != SpectrumRole::unbounded) return wrongUse(value, "a glass", role, diagnostics), nullptr;
         if (found->k.empty())
-            diagnostics.warning("W0322", value.span,
+            diagnostics.warning("W0332", value.span,
                                 fmt::format("no absorption is tabulated for `{}`; it is clear", found->name));
         return keep(absorptionCurve(*found));
     }
@@ -152,7 +152,7 @@ const Curve* CurveLibrary::curve(const SpectrumValue& value, SpectrumRole role, 
     const auto usable = [&](std::unique_ptr<const Curve> c) -> const Curve* {
         if (role != SpectrumRole::index || usableIndex(*c)) return keep(std::move(c));
         diagnostics
-            .error("E0321", value.span, "this refractive index leaves (0.2, 10) within 360 to 830 nm",
+            .error("E0331", value.span, "this refractive index leaves (0.2, 10) within 360 to 830 nm",
                    "not a usable index")
             .notes.push_back("coefficients take wavelengths in µm");
         return nullptr;
