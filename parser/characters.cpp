@@ -68,6 +68,12 @@ std::uint32_t blankLength(const char* p, const char* end) {
     return kind == Wide::blank || kind == Wide::disallowed ? c.length : 0;
 }
 
+bool isWordCharacter(const char* p, const char* end) {
+    if (!has(*p, kWide)) return has(*p, kWord);
+    const CodePoint c = decode(p, end);
+    return c.length > 0 && wideKind(c.value) == Wide::word;
+}
+
 const char* wordEnd(const char* p, const char* end) {
     for (;;) {
         while (has(*p, kWord)) ++p;

@@ -61,6 +61,8 @@ Wide wideKind(std::uint32_t c);
 std::uint32_t newlineLength(const char* p, const char* end);
 // Length in bytes of the white space character at `p`, or 0.
 std::uint32_t blankLength(const char* p, const char* end);
+// Whether a character that may stand in a bare word is at `p`.
+bool isWordCharacter(const char* p, const char* end);
 // Past the characters of a bare word that begin at `p`.
 const char* wordEnd(const char* p, const char* end);
 

@@ -47,6 +47,7 @@ void TreeReader::readEntries(const OpenNode& open) {
         while (readNumber(node)) {
         }
         skipSpace(node);
+        if (readNumber(node)) continue; // behind a comment or on a continued line
         if (*at_ == '{') {
             checkSpace();
             endEntries(node);
@@ -103,8 +104,9 @@ bool TreeReader::readEntry(Record& node, std::uint32_t index) {
         inBrackets_ = list;
         return true;
     }
-    const bool named = startsText(at_) || (!startsNumber(at_) && wordEnd(at_, text_.end) > at_);
-    if (named || startsNumber(at_) || *at_ == '#') checkSpace();
+    const bool number = startsNumber(at_) || startsPointNumber(at_);
+    const bool named = startsText(at_) || (!number && isWordCharacter(at_, text_.end));
+    if (named || number || (*at_ == '#' && has(at_[1], kWord))) checkSpace();
     return named ? readTextOrKey(node, index) : readValue(node, index), true;
 }
 
@@ -229,6 +231,7 @@ void TreeReader::readEquals(Record& node) {
     Diagnostic& d = errors_.error("E0113", equals, equals + 1, "a property and its value are separated by a space",
                                   "write a space instead");
     if (findLineEnd(name, at_) == at_) errors_.fix(d, name, at_, " ");
+    touch(node, equals + 1);
 }
 
 // At `(`. Skips a type annotation and the space behind it. False where there is none: then `at_` is unchanged, unless a
@@ -239,7 +242,7 @@ bool TreeReader::readAnnotation(Record& node) {
     skipSpace();
     std::string_view name;
     const bool named =
-        startsText(at_) || (!startsNumber(at_) && !startsPointNumber(at_) && wordEnd(at_, text_.end) > at_);
+        startsText(at_) || (!startsNumber(at_) && !startsPointNumber(at_) && isWordCharacter(at_, text_.end));
     if (named) at_ = scanner_.scanName(at_, name);
     skipSpace();
     if (!named || *at_ != ')') {

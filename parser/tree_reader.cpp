@@ -2,6 +2,7 @@
 #include "parser/tree_reader.h"
 
 #include "parser/characters.h"
+#include "parser/number.h"
 #include "parser/parameters.h"
 #include "parser/text_literal.h"
 #include "parser/whitespace.h"
@@ -82,9 +83,10 @@ void TreeReader::readNode() {
         readAnnotation(node);
     }
     const char* const begin = at_;
-    if (!readName(node)) {
+    const bool nothing = atEndOfNode() || *at_ == '{'; // behind a type annotation: reported
+    if (nothing || !readName(node)) {
         // What stands here is no node; the rest of the line is still read for further mistakes.
-        if (at_ == begin) at_ = scanner_.scan(at_, Place::argument);
+        if (at_ == begin && !nothing) at_ = scanner_.scan(at_, Place::argument);
         entryEnd_ = nullptr;
         open.discard = true;
         node.damaged = true;
@@ -132,8 +134,12 @@ bool TreeReader::readOddName(Record& node) {
         return false;
     }
     const char* const word = wordEnd(at_, text_.end);
-    Diagnostic& d = errors_.error("E0121", at_, word, "a line begins with a word", "rows of numbers begin with `-`");
-    errors_.fix(d, at_, at_, "- ");
+    const bool number = parseNumber(between(at_, word)).error == NumberError::none;
+    if (number && has(*word, kValueEnd)) { // a misspelt one is an error of its own
+        Diagnostic& d =
+            errors_.error("E0121", at_, word, "a line begins with a word", "rows of numbers begin with `-`");
+        errors_.fix(d, at_, at_, "- ");
+    }
     node.name = "-";
     node.nameSpan = text_.span(at_, at_);
     node.damaged = true;

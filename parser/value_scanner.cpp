@@ -58,7 +58,7 @@ const char* ValueScanner::scan(const char* p, Place place) {
         return literal.end;
     }
     if (*p == '(') return scanParentheses(p);
-    return wordEnd(p, errors_.text().end) > p ? scanWord(p) : scanOther(p);
+    return isWordCharacter(p, errors_.text().end) ? scanWord(p) : scanOther(p);
 }
 
 const char* ValueScanner::scanName(const char* p, std::string_view& name) {

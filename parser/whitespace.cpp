@@ -60,7 +60,7 @@ const char* findLineEnd(const char* p, const char* end) {
     return p;
 }
 
-const char* findNearLineEnd(const char* p, const char* end) { return findLineEnd(p, end - p > 1000 ? p + 1000 : end); }
+const char* findNearLineEnd(const char* p, const char* end) { return findLineEnd(p, end - p > 200 ? p + 200 : end); }
 
 const char* findLineStart(const char* p, const char* begin) {
     while (p > begin && !has(p[-1], kNewline)) --p;

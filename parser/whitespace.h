@@ -21,7 +21,7 @@ const char* skipLineSpace(const char* p, SyntaxErrors&);
 
 // To the line end at or after `p`, or to the end of the text.
 const char* findLineEnd(const char* p, const char* end);
-// The same, but at most a thousand bytes on: where a mistake is looked at, so that many of them on one very long line
+// The same, but at most 200 bytes on: where a mistake is looked at, so that many of them on one very long line
 // take no quadratic time.
 const char* findNearLineEnd(const char* p, const char* end);
 // To the first character of the line of `p`.
