@@ -62,6 +62,11 @@ class PlyParser {
     std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - p_); }
     bool isText() const { return header_.encoding == PlyEncoding::text; }
 
+    // Where the next number begins, for messages: behind the blanks of a text file.
+    const char* next() {
+        while (isText() && p_ < end_ && static_cast<unsigned char>(*p_) <= ' ') ++p_;
+        return p_;
+    }
     double scalar(PlyScalar);
     double textScalar();
     std::uint64_t listLength(const PlyProperty&);
@@ -83,9 +88,8 @@ class PlyParser {
 };
 
 double PlyParser::textScalar() {
-    while (p_ < end_ && static_cast<unsigned char>(*p_) <= ' ') ++p_;
+    const char* start = next();
     if (p_ == end_) fail("the file ends too early");
-    const char* start = p_;
     const auto value = scanNumber<double>(p_, end_);
     if (!value || (p_<end_&& static_cast<unsigned char>(*p_)> ' ')) {
         p_ = start;
@@ -104,7 +108,7 @@ double PlyParser::scalar(PlyScalar type) {
 }
 
 std::uint64_t PlyParser::listLength(const PlyProperty& p) {
-    const char* start = p_;
+    const char* start = next();
     const double n = scalar(*p.listCount);
     const std::uint64_t itemSize = isText() ? 1 : sizeOf(p.type);
     if (!(n >= 0) || n != std::floor(n) || n > static_cast<double>(left() / itemSize + 1)) {
@@ -160,7 +164,7 @@ void PlyParser::vertices(const PlyElement& e) {
                 skip(p);
                 continue;
             }
-            const char* start = p_;
+            const char* start = next();
             const auto value = static_cast<float>(scalar(p.type));
             const bool isNormal = p.role >= PlyRole::nx && p.role <= PlyRole::nz, isTexture = p.role >= PlyRole::u;
             if (p.role == PlyRole::none || (isNormal && !header_.normals) || (isTexture && !header_.uvs)) continue;
@@ -176,7 +180,7 @@ void PlyParser::vertices(const PlyElement& e) {
 void PlyParser::corners(const PlyProperty& p) {
     const std::uint64_t n = listLength(p);
     for (std::uint64_t k = 0; k < n; ++k) {
-        const char* start = p_;
+        const char* start = next();
         const double index = scalar(p.type);
         if (!(index >= 0) || !(index < static_cast<double>(header_.vertexCount)) || index != std::floor(index)) {
             p_ = start;
