@@ -232,8 +232,8 @@ void ParameterTable::substitute(std::span<const ParameterUse> uses) {
         }
     }
     for (std::size_t i = 0; i < used_.size(); ++i) {
-        if (used_[i]) continue;
         const Parameter& p = document_.parameters[i];
+        if (used_[i] || p.values().empty()) continue; // without a value: reported
         diagnostics_.warning("W0205", p.nameSpan, fmt::format("parameter `{}` is never used", p.name),
                              fmt::format("no `${}` in this file", p.name));
     }

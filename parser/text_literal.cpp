@@ -56,6 +56,18 @@ char simpleEscape(char c) {
     }
 }
 
+void reportEscape(const char* p, const char* end, SyntaxErrors& errors) {
+    if (p[1] == 'u') {
+        errors.error("E0115", p, end, "this is not the escape of a Unicode character",
+                     "write one to six hexadecimal digits in braces: `\\u{1F600}`");
+        return;
+    }
+    Diagnostic& d = errors.error("E0115", p, end, fmt::format("`{}` is not an escape", between(p, end)),
+                                 "write `\\\\` for a backslash");
+    d.help = "file names are written with `/` on every system";
+    errors.fix(d, p, p + 1, "\\\\");
+}
+
 // Reports the escapes in [p, end) that KDL does not know.
 void checkEscapes(const char* p, const char* end, SyntaxErrors& errors) {
     while ((p = std::find(p, end, '\\')) != end) {
@@ -66,11 +78,7 @@ void checkEscapes(const char* p, const char* end, SyntaxErrors& errors) {
             p += 2;
         } else {
             const std::uint32_t length = std::max(decode(p + 1, errors.text().end).length, 1u);
-            Diagnostic& d = errors.error("E0115", p, p + 1 + length,
-                                         fmt::format("`{}` is not an escape", between(p, p + 1 + length)),
-                                         "write `\\\\` for a backslash");
-            d.help = "file names are written with `/` on every system";
-            errors.fix(d, p, p + 1, "\\\\");
+            reportEscape(p, p + 1 + length, errors);
             p += 1 + length;
         }
     }

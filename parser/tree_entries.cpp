@@ -169,7 +169,7 @@ void TreeReader::readKey(Record& node, std::uint32_t index, const KeyName& name)
     }
     if (*at_ == '(') readAnnotation(node);
     if (atEndOfNode() || *at_ == '{' || *at_ == '=' || *at_ == ',') {
-        errors_.error("E0113", name.begin, equals + 1, fmt::format("the key `{}` has no value", name.text),
+        errors_.error("E0113", equals, equals + 1, fmt::format("the key `{}` has no value", name.text),
                       "a value must follow");
         node.damaged = true;
         if (*at_ == '=') ++at_;

@@ -60,7 +60,7 @@ TEST_CASE("mistakes in parameters") {
     CHECK(parseText("a $x").codes() == "E0204@2-4");
     CHECK(parseText("a k=$x").codes() == "E0204@4-6");
     CHECK(parseText("param x 1\nparam x 2\na $x").codes() == "E0220@16-17");
-    CHECK(parseText("param x").codes() == "E0222@6-7 W0205@6-7");
+    CHECK(parseText("param x").codes() == "E0222@6-7");
     CHECK(parseText("param").codes() == "E0222@0-5");
     CHECK(parseText("param 1 2").codes() == "E0222@6-7");
     CHECK(parseText("param x 1 { a }\nb $x").codes() == "E0222@0-9");

@@ -117,7 +117,9 @@ void checkDiagnostics(const Parsed& parsed, const std::string& text) {
         checkSpan(parsed, d.span, text);
         for (const Label& label : d.related) checkSpan(parsed, label.span, text);
         for (const FixIt& fix : d.fixes) checkSpan(parsed, fix.span, text);
-        if (!d.code.starts_with("E01") || d.code == "E0102" || d.code == "E0110" || d.code == "E0120" || d.code == "E0124") continue;
+        if (!d.code.starts_with("E01") || d.code == "E0102" || d.code == "E0110" || d.code == "E0120" ||
+            d.code == "E0124")
+            continue;
         const bool isFirst = places.emplace(d.span.file, d.span.begin).second;
         if (!isFirst) FAIL("two errors for one token\n" << text << "\n" << parsed.errors());
     }
