@@ -18,7 +18,7 @@ std::string noiseText(double noise, double target) {
 // Most important first.
 std::vector<std::string> items(const Progress& p, double noiseTarget) {
     std::vector<std::string> list;
-    list.push_back(fmt::format("{:3d} %", static_cast<int>(100 * p.fraction)));
+    list.push_back(fmt::format("{:3d} %", static_cast<int>(100 * p.fraction + 1e-6)));
     list.push_back(fmt::format("pass {}, {}/{} samples", p.pass + 1, p.samplesPerPixel, p.totalSamples));
     list.push_back(fmt::format("{} elapsed", clockText(p.elapsed)));
     if (knowsTimeLeft(p)) list.push_back(fmt::format("{} left", clockText(p.left)));

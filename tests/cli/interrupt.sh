@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# The first signal saves the image so far; the second one leaves at once and leaves what was there.
+# shellcheck source=tests/cli/lib.sh
+source "$(dirname -- "$0")/lib.sh" "$@"
+
+# start OUTPUT: renders for ever in the background, and returns when samples are being taken.
+start() {
+    "$program" "$scenes/room.scene" --size 256x256 --samples 4000000000 -o "$1" --json >events 2>err &
+    job=$!
+    for _ in {1..300}; do
+        grep -q '"progress"' events && return
+        kill -0 "$job" 2>/dev/null || break
+        sleep 0.1
+    done
+    fault "rendering did not begin"
+}
+
+ended_with() { # CODE
+    wait "$job"
+    local code=$?
+    [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
+}
+
+start int.exr
+kill -INT "$job"
+ended_with 130
+expect 0 info int.exr
+says out "abbe.partial = 1"
+says out "256×256"
+says events '"partial":true'
+"$json_lines" <events >/dev/null || fault "events are no JSON lines"
+[[ -z $(find . -name '*.tmp') ]] || fault "temporary files are left"
+
+start term.exr
+kill -TERM "$job"
+ended_with 143
+expect 0 info term.exr
+says out "abbe.partial = 1"
+
+# An older image survives a render that is left at once. While the program is stopped both signals gather, so neither
+# can be late; the order in which they are delivered does not matter.
+expect 0 "$scenes/room.scene" --quiet -o old.exr
+before=$(pixels old.exr)
+start old.exr
+kill -STOP "$job"
+kill -INT "$job"
+kill -TERM "$job"
+kill -CONT "$job"
+wait "$job"
+code=$?
+[[ $code -eq 130 || $code -eq 143 ]] || fault "two signals ended with $code"
+[[ $(pixels old.exr) == "$before" ]] || fault "the older image was lost"
+
+finish

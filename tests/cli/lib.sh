@@ -1,0 +1,60 @@
+# shellcheck shell=bash
+# Shared by the tests of the command line. A test is called as  TEST.sh PROGRAM JSON_LINES  and runs in an empty folder
+# of its own; it goes on after a fault and ends with the number of faults.
+# Requires: $0 is the test's own path.
+# shellcheck disable=SC2034 # the variables are for the tests
+set -uo pipefail
+program=$(realpath -- "$1")
+json_lines=$(realpath -- "$2")
+scenes=$(cd "$(dirname -- "$0")/scenes" && pwd)
+bad=$(cd "$(dirname -- "$0")/../language/bad" && pwd)
+[[ -x $program ]] || { echo "$program is no program"; exit 1; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+faults=0
+unset NO_COLOR
+
+fault() {
+    printf 'FAULT: %s\n' "$*"
+    faults=$((faults + 1))
+}
+
+# expect CODE ARGUMENT…: runs the program; output is left in files out and err.
+expect() {
+    local wanted=$1 code
+    shift
+    timeout 120 "$program" "$@" >out 2>err
+    code=$?
+    [[ $code -eq $wanted ]] && return 0
+    fault "abbe $* ended with $code instead of $wanted"
+    sed 's/^/    /' out err
+    return 1
+}
+
+says() { # FILE TEXT
+    grep -qF -e "$2" "$1" || { fault "no \`$2\` in:"; sed 's/^/    /' "$1"; }
+}
+
+says_not() { # FILE TEXT
+    ! grep -qF -e "$2" "$1" || { fault "\`$2\` in:"; sed 's/^/    /' "$1"; }
+}
+
+is_empty() { # FILE
+    [[ ! -s $1 ]] || { fault "$1 should be empty:"; sed 's/^/    /' "$1"; }
+}
+
+# The fingerprint of all channels of an image.
+pixels() { "$program" info "$1" | sed -n 's/^pixels *//p'; }
+
+same_pixels() { # A B
+    local a b
+    a=$(pixels "$1")
+    b=$(pixels "$2")
+    [[ -n $a && $a == "$b" ]] || fault "$1 and $2 differ: $a, $b"
+}
+
+finish() {
+    [[ $faults -eq 0 ]] || printf '%d faults\n' "$faults"
+    exit $((faults > 0))
+}

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The image is the same, bit for bit, for any number of threads and for any instantiation of the path loop that holds the
+# scene's effects; and it is another one for another seed.
+# shellcheck source=tests/cli/lib.sh
+source "$(dirname -- "$0")/lib.sh" "$@"
+
+for name in room glass; do
+    expect 0 "$scenes/$name.scene" --quiet -o one.exr -t 1
+    expect 0 "$scenes/$name.scene" --quiet -o two.exr -t 2
+    expect 0 "$scenes/$name.scene" --quiet -o five.exr -t 5
+    same_pixels one.exr two.exr
+    same_pixels one.exr five.exr
+    expect 0 "$scenes/$name.scene" --quiet -o seed.exr --seed 1
+    [[ $(pixels one.exr) != $(pixels seed.exr) ]] || fault "$name: the seed changes nothing"
+done
+
+# superset
+expect 0 "$scenes/room.scene" --quiet -o least.exr
+expect 0 "$scenes/room.scene" --quiet -o all.exr --kernel all
+expect 0 info least.exr
+says out "abbe.kernel = plain"
+expect 0 info all.exr
+says_not out "abbe.kernel = plain"
+says out "abbe.effects = none"
+same_pixels least.exr all.exr
+
+# One pixel alone takes the samples that it takes in the image.
+expect 0 "$scenes/room.scene" --pixel 20,16
+cp out first
+expect 0 "$scenes/room.scene" --pixel 20,16 --kernel all
+cmp -s out first || fault "--pixel differs"
+says out "pixel 20 16"
+
+finish
