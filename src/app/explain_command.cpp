@@ -52,12 +52,13 @@ void explainEffects(const LoadedScene& loaded, const BuiltScene& built, std::str
             if (reason.effect == e.effect) text += fmt::format("    {}: {}\n", place(loaded, reason.asker), reason.why);
     }
     if (built.scene.effects.empty()) text += "  none beyond reflection and refraction at surfaces\n";
-    text += "Not simulated here:\n";
+    std::string off;
     for (const EffectText& e : kEffects)
-        if (!built.scene.effects.has(e.effect)) text += fmt::format("  {}: {}\n", e.name, e.whyOff);
+        if (!built.scene.effects.has(e.effect)) off += fmt::format("  {}: {}\n", e.name, e.whyOff);
     if (built.render.maxDepth > 0)
-        text += fmt::format("  light after {} scattering events: `max-depth` of `render` cuts it off\n",
-                            built.render.maxDepth);
+        off += fmt::format("  light after {} scattering events: `max-depth` of `render` cuts it off\n",
+                           built.render.maxDepth);
+    if (!off.empty()) text += "Not simulated here:\n" + off;
     text += "Not simulated by this version:\n";
     for (const Limit& limit : kLimits) text += fmt::format("  {}: {}\n", limit.name, limit.why);
 }
