@@ -64,10 +64,8 @@ class CrowdedCells {
     int count() const { return count_; }
     double at(double v) const { return centre_ + width_ * std::sinh(a_ + v * (b_ - a_)); } // v in [0, 1]
     double slope(double v) const { return width_ * (b_ - a_) * std::cosh(a_ + v * (b_ - a_)); }
-    int cell(double x) const {
-        const double v = (std::asinh((x - centre_) / width_) - a_) / (b_ - a_);
-        return std::clamp(static_cast<int>(v * count_), 0, count_ - 1);
-    }
+    double inverse(double x) const { return (std::asinh((x - centre_) / width_) - a_) / (b_ - a_); }
+    int cell(double x) const { return std::clamp(static_cast<int>(inverse(x) * count_), 0, count_ - 1); }
 
   private:
     double centre_, width_, a_, b_;
@@ -90,21 +88,17 @@ class HemisphereCells {
         const double phi = std::remainder(std::atan2(w.y, w.x) - phi0_, 2 * kPiD);
         return theta_.cell(polar(w)) * phi_.count() + phi_.cell(phi);
     }
+    // The function to integrate jumps at this |cos θ|: cells there are integrated in two parts.
+    HemisphereCells& jumpsAt(double cosine) {
+        if (cosine > 0 && cosine < 1) jump_ = theta_.inverse(std::acos(cosine)) * theta_.count();
+        return *this;
+    }
     // ∫ f(w) dω over each cell.
     template <typename F> std::vector<double> integrals(F&& f) const {
-        static const GaussLegendre<8> rule;
         std::vector<double> result(static_cast<std::size_t>(count()), 0.0);
         for (int c = 0; c < count(); ++c) {
-            double sum = 0;
-            for (std::size_t i = 0; i < 8; ++i)
-                for (std::size_t j = 0; j < 8; ++j) {
-                    const double v = (c / phi_.count() + rule.node[i]) / theta_.count();
-                    const double w = (c % phi_.count() + rule.node[j]) / phi_.count();
-                    const double theta = theta_.at(v), phi = phi0_ + phi_.at(w), s = std::sin(theta);
-                    const Vec3d d{s * std::cos(phi), s * std::sin(phi), sign_ * std::cos(theta)};
-                    sum += rule.weight[i] * rule.weight[j] * f(d) * s * theta_.slope(v) * phi_.slope(w);
-                }
-            result[static_cast<std::size_t>(c)] = sum / count();
+            const double v = c / phi_.count(), w = c % phi_.count(), split = std::clamp(jump_, v, v + 1);
+            result[static_cast<std::size_t>(c)] = part(f, v, split, w) + part(f, split, v + 1, w);
         }
         return result;
     }
@@ -116,6 +110,22 @@ class HemisphereCells {
   private:
     // Angle from the pole of this hemisphere; exact near the pole, unlike acos.
     double polar(Vec3d w) const { return std::atan2(std::hypot(w.x, w.y), w.z * sign_); }
+    // ∫ over [v0, v1] of the polar axis and [w, w + 1] of the azimuth, both counted in cells.
+    template <typename F> double part(F& f, double v0, double v1, double w) const {
+        static const GaussLegendre<8> rule;
+        if (v0 == v1) return 0;
+        double sum = 0;
+        for (std::size_t i = 0; i < 8; ++i)
+            for (std::size_t j = 0; j < 8; ++j) {
+                const double v = (v0 + rule.node[i] * (v1 - v0)) / theta_.count();
+                const double u = (w + rule.node[j]) / phi_.count();
+                const double theta = theta_.at(v), phi = phi0_ + phi_.at(u), s = std::sin(theta);
+                const Vec3d d{s * std::cos(phi), s * std::sin(phi), sign_ * std::cos(theta)};
+                sum += rule.weight[i] * rule.weight[j] * f(d) * s * theta_.slope(v) * phi_.slope(u);
+            }
+        return sum * (v1 - v0) / count();
+    }
+    double jump_ = -1;
     double sign_;
     CrowdedCells theta_;
     double phi0_;

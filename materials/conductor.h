@@ -1,0 +1,21 @@
+// Metals: reflection from a smooth or rough surface with a complex refractive index.
+#pragma once
+
+#include "render/material.h"
+#include "schema/type.h"
+
+#include <memory>
+
+namespace abbe {
+
+struct ConductorParams {
+    schema::ComplexIndex index; // both curves set
+    float roughness = 0;        // 0 … 1; α = roughness²
+    float anisotropy = 0;       // 0 … 1; αy = (1 - anisotropy) αx
+};
+
+schema::TypeInfo conductorType();
+// Requires index.n and index.k, which must outlive the material.
+std::unique_ptr<const Material> makeConductor(const ConductorParams&);
+
+} // namespace abbe

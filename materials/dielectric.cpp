@@ -1,0 +1,115 @@
+#include "materials/dielectric.h"
+
+#include "materials/dielectric_bsdf.h"
+#include "spectrum/sampled_curve.h"
+
+namespace abbe {
+namespace {
+
+// σ(λ) = -ln(c(λ)) / d: what leaves the share c(λ) after the distance d.
+class AttenuationCurve final : public Curve {
+  public:
+    AttenuationCurve(const Curve& color, double distance) : color_(color), distance_(distance) {}
+
+    Spectrum at(const Wavelengths& w) const override {
+        return log(max(color_.at(w), Spectrum(static_cast<float>(kBlack)))) * static_cast<float>(-1 / distance_);
+    }
+    double at(double nanometres) const override { return coefficient(color_.at(nanometres)); }
+    bool isConstant() const override { return color_.isConstant(); }
+    double minimum() const override { return coefficient(color_.maximum()); }
+    double maximum() const override { return coefficient(color_.minimum()); }
+
+  private:
+    // An exact 0 would absorb infinitely, and 0 · ∞ has no value: taken as this, as the field's doc says.
+    static constexpr double kBlack = 1e-6;
+    double coefficient(double share) const { return -std::log(std::max(share, kBlack)) / distance_; }
+    const Curve& color_;
+    double distance_;
+};
+
+class Dielectric final : public Material {
+  public:
+    explicit Dielectric(const DielectricParams& params)
+        : ior_(params.ior), ggx_(Ggx::fromRoughness(params.roughness, 0)), absorption_(params.absorption) {
+        if (!params.attenuationColor) return;
+        attenuation_ = std::make_unique<AttenuationCurve>(*params.attenuationColor, params.attenuationDistance);
+        absorption_ = attenuation_.get();
+    }
+
+    Effects needs() const override {
+        Effects effects;
+        if (ior_ && !ior_->isConstant()) effects |= Effect::dispersion;
+        if (absorption_) effects |= Effect::absorption;
+        return effects;
+    }
+
+    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
+        const Spectrum n = ior_ ? ior_->at(wavelengths) : Spectrum(1.5f);
+        if (RoughDielectricBsdf::representable(n, ggx_)) return arena.make<RoughDielectricBsdf>(n, ggx_);
+        return arena.make<SmoothDielectricBsdf>(n);
+    }
+
+    const Curve* absorption() const override { return absorption_; }
+
+  private:
+    const Curve* ior_; // null: 1.5
+    Ggx ggx_;
+    const Curve* absorption_; // null: clear
+    std::unique_ptr<const Curve> attenuation_;
+};
+
+} // namespace
+
+schema::TypeInfo dielectricType() {
+    using namespace schema;
+    return {.kind = Kind::material,
+            .name = "dielectric",
+            .doc =
+                "Transparent solid or liquid: reflects and refracts; an index that varies with wavelength disperses.",
+            .example = "material flint dielectric { ior glass SF11 }",
+            .fields = {
+                field(FieldType::spectrum, "ior", &DielectricParams::ior)
+                    .doc("Refractive index of the inside; outside it is 1.")
+                    .example("ior glass BK7")
+                    .role(SpectrumRole::index)
+                    .range(0.2, 10)
+                    .byDefault("1.5")
+                    .synonyms({"eta", "int_ior", "index", "specular_ior", "n"}),
+                field(FieldType::number, "roughness", &DielectricParams::roughness)
+                    .doc("0 is polished, 1 is as rough as it gets; the GGX width α is its square.")
+                    .example("roughness 0.3")
+                    .unit({Dimension::none, Dimension::fraction})
+                    .range(0, 1)
+                    .byDefault("0")
+                    .synonyms({"alpha", "glossiness", "uroughness", "vroughness", "specular_roughness"})
+                    .note("α below 0.0005 (roughness below 0.022) is rendered as polished"),
+                field(FieldType::spectrum, "absorption", &DielectricParams::absorption)
+                    .doc("Absorption coefficient of the inside, 1/m: exp(-absorption · distance) is left.")
+                    .example("absorption table { 400 12; 700 1.5 }")
+                    .role(SpectrumRole::unbounded)
+                    .unit({Dimension::inverseLength, Dimension::none})
+                    .range(0, 1e12)
+                    .group("absorption")
+                    .synonyms({"sigma_a", "extinction", "density"}),
+                field(FieldType::spectrum, "attenuation-color", &DielectricParams::attenuationColor)
+                    .doc("Share of the light left after attenuation-distance, instead of absorption; 0 counts as 1e-6.")
+                    .example("attenuation-color rgb 0.2 0.7 0.5")
+                    .role(SpectrumRole::albedo)
+                    .range(0, 1)
+                    .group("absorption")
+                    .synonyms({"attenuationColor", "transmission_color", "absorption_color", "tint"}),
+                field(FieldType::quantity, "attenuation-distance", &DielectricParams::attenuationDistance)
+                    .doc("Distance inside after which attenuation-color is left.")
+                    .example("attenuation-distance 5 cm")
+                    .unit({Dimension::length})
+                    .range(1e-9, 1e9)
+                    .byDefault("1 m")
+                    .synonyms({"attenuationDistance", "transmission_depth", "at_distance"}),
+            }};
+}
+
+std::unique_ptr<const Material> makeDielectric(const DielectricParams& params) {
+    return std::make_unique<Dielectric>(params);
+}
+
+} // namespace abbe

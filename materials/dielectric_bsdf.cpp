@@ -1,0 +1,167 @@
+#include "materials/dielectric_bsdf.h"
+
+#include "materials/fresnel.h"
+#include "materials/ggx_albedo.h"
+
+namespace abbe {
+namespace {
+
+constexpr Lobes kBothSides = Lobes(Lobe::reflection) | Lobe::transmission;
+
+Spectrum relativeIndex(Spectrum n, bool outside) { return outside ? n : Spectrum(1.f) / n; }
+
+// Radiance is compressed into a smaller cone by refraction: 1/η² towards the eye, nothing for light paths.
+Spectrum compression(Spectrum eta, Transport transport) {
+    return transport == Transport::radiance ? Spectrum(1.f) / (eta * eta) : Spectrum(1.f);
+}
+
+Spectrum meanInLanes(Spectrum a) { return Spectrum(mean(a)); }
+
+} // namespace
+
+// ---- polished
+
+Lobes SmoothDielectricBsdf::lobes() const noexcept {
+    const Lobes lobes = kBothSides | Lobe::delta;
+    return disperses_ ? lobes | Lobe::dispersive : lobes;
+}
+
+std::optional<BsdfSample> SmoothDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2, Transport transport) const noexcept {
+    const Lobes through = Lobes(Lobe::delta) | Lobe::transmission;
+    if (absent_) return BsdfSample{-wo, Spectrum(1.f), 1, through};
+    if (wo.z == 0) return std::nullopt;
+    const Spectrum eta = relativeIndex(n_, wo.z > 0);
+    const Spectrum reflectance = fresnelDielectric(std::abs(wo.z), eta);
+    const float probability = mean(reflectance);
+    if (uLobe >= probability) return transmit(wo, eta, Spectrum(1.f) - reflectance, 1 - probability, transport);
+    return BsdfSample{
+        {-wo.x, -wo.y, wo.z}, reflectance / probability, probability, Lobes(Lobe::delta) | Lobe::reflection};
+}
+
+std::optional<BsdfSample> SmoothDielectricBsdf::transmit(Vec3 wo, Spectrum eta, Spectrum share, float probability,
+                                                         Transport transport) const {
+    // Snell's law in double: wi is then right to the last bit of its floats.
+    const double ratio = 1 / static_cast<double>(eta[0]), x = -ratio * wo.x, y = -ratio * wo.y;
+    const double cos2 = 1 - x * x - y * y;
+    // Total reflection of the hero alone: other lanes made transmission possible, the hero has no share in it.
+    if (!(cos2 > 0 && probability > 0)) return std::nullopt;
+    const double z = std::copysign(std::sqrt(cos2), -wo.z);
+    const Vec3 wi{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    Lobes lobe = Lobes(Lobe::delta) | Lobe::transmission;
+    if (disperses_) lobe |= Lobe::dispersive;
+    return BsdfSample{wi, share * compression(eta, transport) / probability, probability, lobe, eta[0]};
+}
+
+// ---- rough
+
+Lobes RoughDielectricBsdf::lobes() const noexcept {
+    const Lobes lobes = kBothSides | Lobe::glossy;
+    return disperses_ ? lobes | Lobe::dispersive : lobes;
+}
+
+// Factor that makes reflection and transmission sum to 1 after single scattering took its loss [Turquin2019].
+Spectrum RoughDielectricBsdf::lossless(float mu, Spectrum eta) const {
+    if (!disperses_) return Spectrum(1 / ggxAlbedo(mu, ggx_.alphaX(), eta[0]));
+    Float8 factor;
+    for (int i = 0; i < kLanes; ++i) factor[i] = 1 / ggxAlbedo(mu, ggx_.alphaX(), eta[i]);
+    return factor;
+}
+
+BsdfEval RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, Transport transport) const noexcept {
+    const Spectrum eta = relativeIndex(n_, wo.z > 0);
+    if (wo.z < 0) wo.z = -wo.z, wi.z = -wi.z;
+    if (!(wo.z > 0) || !(wi.z != 0)) return {};
+    if (wi.z > 0) return evalReflection(wo, wi, eta);
+    const LaneEval lanes = transmission(wo, wi, eta, transport);
+    if (!disperses_) return {lanes.fcos, lanes.pdf[0]};
+    // The hero alone may be unable to refract this way. Spectral MIS still needs the others' densities, which are
+    // stated relative to it: a density far too small to matter stands for its 0.
+    const float pdf = std::max(lanes.pdf[0], 1e-7f * maxLane(lanes.pdf));
+    if (!(pdf > 0)) return {};
+    return {lanes.fcos, pdf, lanes.pdf / pdf};
+}
+
+BsdfEval RoughDielectricBsdf::evalReflection(Vec3 wo, Vec3 wi, Spectrum eta) const {
+    const Vec3 h = normalize(wo + wi); // both z > 0: never 0
+    const Spectrum reflectance = fresnelDielectric(std::min(dot(wo, h), 1.f), eta);
+    const float d = 0.25f * ggx_.D(h);
+    return {reflectance * lossless(wo.z, eta) * (d * ggx_.maskingOverCosine(wo, wi)),
+            mean(reflectance) * d * ggx_.visible(wo)};
+}
+
+// Value and density per lane, each off its own microfacet h ∥ wo + η wi, with |dh/dwi| = η² |wi·h| / |wo + η wi|²
+// [Walter2007, eq. 17]: the length of the sum itself stands for the difference of products in their denominator.
+RoughDielectricBsdf::LaneEval RoughDielectricBsdf::transmission(Vec3 wo, Vec3 wi, Spectrum eta,
+                                                                Transport transport) const {
+    const Float8 x = wo.x + eta.v * wi.x, y = wo.y + eta.v * wi.y, z = wo.z + eta.v * wi.z;
+    const Float8 length2 = max(Spectrum(x * x + y * y + z * z), Spectrum(1e-20f)).v;
+    const Float8 unit = (z < 0.f ? -1.f : 1.f) / sqrt(Spectrum(length2)).v;
+    const Float8 hx = x * unit, hy = y * unit, hz = z * unit;
+    const Float8 cosO = wo.x * hx + wo.y * hy + wo.z * hz, cosI = wi.x * hx + wi.y * hy + wi.z * hz;
+    const Int8 possible = (cosO > 0.f) & (cosI < 0.f);
+
+    const Float8 cosine = min(Spectrum(cosO), Spectrum(1.f)).v;
+    const Spectrum reflectance = fresnelDielectric(Spectrum(cosine), eta);
+    Float8 chosen = meanInLanes(reflectance).v; // probability of reflection off each lane's microfacet
+    if (disperses_)
+        for (int i = 0; i < kLanes; ++i) chosen[i] = mean(fresnelDielectric(cosine[i], eta));
+
+    const float a = ggx_.alphaX();
+    const Float8 slope2 = (hx * hx + hy * hy) / (a * a) + hz * hz;
+    const Float8 density = 1.f / (kPi * a * a * slope2 * slope2); // D(h)
+    const Float8 common = density * cosO * (eta * eta).v * -cosI / length2;
+    const Spectrum fcos = (1.f - reflectance.v) * common * ggx_.maskingOverCosine(wo, wi);
+    const Spectrum pdf = (1.f - chosen) * common * ggx_.visible(wo);
+    const Spectrum none(0.f);
+    return {select(possible, fcos * lossless(wo.z, eta) * compression(eta, transport), none),
+            select(possible, pdf, none)};
+}
+
+std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2 u,
+                                                      Transport transport) const noexcept {
+    const Spectrum eta = relativeIndex(n_, wo.z > 0);
+    const bool below = wo.z < 0;
+    if (below) wo.z = -wo.z;
+    if (!(wo.z > 0)) return std::nullopt;
+    const Vec3 m = ggx_.sampleVisible(wo, u);
+    const float cosO = std::min(dot(wo, m), 1.f);
+    if (!(cosO > 0)) return std::nullopt;
+    const Spectrum reflectance = fresnelDielectric(cosO, eta);
+    const float probability = mean(reflectance);
+    std::optional<BsdfSample> result;
+    if (uLobe >= probability) {
+        result = sampleTransmission(wo, m, eta, reflectance, transport);
+    } else if (const Vec3 wi = reflect(wo, m); wi.z > 0) {
+        const float visible = ggx_.visible(wo), kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
+        result = BsdfSample{wi, reflectance * lossless(wo.z, eta) * (kept / probability),
+                            0.25f * probability * ggx_.D(m) * visible, Lobes(Lobe::glossy) | Lobe::reflection};
+    }
+    if (result && below) result->wi.z = -result->wi.z;
+    return result;
+}
+
+std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 m, Spectrum eta, Spectrum reflectance,
+                                                                  Transport transport) const {
+    const float hero = eta[0], cosO = std::min(dot(wo, m), 1.f);
+    const float contrast = (hero - 1) * (hero + 1), g2 = contrast + cosO * cosO;
+    if (!(g2 > 0)) return std::nullopt; // total reflection of the hero
+    const float g = std::sqrt(g2);      // η cos θt
+    const Vec3 wi = (m * (cosO - g) - wo) * (1 / hero);
+    if (!(wi.z < 0)) return std::nullopt;
+    const Lobes lobe = Lobes(Lobe::glossy) | Lobe::transmission;
+    if (disperses_) {
+        const LaneEval lanes = transmission(wo, wi, eta, transport);
+        const float pdf = lanes.pdf[0];
+        if (!(pdf > 0)) return std::nullopt;
+        return BsdfSample{wi, lanes.fcos / pdf, pdf, lobe | Lobe::dispersive, hero, lanes.pdf / pdf};
+    }
+    const float probability = 1 - mean(reflectance), visible = ggx_.visible(wo);
+    const float kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
+    // |wo + η wi| = g - cosO, without the cancellation.
+    const float length2 = square(contrast / (cosO + g));
+    const float pdf = probability * ggx_.D(m) * visible * cosO * hero * g / length2;
+    const Spectrum weight = (Spectrum(1.f) - reflectance) * lossless(wo.z, eta) * compression(eta, transport);
+    return BsdfSample{wi, weight * (kept / probability), pdf, lobe, hero};
+}
+
+} // namespace abbe

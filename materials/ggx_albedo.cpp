@@ -1,0 +1,79 @@
+#include "materials/ggx_albedo.h"
+
+#include <cstdint>
+
+namespace abbe {
+namespace {
+
+#include "materials/data/ggx_albedo.inl"
+
+using Grid = GgxAlbedoGrid;
+
+// Four neighbours of a position on an axis of `count` nodes and their weights: Catmull-Rom, with a straight
+// continuation beyond both ends.
+struct Neighbours {
+    int index[4];
+    float weight[4];
+
+    Neighbours(float position, int count) {
+        const float scaled = std::clamp(position, 0.f, 1.f) * static_cast<float>(count - 1);
+        const int cell = std::min(static_cast<int>(scaled), count - 2);
+        const float t = scaled - static_cast<float>(cell);
+        weight[0] = 0.5f * t * (t * (2 - t) - 1);
+        weight[1] = 1 + 0.5f * t * t * (3 * t - 5);
+        weight[2] = 0.5f * t * (1 + t * (4 - 3 * t));
+        weight[3] = 0.5f * t * t * (t - 1);
+        for (int i = 0; i < 4; ++i) index[i] = std::clamp(cell - 1 + i, 0, count - 1);
+        if (cell == 0) moveToLine(0, 1, 2);
+        if (cell == count - 2) moveToLine(3, 2, 1);
+    }
+
+  private:
+    void moveToLine(int outside, int end, int inside) {
+        weight[end] += 2 * weight[outside];
+        weight[inside] -= weight[outside];
+        weight[outside] = 0;
+    }
+};
+
+// Linear along mu, where the coordinate has made the function nearly straight between nodes.
+float row(const std::uint16_t* table, float position) {
+    const float scaled = std::clamp(position, 0.f, 1.f) * (Grid::kMu - 1);
+    const int cell = std::min(static_cast<int>(scaled), Grid::kMu - 2);
+    const float a = table[cell], b = table[cell + 1];
+    return a + (b - a) * (scaled - static_cast<float>(cell));
+}
+
+float plane(const std::uint16_t* table, float position, const Neighbours& roughness) {
+    float sum = 0;
+    for (int i = 0; i < 4; ++i)
+        if (roughness.weight[i] != 0)
+            sum += roughness.weight[i] * row(table + roughness.index[i] * Grid::kMu, position);
+    return sum;
+}
+
+float widthOf(float alpha) { return std::max(alpha, static_cast<float>(Grid::kMinAlpha)); }
+
+} // namespace
+
+float ggxAlbedo(float mu, float alpha) {
+    const float x = Grid::coordinate(mu, widthOf(alpha), 0.f);
+    return plane(kMirrorAlbedo, x, {std::sqrt(alpha), Grid::kRoughness}) * (1.f / 65535);
+}
+
+float ggxAlbedo(float mu, float alpha, float eta) {
+    const bool inside = eta < 1;
+    const float contrast = std::abs(eta - 1) / (eta + 1);
+    const float criticalMu = inside ? std::sqrt((1 - eta) * (1 + eta)) : 0;
+    const float x = Grid::coordinate(mu, widthOf(alpha), criticalMu);
+    const Neighbours roughness(std::sqrt(alpha), Grid::kRoughness);
+    const Neighbours index(std::sqrt(contrast / static_cast<float>(Grid::kMaxContrast)), Grid::kEta);
+    const std::uint16_t* table = inside ? kInsideAlbedo : kOutsideAlbedo;
+    float sum = 0;
+    for (int i = 0; i < 4; ++i)
+        if (index.weight[i] != 0)
+            sum += index.weight[i] * plane(table + index.index[i] * Grid::kRoughness * Grid::kMu, x, roughness);
+    return sum * (1.f / 65535);
+}
+
+} // namespace abbe
