@@ -3,12 +3,12 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "geometry/embree_device.h"
+#include "geometry/embree_sink.h"
 #include "geometry/instance.h"
 #include "geometry/surface_math.h"
 
 #include <array>
 #include <atomic>
-#include <cstring>
 #include <embree3/rtcore.h>
 
 namespace abbe {
@@ -17,23 +17,8 @@ namespace {
 
 // Coordinates beyond this make Debian's Embree stop the process.
 constexpr float kLargestCoordinate = 1e18f;
-// Embree accepts hits at the near end itself: without this a ray that starts on a plane through the origin, where the
-// error bound is 0, would meet it again at distance 0.
-constexpr float kNear = std::numeric_limits<float>::min();
 // False hits dropped on one ray before it is given up as a miss.
 constexpr int kMaxRecasts = 32;
-
-enum class Kind : std::uint32_t { triangles, quads, analytic, instance };
-
-// What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
-struct Record {
-    const Shape* shape = nullptr;
-    const Material* material = nullptr;
-    const Light* light = nullptr;
-    std::uint32_t part = 0;
-    Kind kind = Kind::instance;
-};
-static_assert(sizeof(Record) == 32);
 
 // An instance with its object: its scene, and where its records begin.
 struct PlacedObject {
@@ -63,99 +48,6 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.flags = 0;
 }
 
-// Turns a shape's primitives into Embree geometries of one scene, a record for each.
-class Attacher final : public GeometrySink {
-  public:
-    Attacher(RTCDevice device, RTCScene scene, std::size_t firstRecord, std::vector<Record>& records)
-        : device_(device), scene_(scene), firstRecord_(firstRecord), records_(records) {}
-
-    void add(const Shape& shape, EmbreeSceneBuilder::Binding binding) {
-        next_ = {&shape, binding.material, binding.light, 0, Kind::analytic};
-        shape.commit(*this);
-    }
-    void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) override {
-        next_.kind = Kind::triangles;
-        mesh(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, vertices, indices.data(), sizeof(indices[0]),
-             indices.size());
-    }
-    void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) override {
-        next_.kind = Kind::quads;
-        mesh(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, vertices, indices.data(), sizeof(indices[0]), indices.size());
-    }
-    void analytic(const Bounds3&) override;
-
-    void attach(RTCGeometry geometry) {
-        rtcSetGeometryMask(geometry, 0xffffffffu);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene_, geometry, static_cast<unsigned>(records_.size() - firstRecord_));
-        rtcReleaseGeometry(geometry);
-        records_.push_back(next_);
-        ++next_.part;
-    }
-
-  private:
-    void mesh(RTCGeometryType type, RTCFormat format, std::span<const Vec3> vertices, const void* indices,
-              std::size_t stride, std::size_t count) {
-        RTCGeometry geometry = rtcNewGeometry(device_, type);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
-                                   sizeof(Vec3), vertices.size());
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
-        attach(geometry);
-    }
-
-    RTCDevice device_;
-    RTCScene scene_;
-    std::size_t firstRecord_;
-    std::vector<Record>& records_;
-    Record next_;
-};
-
-// Callbacks of shapes that intersect themselves. The geometry's user pointer is the shape.
-const Shape& shapeOf(void* user) { return *static_cast<const Shape*>(user); }
-
-void analyticBounds(const RTCBoundsFunctionArguments* args) {
-    const Bounds3 b = shapeOf(args->geometryUserPtr).bounds();
-    *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
-}
-
-std::optional<float> analyticHit(const Shape& shape, const RTCRay& r) {
-    const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
-    // Shapes know no near end: a ray cast again past a false hit starts there.
-    const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > kNear ? direction * r.tnear : Vec3());
-    const auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
-    if (!hit) return std::nullopt;
-    return hit->distance + r.tnear;
-}
-
-void analyticIntersect(const RTCIntersectFunctionNArguments* args) {
-    auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-    if (args->N != 1 || args->valid[0] == 0) return;
-    const auto t = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
-    if (!t) return;
-    rayHit.ray.tfar = *t;
-    rayHit.hit.u = rayHit.hit.v = 0;
-    rayHit.hit.primID = args->primID;
-    rayHit.hit.geomID = args->geomID;
-    rayHit.hit.instID[0] = args->context->instID[0];
-}
-
-void analyticOccluded(const RTCOccludedFunctionNArguments* args) {
-    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    if (args->N != 1 || args->valid[0] == 0) return;
-    if (analyticHit(shapeOf(args->geometryUserPtr), ray)) ray.tfar = -kInfinity;
-}
-
-void Attacher::analytic(const Bounds3&) {
-    next_.kind = Kind::analytic;
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
-    rtcSetGeometryBoundsFunction(geometry, analyticBounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, analyticIntersect);
-    rtcSetGeometryOccludedFunction(geometry, analyticOccluded);
-    attach(geometry);
-}
-
 class EmbreeScene final : public Intersector {
   public:
     bool intersect(const Ray&, SurfaceHit&) const noexcept override;
@@ -166,13 +58,13 @@ class EmbreeScene final : public Intersector {
     EmbreeDevice device;
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
-    std::vector<Record> records; // of the top scene by geometry id, then of each object
+    std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
     std::vector<PlacedObject> placed;
     Bounds3 bounds_;
 
   private:
     const PlacedObject* placeOf(const RTCHit&) const;
-    const Record& recordOf(const RTCHit&, const PlacedObject*) const;
+    const GeometryRecord& recordOf(const RTCHit&, const PlacedObject*) const;
     void surface(const RTCHit&, float distance, const Ray&, SurfaceHit&) const;
     bool resolve(RTCRayHit&, const Ray&, SurfaceHit&) const;
     bool recompute(RTCHit&, const Ray&, float& distance) const;
@@ -192,13 +84,13 @@ const PlacedObject* EmbreeScene::placeOf(const RTCHit& h) const {
     return h.instID[0] == RTC_INVALID_GEOMETRY_ID ? nullptr : &placed[records[h.instID[0]].part];
 }
 
-const Record& EmbreeScene::recordOf(const RTCHit& h, const PlacedObject* place) const {
+const GeometryRecord& EmbreeScene::recordOf(const RTCHit& h, const PlacedObject* place) const {
     return records[h.geomID + (place ? place->firstRecord : 0)];
 }
 
 void EmbreeScene::surface(const RTCHit& h, float distance, const Ray& ray, SurfaceHit& hit) const {
     const PlacedObject* place = placeOf(h);
-    const Record& record = recordOf(h, place);
+    const GeometryRecord& record = recordOf(h, place);
     const RawHit raw{h.u, h.v, distance, h.primID, record.part};
     hit.material = record.material;
     hit.light = record.light;
@@ -226,7 +118,7 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
         return false;
     }
     RTCRayHit rayHit;
-    fill(rayHit.ray, ray, kNear);
+    fill(rayHit.ray, ray, kNearestHit);
     cast(scene.get(), rayHit);
     if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     surface(rayHit.hit, rayHit.ray.tfar, ray, hit);
@@ -272,17 +164,17 @@ struct Corners {
     std::array<std::array<Vec3d, 3>, 2> triangle;
     int count = 0;
 };
-Corners cornersOf(RTCScene scene, const RTCHit& h, Kind kind, const PlacedObject* place) {
+Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, const PlacedObject* place) {
     RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
     const auto* vertices = static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     const auto* indices =
         static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
     const auto vertex = [&](int i) {
-        const std::size_t corners = kind == Kind::quads ? 4 : 3;
+        const std::size_t corners = kind == PrimitiveKind::quads ? 4 : 3;
         const Vec3d p(vertices[indices[corners * h.primID + static_cast<std::size_t>(i)]]);
         return place ? place->instance.map().point(p) : p;
     };
-    if (kind == Kind::triangles) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
+    if (kind == PrimitiveKind::triangles) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
     return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
 }
 
@@ -291,8 +183,8 @@ Corners cornersOf(RTCScene scene, const RTCHit& h, Kind kind, const PlacedObject
 bool EmbreeScene::recompute(RTCHit& h, const Ray& ray, float& distance) const {
     constexpr double slack = 1e-6;
     const PlacedObject* place = placeOf(h);
-    const Kind kind = recordOf(h, place).kind;
-    if (kind == Kind::analytic) return true; // computed in double already
+    const PrimitiveKind kind = recordOf(h, place).kind;
+    if (kind == PrimitiveKind::analytic) return true; // computed in double already
     const Corners corners = cornersOf(place ? place->scene : scene.get(), h, kind, place);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();
@@ -319,12 +211,10 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay r;
-    fill(r, ray, kNear);
+    fill(r, ray, kNearestHit);
     rtcOccluded1(scene.get(), &context, &r);
     return r.tfar < 0;
 }
-
-Bounds3 finiteBounds(const Shape& shape) { return std::isfinite(shape.area()) ? shape.bounds() : Bounds3(); }
 
 } // namespace
 
@@ -334,14 +224,45 @@ struct EmbreeSceneBuilder::Impl {
     std::vector<Shapes> objects;
     std::vector<std::pair<std::uint32_t, Transform>> instances;
 
-    // Makes and commits one scene of shapes; its records are appended.
-    static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(EmbreeScene& target) {
-        EmbreeHandle<RTCScene, rtcReleaseScene> scene(rtcNewScene(target.device.get()));
-        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-        return scene;
-    }
+    static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
+    static Bounds3 fill(EmbreeScene&, RTCScene, const Shapes&);
+    void place(EmbreeScene&, std::size_t firstId, const std::vector<std::size_t>& firstRecords,
+               const std::vector<Bounds3>& objectBounds) const;
 };
+
+EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
+    EmbreeHandle<RTCScene, rtcReleaseScene> scene(rtcNewScene(target.device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    return scene;
+}
+
+// Adds the shapes to the scene, their records to the target. Returns the bounds of the finite ones.
+Bounds3 EmbreeSceneBuilder::Impl::fill(EmbreeScene& target, RTCScene scene, const Shapes& shapes) {
+    EmbreeSink sink(target.device.get(), scene, target.records);
+    Bounds3 bounds;
+    for (const auto& [shape, binding] : shapes) {
+        sink.add(*shape, binding.material, binding.light);
+        if (std::isfinite(shape->area())) bounds.add(shape->bounds());
+    }
+    return bounds;
+}
+
+void EmbreeSceneBuilder::Impl::place(EmbreeScene& s, std::size_t firstId, const std::vector<std::size_t>& firstRecords,
+                                     const std::vector<Bounds3>& objectBounds) const {
+    s.placed.reserve(instances.size());
+    for (const auto& [object, map] : instances) {
+        RTCScene scene = s.objectScenes[object].get();
+        const Instance& instance = s.placed.emplace_back(Instance(map), scene, firstRecords[object]).instance;
+        s.bounds_.add(instance.toRender(objectBounds[object]));
+        RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, scene);
+        rtcSetGeometryTimeStepCount(geometry, 1);
+        const auto matrix = instance.rowMajor();
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
+        attachGeometry(s.scene.get(), geometry, firstId + s.placed.size() - 1);
+    }
+}
 
 EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}
 EmbreeSceneBuilder::~EmbreeSceneBuilder() = default;
@@ -365,44 +286,21 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
     auto result = std::make_unique<EmbreeScene>();
     EmbreeScene& s = *result;
     s.scene = Impl::newScene(s);
-    Attacher top(s.device.get(), s.scene.get(), 0, s.records);
-    for (const auto& [shape, binding] : impl_->shapes) {
-        top.add(*shape, binding);
-        s.bounds_.add(finiteBounds(*shape));
-    }
+    s.bounds_ = Impl::fill(s, s.scene.get(), impl_->shapes);
     // Instances take the next geometry ids of the top scene, so their records come before those of the objects.
     const std::size_t firstInstance = s.records.size();
     for (std::size_t i = 0; i < impl_->instances.size(); ++i)
-        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i), Kind::instance});
+        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i), PrimitiveKind::instance});
 
     std::vector<std::size_t> firstRecords;
     std::vector<Bounds3> objectBounds;
     for (const auto& shapes : impl_->objects) {
         firstRecords.push_back(s.records.size());
-        s.objectScenes.push_back(Impl::newScene(s));
-        Attacher object(s.device.get(), s.objectScenes.back().get(), s.records.size(), s.records);
-        Bounds3& b = objectBounds.emplace_back();
-        for (const auto& [shape, binding] : shapes) {
-            object.add(*shape, binding);
-            b.add(finiteBounds(*shape));
-        }
-        rtcCommitScene(s.objectScenes.back().get());
+        const auto& scene = s.objectScenes.emplace_back(Impl::newScene(s));
+        objectBounds.push_back(Impl::fill(s, scene.get(), shapes));
+        rtcCommitScene(scene.get());
     }
-    s.placed.reserve(impl_->instances.size());
-    for (const auto& [object, map] : impl_->instances) {
-        const Instance& instance =
-            s.placed.emplace_back(Instance(map), s.objectScenes[object].get(), firstRecords[object]).instance;
-        s.bounds_.add(instance.toRender(objectBounds[object]));
-        RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(geometry, s.objectScenes[object].get());
-        rtcSetGeometryTimeStepCount(geometry, 1);
-        const auto matrix = instance.rowMajor();
-        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
-        rtcSetGeometryMask(geometry, 0xffffffffu);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(s.scene.get(), geometry, static_cast<unsigned>(firstInstance + s.placed.size() - 1));
-        rtcReleaseGeometry(geometry);
-    }
+    impl_->place(s, firstInstance, firstRecords, objectBounds);
     rtcCommitScene(s.scene.get());
     s.device.throwIfFailed();
     return result;

@@ -1,0 +1,93 @@
+#include "geometry/embree_sink.h"
+
+namespace abbe {
+
+namespace {
+
+// Callbacks of shapes that intersect themselves. The geometry's user pointer is the shape.
+const Shape& shapeOf(void* user) { return *static_cast<const Shape*>(user); }
+
+void analyticBounds(const RTCBoundsFunctionArguments* args) {
+    const Bounds3 b = shapeOf(args->geometryUserPtr).bounds();
+    *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+}
+
+std::optional<float> analyticHit(const Shape& shape, const RTCRay& r) {
+    const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
+    // Shapes know no near end: a ray cast again past a false hit starts there.
+    const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > kNearestHit ? direction * r.tnear : Vec3());
+    const auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
+    if (!hit) return std::nullopt;
+    return hit->distance + r.tnear;
+}
+
+void analyticIntersect(const RTCIntersectFunctionNArguments* args) {
+    auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    if (args->N != 1 || args->valid[0] == 0) return;
+    const auto t = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
+    if (!t) return;
+    rayHit.ray.tfar = *t;
+    rayHit.hit.u = rayHit.hit.v = 0;
+    rayHit.hit.primID = args->primID;
+    rayHit.hit.geomID = args->geomID;
+    rayHit.hit.instID[0] = args->context->instID[0];
+}
+
+void analyticOccluded(const RTCOccludedFunctionNArguments* args) {
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (args->N != 1 || args->valid[0] == 0) return;
+    if (analyticHit(shapeOf(args->geometryUserPtr), ray)) ray.tfar = -kInfinity;
+}
+
+} // namespace
+
+void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id) {
+    rtcSetGeometryMask(geometry, 0xffffffffu);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(id));
+    rtcReleaseGeometry(geometry);
+}
+
+EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records)
+    : device_(device), scene_(scene), records_(records), firstRecord_(records.size()) {}
+
+void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light) {
+    next_ = {&shape, material, light, 0, PrimitiveKind::analytic};
+    shape.commit(*this);
+}
+
+void EmbreeSink::triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) {
+    mesh(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, vertices, indices.data(), sizeof(indices[0]), indices.size());
+}
+
+void EmbreeSink::quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) {
+    mesh(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, vertices, indices.data(), sizeof(indices[0]), indices.size());
+}
+
+void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, std::span<const Vec3> vertices, const void* indices,
+                      std::size_t stride, std::size_t count) {
+    RTCGeometry geometry = rtcNewGeometry(device_, type);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, sizeof(Vec3),
+                               vertices.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
+    attach(geometry, type == RTC_GEOMETRY_TYPE_QUAD ? PrimitiveKind::quads : PrimitiveKind::triangles);
+}
+
+void EmbreeSink::analytic(const Bounds3&) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+    rtcSetGeometryBoundsFunction(geometry, analyticBounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, analyticIntersect);
+    rtcSetGeometryOccludedFunction(geometry, analyticOccluded);
+    attach(geometry, PrimitiveKind::analytic);
+}
+
+void EmbreeSink::attach(RTCGeometry geometry, PrimitiveKind kind) {
+    attachGeometry(scene_, geometry, records_.size() - firstRecord_);
+    next_.kind = kind;
+    records_.push_back(next_);
+    ++next_.part;
+}
+
+} // namespace abbe

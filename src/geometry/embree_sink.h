@@ -1,0 +1,57 @@
+// Shapes as Embree geometries.
+#pragma once
+
+#include "render/shape.h"
+
+#include <embree3/rtcore.h>
+#include <limits>
+#include <vector>
+
+namespace abbe {
+
+class Material;
+class Light;
+
+enum class PrimitiveKind : std::uint32_t { triangles, quads, analytic, instance };
+
+// What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
+struct GeometryRecord {
+    const Shape* shape = nullptr;
+    const Material* material = nullptr;
+    const Light* light = nullptr;
+    std::uint32_t part = 0;
+    PrimitiveKind kind = PrimitiveKind::instance;
+};
+static_assert(sizeof(GeometryRecord) == 32);
+
+// Embree accepts hits at the near end itself: without this a ray that starts on a plane through the origin, where the
+// error bound is 0, would meet it again at distance 0.
+inline constexpr float kNearestHit = std::numeric_limits<float>::min();
+// Turns the primitives of shapes into geometries of one Embree scene, numbered in order, with a record for each at the
+// end of `records`. Refers to the shapes and their data (see EmbreeSceneBuilder).
+class EmbreeSink final : public GeometrySink {
+  public:
+    EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records);
+
+    void add(const Shape&, const Material*, const Light*);
+
+    void triangles(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 3>>) override;
+    void quads(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 4>>) override;
+    void analytic(const Bounds3&) override;
+
+  private:
+    void mesh(RTCGeometryType, RTCFormat, std::span<const Vec3> vertices, const void* indices, std::size_t stride,
+              std::size_t count);
+    void attach(RTCGeometry, PrimitiveKind);
+
+    RTCDevice device_;
+    RTCScene scene_;
+    std::vector<GeometryRecord>& records_;
+    std::size_t firstRecord_;
+    GeometryRecord next_;
+};
+
+// Sets the mask, commits and hands the geometry over to the scene under the given number.
+void attachGeometry(RTCScene, RTCGeometry, std::size_t id);
+
+} // namespace abbe
