@@ -92,9 +92,7 @@ Mesh::Corners Mesh::corners(const RawHit& raw) const {
 void Mesh::surface(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
     const Corners c = corners(raw);
     const auto& p = data_.positions;
-    const TrianglePoint point = trianglePoint(p[c.a], p[c.b], p[c.c], c.s, c.t);
-    hit.p = point.p;
-    hit.pError = point.pError;
+    trianglePoint(p[c.a], p[c.b], p[c.c], c.s, c.t, hit.p, hit.pError);
     hit.ng = faceNormals_[c.normal];
     hit.uv = {raw.u, raw.v};
     hit.primitive = c.primitive;
@@ -147,11 +145,11 @@ std::optional<ShapeSample> Mesh::sample(Vec3 from, Vec2 u) const {
     const Vec2 b = squareToTriangle({bin.offset, u.y});
     const auto [i0, i1, i2] = triangle(bin.index);
     const auto& p = data_.positions;
-    const TrianglePoint point = trianglePoint(p[i0], p[i1], p[i2], b.x, b.y);
-    const Vec3 n = faceNormals_[bin.index];
-    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point.p - from, n);
-    if (!(pdf > 0)) return std::nullopt;
-    return ShapeSample{point.p, point.pError, n, pdf};
+    ShapeSample s{{}, {}, faceNormals_[bin.index], 0};
+    trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, s.p, s.pError);
+    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area_), s.p - from, s.ng);
+    if (!(s.pdfSolidAngle > 0)) return std::nullopt;
+    return s;
 }
 
 float Mesh::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
