@@ -11,7 +11,7 @@ namespace {
 // Beyond this ratio of diagonal² to distance² (to the centre) directions to the rectangle are as good as uniform per
 // area, and the cheap density wins.
 constexpr float kNearRatio = 0.3f;
-// Solid angles come as a difference of angles near 2π: below this their relative error passes 1e-4.
+// Solid angles come as a difference of angles near 2π: below this their relative error passes 3e-4.
 constexpr float kSmallestSolidAngle = 5e-3f;
 
 // The solid-angle view of the rectangle from a point, or nothing where area sampling serves. sample() and

@@ -76,7 +76,7 @@ std::optional<ShapeSample> Sphere::sample(Vec3 from, Vec2 u) const {
         return s;
     }
     // A direction at angle θ in the cone meets the sphere first at the point whose normal is at angle α from the
-    // axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, eq. 6.17].
+    // axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, ch. 6].
     const double oneMinusCosMax = coneOneMinusCos(d2, r2);
     const double h = static_cast<double>(u.x) * oneMinusCosMax;
     const double sin2 = h * (2 - h), sin2Max = r2 / d2;

@@ -73,7 +73,7 @@ SphericalRectangle::SphericalRectangle(float x0, float y0, float x1, float y1, f
 }
 
 Vec2 SphericalRectangle::sample(Vec2 u) const {
-    // [Urena2013, sec. 4.2] with both sides of the fraction under x multiplied by sin a, so that sin a = 0 is x = 0
+    // [Urena2013], with both sides of the fraction under x multiplied by sin a, so that sin a = 0 is x = 0
     // and nothing is divided twice, and with 1 - c_u² as a product that does not cancel.
     const SinCos angle = sinCosTurn(std::fma(u.x, solidAngle_, k_));
     const float f = angle.cos * b0_ - b1_, s = sine0_ * angle.sin;

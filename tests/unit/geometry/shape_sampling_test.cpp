@@ -133,7 +133,7 @@ TEST_CASE("shapes: area") {
 
 TEST_CASE("quad: irradiance under a rectangle") {
     // Configuration factor of a rectangle parallel to a plane element, one corner straight above it
-    // [Howell2010, C-11]; four of them make any rectangle.
+    // [Howell2010]; four of them make any rectangle.
     const auto corner = [](double a, double b, double h) {
         const double x = a / h, y = b / h, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
         return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPiD);
