@@ -55,6 +55,10 @@ template <EffectBits E> class PathLoop {
     bool scatter(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, Ray&);
     bool survives(std::uint32_t depth, float rouletteScale);
     void absorb(const SurfaceHit&, Vec3 direction);
+    // What a ray that crosses the surface towards `w` runs in; null in air.
+    static const Curve* absorptionBeyond(const SurfaceHit& hit, Vec3 w) {
+        return dot(w, hit.ng) < 0 ? hit.material->absorption() : nullptr;
+    }
     void endSecondaryWavelengths();
     // False where the shading normal would let light through a surface or keep it from crossing one.
     static bool sidesAgree(const SurfaceHit&, const Directions&, Vec3 wi, Vec3 wiRender);
@@ -167,9 +171,10 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if (context_.scene.intersector->occluded(shadow)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
-    if constexpr (kAbsorption)
-        if (path_.interior.absorption && light->distance < kInfinity)
-            contribution *= exp(path_.interior.absorption->at(path_.lambda) * -light->distance);
+    if constexpr (kAbsorption) {
+        const Curve* medium = eye.wo.z * wi.z < 0 ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
+        if (medium && light->distance < kInfinity) contribution *= exp(medium->at(path_.lambda) * -light->distance);
+    }
     path_.radiance += contribution;
 }
 
@@ -192,8 +197,7 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, const Directi
     const Vec3 direction = hit.shading.toWorld(next->wi);
     if (!sidesAgree(hit, eye, next->wi, direction)) return false;
     if constexpr (kAbsorption)
-        if (next->lobe.has(Lobe::transmission))
-            path_.interior.absorption = dot(direction, hit.ng) < 0 ? hit.material->absorption() : nullptr;
+        if (next->lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
     ray = {spawnOrigin(hit, direction), direction, kInfinity, ray.time};
     return anyNonZero(path_.beta);
 }
@@ -211,7 +215,7 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
 // Beer–Lambert along the segment that ends at `hit`. A camera inside a dielectric is known by its first hit: a boundary
 // met from behind while no interior was entered.
 template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 direction) {
-    const Curve* absorption = path_.interior.absorption;
+    const Curve*& absorption = path_.interior.absorption;
     if (!absorption && dot(direction, hit.ng) > 0) absorption = hit.material->absorption();
     if (absorption) path_.beta *= exp(absorption->at(path_.lambda) * -hit.distance);
 }

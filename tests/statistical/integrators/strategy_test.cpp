@@ -1,0 +1,137 @@
+// Next-event estimation alone, BSDF sampling alone and both together must make the same picture: three estimators that
+// share neither densities nor weights.
+#include "io/exr_writer.h"
+#include "support/scene_test.h"
+#include "support/scene_test_compare.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+struct StrategyScene {
+    const char* name;
+    std::string text;
+    std::uint32_t samples; // of every strategy
+    std::uint32_t maxDepth = 0;
+    double resolution = 0.0025;
+};
+
+constexpr const char* kHeader = "scene 1\nfilm { size 32 32; filter box 0.5 }\n";
+
+TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t seed) {
+    BuildOptions options;
+    options.strategy = strategy;
+    const auto scene = TestScene::parse(kHeader + s.text, options);
+    RenderSettings settings = scene.settings();
+    settings.samples = nightly() ? 16 * s.samples : s.samples;
+    settings.maxDepth = s.maxDepth;
+    settings.seed = seed;
+    return render(scene, settings);
+}
+
+void checkStrategies(const StrategyScene& s) {
+    INFO(s.name);
+    const TestImage mis = renderWith(s, "mis", 1), lights = renderWith(s, "lights", 2), bsdf = renderWith(s, "bsdf", 3);
+    for (const Channel channel : {Channel::y, Channel::x, Channel::z}) {
+        INFO("lights alone against both");
+        checkSame(compareImages(lights.film, mis.film, channel), s.resolution);
+        INFO("BSDF alone against both");
+        checkSame(compareImages(bsdf.film, mis.film, channel), s.resolution);
+    }
+    for (const TestImage* image : {&mis, &lights, &bsdf}) {
+        CHECK(image->statistics.dropped == std::array<std::uint64_t, 3>{});
+        CHECK(image->statistics.cappedPaths == 0);
+    }
+}
+
+// A box of 2 m around the origin, open towards the eye at +z: white floor, ceiling and back, coloured sides.
+const std::string kBox = R"(
+camera { from 0 0 4.2; look-at 0 0 0; fov 36 deg }
+material white diffuse { reflectance 0.7 }
+shape floor   quad { material white; points -1 -1 1  1 -1 1  1 -1 -1  -1 -1 -1 }
+shape ceiling quad { material white; points -1 1 -1  1 1 -1  1 1 1  -1 1 1 }
+shape back    quad { material white; points -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1 }
+shape left    quad { material diffuse { reflectance rgb 0.7 0.1 0.1 }; points -1 -1 1  -1 -1 -1  -1 1 -1  -1 1 1 }
+shape right   quad { material diffuse { reflectance rgb 0.1 0.6 0.1 }; points 1 -1 -1  1 -1 1  1 1 1  1 1 -1 }
+)";
+const std::string kLamp = "light quad { points -0.6 0.9 0.4  -0.6 0.9 -0.5  0.6 0.9 -0.5  0.6 0.9 0.4; radiance 4 }\n";
+
+} // namespace
+
+TEST_CASE("strategies: matte box, quad light") {
+    checkStrategies({"box", kBox + kLamp + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
+}
+
+TEST_CASE("strategies: rough metals") {
+    checkStrategies({"metals",
+                     kBox + kLamp +
+                         "shape sphere { center -0.45 -0.5 0; radius 0.45;"
+                         " material conductor { index metal Au; roughness 0.6 } }\n"
+                         "shape sphere { center 0.5 -0.5 0.1; radius 0.45;"
+                         " material conductor { index metal Cu; roughness 0.5; anisotropy 0.7 } }\n",
+                     512});
+}
+
+TEST_CASE("strategies: rough glass, plain, dispersive and absorbing") {
+    for (const char* glass : {"ior 1.5; roughness 0.5", "ior glass SF11; roughness 0.5",
+                              "ior glass SF11; roughness 0.5; absorption table 400 6  600 0.5  700 2"})
+        checkStrategies(
+            {glass,
+             kBox + kLamp +
+                 fmt::format("shape sphere {{ center 0 -0.3 0; radius 0.6; material dielectric {{ {} }} }}\n", glass),
+             512, 0, 0.004});
+}
+
+TEST_CASE("strategies: a matte thing inside rough absorbing glass, with the lamp inside too") {
+    // Next-event estimation through an interface: the segment to the light runs in the other medium.
+    const std::string block = "shape sphere { center 0 -0.2 0; radius 0.75;"
+                              " material dielectric { ior 1.5; roughness 0.8; absorption 1.2 } }\n";
+    checkStrategies(
+        {"inside", kBox + block + "light sphere { center 0 -0.2 0; radius 0.3; radiance 6 }\n", 512, 0, 0.004});
+    checkStrategies({"outside", kBox + kLamp + block, 512, 0, 0.004});
+}
+
+TEST_CASE("strategies: many lights of different kinds and powers") {
+    std::string lights;
+    for (int i = 0; i < 12; ++i)
+        lights += fmt::format("light sphere {{ center {} {} {}; radius 0.12; radiance {} }}\n", -0.8 + 0.55 * (i % 4),
+                              0.7 - 0.5 * (i / 4), -0.6 + 0.3 * (i % 3), i % 5 == 0 ? 20 : 1);
+    lights += "light disk { center 0 0.95 0; normal 0 -1 0.3; radius 0.3; radiance 3 }\n"
+              "light sky { radiance 0.3 }\nlight sun { elevation 20 deg; azimuth 160 deg; angular-diameter 30 deg;"
+              " radiance 2 }\n";
+    checkStrategies({"many lights", kBox + lights, 768, 0, 0.004});
+}
+
+TEST_CASE("strategies: environment image") {
+    // A dim gradient with one bright coloured patch, so that compensation takes most directions out of the sampler.
+    const auto path = std::filesystem::temp_directory_path() / "abbe_strategy_environment.exr";
+    constexpr int width = 32, height = 16;
+    std::vector<float> r, g, b;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool bright = x >= 14 && x < 20 && y >= 3 && y < 7;
+            r.push_back(bright ? 9.f : 0.2f + 0.02f * static_cast<float>(y));
+            g.push_back(bright ? 7.f : 0.3f);
+            b.push_back(bright ? 2.f : 0.5f - 0.01f * static_cast<float>(x));
+        }
+    const PixelWindow window{0, 0, width, height};
+    writeExr(path.string(), {.window = window,
+                             .display = window,
+                             .r = r,
+                             .g = g,
+                             .b = b,
+                             .chromaticities = Chromaticities::of(rgb::rec709)});
+    const std::string text = fmt::format("camera {{ from 0 0.8 4; look-at 0 0.4 0; fov 36 deg }}\n"
+                                         "light environment \"{}\"\n"
+                                         "shape plane {{ material diffuse {{ reflectance 0.6 }} }}\n"
+                                         "shape sphere {{ center -0.6 0.5 0; radius 0.5; material conductor {{ index "
+                                         "metal Al; roughness 0.6 }} }}\n"
+                                         "shape sphere {{ center 0.6 0.5 0; radius 0.5; material diffuse }}\n",
+                                         path.string());
+    checkStrategies({"environment", text, 512, 0, 0.004});
+    std::filesystem::remove(path);
+}
+
+} // namespace abbe::test

@@ -1,0 +1,98 @@
+// Scenes of tests: from a text to an image in this process, through the same parser, schema and builder as the program.
+#pragma once
+
+#include "base/diagnostic_format.h"
+#include "base/source_map.h"
+#include "integrators/path_tracer.h"
+#include "parser/parse.h"
+#include "scene/build.h"
+#include "scene/registry.h"
+#include "support/scene_test_film.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace abbe::test {
+
+// True in the long runs (./test nightly).
+inline bool nightly() {
+    const char* value = std::getenv("ABBE_NIGHTLY");
+    return value && *value == '1';
+}
+
+// A scene and everything it was read from. Paths in a text are relative to the source tree.
+class TestScene {
+  public:
+    static TestScene parse(std::string text, const BuildOptions& options = {}) {
+        TestScene scene;
+        const FileId file = scene.parts_->sources.add("test.scene", std::move(text));
+        scene.build(file, ABBE_SOURCE_DIR, options);
+        return scene;
+    }
+    // A file relative to the source tree.
+    static TestScene load(const std::filesystem::path& path, const BuildOptions& options = {}) {
+        TestScene scene;
+        const auto full = std::filesystem::path(ABBE_SOURCE_DIR) / path;
+        if (const auto file = readSceneFile(scene.parts_->sources, full, scene.parts_->diagnostics))
+            scene.build(*file, full.parent_path(), options);
+        return scene;
+    }
+
+    const Diagnostics& diagnostics() const { return parts_->diagnostics; }
+    // One line for each diagnostic.
+    std::string report() const { return formatShort(parts_->diagnostics, parts_->sources); }
+    const BuiltScene& built() const { return parts_->built; }
+    // Throws if the scene has errors: a test that renders rubbish must not pass.
+    const Scene& scene() const {
+        if (diagnostics().hasErrors()) throw std::runtime_error(report());
+        return parts_->built.scene;
+    }
+    RenderSettings settings() const { return renderSettings(parts_->built.render); }
+
+  private:
+    struct Parts {
+        SourceMap sources;
+        schema::TypeTable types = makeTypeTable();
+        schema::SceneTree tree;
+        Diagnostics diagnostics;
+        BuiltScene built;
+    };
+
+    void build(FileId file, const std::filesystem::path& folder, const BuildOptions& options) {
+        Parts& p = *parts_;
+        const auto document = abbe::parse(p.sources, file, {}, p.diagnostics);
+        p.tree = schema::resolve(document, p.types, folder, p.diagnostics);
+        p.built = buildScene(p.tree, p.types, options, p.diagnostics);
+    }
+
+    std::unique_ptr<Parts> parts_ = std::make_unique<Parts>();
+};
+
+// An image with what the render said about itself.
+struct TestImage {
+    RecordingFilm film;
+    RenderStatistics statistics;
+};
+
+// The kernel is the one that the scene asks for, or a larger one.
+inline TestImage render(const TestScene& scene, const RenderSettings& settings, Effects atLeast = {},
+                        int replicates = 8) {
+    TestImage image{RecordingFilm(scene.built().film, replicates), {}};
+    const auto tracer = makePathTracer(scene.scene().effects | atLeast);
+    image.statistics = tracer->render(scene.scene(), image.film, settings, {});
+    return image;
+}
+
+// With the scene's own settings but for samples (per pixel, all replicates together) and seed.
+inline TestImage render(const TestScene& scene, std::uint32_t samples, std::uint64_t seed = 1) {
+    RenderSettings settings = scene.settings();
+    settings.samples = samples;
+    settings.seed = seed;
+    return render(scene, settings);
+}
+
+} // namespace abbe::test

@@ -1,0 +1,91 @@
+// Images with error bars: the film of the renderer, and beside it the three channels of every replicate.
+#pragma once
+
+#include "film/film_params.h"
+#include "film/pixel_film.h"
+#include "support/statistics.h"
+
+#include <vector>
+
+namespace abbe::test {
+
+enum class Channel : std::uint8_t { x, y, z };
+
+// A mean with the variance of that mean; `degrees` of freedom of the variance (Satterthwaite's when it is pooled).
+struct Estimate {
+    double mean = 0, variance = 0, degrees = 1;
+};
+
+class RecordingFilm final : public Film {
+  public:
+    RecordingFilm(const FilmParams& params, int replicates) : RecordingFilm(filmSettings(params), replicates) {}
+    RecordingFilm(const FilmSettings& s, int replicates)
+        : film_(s.crop, PixelFilter(s.filter, s.filterRadius), replicates),
+          sums_(static_cast<std::size_t>(s.crop.area() * replicates)), counts_(sums_.size()) {}
+
+    const PixelFilm& pixelFilm() const { return film_; }
+    PixelBounds bounds() const override { return film_.bounds(); }
+    int replicates() const override { return film_.replicates(); }
+    FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
+    void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept override {
+        film_.add(x, y, replicate, sum, samples);
+        const std::size_t i = cell(x, y) + static_cast<std::size_t>(replicate);
+        sums_[i] += sum;
+        counts_[i] += samples;
+    }
+    Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
+    double relativeNoise() const override { return film_.relativeNoise(); }
+
+    // From the spread of the replicates.
+    Estimate pixel(int x, int y, Channel channel = Channel::y) const {
+        Moments m;
+        for (int r = 0; r < replicates(); ++r) {
+            const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
+            if (counts_[i] > 0) m.add(value(sums_[i], channel) / counts_[i]);
+        }
+        return {m.mean(), m.variance() / m.count(), m.count() - 1};
+    }
+    // Mean over the pixels of a rectangle: their replicates are independent, so variances add.
+    Estimate tile(PixelBounds b, Channel channel = Channel::y) const {
+        Estimate sum{0, 0, 0};
+        double squares = 0;
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x) {
+                const Estimate e = pixel(x, y, channel);
+                sum.mean += e.mean;
+                sum.variance += e.variance;
+                squares += e.variance * e.variance / e.degrees;
+            }
+        const double n = static_cast<double>(b.area());
+        const double degrees = squares > 0 ? sum.variance * sum.variance / squares : 1;
+        return {sum.mean / n, sum.variance / (n * n), degrees};
+    }
+    Estimate image(Channel channel = Channel::y) const { return tile(bounds(), channel); }
+    // Sum of one replicate of a pixel and the samples in it, for tests of bits.
+    std::pair<Xyz, std::uint32_t> replicate(int x, int y, int r) const {
+        const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
+        return {sums_[i], counts_[i]};
+    }
+    // Mean over all pixels of the variance of one replicate's mean: the MSE of a render with its number of samples.
+    double replicateVariance() const {
+        double sum = 0;
+        for (int y = bounds().y0; y < bounds().y1; ++y)
+            for (int x = bounds().x0; x < bounds().x1; ++x) sum += pixel(x, y).variance * replicates();
+        return sum / static_cast<double>(bounds().area());
+    }
+
+  private:
+    static double value(Xyz v, Channel c) { return c == Channel::x ? v.x : c == Channel::y ? v.y : v.z; }
+    std::size_t cell(int x, int y) const {
+        const PixelBounds b = bounds();
+        return (static_cast<std::size_t>(y - b.y0) * static_cast<std::size_t>(b.width()) +
+                static_cast<std::size_t>(x - b.x0)) *
+               static_cast<std::size_t>(replicates());
+    }
+
+    PixelFilm film_;
+    std::vector<Xyz> sums_; // [pixel][replicate]
+    std::vector<std::uint32_t> counts_;
+};
+
+} // namespace abbe::test
