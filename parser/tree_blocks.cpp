@@ -14,9 +14,8 @@ using schema::Document;
 // At a `{` where a node should begin. Mostly the author put it on the line after its node: then it belongs to that.
 void TreeReader::readLooseBlock(bool discard) {
     const std::uint32_t previous = blocks_.back().lastChild;
-    const bool belongs = !discard && previous != Document::kNone && !document_.nodes[previous].hasBlock;
-    if (discard || !belongs) {
-        if (!discard) errors_.error("E0121", at_, at_ + 1, "a block needs a name before it", "what is this?");
+    if (discard || previous == Document::kNone || document_.nodes[previous].hasBlock) {
+        errors_.error("E0121", at_, at_ + 1, "a block needs a name before it", "what is this?");
         return openBlock({}, true);
     }
     const Document::NodeRecord& node = document_.nodes[previous];

@@ -89,10 +89,10 @@ bool TreeReader::readEntry(Record& node, std::uint32_t index) {
     if (*at_ == ',') return noteComma(), true;
     document_.unpack(node);
     if (*at_ == '=') return readEquals(node), true;
-    if (*at_ == '(') {
-        const char* const open = at_;
-        if (!readAnnotation(node)) return at_ > open || (readValue(node, index), true);
-        if (open == entryEnd_) reportMissingSpace(open);
+    const char* const annotation = *at_ == '(' ? at_ : nullptr;
+    if (annotation != nullptr) {
+        if (!readAnnotation(node)) return at_ > annotation || (readValue(node, index), true);
+        if (annotation == entryEnd_) reportMissingSpace(annotation);
         if (atEndOfNode() || *at_ == '{' || *at_ == '=') return true;
         entryEnd_ = nullptr;
     }
@@ -107,17 +107,20 @@ bool TreeReader::readEntry(Record& node, std::uint32_t index) {
     const bool number = startsNumber(at_) || startsPointNumber(at_);
     const bool named = startsText(at_) || (!number && isWordCharacter(at_, text_.end));
     if (named || number || (*at_ == '#' && has(at_[1], kWord))) checkSpace();
-    return named ? readTextOrKey(node, index) : readValue(node, index), true;
+    return named ? readTextOrKey(node, index, annotation) : readValue(node, index), true;
 }
 
 // A word or text is an argument, unless `=` follows: then it was the name of a key.
-void TreeReader::readTextOrKey(Record& node, std::uint32_t index) {
+void TreeReader::readTextOrKey(Record& node, std::uint32_t index, const char* annotation) {
     const char* const begin = at_;
     const std::size_t valueCount = document_.values.size();
     if (!readPlainWord(node, index)) readValue(node, index);
     const char* const end = at_;
     skipSpace();
     if (*at_ != '=' || document_.values.size() != valueCount + 1) return;
+    if (annotation != nullptr)
+        errors_.error("E0123", annotation, begin, "a type annotation stands before the value of a key",
+                      "not before its name");
     const std::string_view name = document_.values.back().text;
     document_.values.resize(valueCount);
     --node.valueCount;

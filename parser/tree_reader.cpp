@@ -134,8 +134,8 @@ bool TreeReader::readOddName(Record& node) {
         return false;
     }
     const char* const word = wordEnd(at_, text_.end);
-    const bool number = parseNumber(between(at_, word)).error == NumberError::none;
-    if (number && has(*word, kValueEnd)) { // a misspelt one is an error of its own
+    const bool misspelt = parseNumber(between(at_, word)).error != NumberError::none;
+    if (!misspelt && *word != '=' && !(*word == '/' && isDigit(word[1]))) { // else an error of its own
         Diagnostic& d =
             errors_.error("E0121", at_, word, "a line begins with a word", "rows of numbers begin with `-`");
         errors_.fix(d, at_, at_, "- ");

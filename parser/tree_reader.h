@@ -74,7 +74,7 @@ class TreeReader {
     bool readPlainWord(Record&, std::uint32_t index);
     void readValue(Record&, std::uint32_t index);
     void addValue(Record&, std::uint32_t index, const schema::Value&);
-    void readTextOrKey(Record&, std::uint32_t index);
+    void readTextOrKey(Record&, std::uint32_t index, const char* annotation);
     void readKey(Record&, std::uint32_t index, const KeyName&);
     bool readNumber(Record&);
     bool readSlashdashEntry(const OpenNode&);

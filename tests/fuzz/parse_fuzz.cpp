@@ -15,12 +15,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto document = abbe::parse(sources, file, {}, diagnostics);
     for (const abbe::Diagnostic& d : diagnostics.all())
         if (d.span.begin > d.span.end || d.span.end > size) std::abort();
-    formatHuman(diagnostics, sources);
-    formatJson(diagnostics, sources);
+    abbe::formatHuman(diagnostics, sources);
+    abbe::formatJson(diagnostics, sources);
     // What was understood prints as a text that means the same.
-    const std::string printed = print(*document);
+    const std::string printed = abbe::print(*document);
     abbe::Diagnostics second;
     const abbe::FileId again = sources.add("printed.scene", printed);
-    if (diagnostics.errorCount() == 0 && print(*abbe::parse(sources, again, {}, second)) != printed) std::abort();
+    if (diagnostics.errorCount() == 0 && abbe::print(*abbe::parse(sources, again, {}, second)) != printed) std::abort();
     return 0;
 }

@@ -47,6 +47,7 @@ TEST_CASE("type annotations are accepted and ignored") {
     CHECK(printedText("(t) a (u8) 1 { (x)b }") == "a 1 {\n    b\n}\n");
     CHECK(parseText("a (u8)").codes() == "E0123@2-6");
     CHECK(parseText("a (1)2").codes() == "E0123@2-5");
+    CHECK(parseText("a (t)k=2").codes() == "E0123@2-5");
 }
 
 TEST_CASE("slashdash") {
@@ -59,6 +60,7 @@ TEST_CASE("slashdash") {
     CHECK(printedText("a 1 /-{ b { c } }\nd") == "a 1\nd\n");
     CHECK(printedText("a { /-b; c; /-d { e } }") == "a {\n    c\n}\n");
     CHECK(printedText("/- kdl-version 2\na") == "a\n");
+    CHECK(parseText("/-{ a }\nb").codes() == "E0121@2-3");
     CHECK(parseText("a { /- }").codes() == "E0122@4-6");
     CHECK(parseText("a /-").codes() == "E0122@2-4");
     CHECK(parseText("/- /- a").codes() == "E0122@0-2");
