@@ -23,7 +23,7 @@ void TreeReader::readLooseBlock(bool discard) {
     Diagnostic& d =
         errors_.error("E0109", at_, at_ + 1, fmt::format("the `{{` of `{}` must stand on its line", node.name),
                       "a line end finishes a node");
-    d.related.push_back({node.nameSpan, "the node"});
+    d.related.push_back({{text_.file, node.begin, node.nameEnd}, "the node"});
     const auto isGap = [](char c) { return has(c, kBlank | kNewline) || c == ';'; };
     if (std::all_of(end, at_, isGap)) errors_.fix(d, end, at_, " ");
     openBlock({previous, false, true, {}}, false);
@@ -109,10 +109,9 @@ void TreeReader::compareIndentation(const Block& block) {
     };
     const char* const lineStart = firstOnLine(at_);
     if (lineStart > text_.begin && !has(lineStart[-1], kNewline)) return;
-    const char* const opener = findLineStart(block.owner.index == Document::kNone
-                                                 ? block.brace
-                                                 : text_.begin + document_.nodes[block.owner.index].headSpan.begin,
-                                             text_.begin);
+    const char* const opener = findLineStart(
+        block.owner.index == Document::kNone ? block.brace : text_.begin + document_.nodes[block.owner.index].begin,
+        text_.begin);
     const char* text = opener;
     while (*text == ' ' || *text == '\t') ++text;
     if (at_ - lineStart < text - opener) suspects_.push_back({block.brace, at_});

@@ -30,11 +30,11 @@ void TreeReader::skipSpace(Record& node) {
     if (lineComment) document_.unpack(node);
 }
 
-void TreeReader::touch(Record& node, const char* end) const { node.headSpan.end = text_.offset(end); }
+void TreeReader::touch(Record& node, const char* end) const { node.headEnd = text_.offset(end); }
 
 // At white space's end: whether the node ends here.
 bool TreeReader::atEndOfNode() const {
-    if (*at_ == ';' || *at_ == '}' || (*at_ == '/' && at_[1] == '/')) return true;
+    if (*at_ == '\n' || *at_ == ';' || *at_ == '}' || (*at_ == '/' && at_[1] == '/')) return true;
     return at_ == text_.end || newlineLength(at_, text_.end) > 0;
 }
 
@@ -78,7 +78,7 @@ bool TreeReader::readNumber(Record& node) {
     }
     if (document_.numbers.size() % Document::markStep == 0) document_.marks.push_back(text_.offset(p));
     document_.numbers.push_back(number);
-    node.headSpan.end = text_.offset(end);
+    node.headEnd = text_.offset(end);
     at_ = entryEnd_ = end;
     return true;
 }
@@ -206,7 +206,7 @@ bool TreeReader::readSlashdashEntry(const OpenNode& open) {
     const Sizes before = sizes();
     const std::uint32_t values = node.valueCount, keys = node.keyCount;
     const bool twice = at_[0] == '/' && at_[1] == '-';
-    const std::uint32_t head = node.headSpan.end;
+    const std::uint32_t head = node.headEnd;
     if (twice || !readEntry(node, open.index)) {
         errors_.error("E0122", dash, dash + 2, "`/-` has nothing to switch off",
                       twice ? "another `/-` follows" : "nothing follows");
@@ -215,7 +215,7 @@ bool TreeReader::readSlashdashEntry(const OpenNode& open) {
     rollBack(before);
     node.valueCount = values;
     node.keyCount = keys;
-    node.headSpan.end = head;
+    node.headEnd = head;
     return false;
 }
 
@@ -224,13 +224,13 @@ void TreeReader::readEquals(Record& node) {
     const char* const equals = at_++;
     entryEnd_ = nullptr; // the value behind it needs no space
     skipSpace();
-    const bool first = node.headSpan.end == node.nameSpan.end;
+    const bool first = node.headEnd == node.nameEnd;
     if (!first) {
         errors_.error("E0113", equals, equals + 1, "`=` needs the name of a key before it", "stands behind a value");
         node.damaged = true;
         return;
     }
-    const char* const name = text_.begin + node.nameSpan.end;
+    const char* const name = text_.begin + node.nameEnd;
     Diagnostic& d = errors_.error("E0113", equals, equals + 1, "a property and its value are separated by a space",
                                   "write a space instead");
     if (findLineEnd(name, at_) == at_) errors_.fix(d, name, at_, " ");
@@ -277,7 +277,7 @@ void TreeReader::reportMissingSpace(const char* place) {
 }
 
 void TreeReader::endEntries(Record& node) {
-    node.end = node.headSpan.end;
+    node.end = node.headEnd;
     if (!commas_.empty()) reportCommas(node);
     if (node.keyCount > 1) removeDoubleKeys(node);
 }

@@ -90,9 +90,10 @@ void TreeReader::readNode() {
         entryEnd_ = nullptr;
         open.discard = true;
         node.damaged = true;
-        node.nameSpan = text_.span(begin, at_);
+        node.begin = text_.offset(begin);
+        node.nameEnd = text_.offset(at_);
     }
-    node.headSpan = node.nameSpan;
+    node.headEnd = node.nameEnd;
     readEntries(open);
 }
 
@@ -120,7 +121,8 @@ bool TreeReader::readName(Record& node) {
     }
     at_ = entryEnd_ = end;
     node.name = name;
-    node.nameSpan = text_.span(begin, end);
+    node.begin = text_.offset(begin);
+    node.nameEnd = text_.offset(end);
     return true;
 }
 
@@ -141,7 +143,7 @@ bool TreeReader::readOddName(Record& node) {
         errors_.fix(d, at_, at_, "- ");
     }
     node.name = "-";
-    node.nameSpan = text_.span(at_, at_);
+    node.begin = node.nameEnd = text_.offset(at_);
     node.damaged = true;
     entryEnd_ = nullptr; // no space is missed before the first number
     return true;

@@ -76,13 +76,19 @@ void Document::unpack(NodeRecord& node) {
 
 std::string_view Node::name() const { return document_->nodes[index_].name; }
 
-Span Node::nameSpan() const { return document_->nodes[index_].nameSpan; }
+Span Node::nameSpan() const {
+    const Document::NodeRecord& node = document_->nodes[index_];
+    return {document_->file, node.begin, node.nameEnd};
+}
 
-Span Node::headSpan() const { return document_->nodes[index_].headSpan; }
+Span Node::headSpan() const {
+    const Document::NodeRecord& node = document_->nodes[index_];
+    return {document_->file, node.begin, node.headEnd};
+}
 
 Span Node::span() const {
     const Document::NodeRecord& node = document_->nodes[index_];
-    return {node.headSpan.file, node.headSpan.begin, node.end};
+    return {document_->file, node.begin, node.end};
 }
 
 std::size_t Node::valueCount() const {

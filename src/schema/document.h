@@ -100,9 +100,8 @@ class Document {
 
     struct NodeRecord {
         std::string_view name;
-        Span nameSpan;
-        Span headSpan;
-        std::uint32_t end = 0; // end offset of the whole node
+        // Offsets of the name, of the head's end and of the node's end.
+        std::uint32_t begin = 0, nameEnd = 0, headEnd = 0, end = 0;
         std::uint32_t firstValue = 0, valueCount = 0;
         std::uint32_t firstNumber = 0, numberCount = 0; // packed values that follow the others
         std::uint32_t packedBegin = 0;                  // where the text of the packed values begins
