@@ -115,6 +115,21 @@ TEST_CASE("rows of numbers are packed, and every one is found again in the text"
     CHECK(parsed.sources->text(last.value(2).span) == "5");
 }
 
+TEST_CASE("numbers that were removed again leave no trace in later rows") {
+    std::string row, removed;
+    for (int i = 0; i < 300; ++i) {
+        row += fmt::format(" {}", i);
+        removed += fmt::format(" {}.5", i);
+    }
+    const auto parsed =
+        parseText("a 1\n/-b" + removed + "\nc /-2" + row + " mm\nd { /-e" + removed + "; f" + row + " }\n");
+    REQUIRE(parsed.diagnostics.all().empty());
+    for (const schema::Node node : {parsed.root(1), *parsed.root(2).children().begin()}) {
+        REQUIRE(node.valueCount() >= 300);
+        for (std::size_t i = 0; i < 300; ++i) CHECK(parsed.sources->text(node.value(i).span) == std::to_string(i));
+    }
+}
+
 TEST_CASE("packed rows that end with a word, a key or an odd number") {
     for (const char* row : {"a 1 2 3 mm", "a 1 2 3 k=4", "a 1 2 0x10", "a 1 2 k=3 4 5", "a 1 \\ // 7\n 2 3",
                             "a 1 b 2 c 3", "a (u8)1 2", "a 1 (u8)2 3", "a 1 1_0 2"}) {
