@@ -39,6 +39,8 @@ class Diffuse final : public Material {
         return arena.make<DiffuseBsdf>(reflectance_ ? reflectance_->at(wavelengths) : Spectrum(0.5f));
     }
 
+    bool choosesLobe() const override { return false; }
+
   private:
     const Curve* reflectance_; // null: 0.5
 };

@@ -37,6 +37,7 @@ class PerspectiveCamera final : public Camera {
     // Requires: tanHalfFov > 0, lensRadius >= 0, focus > 0.
     PerspectiveCamera(const Frame& axes, Vec2i filmSize, double tanHalfFov, double lensRadius, double focus);
     CameraRay ray(const CameraSample&) const noexcept override;
+    bool usesLens() const override { return lensRadius_ > 0; }
 
   private:
     Frame axes_;

@@ -17,7 +17,7 @@ struct PathContext {
     const Scene& scene;
     const LightSampler& lights;
     RenderSettings settings;
-    bool choices = true; // whether anything in the scene draws a light or a lobe
+    bool choices = true; // whether anything in the scene draws a light, a lobe or a place on a lens
 };
 
 // What the paths of one tile counted.
@@ -95,7 +95,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         arena_.reset();
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
-        const VertexSample sample = sampler_.vertex(depth, context_.choices);
+        const VertexSample sample = sampler_.vertex(depth);
         sampleLight(hit, bsdf, eye, sample);
         if (!scatter(hit, bsdf, eye, sample, ray) || !survives(depth, rouletteScale)) break;
     }

@@ -39,13 +39,18 @@ std::vector<PixelBounds> makeTiles(PixelBounds b) {
     return tiles;
 }
 
+bool drawsChoices(const Scene& scene) {
+    return scene.lights.size() > 1 || scene.camera->usesLens() ||
+           std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
+}
+
 // One render from the first pass to the last: owns the schedule, the statistics and the talk with the caller.
 class RenderJob {
   public:
     RenderJob(const Kernel& kernel, const Scene& scene, Film& film, const RenderSettings& settings,
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
-          lights_(scene.lights), context_{scene, lights_, settings, true}, roulette_(film.bounds()),
+          lights_(scene.lights), context_{scene, lights_, settings, drawsChoices(scene)}, roulette_(film.bounds()),
           tiles_(makeTiles(film.bounds())) {
         const auto replicates = static_cast<std::uint32_t>(film.replicates());
         perReplicate_ = std::max<std::uint32_t>(1, (settings.samples + replicates - 1) / replicates);

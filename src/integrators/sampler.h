@@ -16,41 +16,47 @@ struct VertexSample {
     float lobe; // which lobe
 };
 
-// Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first sixteen
-// dimensions are joint: film 0-1, light and BSDF of the first vertex 2-5, lens 6-7, wavelength 8, time 9, light and
-// lobe choice of the first vertex 10-11, light and BSDF of the second vertex 12-15. Every later vertex has an
-// independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5), which also serves the choices of the
-// second.
+// Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first 24 dimensions
+// are joint: film 0-1, wavelength 2, light and BSDF of the first three vertices 3-6, 7-10 and 11-14, time 15, lens
+// 16-17, light and lobe choice of those vertices 18-19, 20-21 and 22-23. Every later vertex has an independently
+// shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose cost is one register.
 class Sampler final {
   public:
-    // `random`: independent random numbers instead, for comparison.
-    void start(std::uint64_t pixelSeed, std::uint32_t index, bool random) {
+    static constexpr std::uint32_t kJointVertices = 3;
+
+    // `random`: independent random numbers instead, for comparison. `choices`: whether lens, light choice or lobe
+    // choice will be asked for at all; else their dimensions are left out.
+    void start(std::uint64_t pixelSeed, std::uint32_t index, bool random, bool choices) {
         index_ = index;
         seed_ = static_cast<std::uint32_t>(pixelSeed);
         stream_ = pixelSeed;
         random_ = random;
-        if (random)
-            fillRandom(0, joint_, 16);
-        else
-            scrambledSobol16(index, seed_, joint_);
+        if (random) return fillRandom(0, joint_, 24);
+        const std::uint32_t shuffled = shuffleIndex(index, seed_);
+        scrambledSobol8(shuffled, seed_, 0, joint_);
+        scrambledSobol8(shuffled, seed_, 8, joint_ + 8);
+        if (choices) scrambledSobol8(shuffled, seed_, 16, joint_ + 16);
     }
     Vec2 film() const { return {joint_[0], joint_[1]}; }
-    Vec2 lens() const { return {joint_[6], joint_[7]}; }
-    float wavelength() const { return joint_[8]; }
-    float time() const { return joint_[9]; }
+    float wavelength() const { return joint_[2]; }
+    float time() const { return joint_[15]; }
+    Vec2 lens() const { return {joint_[16], joint_[17]}; }
 
-    // Vertex 0 is the first that the camera ray meets. `choices`: whether pick and lobe will be used at all.
-    VertexSample vertex(std::uint32_t depth, bool choices) {
-        if (depth == 0) return {{joint_[2], joint_[3]}, {joint_[4], joint_[5]}, joint_[10], joint_[11]};
-        if (depth > 1 || choices) fillSet(depth);
-        if (depth == 1) return {{joint_[12], joint_[13]}, {joint_[14], joint_[15]}, set_[4], set_[5]};
+    // Vertex 0 is the first that the camera ray meets.
+    VertexSample vertex(std::uint32_t depth) {
+        if (depth < kJointVertices) {
+            const float* d = joint_ + 3 + 4 * depth;
+            const float* c = joint_ + 18 + 2 * depth;
+            return {{d[0], d[1]}, {d[2], d[3]}, c[0], c[1]};
+        }
+        fillSet(depth);
         return {{set_[0], set_[1]}, {set_[2], set_[3]}, set_[4], set_[5]};
     }
     // For Russian roulette: independent of all other numbers. The survival probability depends on earlier samples of
     // the pixel, and a number that shared their stratification would correlate with it and bias the estimate.
     float roulette(std::uint32_t depth) const {
-        return unitFloat(
-            static_cast<std::uint32_t>(combine64(stream_ ^ 0x5bd1e995u, (std::uint64_t{index_} << 32) | depth) >> 32));
+        const std::uint64_t place = (std::uint64_t{index_} << 32) | depth;
+        return unitFloat(static_cast<std::uint32_t>(combine64(stream_ ^ 0x5bd1e995u, place) >> 32));
     }
 
   private:
@@ -67,7 +73,7 @@ class Sampler final {
         }
     }
 
-    alignas(32) float joint_[16];
+    alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;

@@ -22,8 +22,8 @@ struct TileResult {
     std::vector<DroppedSample> examples;    // at most a few
 };
 
-// Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite and
-// non-negative is counted by cause and left out of the pixel's mean.
+// Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite
+// and non-negative is counted by cause and left out of the pixel's mean.
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)
@@ -45,7 +45,7 @@ template <EffectBits E> class TileKernel {
         Xyz sum;
         std::uint32_t counted = 0;
         for (std::uint32_t i = job_.first; i < job_.last; ++i) {
-            sampler_.start(seed, i, context_.settings.randomSampler);
+            sampler_.start(seed, i, context_.settings.randomSampler, context_.choices);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
                 drop({x, y, r, i, static_cast<DropCause>(cause)});

@@ -4,10 +4,10 @@ namespace abbe {
 
 namespace {
 
-// Degree s, coefficients a and initial numbers m of dimensions 2 to 16 [Joe2008]; dimension 1 is van der Corput's.
+// Degree s, coefficients a and initial numbers m of dimensions 2 to 24 [Joe2008]; dimension 1 is van der Corput's.
 struct JoeKuo {
     int s, a;
-    std::uint32_t m[6];
+    std::uint32_t m[7];
 };
 constexpr JoeKuo kJoeKuo[kSobolDimensions - 1] = {
     {1, 0, {1}},
@@ -25,6 +25,14 @@ constexpr JoeKuo kJoeKuo[kSobolDimensions - 1] = {
     {6, 1, {1, 3, 3, 9, 7, 49}},
     {6, 13, {1, 1, 1, 15, 21, 21}},
     {6, 16, {1, 3, 1, 13, 27, 49}},
+    {6, 19, {1, 1, 1, 15, 7, 5}},
+    {6, 22, {1, 3, 1, 15, 13, 25}},
+    {6, 25, {1, 1, 5, 5, 19, 61}},
+    {7, 1, {1, 3, 7, 11, 23, 15, 103}},
+    {7, 4, {1, 3, 7, 13, 13, 15, 69}},
+    {7, 7, {1, 1, 3, 13, 7, 35, 63}},
+    {7, 8, {1, 3, 5, 9, 1, 25, 53}},
+    {7, 14, {1, 3, 1, 13, 9, 35, 107}},
 };
 
 // Direction numbers v_1 … v_32 of one dimension, most significant bit first [Joe2008, eq. 2-3].

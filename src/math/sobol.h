@@ -8,7 +8,7 @@ namespace abbe {
 
 using UInt8 = std::uint32_t __attribute__((vector_size(32)));
 
-inline constexpr int kSobolDimensions = 16;
+inline constexpr int kSobolDimensions = 24;
 
 // Direction numbers with their bits reversed: row b holds what bit b of the index contributes to each dimension.
 // Reversed, because the Owen scramble below works from the low bits up [Burley2020].

@@ -21,6 +21,8 @@ class Camera {
   public:
     virtual ~Camera() = default;
     virtual CameraRay ray(const CameraSample&) const noexcept = 0;
+    // False if ray() does not look at CameraSample::lens.
+    virtual bool usesLens() const { return true; }
 };
 
 } // namespace abbe

@@ -17,6 +17,8 @@ class Material {
     virtual Effects needs() const { return {}; }
     // The scattering at a point; made in the arena. Never null.
     virtual const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept = 0;
+    // False if no Bsdf of this material uses uLobe; spares the sampler its dimensions.
+    virtual bool choosesLobe() const { return true; }
     // Absorption coefficient inside closed shapes of this material, 1/m; null when clear.
     virtual const Curve* absorption() const { return nullptr; }
 };
