@@ -24,18 +24,21 @@ class Sampler final {
   public:
     static constexpr std::uint32_t kJointVertices = 3;
 
-    // `random`: independent random numbers instead, for comparison. `choices`: whether lens, light choice or lobe
-    // choice will be asked for at all; else their dimensions are left out.
-    void start(std::uint64_t pixelSeed, std::uint32_t index, bool random, bool choices) {
-        index_ = index;
+    // For samples [0, end) of one (pixel, replicate). `random`: independent random numbers instead, for comparison.
+    // `choices`: whether lens, light choice or lobe choice will be asked for at all; else their dimensions are left
+    // out.
+    void startPixel(std::uint64_t pixelSeed, std::uint32_t end, bool random, bool choices) {
         seed_ = static_cast<std::uint32_t>(pixelSeed);
         stream_ = pixelSeed;
         random_ = random;
-        if (random) return fillRandom(0, joint_, 24);
-        const std::uint32_t shuffled = shuffleIndex(index, seed_);
-        scrambledSobol8(shuffled, seed_, 0, joint_);
-        scrambledSobol8(shuffled, seed_, 8, joint_ + 8);
-        if (choices) scrambledSobol8(shuffled, seed_, 16, joint_ + 16);
+        if (!random) block_.start(seed_, end, choices ? 3 : 2);
+    }
+    void start(std::uint32_t index) {
+        index_ = index;
+        if (random_)
+            fillRandom(0, joint_, 24);
+        else
+            block_.point(index, joint_);
     }
     Vec2 film() const { return {joint_[0], joint_[1]}; }
     float wavelength() const { return joint_[2]; }
@@ -75,6 +78,7 @@ class Sampler final {
 
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
+    SobolBlock block_;
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;
     bool random_ = false;

@@ -44,8 +44,9 @@ template <EffectBits E> class TileKernel {
         const float rouletteScale = job_.roulette->scale(x, y);
         Xyz sum;
         std::uint32_t counted = 0;
+        sampler_.startPixel(seed, job_.last, context_.settings.randomSampler, context_.choices);
         for (std::uint32_t i = job_.first; i < job_.last; ++i) {
-            sampler_.start(seed, i, context_.settings.randomSampler, context_.choices);
+            sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
                 drop({x, y, r, i, static_cast<DropCause>(cause)});

@@ -55,17 +55,27 @@ inline std::uint32_t shuffleIndex(std::uint32_t index, std::uint32_t seed) {
     return reverseBits(owenScrambleReversed(reverseBits(index), seed));
 }
 
-// Dimensions [first, first + 8) of point `shuffled`, scrambled per dimension, as 24-bit fractions in [0, 1).
+// Eight dimensions from their unscrambled bits: Owen scramble, then 24-bit fractions in [0, 1).
+inline void scrambleToFloats(UInt8 bits, UInt8 seeds, float* out) {
+    using SignedInt8 = std::int32_t __attribute__((vector_size(32)));
+    using Float8v = float __attribute__((vector_size(32)));
+    bits = reverseBits(owenScrambleReversed(bits, seeds)) >> 8;
+    *reinterpret_cast<Float8v*>(out) = __builtin_convertvector(reinterpret_cast<SignedInt8>(bits), Float8v) * 0x1p-24f;
+}
+inline UInt8 dimensionSeeds(std::uint32_t seed, int first) {
+    const UInt8 lane = {1, 2, 3, 4, 5, 6, 7, 8};
+    return mixLanes((UInt8{} + seed) ^ ((lane + static_cast<std::uint32_t>(first)) * 0x85ebca6bu));
+}
+inline const UInt8& directionRow(std::uint32_t bit, int first) {
+    return *reinterpret_cast<const UInt8*>(kSobolDirections.rows[bit] + first);
+}
+
+// Dimensions [first, first + 8) of point `shuffled`.
 inline void scrambledSobol8(std::uint32_t shuffled, std::uint32_t seed, int first, float* out) {
     UInt8 bits = {};
     for (std::uint32_t b = shuffled; b != 0; b &= b - 1)
-        bits ^= *reinterpret_cast<const UInt8*>(kSobolDirections.rows[std::countr_zero(b)] + first);
-    const UInt8 lane = {1, 2, 3, 4, 5, 6, 7, 8};
-    const UInt8 seeds = mixLanes((UInt8{} + seed) ^ ((lane + static_cast<std::uint32_t>(first)) * 0x85ebca6bu));
-    bits = reverseBits(owenScrambleReversed(bits, seeds)) >> 8;
-    using Int8v = std::int32_t __attribute__((vector_size(32)));
-    using Float8v = float __attribute__((vector_size(32)));
-    *reinterpret_cast<Float8v*>(out) = __builtin_convertvector(reinterpret_cast<Int8v>(bits), Float8v) * 0x1p-24f;
+        bits ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), first);
+    scrambleToFloats(bits, dimensionSeeds(seed, first), out);
 }
 
 // Sixteen joint dimensions of one point; `out` is 32-byte aligned.
@@ -74,5 +84,42 @@ inline void scrambledSobol16(std::uint32_t index, std::uint32_t seed, float* out
     scrambledSobol8(shuffled, seed, 0, out);
     scrambledSobol8(shuffled, seed, 8, out + 8);
 }
+
+// The same points for all indices below a power of two, cheaper. An Owen shuffle works from the high bits of the index
+// down, so the bits above that power are shuffled to the same bits in every one of those indices: what they contribute
+// is summed once, and so are the dimensions' seeds.
+class SobolBlock {
+  public:
+    static constexpr int kGroups = kSobolDimensions / 8;
+
+    // For indices in [0, end); groups of eight dimensions [0, groups) will be asked for.
+    void start(std::uint32_t seed, std::uint32_t end, int groups) {
+        seed_ = seed;
+        groups_ = groups;
+        lowMask_ = end > 1 ? 0xffffffffu >> std::countl_zero(end - 1) : 0u;
+        const std::uint32_t shared = shuffleIndex(0, seed) & ~lowMask_;
+        for (int g = 0; g < groups; ++g) {
+            base_[g] = UInt8{};
+            for (std::uint32_t b = shared; b != 0; b &= b - 1)
+                base_[g] ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), 8 * g);
+            seeds_[g] = dimensionSeeds(seed, 8 * g);
+        }
+    }
+    // All groups of one point; `out` is 32-byte aligned.
+    void point(std::uint32_t index, float* out) const {
+        const std::uint32_t low = shuffleIndex(index, seed_) & lowMask_;
+        for (int g = 0; g < groups_; ++g) {
+            UInt8 bits = base_[g];
+            for (std::uint32_t b = low; b != 0; b &= b - 1)
+                bits ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), 8 * g);
+            scrambleToFloats(bits, seeds_[g], out + 8 * g);
+        }
+    }
+
+  private:
+    UInt8 base_[kGroups] = {}, seeds_[kGroups] = {};
+    std::uint32_t seed_ = 0, lowMask_ = 0;
+    int groups_ = 0;
+};
 
 } // namespace abbe
