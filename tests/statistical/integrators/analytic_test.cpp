@@ -18,7 +18,7 @@ constexpr double kLuminousScale = kLuminousEfficacy * kYIntegral;
 constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 
 // Mean of f(point, direction from the eye) over a pixel, by a grid of rays through the scene's own camera; world space.
-template <typename F> std::function<double(int, int)> overPixel(const TestScene& scene, F f, int grid = 6) {
+template <typename F> std::function<double(int, int)> overPixel(const TestScene& scene, F f, int grid = 16) {
     return [&scene, f, grid](int px, int py) {
         double sum = 0;
         for (int i = 0; i < grid * grid; ++i) {

@@ -56,7 +56,7 @@ shape back    quad { material white; points -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1 }
 shape left    quad { material diffuse { reflectance rgb 0.7 0.1 0.1 }; points -1 -1 1  -1 -1 -1  -1 1 -1  -1 1 1 }
 shape right   quad { material diffuse { reflectance rgb 0.1 0.6 0.1 }; points 1 -1 -1  1 -1 1  1 1 1  1 1 -1 }
 )";
-const std::string kLamp = "light quad { points -0.6 0.9 0.4  -0.6 0.9 -0.5  0.6 0.9 -0.5  0.6 0.9 0.4; radiance 4 }\n";
+const std::string kLamp = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n";
 
 } // namespace
 
@@ -75,8 +75,8 @@ TEST_CASE("strategies: rough metals") {
 }
 
 TEST_CASE("strategies: rough glass, plain, dispersive and absorbing") {
-    for (const char* glass : {"ior 1.5; roughness 0.5", "ior glass SF11; roughness 0.5",
-                              "ior glass SF11; roughness 0.5; absorption table 400 6  600 0.5  700 2"})
+    for (const char* glass : {"ior 1.5; roughness 0.7", "ior glass SF11; roughness 0.7",
+                              "ior glass SF11; roughness 0.7; absorption table 400 6  600 0.5  700 2"})
         checkStrategies(
             {glass,
              kBox + kLamp +
