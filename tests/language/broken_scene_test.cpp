@@ -75,3 +75,13 @@ TEST_CASE("unknown types do not hide the mistakes in their blocks") {
     CHECK(l->text(l->get("E0205").span) == "subsurface");
     CHECK(l->get("E0205").help == "the types of `material` are `diffuse`, `dielectric` and `conductor`");
 }
+
+TEST_CASE("in a block of unknown type only what no type of the kind accepts is wrong") {
+    const auto codes = [](const std::string& property) {
+        return loadBody("material m subsurface { " + property + " }\nshape sphere { material m }")->codes();
+    };
+    CHECK(codes("ior 1.5") == "E0205");      // of a dielectric, not of a conductor
+    CHECK(codes("ior metal Au") == "E0205"); // of both
+    CHECK(codes("ior -1") == "E0205 E0303"); // of neither
+    CHECK(codes("mean-free-path 3 mm") == "E0205");
+}
