@@ -5,6 +5,7 @@ source "$(dirname -- "$0")/lib.sh" "$@"
 
 # start OUTPUT: renders for ever in the background, and returns when samples are being taken.
 start() {
+    : >events # not those of the last one
     "$program" "$scenes/room.scene" --size 256x256 --samples 4000000000 -o "$1" --json >events 2>err &
     job=$!
     for _ in {1..300}; do
@@ -16,8 +17,14 @@ start() {
 }
 
 ended_with() { # CODE
+    local code
+    for _ in {1..300}; do
+        kill -0 "$job" 2>/dev/null || break
+        sleep 0.1
+    done
+    kill -KILL "$job" 2>/dev/null # after half a minute
     wait "$job"
-    local code=$?
+    code=$?
     [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
 }
 
@@ -36,6 +43,12 @@ kill -TERM "$job"
 ended_with 143
 expect 0 info term.exr
 says out "abbe.partial = 1"
+
+# A broken contract of the program itself ends with its own code.
+start abort.exr
+kill -ABRT "$job"
+ended_with 70
+[[ ! -e abort.exr ]] || fault "an image in spite of a bug"
 
 # An older image survives a render that is left at once. While the program is stopped both signals gather, so neither
 # can be late; the order in which they are delivered does not matter.
