@@ -162,6 +162,7 @@ std::string explainWord(const TypeTable& table, std::string_view word) {
     if (const CodeInfo* code = findCode(word))
         return fmt::format("{}: {}\n  {}\n", code->code, code->title, code->explanation);
     if (word == "units") return explainUnits();
+    if (word == "codes") return diagnosticsMarkdown();
     if (const auto kind = findKind(word)) text += explainKind(table, *kind);
     for (const TypeInfo& type : table.all())
         if (type.name == word && keyword(type.kind) != word) text += explainType(type);

@@ -14,13 +14,16 @@ struct Explanation {
 };
 
 // Explains `camera`, `light.quad`, `camera.lens`, `light.quad.power`, `dielectric`, `lens`, `spectrum`, `blackbody`,
-// `units`, `unit nits`, `nits`, or a code such as `E0310`.
+// `units`, `unit nits`, `nits`, a code such as `E0310`, or `codes` (the whole page of them).
 Explanation explain(const TypeTable&, std::string_view query);
 
 // The reference manual: every kind, type, property, spectrum form and unit, as Markdown.
 std::string schemaMarkdown(const TypeTable&);
 
-// The same as JSON, for editors and exporters.
+// Every diagnostic code with its explanation, as Markdown: docs/language/diagnostics.md.
+std::string diagnosticsMarkdown();
+
+// The same as schemaMarkdown as JSON, for editors and exporters.
 std::string schemaJson(const TypeTable&);
 
 // One line per field with name, type, units, default and range: compared with a golden file, so that every change of

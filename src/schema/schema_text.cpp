@@ -1,3 +1,4 @@
+#include "base/diagnostic_catalogue.h"
 #include "schema/describe.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
@@ -128,6 +129,18 @@ std::string schemaMarkdown(const TypeTable& table) {
         const auto d = static_cast<Dimension>(i);
         text += fmt::format("| {} | {} |\n", describe(d), quotedList(spellings(d), "or"));
     }
+    return text;
+}
+
+std::string diagnosticsMarkdown() {
+    std::string text =
+        "# Diagnostics\n\nEvery message has a stable code. `abbe explain E0310` prints the entry of one code; this "
+        "page is what\n"
+        "`abbe explain codes` prints. E01 and W01: syntax, 02: names, 03: values and units, 04: files, 05: layers,\n"
+        "06: the scene as a whole. E: errors, W: warnings.\n\n| code | | |\n|---|---|---|\n";
+    for (const CodeInfo& code : allCodes())
+        text += fmt::format("| {} | {} | {} |\n", code.code, cell(std::string(code.title)),
+                            cell(std::string(code.explanation)));
     return text;
 }
 

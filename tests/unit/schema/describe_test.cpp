@@ -2,6 +2,8 @@
 #include "schema/scene_tree.h"
 
 #include <doctest/doctest.h>
+#include <fstream>
+#include <iterator>
 
 using namespace abbe;
 using namespace abbe::schema;
@@ -108,4 +110,10 @@ TEST_CASE("every code of resolving and binding is explained") {
         CAPTURE(code);
         CHECK(explain(TypeTable{}, code).found);
     }
+}
+
+TEST_CASE("the page of diagnostics is up to date (abbe explain codes > docs/language/diagnostics.md)") {
+    std::ifstream file(ABBE_SOURCE_DIR "/docs/language/diagnostics.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    CHECK(page == diagnosticsMarkdown());
 }
