@@ -16,16 +16,19 @@ std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelength
     const std::optional<ShapeSample> s = shape_.sample(from, u);
     if (!s || !(s->pdfSolidAngle > 0) || !(s->pdfSolidAngle < kInfinity)) return std::nullopt;
     const Vec3 offset = s->p - from;
-    if (!(lengthSquared(offset) > 0)) return std::nullopt;
-    LightSample result;
-    result.wi = normalize(offset);
-    if (!emits(s->ng, -result.wi)) return std::nullopt;
-    // The end of a long shadow ray is as uncertain as its direction: a few roundings of the distance.
-    const float rounding = 0x1p-21f * length(offset);
-    result.p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -result.wi);
-    result.distance = length(result.p - from);
-    result.radiance = radiance_.at(lambda);
-    result.pdfSolidAngle = s->pdfSolidAngle;
+    const float distance = length(offset);
+    if (!(distance > 0)) return std::nullopt;
+    const Vec3 wi = offset * (1 / distance);
+    if (!emits(s->ng, -wi)) return std::nullopt;
+    std::optional<LightSample> result(std::in_place); // in place: a copy would stall on the stores (see Quad::sample)
+    result->wi = wi;
+    // The end of a shadow ray is as uncertain as its direction: without a margin of a few roundings of the distance,
+    // half of all rays to a far sphere or disk would end behind its surface.
+    const float rounding = 0x1p-21f * distance;
+    result->p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -wi);
+    result->distance = distance;
+    result->radiance = radiance_.at(lambda);
+    result->pdfSolidAngle = s->pdfSolidAngle;
     return result;
 }
 

@@ -142,7 +142,8 @@ void checkAgainstRays(const Shape& shape, bool twoSided, const std::vector<Vec3>
             CHECK(length(s->wi) == doctest::Approx(1).epsilon(1e-5));
             const Vec3 toSample = s->p - from;
             CHECK(length(toSample) == doctest::Approx(s->distance).epsilon(1e-5));
-            shadowed += scene->occluded({from, toSample / s->distance, s->distance});
+            const float reach = length(toSample);
+            shadowed += scene->occluded({from, toSample / reach, reach});
             SurfaceHit hit;
             if (!scene->intersect({from, s->wi}, hit)) {
                 ++missed; // rounded past the edge
