@@ -64,23 +64,27 @@ template <EffectBits E> class TileKernel {
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
         const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time()});
+        radiance_ = Spectrum(0.f);
         if (!(camera.weight > 0)) return {};
         const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters);
-        const Spectrum radiance = loop.radiance(camera.ray, lambda, rouletteScale);
-        lowest_ = minLane(radiance);
-        return toXyz(radiance, lambda) * static_cast<double>(camera.weight * filter.weight);
+        radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
+        return toXyz(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
     }
 
     static float minLane(Spectrum s) { return -maxLane(-s); }
 
-    // Index of the DropCause, or 3 for a sound sample.
+    // Index of the DropCause, or 3 for a sound sample. The cause is looked for in the lanes: in XYZ an infinite one
+    // times a matching function of 0 would be NaN.
     unsigned fault(Xyz v) const {
-        const double s = v.x + v.y + v.z;
-        if (std::isfinite(s) && !(lowest_ < 0)) [[likely]]
+        const bool negative = minLane(radiance_) < 0;
+        if (std::isfinite(v.x + v.y + v.z) && !negative) [[likely]]
             return 3;
-        if (std::isnan(s)) return static_cast<unsigned>(DropCause::nan);
-        return static_cast<unsigned>(std::isinf(s) ? DropCause::infinite : DropCause::negative);
+        const bool nan = _mm256_movemask_ps(_mm256_cmp_ps(radiance_.v, radiance_.v, _CMP_UNORD_Q)) != 0;
+        const DropCause cause = nan                                ? DropCause::nan
+                                : negative && allFinite(radiance_) ? DropCause::negative
+                                                                   : DropCause::infinite;
+        return static_cast<unsigned>(cause);
     }
 
     void drop(DroppedSample sample) {
@@ -94,7 +98,7 @@ template <EffectBits E> class TileKernel {
     Sampler sampler_;
     Arena arena_;
     TileResult result_;
-    float lowest_ = 0; // of the last sample's lanes
+    Spectrum radiance_; // of the last sample
 };
 
 using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);

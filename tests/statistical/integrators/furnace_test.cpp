@@ -46,7 +46,7 @@ TEST_CASE("a lossless object in a closed room changes nothing") {
     for (const char* material :
          {"diffuse { reflectance 1 }", "dielectric { ior 1.5 }", "dielectric { ior glass SF11 }",
           "dielectric { ior 1.5; roughness 0.4 }", "dielectric { ior glass SF11; roughness 0.4 }"}) {
-        INFO(material);
+        INFO(std::string(material));
         // Energy compensation of rough glass is by table; what it leaves is below 0.3 % (statistical tests of
         // materials).
         const bool rough = std::string(material).find("roughness") != std::string::npos;

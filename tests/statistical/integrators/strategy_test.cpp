@@ -32,7 +32,7 @@ TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t
 }
 
 void checkStrategies(const StrategyScene& s) {
-    INFO(s.name);
+    INFO(std::string(s.name));
     const TestImage mis = renderWith(s, "mis", 1), lights = renderWith(s, "lights", 2), bsdf = renderWith(s, "bsdf", 3);
     for (const Channel channel : {Channel::y, Channel::x, Channel::z}) {
         INFO("lights alone against both");

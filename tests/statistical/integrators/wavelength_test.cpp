@@ -21,7 +21,7 @@ TestScene stripes(const std::string& glass) {
 }
 
 void checkWavelengths(const std::string& glass) {
-    INFO(glass);
+    INFO(std::string(glass));
     const TestScene scene = stripes(glass);
     const TestImage hero = render(scene, nightly() ? 16384 : 1024);
     CHECK(hero.statistics.kernel == "absorption+dispersion");

@@ -4,6 +4,7 @@
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
+#include <string>
 
 namespace abbe::test {
 namespace {
@@ -32,8 +33,8 @@ template <typename F> SlopeFit slope(F&& f, double exact, bool random) {
 // Checks the slopes of RMSE: that of random numbers is -1/2, and Owen-scrambled points reach at least `joint`.
 template <typename F> void checkSlopes(const char* name, F&& f, double exact, double joint) {
     const SlopeFit random = slope(f, exact, true), owen = slope(f, exact, false);
-    INFO(name << ": random " << random.slope << " ± " << random.error << ", Owen " << owen.slope << " ± "
-              << owen.error);
+    INFO(std::string(name) << ": random " << random.slope << " ± " << random.error << ", Owen " << owen.slope << " ± "
+                           << owen.error);
     CHECK(std::abs(random.slope + 0.5) < 0.06);
     CHECK(std::abs(owen.slope - joint) < 0.12);
 }
