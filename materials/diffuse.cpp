@@ -23,8 +23,13 @@ class DiffuseBsdf final : public Bsdf {
         Vec3 wi = squareToCosineHemisphere(u);
         const float pdf = cosineHemispherePdf(wi.z);
         if (pdf == 0 || wo.z == 0) return std::nullopt;
-        if (wo.z < 0) wi.z = -wi.z;
-        return BsdfSample{wi, reflectance_, pdf, lobes()};
+        wi.z = std::copysign(wi.z, wo.z);
+        std::optional<BsdfSample> sample(std::in_place);
+        sample->wi = wi;
+        sample->weight = reflectance_;
+        sample->pdfSolidAngle = pdf;
+        sample->lobe = lobes();
+        return sample;
     }
 
   private:

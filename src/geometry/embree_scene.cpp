@@ -28,7 +28,7 @@ struct PlacedObject {
 };
 
 // NaN fails every comparison.
-bool traceable(const Ray& ray) {
+[[gnu::always_inline]] inline bool traceable(const Ray& ray) {
     const Vec3 o = abs(ray.origin), d = abs(ray.direction);
     return o.x + o.y + o.z < kLargestCoordinate && d.x + d.y + d.z < kLargestCoordinate && ray.tMax >= 0;
 }
@@ -48,10 +48,15 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.flags = 0;
 }
 
+// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding of
+// Embree's distance, a few ulp.
+constexpr float kBeforeEnd = 1 - 0x1p-20f;
+
 class EmbreeScene final : public Intersector {
   public:
     bool intersect(const Ray&, SurfaceHit&) const noexcept override;
     bool occluded(const Ray&) const noexcept override;
+    bool occluded(Vec3 from, Vec3 to) const noexcept override { return occluded({from, to - from, kBeforeEnd, 0}); }
     Bounds3 bounds() const override { return bounds_; }
     std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 

@@ -35,7 +35,7 @@ class Quad final : public Shape {
         float diagonalSquared;
     };
     static std::optional<Rectangle> asRectangle(const std::array<Vec3, 4>&);
-    ShapeSample sampleArea(Vec2 u) const;
+    void sampleArea(Vec2 u, ShapeSample&) const; // p and ng
 
     std::array<Half, 2> halves_;
     Vec3 pError_;

@@ -159,16 +159,11 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     const Vec3 wi = hit.shading.toLocal(light->wi);
     const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
     if (!anyNonZero(eval.fcos) || !sidesAgree(hit, eye, wi, light->wi)) return;
-    Ray shadow{spawnOrigin(hit, light->wi), light->wi, kInfinity, 0};
-    if (light->distance < kInfinity) {
-        // Aim at the point itself from the moved origin, and stop short of it: the light must not shadow itself.
-        const Vec3 to = light->p - shadow.origin;
-        shadow.tMax = length(to);
-        if (!(shadow.tMax > 0)) return;
-        shadow.direction = to * (1 / shadow.tMax);
-    }
     ++counters_.shadowRays;
-    if (context_.scene.intersector->occluded(shadow)) return;
+    // From the moved origin to the light's own moved point: neither surface shadows itself.
+    const Vec3 origin = spawnOrigin(hit, light->wi);
+    const Intersector& world = *context_.scene.intersector;
+    if (light->distance < kInfinity ? world.occluded(origin, light->p) : world.occluded({origin, light->wi})) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
     if constexpr (kAbsorption) {

@@ -24,21 +24,21 @@ class Sampler final {
   public:
     static constexpr std::uint32_t kJointVertices = 3;
 
-    // For samples [0, end) of one (pixel, replicate). `random`: independent random numbers instead, for comparison.
-    // `choices`: whether lens, light choice or lobe choice will be asked for at all; else their dimensions are left
-    // out.
-    void startPixel(std::uint64_t pixelSeed, std::uint32_t end, bool random, bool choices) {
+    // Of one (pixel, replicate). `random`: independent random numbers instead, for comparison. `choices`: whether lens,
+    // light choice or lobe choice will be asked for at all; else their dimensions are left out.
+    void startPixel(std::uint64_t pixelSeed, bool random, bool choices) {
         seed_ = static_cast<std::uint32_t>(pixelSeed);
         stream_ = pixelSeed;
         random_ = random;
-        if (!random) block_.start(seed_, end, choices ? 3 : 2);
+        groups_ = choices ? 3 : 2;
+        for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
     }
     void start(std::uint32_t index) {
         index_ = index;
-        if (random_)
-            fillRandom(0, joint_, 24);
-        else
-            block_.point(index, joint_);
+        if (random_) return fillRandom(0, joint_, 24);
+        const std::uint32_t shuffled = shuffleIndex(index, seed_);
+        for (int g = 0; g < groups_; ++g)
+            scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[0], joint_[1]}; }
     float wavelength() const { return joint_[2]; }
@@ -78,7 +78,8 @@ class Sampler final {
 
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
-    SobolBlock block_;
+    UInt8 dimensionSeeds_[3] = {};
+    int groups_ = 0;
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;
     bool random_ = false;

@@ -44,7 +44,7 @@ template <EffectBits E> class TileKernel {
         const float rouletteScale = job_.roulette->scale(x, y);
         Xyz sum;
         std::uint32_t counted = 0;
-        sampler_.startPixel(seed, job_.last, context_.settings.randomSampler, context_.choices);
+        sampler_.startPixel(seed, context_.settings.randomSampler, context_.choices);
         for (std::uint32_t i = job_.first; i < job_.last; ++i) {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);

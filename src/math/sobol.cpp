@@ -53,22 +53,27 @@ constexpr void directionNumbers(int dimension, std::uint32_t (&v)[32]) {
     }
 }
 
-constexpr SobolDirections makeDirections() {
-    SobolDirections d{};
+constexpr std::uint32_t reversed(std::uint32_t x) {
+    std::uint32_t r = 0;
+    for (int b = 0; b < 32; ++b) r |= ((x >> b) & 1u) << (31 - b);
+    return r;
+}
+
+constexpr SobolTable makeTable() {
+    SobolTable table{};
     for (int dimension = 0; dimension < kSobolDimensions; ++dimension) {
         std::uint32_t v[32] = {};
         directionNumbers(dimension, v);
-        for (int i = 0; i < 32; ++i) {
-            std::uint32_t reversed = 0;
-            for (int b = 0; b < 32; ++b) reversed |= ((v[i] >> b) & 1u) << (31 - b);
-            d.rows[i][dimension] = reversed;
-        }
+        for (int nibble = 0; nibble < 8; ++nibble)
+            for (int value = 0; value < 16; ++value)
+                for (int b = 0; b < 4; ++b)
+                    if ((value >> b) & 1) table.rows[nibble][value][dimension] ^= reversed(v[4 * nibble + b]);
     }
-    return d;
+    return table;
 }
 
 } // namespace
 
-constexpr SobolDirections kSobolDirections = makeDirections();
+constexpr SobolTable kSobolTable = makeTable();
 
 } // namespace abbe

@@ -10,13 +10,14 @@ using UInt8 = std::uint32_t __attribute__((vector_size(32)));
 
 inline constexpr int kSobolDimensions = 24;
 
-// Direction numbers with their bits reversed: row b holds what bit b of the index contributes to each dimension.
-// Reversed, because the Owen scramble below works from the low bits up [Burley2020].
-struct SobolDirections {
-    alignas(64) std::uint32_t rows[32][kSobolDimensions];
+// What each nibble of the index contributes to each dimension: the XOR of its bits' direction numbers, whose own bits
+// are reversed because the Owen scramble below works from the low bits up [Burley2020]. Nibbles instead of single bits:
+// eight loads whatever the index, where a loop over set bits mispredicts its end on every point.
+struct SobolTable {
+    alignas(64) std::uint32_t rows[8][16][kSobolDimensions];
 };
-// Primitive polynomials and initial numbers of [Joe2008] (file new-joe-kuo-6). Built before main, constant afterwards.
-extern const SobolDirections kSobolDirections;
+// Primitive polynomials and initial numbers of [Joe2008] (file new-joe-kuo-6).
+extern const SobolTable kSobolTable;
 
 inline std::uint32_t reverseBits(std::uint32_t x) {
     x = __builtin_bswap32(x);
@@ -66,60 +67,24 @@ inline UInt8 dimensionSeeds(std::uint32_t seed, int first) {
     const UInt8 lane = {1, 2, 3, 4, 5, 6, 7, 8};
     return mixLanes((UInt8{} + seed) ^ ((lane + static_cast<std::uint32_t>(first)) * 0x85ebca6bu));
 }
-inline const UInt8& directionRow(std::uint32_t bit, int first) {
-    return *reinterpret_cast<const UInt8*>(kSobolDirections.rows[bit] + first);
-}
-
-// Dimensions [first, first + 8) of point `shuffled`.
-inline void scrambledSobol8(std::uint32_t shuffled, std::uint32_t seed, int first, float* out) {
+// Dimensions [first, first + 8) of point `index` of the unscrambled sequence, bits reversed.
+inline UInt8 sobolBits(std::uint32_t index, int first) {
     UInt8 bits = {};
-    for (std::uint32_t b = shuffled; b != 0; b &= b - 1)
-        bits ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), first);
-    scrambleToFloats(bits, dimensionSeeds(seed, first), out);
+    for (int nibble = 0; nibble < 8; ++nibble, index >>= 4)
+        bits ^= *reinterpret_cast<const UInt8*>(kSobolTable.rows[nibble][index & 15] + first);
+    return bits;
 }
 
-// Sixteen joint dimensions of one point; `out` is 32-byte aligned.
+// Dimensions [first, first + 8) of point `shuffled`, as 24-bit fractions in [0, 1). `out` is 32-byte aligned.
+inline void scrambledSobol8(std::uint32_t shuffled, std::uint32_t seed, int first, float* out) {
+    scrambleToFloats(sobolBits(shuffled, first), dimensionSeeds(seed, first), out);
+}
+
+// Sixteen joint dimensions of one point.
 inline void scrambledSobol16(std::uint32_t index, std::uint32_t seed, float* out) {
     const std::uint32_t shuffled = shuffleIndex(index, seed);
     scrambledSobol8(shuffled, seed, 0, out);
     scrambledSobol8(shuffled, seed, 8, out + 8);
 }
-
-// The same points for all indices below a power of two, cheaper. An Owen shuffle works from the high bits of the index
-// down, so the bits above that power are shuffled to the same bits in every one of those indices: what they contribute
-// is summed once, and so are the dimensions' seeds.
-class SobolBlock {
-  public:
-    static constexpr int kGroups = kSobolDimensions / 8;
-
-    // For indices in [0, end); groups of eight dimensions [0, groups) will be asked for.
-    void start(std::uint32_t seed, std::uint32_t end, int groups) {
-        seed_ = seed;
-        groups_ = groups;
-        lowMask_ = end > 1 ? 0xffffffffu >> std::countl_zero(end - 1) : 0u;
-        const std::uint32_t shared = shuffleIndex(0, seed) & ~lowMask_;
-        for (int g = 0; g < groups; ++g) {
-            base_[g] = UInt8{};
-            for (std::uint32_t b = shared; b != 0; b &= b - 1)
-                base_[g] ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), 8 * g);
-            seeds_[g] = dimensionSeeds(seed, 8 * g);
-        }
-    }
-    // All groups of one point; `out` is 32-byte aligned.
-    void point(std::uint32_t index, float* out) const {
-        const std::uint32_t low = shuffleIndex(index, seed_) & lowMask_;
-        for (int g = 0; g < groups_; ++g) {
-            UInt8 bits = base_[g];
-            for (std::uint32_t b = low; b != 0; b &= b - 1)
-                bits ^= directionRow(static_cast<std::uint32_t>(std::countr_zero(b)), 8 * g);
-            scrambleToFloats(bits, seeds_[g], out + 8 * g);
-        }
-    }
-
-  private:
-    UInt8 base_[kGroups] = {}, seeds_[kGroups] = {};
-    std::uint32_t seed_ = 0, lowMask_ = 0;
-    int groups_ = 0;
-};
 
 } // namespace abbe

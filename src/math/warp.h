@@ -3,7 +3,17 @@
 
 #include "math/vec.h"
 
+#include <bit>
+#include <cstdint>
+
 namespace abbe {
+
+// condition ? yes : no without a branch.
+inline float blend(bool condition, float yes, float no) {
+    const std::uint32_t mask = 0u - static_cast<std::uint32_t>(condition);
+    return std::bit_cast<float>((std::bit_cast<std::uint32_t>(yes) & mask) |
+                                (std::bit_cast<std::uint32_t>(no) & ~mask));
+}
 
 // Sine and cosine of x in [-π/4, π/4] by Taylor polynomials; absolute error below 1e-7.
 struct SinCos {
@@ -15,16 +25,15 @@ inline SinCos sinCosEighth(float x) {
             1 + x2 * (-0.5f + x2 * (1.f / 24 + x2 * (-1.f / 720 + x2 * (1.f / 40320))))};
 }
 
-// Unit square to unit disk, area preserving up to the factor π, with little distortion [Shirley1997].
+// Unit square to unit disk, area preserving up to the factor π, with little distortion [Shirley1997]. Which of the two
+// coordinates is the larger is a coin toss that no branch predictor wins, so both cases share their arithmetic.
 inline Vec2 squareToDisk(Vec2 u) {
     const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-    if (a == 0 && b == 0) return {};
-    if (std::abs(a) > std::abs(b)) {
-        const SinCos sc = sinCosEighth(kPi / 4 * (b / a));
-        return {a * sc.cos, a * sc.sin};
-    }
-    const SinCos sc = sinCosEighth(kPi / 4 * (a / b));
-    return {b * sc.sin, b * sc.cos};
+    const bool aLarger = std::abs(a) > std::abs(b);
+    const float radius = blend(aLarger, a, b), other = blend(aLarger, b, a);
+    if (radius == 0) return {};
+    const SinCos sc = sinCosEighth(kPi / 4 * (other / radius));
+    return {radius * blend(aLarger, sc.cos, sc.sin), radius * blend(aLarger, sc.sin, sc.cos)};
 }
 inline Vec2 diskToSquare(Vec2 p) {
     const float r = std::sqrt(p.x * p.x + p.y * p.y);
