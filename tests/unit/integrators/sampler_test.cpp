@@ -33,9 +33,9 @@ Point jointPoint(Sampler& s) {
             s.lens().x, s.lens().y, a.pick,         a.lobe,    b.pick,    b.lobe,   c.pick,   c.lobe};
 }
 
-Sampler pixelSampler(std::uint64_t seed, std::uint32_t end, bool random = false) {
+Sampler pixelSampler(std::uint64_t seed, bool random = false) {
     Sampler s;
-    s.startPixel(seed, end, random, true);
+    s.startPixel(seed, random, true);
     return s;
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("sampler: every joint dimension is a (0, m, 1)-net in every aligned bl
         for (std::uint32_t m = 0; m <= 12; ++m) {
             const std::uint32_t n = 1u << m;
             for (const std::uint32_t first : {0u, n, 5 * n}) {
-                Sampler s = pixelSampler(seed, first + n);
+                Sampler s = pixelSampler(seed);
                 std::vector<std::array<bool, kSobolDimensions>> seen(n);
                 bool once = true;
                 for (std::uint32_t i = first; i < first + n; ++i) {
@@ -78,7 +78,7 @@ TEST_CASE("sampler: the first two dimensions are a (0, m, 2)-net: every elementa
         for (std::uint32_t m = 1; m <= 11; ++m) {
             const std::uint32_t n = 1u << m;
             for (std::uint32_t k = 0; k <= m; ++k) { // intervals of 2^-k by 2^-(m-k)
-                Sampler s = pixelSampler(seed, n);
+                Sampler s = pixelSampler(seed);
                 std::set<std::uint32_t> met;
                 for (std::uint32_t i = 0; i < n; ++i) {
                     s.start(i);
@@ -92,7 +92,7 @@ TEST_CASE("sampler: the first two dimensions are a (0, m, 2)-net: every elementa
 
 TEST_CASE("sampler: sets of later vertices are nets of their own") {
     for (const std::uint32_t depth : {3u, 4u, 17u}) {
-        Sampler s = pixelSampler(99, 1024);
+        Sampler s = pixelSampler(99);
         std::vector<std::array<bool, 6>> seen(1024);
         std::set<std::uint32_t> light;
         bool once = true;
@@ -115,7 +115,7 @@ TEST_CASE("sampler: sets of later vertices are nets of their own") {
 TEST_CASE("sampler: work shared between the points of a block changes no bit") {
     for (const std::uint64_t seed : {3ull, 0xabcdef0123456789ull})
         for (const std::uint32_t end : {1u, 2u, 3u, 17u, 256u, 1000u, 1u << 20, 0xffffffffu}) {
-            Sampler s = pixelSampler(seed, end);
+            Sampler s = pixelSampler(seed);
             for (std::uint32_t k = 0; k < 64; ++k) {
                 const std::uint32_t i = static_cast<std::uint32_t>(std::uint64_t{end - 1} * k / 63);
                 s.start(i);
@@ -126,7 +126,7 @@ TEST_CASE("sampler: work shared between the points of a block changes no bit") {
 
 TEST_CASE("sampler: 2^20 samples of every dimension lie in [0, 1)") {
     for (const bool random : {false, true}) {
-        Sampler s = pixelSampler(0x5eed, 1u << 20, random);
+        Sampler s = pixelSampler(0x5eed, random);
         float least = 1, largest = 0;
         for (std::uint32_t i = 0; i < 1u << 20; ++i) {
             s.start(i);
@@ -185,7 +185,7 @@ TEST_CASE("sampler: seeds of pixels and replicates: single samples are uniform, 
     std::vector<Point> points;
     for (std::uint64_t y = 0; y < side; ++y)
         for (std::uint64_t x = 0; x < side; ++x) {
-            Sampler s = pixelSampler(combine64(combine64(0, y << 32 | x), 0), 1);
+            Sampler s = pixelSampler(combine64(combine64(0, y << 32 | x), 0));
             s.start(0);
             points.push_back(jointPoint(s));
         }
@@ -214,7 +214,7 @@ TEST_CASE("sampler: padded sets are independent of the joint dimensions and of e
     const auto test = [&](auto&& first, auto&& second) {
         std::vector<double> counts(64, 0);
         for (int pixel = 0; pixel < pixels; ++pixel) {
-            Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(pixel) + 1), samples);
+            Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(pixel) + 1));
             for (std::uint32_t i = 0; i < samples; ++i) {
                 s.start(i);
                 ++counts[cell(first(s), 8) * 8 + cell(second(s), 8)];
@@ -243,7 +243,7 @@ TEST_CASE("sampler: replicates of a pixel share no stratification") {
     for (std::uint64_t pixel = 0; pixel < pixels; ++pixel) {
         double error[2] = {};
         for (std::uint64_t r = 0; r < 2; ++r) {
-            Sampler s = pixelSampler(combine64(combine64(9, pixel), r), 8);
+            Sampler s = pixelSampler(combine64(combine64(9, pixel), r));
             for (std::uint32_t i = 0; i < 8; ++i) {
                 s.start(i);
                 error[r] += static_cast<double>(s.film().x) - 0.5;
@@ -257,7 +257,7 @@ TEST_CASE("sampler: replicates of a pixel share no stratification") {
 
 TEST_CASE("sampler: numbers belong to a purpose, not to an order of use") {
     for (const bool random : {false, true}) {
-        Sampler all = pixelSampler(42, 64, random), some = all;
+        Sampler all = pixelSampler(42, random), some = all;
         for (std::uint32_t i = 0; i < 64; ++i) {
             all.start(i);
             const Point joint = jointPoint(all);
@@ -274,8 +274,8 @@ TEST_CASE("sampler: numbers belong to a purpose, not to an order of use") {
         }
     }
     // What a scene does not ask for is left out, and moves nothing.
-    Sampler with = pixelSampler(42, 64), without;
-    without.startPixel(42, 64, false, false);
+    Sampler with = pixelSampler(42), without;
+    without.startPixel(42, false, false);
     for (std::uint32_t i = 0; i < 64; ++i) {
         with.start(i);
         without.start(i);
@@ -289,7 +289,7 @@ TEST_CASE("sampler: numbers belong to a purpose, not to an order of use") {
 }
 
 TEST_CASE("sampler: all joint dimensions differ") {
-    Sampler s = pixelSampler(5, 16);
+    Sampler s = pixelSampler(5);
     for (std::uint32_t i = 0; i < 16; ++i) {
         s.start(i);
         const Point p = jointPoint(s);
