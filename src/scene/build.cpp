@@ -1,6 +1,7 @@
 #include "scene/build.h"
 
 #include "cameras/perspective.h"
+#include "scene/planned_types.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "spectrum/observer.h"
@@ -35,7 +36,7 @@ schema::Reference SceneBuilder::reference(const Definition& definition, Diagnost
     schema::Reference result;
     if (!definition.type) {
         bindInto(nullptr);
-    } else {
+    } else if (!checkPlanned(definition)) {
         auto material = makeMaterial(definition.type->name, bindInto);
         if (diagnostics.errorCount() == before) {
             result.index = static_cast<std::uint32_t>(materials_.size());
@@ -45,6 +46,22 @@ schema::Reference SceneBuilder::reference(const Definition& definition, Diagnost
     }
     if (named) materialIndex_[&definition] = result;
     return result;
+}
+
+// True for a type of a later version, whose properties have then been checked.
+bool SceneBuilder::checkPlanned(const Definition& d) {
+    if (!d.type || !isPlanned(d.kind, d.type->name)) return false;
+    bindPlanned(d.kind, [&](void* params) { schema::bind(d, tree_, types_, *this, params, diagnostics_); });
+    planned_.emplace_back(d.type->name, d.span);
+    return true;
+}
+
+// Only when there is nothing to mend: what this version lacks is no mistake of the scene's.
+void SceneBuilder::reportPlanned() {
+    if (diagnostics_.hasErrors()) return;
+    for (const auto& [type, span] : planned_)
+        diagnostics_.error("E0206", span, fmt::format("`{}` is not available in this version", type),
+                           "not rendered yet");
 }
 
 const schema::Definition* SceneBuilder::only(Kind kind, std::string_view name) {
@@ -152,6 +169,7 @@ void SceneBuilder::build(BuiltScene& built) {
         if (d.kind == Kind::material) reference(d, diagnostics_);
         if (d.kind == Kind::object) objectGeometry(d);
     }
+    reportPlanned();
     finish(built);
 }
 

@@ -82,7 +82,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             };
     } else if (type == "mesh") {
         loadMeshShape(d, shape);
-    } else {
+    } else if (!checkPlanned(d)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
     if (shape.sound && shape.infinite && shape.common.emission) {

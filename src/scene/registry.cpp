@@ -13,6 +13,7 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "scene/planned_types.h"
 #include "scene/shape_types.h"
 
 namespace abbe {
@@ -49,6 +50,7 @@ schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
     for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
     for (const auto type : kOthers) table.add(type());
+    for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }
 

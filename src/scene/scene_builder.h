@@ -56,6 +56,8 @@ class SceneBuilder final : public schema::Resolver {
     void buildSettings(BuiltScene&);
     void finish(BuiltScene&);
     void noteEffects(BuiltScene&);
+    bool checkPlanned(const Definition&);
+    void reportPlanned();
     const Definition* only(schema::Kind, std::string_view name);
 
     // build_shapes.cpp
@@ -101,7 +103,8 @@ class SceneBuilder final : public schema::Resolver {
     std::map<const Definition*, ObjectGeometry> objects_;
     std::vector<const Definition*> chain_; // objects being expanded
     std::size_t instanceCount_ = 0;
-    Bounds3d bounds_; // of finite geometry, render space
+    std::vector<std::pair<std::string, Span>> planned_; // types that this version does not render, and where
+    Bounds3d bounds_;                                   // of finite geometry, render space
 };
 
 template <typename P> std::optional<P> SceneBuilder::bound(const Definition& definition) {
