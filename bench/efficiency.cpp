@@ -1,0 +1,166 @@
+// Throughput and efficiency of the renderer on a scene: efficiency SCENE [--size N] [--depth N] [--replicates N]
+//   paths and rays per core-second, the share of time inside the intersector, relMSE × samples, efficiency
+//   1 / (relMSE × core-seconds), and the core-seconds that relMSE 0.01 and 0.001 take.
+// relMSE = mean of (x - r)² / (r² + 0.01) over pixels and linear Rec.709 channels on images scaled to a mean of 0.25.
+// Two renders a, b of different seeds and a reference r of many more samples: half of (a - b)² is the error without the
+// reference's noise, which only reaches the denominator.
+#include "app/load.h"
+#include "base/parallel.h"
+#include "film/pixel_film.h"
+#include "integrators/path_tracer.h"
+#include "scene/build.h"
+#include "spectrum/color_space.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <x86intrin.h>
+
+using namespace abbe;
+
+namespace {
+
+struct Options {
+    const char* scene = nullptr;
+    int size = 0;             // pixels across; 0: as the scene says
+    std::uint32_t depth = 16; // of the comparison with other renderers
+    int replicates = 0;       // 0: as the scene says
+    std::uint32_t reference = 512;
+};
+
+// Counts the ticks of every 16th call; its own cost is one increment for the others.
+class TimedIntersector final : public Intersector {
+  public:
+    explicit TimedIntersector(std::unique_ptr<const Intersector> inner) : inner_(std::move(inner)) {}
+    bool intersect(const Ray& ray, SurfaceHit& hit) const noexcept override {
+        return timed([&] { return inner_->intersect(ray, hit); });
+    }
+    bool occluded(const Ray& ray) const noexcept override {
+        return timed([&] { return inner_->occluded(ray); });
+    }
+    bool occluded(Vec3 from, Vec3 to) const noexcept override {
+        return timed([&] { return inner_->occluded(from, to); });
+    }
+    Bounds3 bounds() const override { return inner_->bounds(); }
+    std::uint64_t rejectedRays() const override { return inner_->rejectedRays(); }
+
+    mutable std::uint64_t calls = 0, ticks = 0; // one thread only
+
+  private:
+    template <typename F> bool timed(F f) const {
+        if (++calls % 16 != 0) return f();
+        const std::uint64_t start = __rdtsc();
+        const bool result = f();
+        ticks += 16 * (__rdtsc() - start);
+        return result;
+    }
+    std::unique_ptr<const Intersector> inner_;
+};
+
+struct Render {
+    std::vector<double> rgb;
+    RenderStatistics statistics;
+};
+
+Render render(const BuiltScene& built, const Options& options, std::uint32_t samples, std::uint64_t seed) {
+    const FilmSettings settings = filmSettings(built.film);
+    const int replicates = options.replicates ? options.replicates : static_cast<int>(built.render.replicates);
+    PixelFilm film(settings.crop, PixelFilter(settings.filter, settings.filterRadius), replicates);
+    RenderSettings how = renderSettings(built.render);
+    how.samples = samples;
+    how.seed = seed;
+    how.maxDepth = options.depth;
+    how.noiseTarget = how.timeLimit = 0;
+    Render result;
+    result.statistics = makePathTracer(built.scene.effects)->render(built.scene, film, how, {});
+    const PixelBounds b = film.bounds();
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x) {
+            const Vec3d c = toRgb(film.mean(x, y), rgb::rec709);
+            result.rgb.insert(result.rgb.end(), {c.x, c.y, c.z});
+        }
+    return result;
+}
+
+double relMse(const Render& a, const Render& b, const Render& reference) {
+    double mean = 0, error = 0;
+    for (const double v : reference.rgb) mean += v;
+    const double scale = 0.25 * static_cast<double>(reference.rgb.size()) / mean;
+    for (std::size_t i = 0; i < reference.rgb.size(); ++i)
+        error += 0.5 * square(scale * (a.rgb[i] - b.rgb[i])) / (square(scale * reference.rgb[i]) + 0.01);
+    return error / static_cast<double>(reference.rgb.size());
+}
+
+bool parse(int argc, char** argv, Options& o) {
+    for (int i = 1; i < argc; ++i) {
+        const auto number = [&] { return ++i < argc ? std::atoi(argv[i]) : 0; };
+        if (!std::strcmp(argv[i], "--size"))
+            o.size = number();
+        else if (!std::strcmp(argv[i], "--depth"))
+            o.depth = static_cast<std::uint32_t>(number());
+        else if (!std::strcmp(argv[i], "--replicates"))
+            o.replicates = number();
+        else if (!std::strcmp(argv[i], "--reference"))
+            o.reference = static_cast<std::uint32_t>(number());
+        else
+            o.scene = argv[i];
+    }
+    return o.scene != nullptr;
+}
+
+// Core-seconds to an error, between the two measured renders around it on a log-log line (beyond them: continued).
+double coreSecondsTo(double target, const std::vector<std::pair<double, double>>& errorAndTime) {
+    std::size_t i = 1;
+    while (i + 1 < errorAndTime.size() && errorAndTime[i].first > target) ++i;
+    const auto [e0, t0] = errorAndTime[i - 1];
+    const auto [e1, t1] = errorAndTime[i];
+    return std::exp(std::log(t0) + std::log(target / e0) / std::log(e1 / e0) * std::log(t1 / t0));
+}
+
+void shareOfIntersector(BuiltScene& built, const Options& options) {
+    auto timed = std::make_unique<TimedIntersector>(std::move(built.scene.intersector));
+    const TimedIntersector& t = *timed;
+    built.scene.intersector = std::move(timed);
+    const std::uint64_t start = __rdtsc();
+    render(built, options, 8, 99);
+    std::printf("inside the intersector: %.0f %% of the time\n",
+                100.0 * static_cast<double>(t.ticks) / static_cast<double>(__rdtsc() - start));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    if (!parse(argc, argv, options)) {
+        std::fprintf(stderr, "usage: efficiency SCENE [--size N] [--depth N] [--replicates N] [--reference SAMPLES]\n");
+        return 2;
+    }
+    setThreadCount(1);
+    const auto loaded = loadScene({options.scene, {}});
+    BuildOptions build;
+    if (options.size) build.size = Vec2i{options.size, options.size};
+    BuiltScene built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
+    if (loaded->diagnostics.hasErrors()) {
+        std::fprintf(stderr, "%s has errors; see `abbe check`\n", options.scene);
+        return 1;
+    }
+    const Render reference = render(built, options, options.reference, 1000);
+    std::printf("samples  M paths/core-s  M rays/core-s  vertices/path  relMSE×samples  efficiency\n");
+    std::vector<std::pair<double, double>> errorAndTime;
+    for (const std::uint32_t samples : {16u, 64u, 256u}) {
+        const Render a = render(built, options, samples, 1), b = render(built, options, samples, 2);
+        const double seconds = 0.5 * (a.statistics.coreSeconds + b.statistics.coreSeconds);
+        const double error = relMse(a, b, reference);
+        errorAndTime.emplace_back(error, seconds);
+        std::printf("%7u  %14.3f  %13.2f  %13.2f  %14.4f  %10.1f\n", samples,
+                    static_cast<double>(a.statistics.paths) * 1e-6 / seconds,
+                    static_cast<double>(a.statistics.rays()) * 1e-6 / seconds,
+                    static_cast<double>(a.statistics.vertices) / static_cast<double>(a.statistics.paths),
+                    error * samples, 1 / (error * seconds));
+    }
+    for (const double target : {0.01, 0.001})
+        std::printf("relMSE %g after %.2f core-seconds\n", target, coreSecondsTo(target, errorAndTime));
+    shareOfIntersector(built, options);
+}
