@@ -32,13 +32,15 @@ schema::Reference SceneBuilder::reference(const Definition& definition, Diagnost
     if (named)
         if (const auto found = materialIndex_.find(&definition); found != materialIndex_.end()) return found->second;
     const std::size_t before = diagnostics.errorCount();
-    const auto bindInto = [&](void* params) { schema::bind(definition, tree_, types_, *this, params, diagnostics); };
+    const auto bindInto = [&](void* params) {
+        schema::bind(definition, tree_, types_, *this, params, diagnostics);
+        return diagnostics.errorCount() == before;
+    };
     schema::Reference result;
     if (!definition.type) {
         bindInto(nullptr);
     } else if (!checkPlanned(definition)) {
-        auto material = makeMaterial(definition.type->name, bindInto);
-        if (diagnostics.errorCount() == before) {
+        if (auto material = makeMaterial(definition.type->name, bindInto)) {
             result.index = static_cast<std::uint32_t>(materials_.size());
             materials_.push_back(std::move(material));
             materialAskers_.emplace_back(result.index, definition.span);

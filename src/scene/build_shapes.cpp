@@ -39,8 +39,10 @@ const Material* SceneBuilder::materialOf(const ShapeParams& params) {
         Definition plain;
         plain.kind = Kind::material;
         plain.type = type;
-        materials_.push_back(
-            makeMaterial("diffuse", [&](void* p) { schema::bind(plain, tree_, types_, *this, p, diagnostics_); }));
+        materials_.push_back(makeMaterial("diffuse", [&](void* p) {
+            schema::bind(plain, tree_, types_, *this, p, diagnostics_);
+            return true; // without properties there is nothing to be wrong
+        }));
     }
     return materials_[*defaultMaterial_].get();
 }

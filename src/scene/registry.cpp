@@ -27,8 +27,7 @@ struct MaterialEntry {
 
 template <typename Params, auto make> std::unique_ptr<const Material> bound(const BindParams& bind) {
     Params params;
-    bind(&params);
-    return make(params);
+    return bind(&params) ? make(params) : nullptr;
 }
 
 // A material is one line here (docs/adding_a_material.md).

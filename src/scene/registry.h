@@ -13,10 +13,10 @@ namespace abbe {
 // All field tables, in the order of the manual.
 schema::TypeTable makeTypeTable();
 
-// Fills the parameter struct of a type.
-using BindParams = std::function<void(void* params)>;
+// Fills the parameter struct of a type; false after an error.
+using BindParams = std::function<bool(void* params)>;
 
-// A material of a registered type from bound parameters. Requires a name out of the table.
+// A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
 
 } // namespace abbe

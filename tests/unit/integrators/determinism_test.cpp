@@ -171,4 +171,18 @@ TEST_CASE("samples are rounded up to whole replicates, and counted") {
     CHECK_FALSE(image.statistics.stopped);
 }
 
+TEST_CASE("films of one pixel, one row and one column") {
+    for (const Vec2i size : {Vec2i{1, 1}, {32768, 1}, {1, 2000}}) {
+        BuildOptions options;
+        options.size = size;
+        const auto scene = TestScene::parse(sceneText("diffuse"), options);
+        const TestImage image = render(scene, RenderSettings{.samples = 2}, {}, 2);
+        CHECK(image.film.bounds().width() == size.x);
+        CHECK(image.film.bounds().height() == size.y);
+        CHECK(image.statistics.paths == 2 * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
+        CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
+        CHECK(image.film.image().mean > 0);
+    }
+}
+
 } // namespace abbe::test
