@@ -200,7 +200,9 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, const Directi
 template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
     const float throughput = mean(path_.beta) * path_.etaScale;
-    const float p = RouletteReference::survival(throughput, rouletteScale);
+    // Mirrors and clear glass show the pixel what it sees: there the expected radiance is the pixel's, not the image's.
+    const float scale = path_.delta ? std::max(rouletteScale, 1 / RouletteReference::kThreshold) : rouletteScale;
+    const float p = RouletteReference::survival(throughput, scale);
     if (p >= 1) return true;
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;
