@@ -31,6 +31,8 @@ template <EffectBits E> class PathLoop {
     // No path is longer: with a survival floor of 0.05 a path of this length has a probability below any machine's
     // patience only if every surface reflects everything; such paths are counted, never silent.
     static constexpr std::uint32_t kMaxVertices = 100'000;
+    // From here on no path is certain to go on.
+    static constexpr std::uint32_t kLongPath = 64;
 
     PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters)
         : context_(context), sampler_(sampler), arena_(arena), counters_(counters) {}
@@ -202,7 +204,10 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
     const float throughput = mean(path_.beta) * path_.etaScale;
     // Mirrors and clear glass show the pixel what it sees: there the expected radiance is the pixel's, not the image's.
     const float scale = path_.delta ? std::max(rouletteScale, 1 / RouletteReference::kThreshold) : rouletteScale;
-    const float p = RouletteReference::survival(throughput, scale);
+    float p = RouletteReference::survival(throughput, scale);
+    // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
+    // albedo ρ has finite variance only for p > ρ².
+    if (depth >= kLongPath) p = std::min(p, 0.999f);
     if (p >= 1) return true;
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;

@@ -117,7 +117,7 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Transform& toRender
     const Shape* placed = keepShape(std::move(shape));
     const Bounds3 box = placed->bounds();
     bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
-    embree_.addShape(*placed, {materialOf({}), light.get()});
+    embree_.addShape(*placed, {plainMaterial(0), light.get()}); // a lamp emits and reflects nothing
     addLight(std::move(light), d);
 }
 

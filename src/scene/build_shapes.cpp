@@ -31,20 +31,17 @@ Transform SceneBuilder::ownTransform(const Definition& d) {
     return result;
 }
 
-const Material* SceneBuilder::materialOf(const ShapeParams& params) {
-    if (params.material.valid()) return materials_[params.material.index].get();
-    if (!defaultMaterial_) {
-        defaultMaterial_ = static_cast<std::uint32_t>(materials_.size());
-        const auto* type = types_.find(Kind::material, "diffuse");
-        Definition plain;
-        plain.kind = Kind::material;
-        plain.type = type;
-        materials_.push_back(makeMaterial("diffuse", [&](void* p) {
-            schema::bind(plain, tree_, types_, *this, p, diagnostics_);
-            return true; // without properties there is nothing to be wrong
-        }));
+const Material* SceneBuilder::plainMaterial(double reflectance) {
+    auto& index = plainMaterials_[reflectance];
+    if (!index) {
+        index = static_cast<std::uint32_t>(materials_.size());
+        materials_.push_back(makePlainMaterial(curves_.constant(reflectance)));
     }
-    return materials_[*defaultMaterial_].get();
+    return materials_[*index].get();
+}
+
+const Material* SceneBuilder::materialOf(const ShapeParams& params) {
+    return params.material.valid() ? materials_[params.material.index].get() : plainMaterial(0.5);
 }
 
 SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {

@@ -90,6 +90,8 @@ const Curve* CurveLibrary::keep(std::unique_ptr<const Curve> curve) {
     return curves_.emplace_back(std::move(curve)).get();
 }
 
+const Curve* CurveLibrary::constant(double value) { return keep(std::make_unique<ConstantCurve>(value)); }
+
 const Curve* CurveLibrary::daylight() {
     if (!daylight_) daylight_ = keep(illuminantCurve(*findIlluminant("D65")));
     return daylight_;

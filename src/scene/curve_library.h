@@ -16,6 +16,7 @@ class CurveLibrary {
     // Null after a diagnostic.
     const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
     schema::ComplexIndex metal(std::string_view name, Span, Diagnostics&);
+    const Curve* constant(double value);
     // Illuminant D65, scaled to Y = 1.
     const Curve* daylight();
 

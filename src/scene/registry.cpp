@@ -60,4 +60,10 @@ std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindPa
     return nullptr;
 }
 
+std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance) {
+    DiffuseParams params;
+    params.reflectance = reflectance;
+    return makeDiffuse(params);
+}
+
 } // namespace abbe

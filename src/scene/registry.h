@@ -19,4 +19,7 @@ using BindParams = std::function<bool(void* params)>;
 // A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
 
+// The material of shapes that name none, and of lamps.
+std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance);
+
 } // namespace abbe

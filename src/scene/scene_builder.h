@@ -73,6 +73,7 @@ class SceneBuilder final : public schema::Resolver {
     const Shape* keepShape(std::unique_ptr<const Shape>);
     Transform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
+    const Material* plainMaterial(double reflectance);
     void countShape(const LoadedShape&);
 
     // build_lights.cpp
@@ -95,7 +96,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::unique_ptr<const Material>> materials_;
     std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;             // who made it, for effects
-    std::optional<std::uint32_t> defaultMaterial_;
+    std::map<double, std::optional<std::uint32_t>> plainMaterials_;          // by reflectance
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_

@@ -43,8 +43,8 @@ std::optional<BoundValue> bindParts(const FieldInfo& field, const Entry& entry, 
             return std::nullopt;
         }
         seen = node.headSpan();
-        // The extinction coefficient may be 0, the index may not.
-        (isN ? index.n : index.k) = bindPart(node, isN ? SpectrumRole::index : SpectrumRole::unbounded, context);
+        // The index of a metal is nothing like a glass's: silver's is 0.05.
+        (isN ? index.n : index.k) = bindPart(node, SpectrumRole::unbounded, context);
         if (!(isN ? index.n : index.k)) return std::nullopt;
     }
     if (index.n && index.k) return index;

@@ -97,14 +97,15 @@ class StepReader {
         return Transform::scale(three ? Vec3d{v[0], v[1], v[2]} : Vec3d{v[0], v[0], v[0]});
     }
 
-    // `look-at from(3) to(3) [up(3)]`
+    // `look-at from(3) to(3) [up(3)]`: +z, the side to which quads and disks face, turns to the target.
     std::optional<Transform> lookAt() {
         const bool hasUp = entry_.count() > 7; // six numbers and a unit are seven
         const auto r = row(kLength, 0, hasUp ? 9 : 6, "look-at 0 1 4  0 0 0");
         if (!r) return std::nullopt;
         const auto& v = r->values;
         const Vec3d up = hasUp ? Vec3d{v[6], v[7], v[8]} : header_.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
-        const auto transform = Transform::lookAt({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, up);
+        const Vec3d from{v[0], v[1], v[2]}, to{v[3], v[4], v[5]};
+        const auto transform = Transform::lookAt(from, from * 2 - to, up); // which turns -z to its target
         if (!transform)
             return fault("`look-at` needs two different points and an up that is not between them", "has no direction");
         return transform;

@@ -80,9 +80,9 @@ TEST_CASE("in a block of unknown type only what no type of the kind accepts is w
     const auto codes = [](const std::string& property) {
         return loadBody("material m subsurface { " + property + " }\nshape sphere { material m }")->codes();
     };
-    CHECK(codes("ior 1.5") == "E0205");      // of a dielectric, not of a conductor
-    CHECK(codes("ior metal Au") == "E0205"); // of both
-    CHECK(codes("ior -1") == "E0205 E0303"); // of neither
+    CHECK(codes("ior 1.5") == "E0205");            // of a dielectric, not of a conductor
+    CHECK(codes("ior metal Au") == "E0205");       // of both
+    CHECK(codes("ior -1") == "E0205 E0303");       // of neither
     CHECK(codes("ior { n 1.5; k 2 }") == "E0205"); // of a conductor, not of a dielectric, which comes first
     CHECK(codes("mean-free-path 3 mm") == "E0205");
 }

@@ -38,8 +38,8 @@ TEST_CASE("matrix and look-at") {
     CHECK(near(moved(rows, {1, 1, 1}), {6, 2, 1}));
     CHECK(near(moved(rows, {0, 0, 0}, "scene 1 length=cm\n"), {0.05, 0, 0}));
     CHECK(near(moved("matrix { - 1 0 0 5; - 0 2 0 0; - 0 0 1 0; - 0 0 0 1 }", {1, 1, 1}), {6, 2, 1}));
-    // The local -z looks at the target.
-    CHECK(near(moved("look-at 0 0 5  0 0 0", {0, 0, -1}), {0, 0, 4}));
+    // The local +z, the side that quads face, looks at the target.
+    CHECK(near(moved("look-at 0 0 5  0 0 0", {0, 0, 1}), {0, 0, 4}));
     CHECK(near(moved("look-at 0 0 5  0 0 0  1 0 0", {0, 1, 0}), {1, 0, 5}));
     CHECK(near(moved("look-at 0 0 500  0 0 0 cm", {0, 0, 0}), {0, 0, 5}));
     CHECK(near(moved("look-at 0 5 0  0 0 0", {0, 1, 0}, "scene 1 up=z\n"), {0, 5, 1}));
