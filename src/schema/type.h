@@ -70,9 +70,9 @@ struct ComplexIndex {
     const Curve* k = nullptr;
 };
 
-using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
-                                std::vector<double>, std::vector<Vec3d>, IndexRows, const Curve*, ComplexIndex,
-                                Reference, Transform>;
+using BoundValue =
+    std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
+                 std::vector<Vec3d>, IndexRows, const Curve*, ComplexIndex, Reference, Transform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -133,10 +133,9 @@ struct TypeInfo {
 
 // Fluent construction of one field. `Member` is stored from the matching BoundValue alternative; std::optional members
 // stay empty when unset. Float, double and integer members accept the alternatives of their field type.
-template <typename Params, typename Member>
-class Field {
+template <typename Params, typename Member> class Field {
   public:
-    Field(FieldType type, std::string_view name, Member Params::* member) {
+    Field(FieldType type, std::string_view name, Member Params::*member) {
         info_.type = type;
         info_.name = name;
         info_.store = [member](void* params, const BoundValue& value) {
@@ -160,8 +159,7 @@ class Field {
     operator FieldInfo() const { return info_; }
 
   private:
-    template <typename M>
-    static void assign(M& member, const BoundValue& value) {
+    template <typename M> static void assign(M& member, const BoundValue& value) {
         if constexpr (std::is_arithmetic_v<M>) {
             if (const auto* d = std::get_if<double>(&value)) member = static_cast<M>(*d);
             if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
@@ -171,15 +169,14 @@ class Field {
             member = *same;
         }
     }
-    template <typename M>
-    static void assign(std::optional<M>& member, const BoundValue& value) {
+    template <typename M> static void assign(std::optional<M>& member, const BoundValue& value) {
         assign(member.emplace(), value);
     }
     FieldInfo info_;
 };
 
 template <typename Params, typename Member>
-Field<Params, Member> field(FieldType type, std::string_view name, Member Params::* member) {
+Field<Params, Member> field(FieldType type, std::string_view name, Member Params::*member) {
     return {type, name, member};
 }
 

@@ -1,4 +1,5 @@
-// The common curve: a 1 nm table from 360 to 830 nm, linear in between. 5 nm data are exact in it, lamps keep their lines.
+// The common curve: a 1 nm table from 360 to 830 nm, linear in between. 5 nm data are exact in it, lamps keep their
+// lines.
 #pragma once
 
 #include "spectrum/curve.h"

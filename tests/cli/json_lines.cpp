@@ -1,5 +1,5 @@
-// Reads stdin and fails unless every line is a JSON value (with --whole: the whole text is one). For each line the value
-// of the member named by the first argument is printed.
+// Reads stdin and fails unless every line is a JSON value (with --whole: the whole text is one). For each line the
+// value of the member named by the first argument is printed.
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
