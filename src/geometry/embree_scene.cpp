@@ -48,8 +48,8 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.flags = 0;
 }
 
-// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding of
-// Embree's distance, a few ulp.
+// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding
+// of Embree's distance, a few ulp.
 constexpr float kBeforeEnd = 1 - 0x1p-20f;
 
 class EmbreeScene final : public Intersector {
