@@ -80,7 +80,7 @@ TEST_CASE("a quad light over a floor: Lambert's formula") {
     });
     RenderSettings settings = scene.settings();
     settings.samples = 1024;
-    // The lamp's underside faces the floor and is grey: light returns from it. One scattering is the formula.
+    // One scattering is what the formula describes.
     settings.maxDepth = 1;
     for (const auto strategy :
          {RenderSettings::Strategy::mis, RenderSettings::Strategy::lightsOnly, RenderSettings::Strategy::bsdfOnly}) {

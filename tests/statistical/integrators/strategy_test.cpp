@@ -25,7 +25,7 @@ TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t
     options.strategy = strategy;
     const auto scene = TestScene::parse(kHeader + s.text, options);
     RenderSettings settings = scene.settings();
-    settings.samples = nightly() ? 16 * s.samples : s.samples;
+    settings.samples = nightly() ? 8 * s.samples : s.samples;
     settings.maxDepth = s.maxDepth;
     settings.seed = seed;
     return render(scene, settings);

@@ -23,11 +23,11 @@ TestScene stripes(const std::string& glass) {
 void checkWavelengths(const std::string& glass) {
     INFO(std::string(glass));
     const TestScene scene = stripes(glass);
-    const TestImage hero = render(scene, nightly() ? 16384 : 1024);
+    const TestImage hero = render(scene, nightly() ? 8192 : 1024);
     CHECK(hero.statistics.kernel == "absorption+dispersion");
     constexpr EffectBits kAbsorptionOnly = static_cast<EffectBits>(Effect::absorption);
     const RecordingFilm single = renderPaths<kAbsorptionOnly>(
-        scene, {.samples = nightly() ? 4096u : 256u, .seed = 77, .wavelengths = oneWavelength});
+        scene, {.samples = nightly() ? 2048u : 256u, .seed = 77, .wavelengths = oneWavelength});
     for (const Channel channel : {Channel::x, Channel::y, Channel::z})
         checkSame(compareImages(hero.film, single, channel), 0.002);
 }
