@@ -41,7 +41,7 @@ std::string sceneJson(const SceneInfo& info) {
     const SceneFacts& f = info.built.facts;
     Json lights = Json::list(), files = Json::list();
     for (const auto& l : f.lightList)
-        lights.push(Json::object({{"name", l.name}, {"type", l.type}, {"watts", l.watts}, {"lumens", l.lumens}}));
+        lights.push(Json::object({{"name", l.name}, {"type", l.type}, {"watts", l.watts}}));
     for (const std::string& file : f.files) files.push(file);
     const FilmParams& film = info.built.film;
     Json object = Json::object({{"hash", info.hash},
@@ -82,8 +82,7 @@ std::string sceneText(const SceneInfo& info) {
         s += fmt::format("bounds     {:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m\n", a.x, a.y, a.z, b.x, b.y, b.z);
     }
     for (const auto& l : f.lightList) {
-        s += fmt::format("light      {} {}  {:.4g} W", l.name.empty() ? "(no name)" : l.name, l.type, l.watts);
-        s += l.lumens > 0 ? fmt::format("  {:.4g} lm\n", l.lumens) : "\n";
+        s += fmt::format("light      {} {}  {:.4g} W\n", l.name.empty() ? "(no name)" : l.name, l.type, l.watts);
     }
     s += fmt::format("film       {}×{}, {} samples per pixel\n", static_cast<int>(info.built.film.size.x),
                      static_cast<int>(info.built.film.size.y), info.built.render.samples);

@@ -125,6 +125,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
 
 void SceneBuilder::noteEffects(BuiltScene& built) {
     for (const auto& [index, span] : materialAskers_) {
+        if (!usedMaterials_.contains(index)) continue; // what no shape shows asks for nothing
         const Effects needs = materials_[index]->needs();
         built.scene.effects |= needs;
         if (needs.has(Effect::dispersion))
@@ -144,7 +145,7 @@ void SceneBuilder::finish(BuiltScene& built) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         lights_[i]->commit(box);
         emitted += lights_[i]->power();
-        built.facts.lightList.push_back({lightNames_[i].first, lightNames_[i].second, lights_[i]->power(), 0});
+        built.facts.lightList.push_back({lightNames_[i].first, lightNames_[i].second, lights_[i]->power()});
     }
     if (!(emitted > 0) && !diagnostics_.hasErrors())
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =

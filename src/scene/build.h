@@ -32,7 +32,7 @@ struct SceneFacts {
     Bounds3d bounds; // world space, m
     struct LightFact {
         std::string name, type;
-        double watts = 0, lumens = 0;
+        double watts = 0;
     };
     std::vector<LightFact> lightList;
     std::vector<std::string> files; // read while building

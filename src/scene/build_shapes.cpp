@@ -41,7 +41,9 @@ const Material* SceneBuilder::plainMaterial(double reflectance) {
 }
 
 const Material* SceneBuilder::materialOf(const ShapeParams& params) {
-    return params.material.valid() ? materials_[params.material.index].get() : plainMaterial(0.5);
+    if (!params.material.valid()) return plainMaterial(0.5);
+    usedMaterials_.insert(params.material.index);
+    return materials_[params.material.index].get();
 }
 
 SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {

@@ -97,6 +97,7 @@ class SceneBuilder final : public schema::Resolver {
     std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;             // who made it, for effects
     std::map<double, std::optional<std::uint32_t>> plainMaterials_;          // by reflectance
+    std::set<std::uint32_t> usedMaterials_;                                  // of shapes that were placed
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
