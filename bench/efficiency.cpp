@@ -119,14 +119,23 @@ double coreSecondsTo(double target, const std::vector<std::pair<double, double>>
     return std::exp(std::log(t0) + std::log(target / e0) / std::log(e1 / e0) * std::log(t1 / t0));
 }
 
+double seconds(clockid_t clock) {
+    timespec t;
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// Of the thread's own time: other processes on the machine do not count.
 void shareOfIntersector(BuiltScene& built, const Options& options) {
     auto timed = std::make_unique<TimedIntersector>(std::move(built.scene.intersector));
     const TimedIntersector& t = *timed;
     built.scene.intersector = std::move(timed);
+    const double wall = seconds(CLOCK_MONOTONIC);
     const std::uint64_t start = __rdtsc();
-    render(built, options, 8, 99);
+    const Render r = render(built, options, 8, 99);
+    const double ticksPerSecond = static_cast<double>(__rdtsc() - start) / (seconds(CLOCK_MONOTONIC) - wall);
     std::printf("inside the intersector: %.0f %% of the time\n",
-                100.0 * static_cast<double>(t.ticks) / static_cast<double>(__rdtsc() - start));
+                100 * static_cast<double>(t.ticks) / ticksPerSecond / r.statistics.coreSeconds);
 }
 
 } // namespace
