@@ -105,13 +105,14 @@ TEST_CASE("strategies: many lights of different kinds and powers") {
 }
 
 TEST_CASE("strategies: environment image") {
-    // A dim gradient with one bright coloured patch, so that compensation takes most directions out of the sampler.
+    // A dim gradient with one bright coloured patch, so that compensation takes most directions out of the sampler. The
+    // eye looks down: what it sees of the image itself is the same with any strategy and would only dilute the test.
     const auto path = std::filesystem::temp_directory_path() / "abbe_strategy_environment.exr";
     constexpr int width = 32, height = 16;
     std::vector<float> r, g, b;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const bool bright = x >= 14 && x < 20 && y >= 3 && y < 7;
+            const bool bright = x >= 5 && x < 11 && y >= 3 && y < 7;
             r.push_back(bright ? 9.f : 0.2f + 0.02f * static_cast<float>(y));
             g.push_back(bright ? 7.f : 0.3f);
             b.push_back(bright ? 2.f : 0.5f - 0.01f * static_cast<float>(x));
@@ -123,14 +124,14 @@ TEST_CASE("strategies: environment image") {
                              .g = g,
                              .b = b,
                              .chromaticities = Chromaticities::of(rgb::rec709)});
-    const std::string text = fmt::format("camera {{ from 0 0.8 4; look-at 0 0.4 0; fov 36 deg }}\n"
+    const std::string text = fmt::format("camera {{ from 0 3 4; look-at 0 0.3 0; fov 32 deg }}\n"
                                          "light environment \"{}\"\n"
                                          "shape plane {{ material diffuse {{ reflectance 0.6 }} }}\n"
                                          "shape sphere {{ center -0.6 0.5 0; radius 0.5; material conductor {{ index "
                                          "metal Al; roughness 0.6 }} }}\n"
                                          "shape sphere {{ center 0.6 0.5 0; radius 0.5; material diffuse }}\n",
                                          path.string());
-    checkStrategies({"environment", text, 512, 0, 0.004});
+    checkStrategies({"environment", text, 1024});
     std::filesystem::remove(path);
 }
 
