@@ -16,7 +16,8 @@ class SmoothConductorBsdf final : public Bsdf {
     BsdfEval eval(Vec3, Vec3, Transport) const noexcept override { return {}; }
     std::optional<BsdfSample> sample(Vec3 wo, float, Vec2, Transport) const noexcept override {
         if (wo.z == 0) return std::nullopt;
-        return BsdfSample{{-wo.x, -wo.y, wo.z}, fresnelConductor(std::abs(wo.z), n_, k_), 1, lobes()};
+        return std::optional<BsdfSample>(std::in_place, Vec3{-wo.x, -wo.y, wo.z},
+                                         fresnelConductor(std::abs(wo.z), n_, k_), 1.f, lobes());
     }
 
   private:
@@ -49,7 +50,7 @@ class RoughConductorBsdf final : public Bsdf {
         const float bounded = ggx_.boundedReflection(wo);
         const Spectrum weight = reflectance(wo, m) * (0.25f * ggx_.maskingOverCosine(wo, wi) / bounded);
         if (below) wi.z = -wi.z;
-        return BsdfSample{wi, weight, bounded * ggx_.D(m), lobes()};
+        return std::optional<BsdfSample>(std::in_place, wi, weight, bounded * ggx_.D(m), lobes());
     }
 
   private:

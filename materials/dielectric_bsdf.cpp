@@ -34,8 +34,8 @@ std::optional<BsdfSample> SmoothDielectricBsdf::sample(Vec3 wo, float uLobe, Vec
     const Spectrum reflectance = fresnelDielectric(std::abs(wo.z), eta);
     const float probability = mean(reflectance);
     if (uLobe >= probability) return transmit(wo, eta, Spectrum(1.f) - reflectance, 1 - probability, transport);
-    return BsdfSample{
-        {-wo.x, -wo.y, wo.z}, reflectance / probability, probability, Lobes(Lobe::delta) | Lobe::reflection};
+    return std::optional<BsdfSample>(std::in_place, Vec3{-wo.x, -wo.y, wo.z}, reflectance / probability, probability,
+                                     Lobes(Lobe::delta) | Lobe::reflection);
 }
 
 std::optional<BsdfSample> SmoothDielectricBsdf::transmit(Vec3 wo, Spectrum eta, Spectrum share, float probability,
@@ -49,7 +49,8 @@ std::optional<BsdfSample> SmoothDielectricBsdf::transmit(Vec3 wo, Spectrum eta, 
     const Vec3 wi{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     Lobes lobe = Lobes(Lobe::delta) | Lobe::transmission;
     if (disperses_) lobe |= Lobe::dispersive;
-    return BsdfSample{wi, share * compression(eta, transport) / probability, probability, lobe, eta[0]};
+    return std::optional<BsdfSample>(std::in_place, wi, share * compression(eta, transport) / probability, probability,
+                                     lobe, eta[0]);
 }
 
 // ---- rough
@@ -133,8 +134,8 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2
         result = sampleTransmission(wo, m, eta, reflectance, transport);
     } else if (const Vec3 wi = reflect(wo, m); wi.z > 0) {
         const float visible = ggx_.visible(wo), kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
-        result = BsdfSample{wi, reflectance * lossless(wo.z, eta) * (kept / probability),
-                            0.25f * probability * ggx_.D(m) * visible, Lobes(Lobe::glossy) | Lobe::reflection};
+        result.emplace(wi, reflectance * lossless(wo.z, eta) * (kept / probability),
+                       0.25f * probability * ggx_.D(m) * visible, Lobes(Lobe::glossy) | Lobe::reflection);
     }
     if (result && below) result->wi.z = -result->wi.z;
     return result;
@@ -153,7 +154,8 @@ std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 
         const LaneEval lanes = transmission(wo, wi, eta, transport);
         const float pdf = lanes.pdf[0];
         if (!(pdf > 0)) return std::nullopt;
-        return BsdfSample{wi, lanes.fcos / pdf, pdf, lobe | Lobe::dispersive, hero, lanes.pdf / pdf};
+        return std::optional<BsdfSample>(std::in_place, wi, lanes.fcos / pdf, pdf, lobe | Lobe::dispersive, hero,
+                                         lanes.pdf / pdf);
     }
     const float probability = 1 - mean(reflectance), visible = ggx_.visible(wo);
     const float kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
@@ -161,7 +163,7 @@ std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 
     const float length2 = square(contrast / (cosO + g));
     const float pdf = probability * ggx_.D(m) * visible * cosO * hero * g / length2;
     const Spectrum weight = (Spectrum(1.f) - reflectance) * lossless(wo.z, eta) * compression(eta, transport);
-    return BsdfSample{wi, weight * (kept / probability), pdf, lobe, hero};
+    return std::optional<BsdfSample>(std::in_place, wi, weight * (kept / probability), pdf, lobe, hero);
 }
 
 } // namespace abbe

@@ -24,12 +24,7 @@ class DiffuseBsdf final : public Bsdf {
         const float pdf = cosineHemispherePdf(wi.z);
         if (pdf == 0 || wo.z == 0) return std::nullopt;
         wi.z = std::copysign(wi.z, wo.z);
-        std::optional<BsdfSample> sample(std::in_place);
-        sample->wi = wi;
-        sample->weight = reflectance_;
-        sample->pdfSolidAngle = pdf;
-        sample->lobe = lobes();
-        return sample;
+        return std::optional<BsdfSample>(std::in_place, wi, reflectance_, pdf, lobes());
     }
 
   private:

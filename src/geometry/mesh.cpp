@@ -145,11 +145,12 @@ std::optional<ShapeSample> Mesh::sample(Vec3 from, Vec2 u) const {
     const Vec2 b = squareToTriangle({bin.offset, u.y});
     const auto [i0, i1, i2] = triangle(bin.index);
     const auto& p = data_.positions;
-    ShapeSample s{{}, {}, faceNormals_[bin.index], 0};
-    trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, s.p, s.pError);
-    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area_), s.p - from, s.ng);
-    if (!(s.pdfSolidAngle > 0)) return std::nullopt;
-    return s;
+    Vec3 point, pError;
+    trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, point, pError);
+    const Vec3 ng = faceNormals_[bin.index];
+    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point - from, ng);
+    if (!(pdf > 0)) return std::nullopt;
+    return std::optional<ShapeSample>(std::in_place, point, pError, ng, pdf);
 }
 
 float Mesh::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {

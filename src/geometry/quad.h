@@ -35,7 +35,7 @@ class Quad final : public Shape {
         float diagonalSquared;
     };
     static std::optional<Rectangle> asRectangle(const std::array<Vec3, 4>&);
-    void sampleArea(Vec2 u, ShapeSample&) const; // p and ng
+    void sampleArea(Vec2 u, Vec3& p, Vec3& ng) const;
 
     std::array<Half, 2> halves_;
     Vec3 pError_;

@@ -54,7 +54,7 @@ template <EffectBits E> class PathLoop {
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&);
-    bool scatter(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, Ray&);
+    bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
     bool survives(std::uint32_t depth, float rouletteScale);
     void absorb(const SurfaceHit&, Vec3 direction);
     // What a ray that crosses the surface towards `w` runs in; null in air.
@@ -98,8 +98,10 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
         const VertexSample sample = sampler_.vertex(depth);
+        // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
+        const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
         sampleLight(hit, bsdf, eye, sample);
-        if (!scatter(hit, bsdf, eye, sample, ray) || !survives(depth, rouletteScale)) break;
+        if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
     return path_.radiance;
 }
@@ -176,25 +178,22 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
 }
 
 template <EffectBits E>
-bool PathLoop<E>::scatter(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye, const VertexSample& sample,
-                          Ray& ray) {
-    const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
-    if (!next) return false;
-    path_.beta *= next->weight;
+bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const Directions& eye, Ray& ray) {
+    path_.beta *= next.weight;
     path_.from = hit.p;
-    path_.bsdfPdf = next->pdfSolidAngle;
-    path_.delta = next->lobe.has(Lobe::delta);
-    path_.etaScale *= next->eta * next->eta;
+    path_.bsdfPdf = next.pdfSolidAngle;
+    path_.delta = next.lobe.has(Lobe::delta);
+    path_.etaScale *= next.eta * next.eta;
     if constexpr (kDispersion) {
         auto& d = path_.densities;
-        if (path_.delta && next->lobe.has(Lobe::dispersive)) endSecondaryWavelengths();
+        if (path_.delta && next.lobe.has(Lobe::dispersive)) endSecondaryWavelengths();
         d.before = d.unidirectional;
-        if (!path_.delta) d.unidirectional *= next->pdfRatio;
+        if (!path_.delta) d.unidirectional *= next.pdfRatio;
     }
-    const Vec3 direction = hit.shading.toWorld(next->wi);
-    if (!sidesAgree(hit, eye, next->wi, direction)) return false;
+    const Vec3 direction = hit.shading.toWorld(next.wi);
+    if (!sidesAgree(hit, eye, next.wi, direction)) return false;
     if constexpr (kAbsorption)
-        if (next->lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
+        if (next.lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
     ray = {spawnOrigin(hit, direction), direction, kInfinity, ray.time};
     return anyNonZero(path_.beta);
 }

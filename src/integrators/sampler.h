@@ -17,9 +17,11 @@ struct VertexSample {
 };
 
 // Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first 24 dimensions
-// are joint: film 0-1, wavelength 2, light and BSDF of the first three vertices 3-6, 7-10 and 11-14, time 15, lens
-// 16-17, light and lobe choice of those vertices 18-19, 20-21 and 22-23. Every later vertex has an independently
-// shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose cost is one register.
+// are joint, in the order of what their quality is worth (docs/decisions/010-sampler-dimensions.md): BSDF of the first
+// vertex 0-1, light of the second 2-3, light of the first 4-5, wavelength 6, film 7-8, BSDF of the second 9-10, light
+// and BSDF of the third 11-14, time 15, lens 16-17, light and lobe choice of those vertices 18-19, 20-21 and 22-23.
+// Every later vertex has an independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose
+// cost is one register.
 class Sampler final {
   public:
     static constexpr std::uint32_t kJointVertices = 3;
@@ -40,17 +42,19 @@ class Sampler final {
         for (int g = 0; g < groups_; ++g)
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
-    Vec2 film() const { return {joint_[0], joint_[1]}; }
-    float wavelength() const { return joint_[2]; }
+    Vec2 film() const { return {joint_[7], joint_[8]}; }
+    float wavelength() const { return joint_[6]; }
     float time() const { return joint_[15]; }
     Vec2 lens() const { return {joint_[16], joint_[17]}; }
 
     // Vertex 0 is the first that the camera ray meets.
     VertexSample vertex(std::uint32_t depth) {
         if (depth < kJointVertices) {
-            const float* d = joint_ + 3 + 4 * depth;
-            const float* c = joint_ + 18 + 2 * depth;
-            return {{d[0], d[1]}, {d[2], d[3]}, c[0], c[1]};
+            constexpr int lights[] = {4, 2, 11}, bsdfs[] = {0, 9, 13};
+            const float* light = joint_ + lights[depth];
+            const float* bsdf = joint_ + bsdfs[depth];
+            const float* choice = joint_ + 18 + 2 * depth;
+            return {{light[0], light[1]}, {bsdf[0], bsdf[1]}, choice[0], choice[1]};
         }
         fillSet(depth);
         return {{set_[0], set_[1]}, {set_[2], set_[3]}, set_[4], set_[5]};

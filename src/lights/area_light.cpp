@@ -20,16 +20,12 @@ std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelength
     if (!(distance > 0)) return std::nullopt;
     const Vec3 wi = offset * (1 / distance);
     if (!emits(s->ng, -wi)) return std::nullopt;
-    std::optional<LightSample> result(std::in_place); // in place: a copy would stall on the stores (see Quad::sample)
-    result->wi = wi;
     // The end of a shadow ray is as uncertain as its direction: without a margin of a few roundings of the distance,
     // half of all rays to a far sphere or disk would end behind its surface.
     const float rounding = 0x1p-21f * distance;
-    result->p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -wi);
-    result->distance = distance;
-    result->radiance = radiance_.at(lambda);
-    result->pdfSolidAngle = s->pdfSolidAngle;
-    return result;
+    const Vec3 p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -wi);
+    // In place, as every Bsdf::sample (render/bsdf.h).
+    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda), s->pdfSolidAngle);
 }
 
 Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {

@@ -181,12 +181,10 @@ std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Waveleng
     const float turn = (static_cast<float>(cell.column) + cell.offset.x) / static_cast<float>(image_.width) - 0.5f;
     const float phi = 2 * kPi * turn;
     const Vec3 local{sinTheta * std::sin(phi), static_cast<float>(cosTheta), -sinTheta * std::cos(phi)};
-    LightSample result;
-    result.wi = normalize(axes_.toWorld(local));
-    result.distance = kInfinity;
-    result.radiance = escaped(result.wi, lambda);
-    result.pdfSolidAngle = static_cast<float>(cell.probability / cellSolidAngle(static_cast<int>(cell.row)));
-    return result;
+    const Vec3 wi = normalize(axes_.toWorld(local));
+    const double pdf = cell.probability / cellSolidAngle(static_cast<int>(cell.row));
+    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, escaped(wi, lambda),
+                                      static_cast<float>(pdf));
 }
 
 Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {

@@ -36,14 +36,10 @@ std::optional<LightSample> PointLight::sample(Vec3 from, Vec2, const Wavelengths
     const Vec3 offset = position_ - from;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
-    LightSample result;
-    result.distance = std::sqrt(d2);
-    result.wi = offset / result.distance;
-    result.p = position_;
-    result.radiance = intensity_.at(lambda) * (1 / d2);
-    result.pdfSolidAngle = 1;
-    result.delta = true;
-    return result;
+    const float distance = std::sqrt(d2);
+    const Vec3 wi = offset / distance;
+    return std::optional<LightSample>(std::in_place, wi, position_, distance, intensity_.at(lambda) * (1 / d2), 1.f,
+                                      true);
 }
 
 std::unique_ptr<Light> makePointLight(const PointLightParams& params, const LightContext& context,

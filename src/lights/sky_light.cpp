@@ -33,12 +33,8 @@ SkyLight::SkyLight(ScaledCurve radiance)
 void SkyLight::commit(const Bounds3& bounds) { power_ = 4 * kPiD * radiant_ * sceneDiskArea(bounds); }
 
 std::optional<LightSample> SkyLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
-    LightSample result;
-    result.wi = squareToSphere(u);
-    result.distance = kInfinity;
-    result.radiance = radiance_.at(lambda);
-    result.pdfSolidAngle = kSpherePdf;
-    return result;
+    return std::optional<LightSample>(std::in_place, squareToSphere(u), Vec3{}, kInfinity, radiance_.at(lambda),
+                                      kSpherePdf);
 }
 
 float SkyLight::pdfEscaped(Vec3) const noexcept { return kSpherePdf; }

@@ -91,13 +91,9 @@ bool SunLight::inside(Vec3 w) const noexcept {
 }
 
 std::optional<LightSample> SunLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
-    LightSample result;
-    result.wi = delta_ ? frame_.z : frame_.toWorld(squareToCone(u, oneMinusCos_));
-    result.distance = kInfinity;
-    result.radiance = radiance_.at(lambda);
-    result.pdfSolidAngle = delta_ ? 1 : pdf_;
-    result.delta = delta_;
-    return result;
+    const Vec3 wi = delta_ ? frame_.z : frame_.toWorld(squareToCone(u, oneMinusCos_));
+    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, radiance_.at(lambda), delta_ ? 1 : pdf_,
+                                      delta_);
 }
 
 Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {

@@ -70,6 +70,7 @@ inline UInt8 dimensionSeeds(std::uint32_t seed, int first) {
 // Dimensions [first, first + 8) of point `index` of the unscrambled sequence, bits reversed.
 inline UInt8 sobolBits(std::uint32_t index, int first) {
     UInt8 bits = {};
+#pragma GCC unroll 8
     for (int nibble = 0; nibble < 8; ++nibble, index >>= 4)
         bits ^= *reinterpret_cast<const UInt8*>(kSobolTable.rows[nibble][index & 15] + first);
     return bits;

@@ -12,12 +12,15 @@ namespace abbe {
 
 // Light arriving from one direction. Delta lights carry in `radiance` what a density of 1 makes right: intensity / d².
 struct LightSample {
-    Vec3 wi;                 // unit, towards the light
-    Vec3 p;                  // the point on the light, moved off its surface, for the shadow ray; unused at infinity
-    float distance = 0;      // to that point; infinite for distant lights
-    Spectrum radiance;       // W·m⁻²·sr⁻¹·nm⁻¹
-    float pdfSolidAngle = 0; // > 0
-    bool delta = false;      // cannot be met by chance: MIS weight 1
+    LightSample(Vec3 direction, Vec3 point, float toPoint, const Spectrum& arriving, float pdf, bool isDelta = false)
+        : wi(direction), p(point), distance(toPoint), radiance(arriving), pdfSolidAngle(pdf), delta(isDelta) {}
+
+    Vec3 wi;             // unit, towards the light
+    Vec3 p;              // the point on the light, moved off its surface, for the shadow ray; unused at infinity
+    float distance;      // to that point; infinite for distant lights
+    Spectrum radiance;   // W·m⁻²·sr⁻¹·nm⁻¹
+    float pdfSolidAngle; // > 0
+    bool delta;          // cannot be met by chance: MIS weight 1
 };
 
 // Immutable once the scene is committed, thread-safe, render space.

@@ -22,10 +22,13 @@ struct RawHit {
 
 // A point on a shape seen from somewhere. The density is per solid angle at that place.
 struct ShapeSample {
+    ShapeSample(Vec3 point, Vec3 error, Vec3 normal, float pdf)
+        : p(point), pError(error), ng(normal), pdfSolidAngle(pdf) {}
+
     Vec3 p;
     Vec3 pError;
     Vec3 ng; // unit, outside
-    float pdfSolidAngle = 0;
+    float pdfSolidAngle;
 };
 
 class Shape;

@@ -28,9 +28,9 @@ Point plainPoint(std::uint32_t index, std::uint32_t seed) {
 // All 24 joint dimensions as the sampler hands them out, in the documented order.
 Point jointPoint(Sampler& s) {
     const VertexSample a = s.vertex(0), b = s.vertex(1), c = s.vertex(2);
-    return {s.film().x, s.film().y, s.wavelength(), a.light.x, a.light.y, a.bsdf.x, a.bsdf.y, b.light.x,
-            b.light.y,  b.bsdf.x,   b.bsdf.y,       c.light.x, c.light.y, c.bsdf.x, c.bsdf.y, s.time(),
-            s.lens().x, s.lens().y, a.pick,         a.lobe,    b.pick,    b.lobe,   c.pick,   c.lobe};
+    return {a.bsdf.x,   a.bsdf.y,   b.light.x, b.light.y, a.light.x, a.light.y, s.wavelength(), s.film().x,
+            s.film().y, b.bsdf.x,   b.bsdf.y,  c.light.x, c.light.y, c.bsdf.x,  c.bsdf.y,       s.time(),
+            s.lens().x, s.lens().y, a.pick,    a.lobe,    b.pick,    b.lobe,    c.pick,         c.lobe};
 }
 
 Sampler pixelSampler(std::uint64_t seed, bool random = false) {
@@ -82,7 +82,8 @@ TEST_CASE("sampler: the first two dimensions are a (0, m, 2)-net: every elementa
                 std::set<std::uint32_t> met;
                 for (std::uint32_t i = 0; i < n; ++i) {
                     s.start(i);
-                    met.insert(cell(s.film().x, 1u << k) << (m - k) | cell(s.film().y, 1u << (m - k)));
+                    const Vec2 u = s.vertex(0).bsdf;
+                    met.insert(cell(u.x, 1u << k) << (m - k) | cell(u.y, 1u << (m - k)));
                 }
                 INFO("m " << m << ", k " << k);
                 CHECK(met.size() == n);
