@@ -4,6 +4,7 @@
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
 #include "materials/ggx_albedo.h"
+#include "materials/stretched_albedo.h"
 
 namespace abbe {
 namespace {
@@ -27,8 +28,8 @@ class SmoothConductorBsdf final : public Bsdf {
 // Two-sided: directions below the surface are mirrored to +z first.
 class RoughConductorBsdf final : public Bsdf {
   public:
-    RoughConductorBsdf(Spectrum n, Spectrum k, Ggx ggx)
-        : n_(n), k_(k), normalReflectance_(fresnelConductor(1, n, k)), ggx_(ggx) {}
+    RoughConductorBsdf(Spectrum n, Spectrum k, Ggx ggx, const StretchedAlbedo* stretched)
+        : n_(n), k_(k), normalReflectance_(fresnelConductor(1, n, k)), ggx_(ggx), stretched_(stretched) {}
 
     Lobes lobes() const noexcept override { return Lobes(Lobe::glossy) | Lobe::reflection; }
 
@@ -55,40 +56,35 @@ class RoughConductorBsdf final : public Bsdf {
 
   private:
     // Fresnel's reflectance, with the light of further bounces between microfacets added: 1 + F0 (1 - E)/E
-    // [Turquin2019]. Exact for F = 1 and equal widths; not reciprocal.
+    // [Turquin2019]. Exact for F = 1; not reciprocal.
     Spectrum reflectance(Vec3 wo, Vec3 m) const {
-        const float albedo = ggxAlbedo(wo.z, std::min(effectiveWidth(wo), 1.f));
+        const float albedo = stretched_ ? (*stretched_)(wo) : ggxAlbedo(wo.z, ggx_.alphaX());
         const Spectrum compensation = fma(normalReflectance_, Spectrum(1 / albedo - 1), Spectrum(1.f));
         return fresnelConductor(std::min(dot(wo, m), 1.f), n_, k_) * compensation;
     }
 
-    // The width of an isotropic surface that loses about as much as this one: at grazing angles the width along wo
-    // counts, from above both. Our own fit: with anisotropy 0.7 the furnace errs by 1 % for roughness up to 0.3 and by
-    // 13 % at 0.6; very rough and very anisotropic surfaces err by up to a half.
-    float effectiveWidth(Vec3 wo) const {
-        const float x2 = square(ggx_.alphaX()), y2 = square(ggx_.alphaY());
-        const float above = std::sqrt(ggx_.alphaX() * ggx_.alphaY() * 0.5f * (x2 + y2));
-        return std::sqrt((x2 * wo.x * wo.x + y2 * wo.y * wo.y) / (1 + wo.z) + above * wo.z);
-    }
-
     Spectrum n_, k_, normalReflectance_;
     Ggx ggx_;
+    const StretchedAlbedo* stretched_; // null: both widths are the same
 };
 
 class Conductor final : public Material {
   public:
     explicit Conductor(const ConductorParams& params)
-        : n_(*params.index.n), k_(*params.index.k), ggx_(Ggx::fromRoughness(params.roughness, params.anisotropy)) {}
+        : n_(*params.index.n), k_(*params.index.k), ggx_(Ggx::fromRoughness(params.roughness, params.anisotropy)) {
+        if (!ggx_.smooth() && ggx_.alphaX() != ggx_.alphaY()) stretched_.emplace(ggx_.alphaX(), ggx_.alphaY());
+    }
 
     const Bsdf* bsdf(const SurfaceHit&, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
         const Spectrum n = n_.at(wavelengths), k = k_.at(wavelengths);
         if (ggx_.smooth()) return arena.make<SmoothConductorBsdf>(n, k);
-        return arena.make<RoughConductorBsdf>(n, k, ggx_);
+        return arena.make<RoughConductorBsdf>(n, k, ggx_, stretched_ ? &*stretched_ : nullptr);
     }
 
   private:
     const Curve &n_, &k_;
     Ggx ggx_;
+    std::optional<StretchedAlbedo> stretched_;
 };
 
 } // namespace
