@@ -14,6 +14,7 @@ namespace {
 constexpr std::array kPlain = {Dimension::none};
 constexpr std::array kLength = {Dimension::length};
 constexpr std::array kAngle = {Dimension::angle};
+constexpr std::array kTime = {Dimension::time};
 constexpr auto kSteps = std::to_array<std::string_view>({"translate", "rotate", "scale", "matrix", "look-at"});
 
 class StepReader {
@@ -22,12 +23,12 @@ class StepReader {
         : entry_(step), header_(header), diagnostics_(diagnostics) {}
 
     // Nothing after a diagnostic.
-    std::optional<Transform> read() {
+    std::optional<TransformStep> read() {
         if (std::ranges::find(kSteps, entry_.name()) == kSteps.end()) {
             unknown();
             return std::nullopt;
         }
-        if (entry_.name() == "matrix") return matrix();
+        if (entry_.name() == "matrix") return whole(matrix());
         if (entry_.hasBlock() || !entry_.keys().empty()) {
             report(diagnostics_, entry_.span(), "E0214", fmt::format("`{}` takes numbers only", entry_.name()),
                    "remove the block or key");
@@ -36,7 +37,7 @@ class StepReader {
         if (entry_.name() == "translate") return translate();
         if (entry_.name() == "rotate") return rotate();
         if (entry_.name() == "scale") return scale();
-        return lookAt();
+        return whole(lookAt());
     }
 
   private:
@@ -46,27 +47,33 @@ class StepReader {
             .row(entry_, first, count);
     }
 
-    std::optional<Transform> fault(std::string message, std::string label) {
+    static std::optional<TransformStep> whole(const std::optional<Transform>& map) {
+        if (!map) return std::nullopt;
+        return TransformStep{TransformStep::Kind::matrix, {}, 0, *map};
+    }
+
+    std::nullopt_t fault(std::string message, std::string label) {
         report(diagnostics_, entry_.span(), "E0313", std::move(message), std::move(label));
         return std::nullopt;
     }
 
     void unknown() {
         const std::string_view name = entry_.name();
-        if (name == "at") return reportPlanned("at (motion)", entry_.node()->nameSpan(), diagnostics_);
         const auto meant = nearest(name, {kSteps.begin(), kSteps.end()});
         report(diagnostics_, entry_.node()->nameSpan(), "E0313", fmt::format("`transform` has no step `{}`", name),
                meant.empty() ? "unknown step" : didYouMean(meant))
             .help = "the steps are " + quotedList(kSteps);
     }
 
-    std::optional<Transform> translate() {
+    std::optional<TransformStep> translate() {
         const auto r = row(kLength, 0, 3, "translate 0 1 0");
         if (!r) return std::nullopt;
-        return Transform::translate({r->values[0], r->values[1], r->values[2]});
+        return TransformStep{TransformStep::Kind::translate, {r->values[0], r->values[1], r->values[2]}, 0, {}};
     }
 
-    std::optional<Transform> rotate() {
+    static TransformStep turn(Vec3d axis, double angle) { return {TransformStep::Kind::rotate, axis, angle, {}}; }
+
+    std::optional<TransformStep> rotate() {
         const std::string_view example = "rotate y 45 deg";
         if (entry_.count() > 0 && entry_.value(0).isText() && !parseFraction(entry_.value(0).text)) {
             const Value axis = entry_.value(0);
@@ -77,7 +84,7 @@ class StepReader {
             const auto r = row(kAngle, 1, 1, example);
             if (!r) return std::nullopt;
             const Vec3d direction{axis.text == "x" ? 1. : 0., axis.text == "y" ? 1. : 0., axis.text == "z" ? 1. : 0.};
-            return Transform::rotate(direction, r->values[0]);
+            return turn(direction, r->values[0]);
         }
         // Three numbers without a unit, then an angle: read as four in the unit of the angle, and the axis has no size.
         const auto r = row(kAngle, 0, 4, "rotate 0 1 0 45 deg");
@@ -86,15 +93,16 @@ class StepReader {
         const Vec3d axis{r->values[0] / factor, r->values[1] / factor, r->values[2] / factor};
         const double size = maxComponent(abs(axis));
         if (!(size > 0)) return fault("the axis of a rotation cannot be 0 0 0", "has no direction");
-        return Transform::rotate(axis / size, r->values[3]); // scaled: squares of tiny components would vanish
+        return turn(axis / size, r->values[3]); // scaled: squares of tiny components would vanish
     }
 
-    std::optional<Transform> scale() {
+    std::optional<TransformStep> scale() {
         const bool three = entry_.count() > 2; // one number and a wrong unit are two values
         const auto r = row(kPlain, 0, three ? 3 : 1, three ? "scale 1 2 1" : "scale 2");
         if (!r) return std::nullopt;
         const auto& v = r->values;
-        return Transform::scale(three ? Vec3d{v[0], v[1], v[2]} : Vec3d{v[0], v[0], v[0]});
+        const Vec3d factors = three ? Vec3d{v[0], v[1], v[2]} : Vec3d{v[0], v[0], v[0]};
+        return TransformStep{TransformStep::Kind::scale, factors, 0, {}};
     }
 
     // `look-at from(3) to(3) [up(3)]`: +z, the side to which quads and disks face, turns to the target.
@@ -137,33 +145,101 @@ class StepReader {
     Diagnostics& diagnostics_;
 };
 
+// A block of steps, or of keys `at TIME { steps }` in the order of time.
+class MotionReader {
+  public:
+    MotionReader(const Header& header, Diagnostics& diagnostics) : header_(header), diagnostics_(diagnostics) {}
+
+    // Nothing after a diagnostic.
+    std::optional<KeyedTransform> read(const Node& block) {
+        std::vector<KeyedTransform::Key> keys;
+        if (!hasKeys(block)) {
+            auto steps = readSteps(block);
+            if (!steps) return std::nullopt;
+            keys.push_back({0, std::move(*steps)});
+            return KeyedTransform(std::move(keys));
+        }
+        bool good = true;
+        for (const Node child : block.children()) {
+            if (child.name().starts_with("x-")) continue;
+            auto key = readKey(child, keys.empty() ? -HUGE_VAL : keys.back().time);
+            good = good && key;
+            if (good) keys.push_back(std::move(*key));
+        }
+        if (!good) return std::nullopt;
+        return KeyedTransform(std::move(keys));
+    }
+
+    static bool hasKeys(const Node& block) {
+        for (const Node child : block.children())
+            if (child.name() == "at") return true;
+        return false;
+    }
+
+  private:
+    std::optional<KeyedTransform::Key> readKey(const Node& node, double after) {
+        if (node.damaged()) return std::nullopt;
+        if (node.name() != "at") {
+            report(diagnostics_, node.nameSpan(), "E0313", "a transform stands still or has keys, not both",
+                   fmt::format("put `{}` into the `at` blocks", node.name()));
+            return std::nullopt;
+        }
+        const Measure measure{"at", kTime, -HUGE_VAL, HUGE_VAL, {}, "at 0.5 s { rotate y 30 deg }"};
+        const auto time = MeasureReader(measure, header_, diagnostics_).row(Entry(node), 0, 1);
+        if (!time) return std::nullopt;
+        if (!(time->values[0] > after)) {
+            report(diagnostics_, node.headSpan(), "E0313", "keys must follow each other in time",
+                   fmt::format("not after {} s", plain(after)));
+            return std::nullopt;
+        }
+        auto steps = readSteps(node);
+        if (!steps) return std::nullopt;
+        return KeyedTransform::Key{time->values[0], std::move(*steps)};
+    }
+
+    std::optional<std::vector<TransformStep>> readSteps(const Node& block) {
+        std::vector<TransformStep> steps;
+        Transform whole;
+        bool good = true;
+        for (const Node child : block.children()) {
+            if (child.name().starts_with("x-")) continue;
+            const auto step = child.damaged() ? std::nullopt : StepReader(child, header_, diagnostics_).read();
+            good = good && step;
+            if (!good) continue;
+            const Transform map = step->transform();
+            if (!map.inverse()) {
+                report(diagnostics_, child.headSpan(), "E0313", fmt::format("`{}` flattens the object", child.name()),
+                       "cannot be undone: its determinant is 0");
+                good = false;
+                continue;
+            }
+            whole = whole.then(map);
+            steps.push_back(*step);
+        }
+        if (!good) return std::nullopt;
+        if (whole.isFinite() && whole.inverse()) return steps;
+        report(diagnostics_, block.headSpan(), "E0313", "the transform has no inverse in floating point",
+               "its steps are too large or too small together");
+        return std::nullopt;
+    }
+
+    const Header& header_;
+    Diagnostics& diagnostics_;
+};
+
 } // namespace
 
+KeyedTransform bindMotion(const Node& block, const Header& header, Diagnostics& diagnostics) {
+    return MotionReader(header, diagnostics).read(block).value_or(KeyedTransform());
+}
+
 Transform bindTransform(const Node& block, const Header& header, Diagnostics& diagnostics) {
-    Transform result;
-    bool good = true;
-    for (const Node step : block.children()) {
-        if (step.name().starts_with("x-")) continue;
-        if (step.damaged()) {
-            good = false;
-            continue;
+    for (const Node child : block.children())
+        if (child.name() == "at") {
+            reportPlanned("at (motion)", child.nameSpan(), diagnostics);
+            return {};
         }
-        const auto transform = StepReader(step, header, diagnostics).read();
-        good = good && transform;
-        if (!good) continue;
-        if (!transform->inverse()) {
-            report(diagnostics, step.headSpan(), "E0313", fmt::format("`{}` flattens the object", step.name()),
-                   "cannot be undone: its determinant is 0");
-            good = false;
-            continue;
-        }
-        result = result.then(*transform);
-    }
-    if (!good) return {};
-    if (result.isFinite() && result.inverse()) return result;
-    report(diagnostics, block.headSpan(), "E0313", "the transform has no inverse in floating point",
-           "its steps are too large or too small together");
-    return {};
+    return bindMotion(block, header, diagnostics).at(0);
 }
 
 } // namespace abbe::schema

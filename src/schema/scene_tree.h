@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "math/keyed_transform.h"
 #include "schema/document.h"
 #include "schema/type.h"
 
@@ -109,7 +110,10 @@ SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesy
 // type is unknown is bound with params == nullptr: what is wrong in every type of its kind is still reported.
 void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
 
-// The transform of a `transform { … }` block, top to bottom as applied to the object; the identity after an error.
+// The transform of a `transform { … }` block, top to bottom as applied to the object, or its keys `at TIME { … }`; the
+// identity after an error.
+KeyedTransform bindMotion(const Node& block, const Header&, Diagnostics&);
+// The same where nothing can move: keys are an error.
 Transform bindTransform(const Node& block, const Header&, Diagnostics&);
 
 // The names offered by `did you mean`: the nearest candidate within a third of the word's length, or empty.
