@@ -12,22 +12,23 @@ void analyticBounds(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
-std::optional<float> analyticHit(const Shape& shape, const RTCRay& r) {
+std::optional<RawHit> analyticHit(const Shape& shape, const RTCRay& r) {
     const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
     // Shapes know no near end: a ray cast again past a false hit starts there.
     const Vec3 origin = Vec3(r.org_x, r.org_y, r.org_z) + (r.tnear > kNearestHit ? direction * r.tnear : Vec3());
-    const auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
-    if (!hit) return std::nullopt;
-    return hit->distance + r.tnear;
+    auto hit = shape.intersect({origin, direction, r.tfar - r.tnear});
+    if (hit) hit->distance += r.tnear;
+    return hit;
 }
 
 void analyticIntersect(const RTCIntersectFunctionNArguments* args) {
     auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     if (args->N != 1 || args->valid[0] == 0) return;
-    const auto t = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
-    if (!t) return;
-    rayHit.ray.tfar = *t;
-    rayHit.hit.u = rayHit.hit.v = 0;
+    const auto hit = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
+    if (!hit) return;
+    rayHit.ray.tfar = hit->distance;
+    rayHit.hit.u = hit->u; // the shape's own words
+    rayHit.hit.v = hit->v;
     rayHit.hit.primID = args->primID;
     rayHit.hit.geomID = args->geomID;
     rayHit.hit.instID[0] = args->context->instID[0];

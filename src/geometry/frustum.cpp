@@ -1,0 +1,160 @@
+#include "geometry/frustum.h"
+
+#include "math/warp.h"
+
+#include <array>
+
+namespace abbe {
+
+namespace {
+
+double turns(double x, double z) {
+    const double t = std::atan2(x, z) / (2 * kPiD);
+    return t < 0 ? t + 1 : t;
+}
+
+// The part of a line between two planes y = ±h; from > to if there is none.
+struct Interval {
+    double from, to;
+};
+Interval slab(double y, double dy, double h) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (dy == 0) return std::abs(y) <= h ? Interval{-infinity, infinity} : Interval{infinity, -infinity};
+    const double a = (-h - y) / dy, b = (h - y) / dy;
+    return {std::min(a, b), std::max(a, b)};
+}
+
+// x² + z² - ρ² along the line o + t d is a t² + 2 b t + c, for the radius ρ = rho + slope·dy t.
+struct SideQuadratic {
+    SideQuadratic(Vec3d o, Vec3d d, double rho, double slope) {
+        const double k = slope * d.y;
+        a = d.x * d.x + d.z * d.z - k * k;
+        b = o.x * d.x + o.z * d.z - k * rho;
+        c = o.x * o.x + o.z * o.z - rho * rho;
+        // b² - a c without its cancellation: |rho d - k o|² - (o × d)², in the plane across the axis.
+        const double wx = rho * d.x - k * o.x, wz = rho * d.z - k * o.z;
+        const double w = std::hypot(wx, wz), across = std::abs(o.x * d.z - o.z * d.x);
+        discriminant = (w - across) * (w + across);
+    }
+    bool inside(double t) const { return (a * t + 2 * b) * t + c <= 0; }
+
+    double a, b, c, discriminant;
+};
+
+// The roots within the interval, ascending.
+struct Roots {
+    std::array<double, 2> t;
+    int count = 0;
+};
+Roots rootsWithin(const SideQuadratic& f, Interval in) {
+    Roots roots;
+    if (!(f.discriminant >= 0)) return roots;
+    const double q = -(f.b + std::copysign(std::sqrt(f.discriminant), f.b));
+    const auto add = [&](double t) {
+        if (t >= in.from && t <= in.to && std::isfinite(t)) roots.t[static_cast<std::size_t>(roots.count++)] = t;
+    };
+    add(q / f.a);
+    if (q != 0) add(f.c / q);
+    if (roots.count == 2 && roots.t[0] > roots.t[1]) std::swap(roots.t[0], roots.t[1]);
+    return roots;
+}
+
+} // namespace
+
+Frustum::Frustum(double bottom, double top, double height, bool closed, const Transform& toRender)
+    : ParametricShape(toRender), bottom_(bottom), top_(top), halfHeight_(height / 2), slope_((top - bottom) / height),
+      closed_(closed), reach2_((square(std::max(bottom, top)) + square(height / 2)) * (1 + 1e-9)) {
+    const double slant = std::hypot(height, top - bottom);
+    sideNormal_ = {height / slant, (bottom - top) / slant};
+    sideArea_ = kPiD * (bottom + top) * slant;
+    capAreas_[0] = closed ? kPiD * square(bottom) : 0;
+    capAreas_[1] = closed ? kPiD * square(top) : 0;
+    Bounds3d bounds = circleBounds(-halfHeight_, bottom, 0);
+    bounds.add(circleBounds(halfHeight_, top, 0));
+    finish(bounds, sideArea_ + capAreas_[0] + capAreas_[1], areaUnderMap());
+}
+
+double Frustum::areaUnderMap() const {
+    const double caps = capAreas_[0] + capAreas_[1];
+    if (const auto s = uniformStretch()) return *s * (sideArea_ + caps);
+    // The side's normal depends on the longitude alone, and periodic integrands converge at once.
+    constexpr int steps = 4096;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double phi = 2 * kPiD * (i + 0.5) / steps;
+        sum += stretch({sideNormal_.x * std::sin(phi), sideNormal_.y, sideNormal_.x * std::cos(phi)});
+    }
+    return sideArea_ * sum / steps + caps * stretch({0, 1, 0});
+}
+
+double Frustum::radiusAt(double y) const {
+    return y < 0 ? bottom_ + slope_ * (y + halfHeight_) : top_ + slope_ * (y - halfHeight_);
+}
+
+std::optional<ParametricShape::LocalHit> Frustum::meet(Vec3d origin, Vec3d d, double tMax) const {
+    // From the point of the line nearest to the centre all numbers are of the size of the shape.
+    const double shift = -dot(origin, d);
+    const Vec3d o = origin + d * shift;
+    if (!(lengthSquared(o) <= reach2_)) return std::nullopt;
+    const Interval between = slab(o.y, d.y, halfHeight_);
+    if (!(between.from <= between.to)) return std::nullopt;
+    // The solid is convex: the line is inside from one t to another. Both come from the same few numbers, so no ray
+    // slips through the edge where side and cap meet.
+    const SideQuadratic f(o, d, bottom_ + slope_ * (o.y + halfHeight_), slope_);
+    const Roots roots = rootsWithin(f, between);
+    const bool fromCap = std::isfinite(between.from) && f.inside(between.from);
+    const bool toCap = std::isfinite(between.to) && f.inside(between.to);
+    if (!fromCap && roots.count == 0) return std::nullopt;
+    const double enter = fromCap ? between.from : roots.t[0];
+    const double leave = toCap              ? between.to
+                         : roots.count == 0 ? enter
+                                            : roots.t[static_cast<std::size_t>(roots.count - 1)];
+    const auto hit = [&](double at, bool cap, Part which) -> std::optional<LocalHit> {
+        const double t = at + shift;
+        if (!(t > 0) || !(t <= tMax) || (cap && !closed_)) return std::nullopt;
+        return LocalHit{t, cap ? which : side};
+    };
+    const bool rising = d.y > 0;
+    if (const auto first = hit(enter, fromCap, rising ? bottomCap : topCap)) return first;
+    return hit(leave, toCap, rising ? topCap : bottomCap);
+}
+
+ParametricShape::LocalPoint Frustum::sidePoint(double longitude, double y) const {
+    const double s = std::sin(longitude), c = std::cos(longitude), r = radiusAt(y);
+    const double turn = longitude / (2 * kPiD);
+    return {{r * s, y, r * c},
+            {sideNormal_.x * s, sideNormal_.y, sideNormal_.x * c},
+            {c, 0, -s},
+            {turn < 0 ? turn + 1 : turn, 0.5 + y / (2 * halfHeight_)}};
+}
+
+ParametricShape::LocalPoint Frustum::capPoint(Part part, double x, double z) const {
+    const double up = part == topCap ? 1 : -1, radius = part == topCap ? top_ : bottom_, l = std::hypot(x, z);
+    return {{x, up * halfHeight_, z},
+            {0, up, 0},
+            l > 0 ? Vec3d(x / l, 0, z / l) : Vec3d(0, 0, 1),
+            {radius > 0 ? std::min(1.0, l / radius) : 0, turns(x, z)}};
+}
+
+ParametricShape::LocalPoint Frustum::project(Vec3d p, int part) const {
+    if (part != side) return capPoint(static_cast<Part>(part), p.x, p.z);
+    return sidePoint(std::atan2(p.x, p.z), std::clamp(p.y, -halfHeight_, halfHeight_));
+}
+
+ParametricShape::LocalPoint Frustum::sampleLocal(Vec2d u) const {
+    double x = u.x * (sideArea_ + capAreas_[0] + capAreas_[1]);
+    if (x < sideArea_) {
+        // The radius where a share x of the area lies below it is the root of a mean of squares.
+        x /= sideArea_;
+        const double r = std::sqrt(lerp(square(bottom_), square(top_), x));
+        const double share = r + bottom_ > 0 ? x * (bottom_ + top_) / (r + bottom_) : 0;
+        return sidePoint(2 * kPiD * u.y, (2 * std::min(share, 1.0) - 1) * halfHeight_);
+    }
+    x -= sideArea_;
+    const bool top = !(x < capAreas_[0]);
+    const double within = top ? (x - capAreas_[0]) / capAreas_[1] : x / capAreas_[0];
+    const double r = (top ? top_ : bottom_) * std::sqrt(std::clamp(within, 0.0, 1.0)), phi = 2 * kPiD * u.y;
+    return capPoint(top ? topCap : bottomCap, r * std::sin(phi), r * std::cos(phi));
+}
+
+} // namespace abbe

@@ -1,0 +1,86 @@
+#include "geometry/parametric_shape.h"
+
+#include "base/check.h"
+#include "geometry/surface_math.h"
+
+namespace abbe {
+
+ParametricShape::ParametricShape(const Transform& toRender)
+    : map_(toRender), determinant_(std::abs(toRender.determinant())) {
+    const auto inverse = toRender.inverse();
+    ABBE_CHECK(inverse.has_value());
+    inverse_ = *inverse;
+}
+
+void ParametricShape::finish(const Bounds3d& b, double localArea, double area) {
+    magnitude_ = std::max(maxComponent(abs(b.lower)), maxComponent(abs(b.upper)));
+    // Rounded outwards: float bounds must hold the double surface.
+    const double margin = magnitude_ * 0x1p-22;
+    const Vec3d m(margin, margin, margin);
+    bounds_ = {Vec3(b.lower - m), Vec3(b.upper + m)};
+    localArea_ = localArea;
+    area_ = area;
+}
+
+Bounds3d ParametricShape::circleBounds(double y, double radius, double ball) const {
+    const auto half = [&](int i) {
+        const auto& row = map_.a[i];
+        return radius * std::hypot(row[0], row[2]) + ball * length(Vec3d(row[0], row[1], row[2]));
+    };
+    const Vec3d centre = map_.point({0, y, 0}), extent(half(0), half(1), half(2));
+    return {centre - extent, centre + extent};
+}
+
+std::optional<double> ParametricShape::uniformStretch() const {
+    const auto scale = map_.uniformScale();
+    if (!scale) return std::nullopt;
+    return square(*scale);
+}
+
+void ParametricShape::commit(GeometrySink& sink) const { sink.analytic(bounds_); }
+
+std::optional<RawHit> ParametricShape::intersect(const Ray& ray) const {
+    const Vec3d d = inverse_.vector(Vec3d(ray.direction));
+    const double l = length(d);
+    if (!(l > 0)) return std::nullopt;
+    const auto hit = meet(inverse_.point(Vec3d(ray.origin)), d * (1 / l), l * static_cast<double>(ray.tMax));
+    if (!hit) return std::nullopt;
+    return RawHit{.u = static_cast<float>(hit->part), .distance = static_cast<float>(hit->t / l)};
+}
+
+void ParametricShape::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d along = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance);
+    const LocalPoint local = project(inverse_.point(along), static_cast<int>(raw.u));
+    const Vec3d p = map_.point(local.p);
+    hit.p = Vec3(p);
+    hit.pError = analyticError(p, magnitude_);
+    hit.ng = Vec3(normalize(map_.normal(local.n)));
+    hit.shading = Frame::fromNormalTangent(hit.ng, Vec3(normalize(map_.vector(local.tangent))));
+    hit.uv = Vec2{static_cast<float>(local.uv.x), static_cast<float>(local.uv.y)};
+    hit.primitive = static_cast<std::uint32_t>(raw.u);
+}
+
+// Density per area in render space. A⁻ᵀ takes normals there, so that an area with the unit normal n there has grown by
+// |det A| / |Aᵀ n|.
+double ParametricShape::pdfArea(Vec3d n) const {
+    const auto& a = map_.a;
+    const Vec3d back(a[0][0] * n.x + a[1][0] * n.y + a[2][0] * n.z, a[0][1] * n.x + a[1][1] * n.y + a[2][1] * n.z,
+                     a[0][2] * n.x + a[1][2] * n.y + a[2][2] * n.z);
+    return length(back) / (determinant_ * localArea_);
+}
+
+std::optional<ShapeSample> ParametricShape::sample(Vec3 from, Vec2 u) const {
+    const LocalPoint local = sampleLocal(Vec2d{static_cast<double>(u.x), static_cast<double>(u.y)});
+    const Vec3d p = map_.point(local.p);
+    const Vec3 ng(normalize(map_.normal(local.n)));
+    const Vec3 rounded(p);
+    const float pdf = areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(ng))), rounded - from, ng);
+    if (!(pdf > 0)) return std::nullopt;
+    return std::optional<ShapeSample>(std::in_place, rounded, analyticError(p, magnitude_), ng, pdf);
+}
+
+float ParametricShape::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+    return areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(hit.ng))), hit.p - from, hit.ng);
+}
+
+} // namespace abbe

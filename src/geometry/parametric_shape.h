@@ -1,0 +1,64 @@
+// Exact surfaces under any affine map: what cylinders, cones and tori have in common.
+#pragma once
+
+#include "math/transform.h"
+#include "render/shape.h"
+
+namespace abbe {
+
+// A surface that is stated in its own space, about the y axis and near the origin, and lives in render space under a
+// map that may scale its axes differently. All of it is computed in double and rounded to float once, at the end. Rays
+// may have directions of any length.
+class ParametricShape : public Shape {
+  public:
+    Bounds3 bounds() const override { return bounds_; }
+    void commit(GeometrySink&) const override;
+    std::optional<RawHit> intersect(const Ray&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override { return area_; }
+    // Uniform per area of the shape in its own space.
+    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+
+  protected:
+    // Own space. `part` tells surfaces apart that meet in an edge.
+    struct LocalHit {
+        double t = 0;
+        int part = 0;
+    };
+    struct LocalPoint {
+        Vec3d p;
+        Vec3d n;       // unit, outside
+        Vec3d tangent; // along u, any length but 0
+        Vec2d uv;
+    };
+
+    // Requires an invertible map.
+    explicit ParametricShape(const Transform& toRender);
+    // To be called once by the constructors of derived classes: the bounds, and the areas in own and in render space.
+    void finish(const Bounds3d&, double localArea, double area);
+    // The box of what remains of a circle about the y axis when a ball of radius `ball` runs along it.
+    Bounds3d circleBounds(double y, double radius, double ball) const;
+    // Render area per own area where the unit normal in own space is n.
+    double stretch(Vec3d n) const { return length(map_.normal(n)); }
+    // The same everywhere for maps that keep angles.
+    std::optional<double> uniformStretch() const;
+
+    // Nearest hit in (0, tMax]. `d` is of unit length.
+    virtual std::optional<LocalHit> meet(Vec3d o, Vec3d d, double tMax) const = 0;
+    // The point of the part that is nearest to p, which is off by rounding only.
+    virtual LocalPoint project(Vec3d p, int part) const = 0;
+    // Uniform per own area.
+    virtual LocalPoint sampleLocal(Vec2d u) const = 0;
+
+  private:
+    double pdfArea(Vec3d renderNormal) const;
+
+    Transform map_, inverse_;
+    double determinant_;
+    Bounds3 bounds_;
+    double magnitude_ = 0; // largest coordinate in size
+    double localArea_ = 0, area_ = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,99 @@
+#include "geometry/torus.h"
+
+#include "geometry/polynomial_roots.h"
+
+namespace abbe {
+
+namespace {
+
+// The angle around the tube below which a share x of the area lies: θ + e sin θ = 2π x, for e = minor / major. That is
+// Kepler's equation, seen from the far side of the orbit.
+double tubeAngle(double x, double e) {
+    const double target = 2 * kPiD * x;
+    double lower = std::max(0.0, target - e), upper = std::min(2 * kPiD, target + e), angle = target;
+    for (int i = 0; i < 60; ++i) {
+        const double f = angle + e * std::sin(angle) - target;
+        if (f == 0) break;
+        (f > 0 ? upper : lower) = angle;
+        double next = angle - f / (1 + e * std::cos(angle));
+        if (!(next > lower && next < upper)) next = 0.5 * (lower + upper);
+        if (std::abs(next - angle) < 1e-15) break;
+        angle = next;
+    }
+    return angle;
+}
+
+} // namespace
+
+Torus::Torus(double major, double minor, const Transform& toRender)
+    : ParametricShape(toRender), major_(major), minor_(minor) {
+    finish(circleBounds(0, major, minor), 4 * kPiD * kPiD * major * minor, areaUnderMap());
+}
+
+double Torus::areaUnderMap() const {
+    const double own = 4 * kPiD * kPiD * major_ * minor_;
+    if (const auto s = uniformStretch()) return *s * own;
+    constexpr int steps = 256; // in each of two periods
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double tube = 2 * kPiD * (i + 0.5) / steps, weight = 1 + minor_ / major_ * std::cos(tube);
+        for (int j = 0; j < steps; ++j) {
+            const double phi = 2 * kPiD * (j + 0.5) / steps;
+            sum += weight * stretch({std::cos(tube) * std::sin(phi), std::sin(tube), std::cos(tube) * std::cos(phi)});
+        }
+    }
+    return own * sum / (steps * steps);
+}
+
+std::optional<ParametricShape::LocalHit> Torus::meet(Vec3d origin, Vec3d d, double tMax) const {
+    // From the point of the line nearest to the centre the quartic has no cubic term, and its other coefficients do not
+    // grow with the distance of the origin.
+    const double shift = -dot(origin, d), outer2 = square(major_ + minor_) * (1 + 1e-9);
+    const Vec3d o = origin + d * shift;
+    const double m = lengthSquared(o);
+    if (!(m <= outer2)) return std::nullopt;
+    const double half = std::sqrt(outer2 - m);
+    double from = std::max(-half, -shift), to = std::min(half, tMax - shift);
+    if (d.y != 0) { // between the two planes that the tube touches
+        const double r = minor_ * (1 + 1e-9), a = (-r - o.y) / d.y, b = (r - o.y) / d.y;
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+    } else if (std::abs(o.y) > minor_) {
+        return std::nullopt;
+    }
+    if (!(from <= to)) return std::nullopt;
+    // (|p|² + R² - r²)² = 4 R² (x² + z²) along o + s d. In units of R the coefficients are of order 1.
+    const double scale = 1 / major_;
+    const Vec3d c = o * scale;
+    const double k = lengthSquared(c) + (1 - minor_ * scale) * (1 + minor_ * scale);
+    const Polynomial<4> quartic{k * k - 4 * (c.x * c.x + c.z * c.z), -8 * (c.x * d.x + c.z * d.z),
+                                2 * k - 4 * (d.x * d.x + d.z * d.z), 0, 1};
+    const auto roots = rootsWithin<4>(quartic, from * scale, to * scale);
+    for (int i = 0; i < roots.count; ++i) {
+        const double t = roots.x[static_cast<std::size_t>(i)] * major_ + shift;
+        if (t > 0 && t <= tMax) return LocalHit{t, 0};
+    }
+    return std::nullopt;
+}
+
+// The point at a longitude where the normal is (across, up) in the plane of the axis.
+ParametricShape::LocalPoint Torus::at(double s, double c, double across, double up) const {
+    const double r = major_ + minor_ * across;
+    const double u = std::atan2(s, c) / (2 * kPiD), v = std::atan2(up, across) / (2 * kPiD);
+    return {
+        {r * s, minor_ * up, r * c}, {across * s, up, across * c}, {c, 0, -s}, {u < 0 ? u + 1 : u, v < 0 ? v + 1 : v}};
+}
+
+ParametricShape::LocalPoint Torus::project(Vec3d p, int) const {
+    const double rho = std::hypot(p.x, p.z);
+    const double across = rho - major_, l = std::hypot(across, p.y);
+    const double s = rho > 0 ? p.x / rho : 0, c = rho > 0 ? p.z / rho : 1;
+    return l > 0 ? at(s, c, across / l, p.y / l) : at(s, c, 1, 0);
+}
+
+ParametricShape::LocalPoint Torus::sampleLocal(Vec2d u) const {
+    const double tube = tubeAngle(u.x, minor_ / major_), longitude = 2 * kPiD * u.y;
+    return at(std::sin(longitude), std::cos(longitude), std::cos(tube), std::sin(tube));
+}
+
+} // namespace abbe
