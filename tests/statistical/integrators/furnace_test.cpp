@@ -38,7 +38,7 @@ TEST_CASE("a closed room of emitting walls: 1/(1 - ρ), without a limit of depth
     checkRoom(room(0.5, ""), 2, 2048, 0.0005);
     checkRoom(room(0.9, ""), 10, 1024, 0.001);
     checkRoom(room(0.99, ""), 100, 128, 0.004);
-    if (nightly()) checkRoom(room(0.999, ""), 1000, 128, 0.004);
+    if (nightly()) checkRoom(room(0.999, ""), 1000, 384, 0.004);
 }
 
 TEST_CASE("a lossless object in a closed room changes nothing") {
