@@ -189,7 +189,7 @@ bool EmbreeScene::recompute(RTCHit& h, const Ray& ray, float& distance) const {
     constexpr double slack = 1e-6;
     const PlacedObject* place = placeOf(h);
     const PrimitiveKind kind = recordOf(h, place).kind;
-    if (kind == PrimitiveKind::analytic) return true; // computed in double already
+    if (kind != PrimitiveKind::triangles && kind != PrimitiveKind::quads) return true; // computed in double already
     const Corners corners = cornersOf(place ? place->scene : scene.get(), h, kind, place);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();

@@ -74,6 +74,68 @@ void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, std::span<const Ve
     attach(geometry, type == RTC_GEOMETRY_TYPE_QUAD ? PrimitiveKind::quads : PrimitiveKind::triangles);
 }
 
+namespace {
+
+void confirmHit(const RTCFilterFunctionNArguments* args) {
+    if (args->N != 1 || args->valid[0] == 0) return;
+    const auto& r = *reinterpret_cast<const RTCRay*>(args->ray);
+    const auto& h = *reinterpret_cast<const RTCHit*>(args->hit);
+    const Ray ray{Vec3(r.org_x, r.org_y, r.org_z), Vec3(r.dir_x, r.dir_y, r.dir_z)};
+    const RawHit hit{.u = h.u, .v = h.v, .distance = r.tfar, .primitive = h.primID};
+    if (!shapeOf(args->geometryUserPtr).confirms(hit, ray)) args->valid[0] = 0;
+}
+
+RTCGeometryType curveType(CurveBasis basis, CurveForm form) {
+    const bool round = form == CurveForm::round;
+    switch (basis) {
+    case CurveBasis::linear:
+        return round ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE;
+    case CurveBasis::bspline:
+        return round ? RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE : RTC_GEOMETRY_TYPE_FLAT_BSPLINE_CURVE;
+    case CurveBasis::catmullRom:
+        return round ? RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE : RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE;
+    case CurveBasis::bezier:
+        break;
+    }
+    return round ? RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
+}
+
+static_assert(sizeof(SizedPoint) == 4 * sizeof(float));
+static_assert(int(kPreviousSegment) == int(RTC_CURVE_FLAG_NEIGHBOR_LEFT));
+static_assert(int(kNextSegment) == int(RTC_CURVE_FLAG_NEIGHBOR_RIGHT));
+
+} // namespace
+
+void EmbreeSink::curves(CurveBasis basis, CurveForm form, std::span<const SizedPoint> points,
+                        std::span<const std::uint32_t> firstPoints, std::span<const std::uint8_t> neighbours) {
+    RTCGeometry geometry = rtcNewGeometry(device_, curveType(basis, form));
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points.data(), 0,
+                               sizeof(SizedPoint), points.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, firstPoints.data(), 0,
+                               sizeof(std::uint32_t), firstPoints.size());
+    if (!neighbours.empty())
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, neighbours.data(), 0, 1,
+                                   neighbours.size());
+    if (basis == CurveBasis::linear && form == CurveForm::round) {
+        rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+        rtcSetGeometryIntersectFilterFunction(geometry, confirmHit);
+        rtcSetGeometryOccludedFilterFunction(geometry, confirmHit);
+    }
+    attach(geometry, PrimitiveKind::curves);
+}
+
+void EmbreeSink::points(PointForm form, std::span<const SizedPoint> points, std::span<const Vec3> normals) {
+    RTCGeometry geometry = rtcNewGeometry(device_, form == PointForm::sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT
+                                                   : form == PointForm::disk ? RTC_GEOMETRY_TYPE_DISC_POINT
+                                                                             : RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points.data(), 0,
+                               sizeof(SizedPoint), points.size());
+    if (!normals.empty())
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, normals.data(), 0,
+                                   sizeof(Vec3), normals.size());
+    attach(geometry, PrimitiveKind::points);
+}
+
 void EmbreeSink::analytic(const Bounds3&) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);

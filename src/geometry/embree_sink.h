@@ -12,7 +12,7 @@ namespace abbe {
 class Material;
 class Light;
 
-enum class PrimitiveKind : std::uint32_t { triangles, quads, analytic, instance };
+enum class PrimitiveKind : std::uint32_t { triangles, quads, curves, points, analytic, instance };
 
 // What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
 struct GeometryRecord {
@@ -37,6 +37,9 @@ class EmbreeSink final : public GeometrySink {
 
     void triangles(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 3>>) override;
     void quads(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 4>>) override;
+    void curves(CurveBasis, CurveForm, std::span<const SizedPoint>, std::span<const std::uint32_t> firstPoints,
+                std::span<const std::uint8_t> neighbours) override;
+    void points(PointForm, std::span<const SizedPoint>, std::span<const Vec3> normals) override;
     void analytic(const Bounds3&) override;
 
   private:

@@ -31,6 +31,22 @@ struct ShapeSample {
     float pdfSolidAngle;
 };
 
+// A control point of a curve, or a sphere or disk on its own: laid out as Embree reads it.
+struct SizedPoint {
+    Vec3 position;
+    float radius = 0;
+};
+
+// What a segment does with its control points: two for linear, four for the others.
+enum class CurveBasis : std::uint8_t { linear, bspline, catmullRom, bezier };
+// Round: a tube, open at its ends; linear ones are spheres swept along the segment. Flat: a ribbon that turns to the
+// ray.
+enum class CurveForm : std::uint8_t { round, flat };
+// Which of a linear segment's neighbours continue it, as bits: inside, their common sphere is no surface.
+enum CurveNeighbour : std::uint8_t { kPreviousSegment = 1, kNextSegment = 2 };
+// Disks turn to the ray; oriented ones to their normal.
+enum class PointForm : std::uint8_t { sphere, disk, orientedDisk };
+
 class Shape;
 
 // Receives a shape's primitives. Data are copied or kept by reference until the shape is gone (see EmbreeScene).
@@ -39,6 +55,12 @@ class GeometrySink {
     virtual ~GeometrySink() = default;
     virtual void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) = 0;
     virtual void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) = 0;
+    // Segment i has the control points from `firstPoints[i]` on. `neighbours` has an entry per segment for round linear
+    // curves, else none.
+    virtual void curves(CurveBasis, CurveForm, std::span<const SizedPoint> points,
+                        std::span<const std::uint32_t> firstPoints, std::span<const std::uint8_t> neighbours) = 0;
+    // A normal per point for oriented disks, else none.
+    virtual void points(PointForm, std::span<const SizedPoint>, std::span<const Vec3> normals) = 0;
     // One primitive that intersects itself through Shape::intersect.
     virtual void analytic(const Bounds3&) = 0;
 };
@@ -52,6 +74,9 @@ class Shape {
     virtual void commit(GeometrySink&) const = 0;
     // Nearest hit in (0, ray.tMax] of an analytic primitive. Only called for parts given to GeometrySink::analytic.
     virtual std::optional<RawHit> intersect(const Ray&) const { return std::nullopt; }
+    // Whether a hit that was found in float is there. Only called for round linear curves, for which Embree reports
+    // hits on rays that leave. `distance` and the ray's direction may be in any unit.
+    virtual bool confirms(const RawHit&, const Ray&) const { return true; }
     // Fills p, pError, ng, shading, uv and primitive of the hit.
     virtual void surface(const RawHit&, const Ray&, SurfaceHit&) const = 0;
 

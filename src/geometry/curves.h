@@ -1,0 +1,58 @@
+// Hair, fur, wires, grass: thin curves with a width.
+#pragma once
+
+#include "render/shape.h"
+
+#include <vector>
+
+namespace abbe {
+
+// Strands one after the other: strand i has the next `strandSizes[i]` control points.
+struct CurveData {
+    CurveBasis basis = CurveBasis::bspline;
+    CurveForm form = CurveForm::round;
+    std::vector<SizedPoint> points;
+    std::vector<std::uint32_t> strandSizes;
+};
+
+// Control points that a strand needs at the least, and how many each further segment takes.
+constexpr std::uint32_t leastPoints(CurveBasis b) { return b == CurveBasis::linear ? 2 : 4; }
+constexpr std::uint32_t pointStep(CurveBasis b) { return b == CurveBasis::bezier ? 3 : 1; }
+
+// Segments without width or length are left out: nobody can see them.
+// Hits: u runs from 0 to 1 along the whole strand, v across it as the ray sees it (0.5 in the middle). The primitive is
+// the strand. The shading frame's x is the direction of travel; ng points out of tubes and to the ray from ribbons.
+// Under maps that stretch unevenly tubes become elliptical and ribbons turn to the ray of their own space.
+class Curves final : public Shape {
+  public:
+    // Requires finite positions, finite radii >= 0, sizes that sum to the number of points and that each are
+    // leastPoints + a multiple of pointStep.
+    explicit Curves(CurveData);
+
+    std::size_t segmentCount() const { return firstPoints_.size(); }
+    std::size_t omittedSegments() const { return omitted_; }
+    std::size_t bytes() const; // of the data that rays refer to, without the acceleration structure
+
+    Bounds3 bounds() const override { return bounds_; }
+    void commit(GeometrySink&) const override;
+    bool confirms(const RawHit&, const Ray&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override; // of tubes without ends; of ribbons seen from the side
+
+    // Curves do not emit.
+    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+
+  private:
+    void addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size);
+
+    CurveData data_;
+    std::vector<std::uint32_t> firstPoints_; // of each segment
+    std::vector<std::uint32_t> strand_;      // of each segment
+    std::vector<std::uint32_t> strandFirst_; // first point of each strand, and the end
+    std::vector<std::uint8_t> neighbours_;   // CurveNeighbour, for round linear curves
+    std::size_t omitted_ = 0;
+    Bounds3 bounds_;
+};
+
+} // namespace abbe

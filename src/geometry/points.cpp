@@ -1,0 +1,108 @@
+#include "geometry/points.h"
+
+#include "base/check.h"
+#include "geometry/surface_math.h"
+
+namespace abbe {
+
+namespace {
+
+// Embree intersects in float relative to the ray's origin; the bound covers its surface too. Measured
+// (tests/unit/geometry/points_test.cpp).
+constexpr float kIntersectionError = gammaBound(16);
+
+Vec3 errorBound(const SizedPoint& point) {
+    const float r = point.radius;
+    return (abs(point.position) + Vec3(r, r, r)) * kIntersectionError;
+}
+
+float turn(double y, double x) {
+    const double turns = std::atan2(y, x) / (2 * kPiD);
+    return static_cast<float>(turns < 0 ? turns + 1 : turns);
+}
+
+} // namespace
+
+Points::Points(PointData data) : data_(std::move(data)) {
+    ABBE_CHECK(data_.points.size() < 0xffffffffu);
+    ABBE_CHECK(data_.normals.size() == (data_.form == PointForm::orientedDisk ? data_.points.size() : 0));
+    removeInvisible();
+    data_.normals.reserve(data_.normals.size() + 2); // Embree reads normals as 16 bytes
+    for (const SizedPoint& p : data_.points) {
+        const float r = p.radius;
+        const Vec3 half = (abs(p.position) + Vec3(r, r, r)) * 0x1p-22f + Vec3(r, r, r);
+        bounds_.add(p.position - half);
+        bounds_.add(p.position + half);
+    }
+}
+
+void Points::removeInvisible() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < data_.points.size(); ++i) {
+        if (!(data_.points[i].radius > 0)) continue;
+        data_.points[kept] = data_.points[i];
+        if (!data_.normals.empty()) data_.normals[kept] = data_.normals[i];
+        ++kept;
+    }
+    omitted_ = data_.points.size() - kept;
+    data_.points.resize(kept);
+    if (!data_.normals.empty()) data_.normals.resize(kept);
+}
+
+std::size_t Points::bytes() const {
+    return data_.points.size() * sizeof(SizedPoint) + data_.normals.size() * sizeof(Vec3);
+}
+
+void Points::commit(GeometrySink& sink) const {
+    if (!data_.points.empty()) sink.points(data_.form, data_.points, data_.normals);
+}
+
+void Points::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const SizedPoint& point = data_.points[raw.primitive];
+    const Vec3d o(ray.origin), direction(ray.direction);
+    const double l = length(direction);
+    const Vec3d d = direction * (1 / l);
+    if (data_.form == PointForm::sphere)
+        sphere(point, o, d, static_cast<double>(raw.distance) * l, hit);
+    else
+        disk(point, data_.form == PointForm::disk ? Vec3(-d) : data_.normals[raw.primitive], o, d, hit);
+    hit.pError = errorBound(point);
+    hit.primitive = raw.primitive;
+}
+
+void Points::sphere(const SizedPoint& point, Vec3d o, Vec3d d, double t, SurfaceHit& hit) const {
+    const Vec3d c(point.position);
+    const auto r = static_cast<double>(point.radius);
+    const double middle = dot(c - o, d);
+    const Vec3d off = o + d * middle - c;
+    const double half = safeSqrt(r * r - lengthSquared(off));
+    // A ray that Embree lets graze the sphere may pass it by a rounding: the nearest point then.
+    const Vec3d w = off + d * (t <= middle ? -half : half);
+    const Vec3d n = lengthSquared(w) > 0 ? normalize(w) : -d;
+    hit.p = Vec3(c + n * r);
+    hit.ng = Vec3(n);
+    const Vec3 f = hit.ng;
+    hit.uv = {turn(n.x, n.z), 1 - std::acos(std::clamp(f.y, -1.f, 1.f)) * kInvPi};
+    hit.shading = Frame::fromNormalTangent(f, {f.z, 0, -f.x});
+}
+
+void Points::disk(const SizedPoint& point, Vec3 normal, Vec3d o, Vec3d d, SurfaceHit& hit) const {
+    const Vec3d c(point.position), n(normal);
+    const double facing = dot(d, n);
+    const double t = std::abs(facing) > 1e-12 ? dot(c - o, n) / facing : dot(c - o, d);
+    const Vec3d w = o + d * t - c;
+    const Frame frame = Frame::fromNormal(normal);
+    const double x = dot(w, Vec3d(frame.x)), y = dot(w, Vec3d(frame.y));
+    hit.p = Vec3(c + w);
+    hit.ng = normal;
+    hit.uv = {static_cast<float>(std::min(1.0, std::hypot(x, y) / static_cast<double>(point.radius))), turn(y, x)};
+    hit.shading = frame;
+}
+
+double Points::area() const {
+    double sum = 0;
+    for (const SizedPoint& p : data_.points) sum += square(static_cast<double>(p.radius));
+    return sum * (data_.form == PointForm::sphere ? 4 * kPiD : kPiD);
+}
+
+} // namespace abbe

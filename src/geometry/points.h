@@ -1,0 +1,47 @@
+// Clouds of small spheres or disks: spray, dust, scans, particles.
+#pragma once
+
+#include "render/shape.h"
+
+#include <vector>
+
+namespace abbe {
+
+struct PointData {
+    PointForm form = PointForm::sphere;
+    std::vector<SizedPoint> points;
+    std::vector<Vec3> normals; // unit, one per point of oriented disks
+};
+
+// Points without width are left out. The primitive of a hit is the point's number among those that remain.
+// Texture coordinates: of a sphere those of Sphere; of a disk distance / radius and angle / 2π, for disks that turn to
+// the ray about a frame that turns with them.
+class Points final : public Shape {
+  public:
+    // Requires finite positions, finite radii >= 0, and unit normals for oriented disks.
+    explicit Points(PointData);
+
+    std::size_t count() const { return data_.points.size(); }
+    std::size_t omitted() const { return omitted_; }
+    std::size_t bytes() const; // of the data that rays refer to, without the acceleration structure
+
+    Bounds3 bounds() const override { return bounds_; }
+    void commit(GeometrySink&) const override;
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override;
+
+    // Points do not emit.
+    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+
+  private:
+    void removeInvisible();
+    void sphere(const SizedPoint&, Vec3d o, Vec3d d, double t, SurfaceHit&) const;
+    void disk(const SizedPoint&, Vec3 normal, Vec3d o, Vec3d d, SurfaceHit&) const;
+
+    PointData data_;
+    std::size_t omitted_ = 0;
+    Bounds3 bounds_;
+};
+
+} // namespace abbe
