@@ -1,7 +1,6 @@
 #include "math/keyed_transform.h"
 
 #include "base/check.h"
-#include "math/decomposition.h"
 
 #include <algorithm>
 
@@ -56,25 +55,49 @@ Transform TransformStep::transform() const {
 }
 
 KeyedTransform::KeyedTransform(std::vector<Key> keys) : keys_(std::move(keys)) {
-    for (std::size_t i = 1; i < keys_.size(); ++i) ABBE_CHECK(keys_[i - 1].time < keys_[i].time);
+    for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+        const Key &a = keys_[i], &b = keys_[i + 1];
+        ABBE_CHECK(a.time < b.time);
+        const bool same =
+            a.steps.size() == b.steps.size() && std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), alike);
+        auto& pair = apart_.emplace_back();
+        if (!same) pair = {Decomposition::of(compose(a.steps)), Decomposition::of(compose(b.steps))};
+    }
 }
 
 Transform KeyedTransform::at(double time) const {
     if (keys_.empty()) return {};
-    const auto after = std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) { return k.time > time; });
+    const auto after =
+        std::upper_bound(keys_.begin(), keys_.end(), time, [](double t, const Key& key) { return t < key.time; });
     if (after == keys_.begin()) return compose(keys_.front().steps);
     if (after == keys_.end()) return compose(keys_.back().steps);
     const Key &a = *(after - 1), &b = *after;
     const double u = (time - a.time) / (b.time - a.time);
-    const bool same =
-        a.steps.size() == b.steps.size() && std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(),
-                                                       [](const auto& x, const auto& y) { return alike(x, y); });
-    if (!same)
-        return interpolate(Decomposition::of(compose(a.steps)), Decomposition::of(compose(b.steps)), u).compose();
-    std::vector<TransformStep> steps(a.steps.size());
-    std::transform(a.steps.begin(), a.steps.end(), b.steps.begin(), steps.begin(),
-                   [u](const TransformStep& x, const TransformStep& y) { return mix(x, y, u); });
-    return compose(steps);
+    if (const auto& pair = apart_[static_cast<std::size_t>(after - keys_.begin()) - 1])
+        return interpolate((*pair)[0], (*pair)[1], u).compose();
+    Transform result;
+    for (std::size_t i = 0; i < a.steps.size(); ++i) result = result.then(mix(a.steps[i], b.steps[i], u).transform());
+    return result;
+}
+
+Motion Motion::then(const KeyedTransform& next) const {
+    if (!next.moves()) return then(next.at(0));
+    Motion result = *this;
+    result.links_.push_back({result.outer_, next});
+    result.outer_ = {};
+    return result;
+}
+
+Motion Motion::then(const Transform& next) const {
+    Motion result = *this;
+    result.outer_ = outer_.then(next);
+    return result;
+}
+
+Transform Motion::at(double time) const {
+    Transform result;
+    for (const Link& link : links_) result = result.then(link.before).then(link.keyed.at(time));
+    return result.then(outer_);
 }
 
 } // namespace abbe

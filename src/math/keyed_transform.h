@@ -1,9 +1,11 @@
 // A transform that changes with time, as a scene writes it: steps whose numbers have keys.
 #pragma once
 
-#include "math/transform.h"
+#include "math/decomposition.h"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace abbe {
@@ -35,10 +37,32 @@ class KeyedTransform {
 
     bool moves() const { return keys_.size() > 1; }
     Transform at(double time) const;
-    const std::vector<Key>& keys() const { return keys_; }
 
   private:
     std::vector<Key> keys_;
+    // Between key i and the next: both composed maps taken apart, or nothing where the steps are alike.
+    std::vector<std::optional<std::array<Decomposition, 2>>> apart_;
+};
+
+// Several of them one after another, from the inside out: an object that moves in a group that moves.
+class Motion {
+  public:
+    Motion() = default;
+    explicit Motion(const Transform& still) : outer_(still) {}
+
+    Motion then(const KeyedTransform&) const;
+    Motion then(const Transform&) const;
+    bool moves() const { return !links_.empty(); }
+    Transform at(double time) const;
+
+  private:
+    // Applied first to last: each link's map, then what stood still behind it.
+    struct Link {
+        Transform before;
+        KeyedTransform keyed;
+    };
+    std::vector<Link> links_;
+    Transform outer_; // after the last link
 };
 
 } // namespace abbe

@@ -81,7 +81,8 @@ TEST_CASE("keyed transform: like steps interpolate their numbers, so a full turn
 
 TEST_CASE("keyed transform: unlike steps are taken apart, any number of keys") {
     const Transform quarter = Transform::rotate({0, 0, 1}, kPiD / 2);
-    const KeyedTransform k(std::vector<KeyedTransform::Key>{{0, {}}, {1, {matrix(quarter)}}, {3, {turn({0, 0, 1}, kPiD)}}});
+    const KeyedTransform k(
+        std::vector<KeyedTransform::Key>{{0, {}}, {1, {matrix(quarter)}}, {3, {turn({0, 0, 1}, kPiD)}}});
     const auto angle = [&](double time) {
         const Vec3d p = k.at(time).point({1, 0, 0});
         CHECK(length(p) == doctest::Approx(1).epsilon(1e-12));
@@ -100,4 +101,19 @@ TEST_CASE("keyed transform: a mirror that comes or goes does not pass through no
     const KeyedTransform k(std::vector<KeyedTransform::Key>{{0, {scale({1, 1, 1})}}, {1, {scale({-1, 1, 1})}}});
     CHECK(k.at(0).determinant() == doctest::Approx(1));
     CHECK(k.at(1).determinant() == doctest::Approx(-1));
+}
+
+TEST_CASE("motion: still and moving links compose from the inside out") {
+    const KeyedTransform turning(
+        std::vector<KeyedTransform::Key>{{0, {turn({0, 0, 1}, 0)}}, {1, {turn({0, 0, 1}, kPiD)}}});
+    const KeyedTransform rising(std::vector<KeyedTransform::Key>{{0, {move({0, 0, 0})}}, {2, {move({0, 0, 4})}}});
+    const Motion arm =
+        Motion(Transform::translate({1, 0, 0})).then(turning).then(Transform::scale({2, 2, 2})).then(rising);
+    CHECK(arm.moves());
+    // (0, 0, 0) → (1, 0, 0) → turned by 90° → (0, 1, 0) → (0, 2, 0) → (0, 2, 1).
+    CHECK(length(arm.at(0.5).point({}) - Vec3d{0, 2, 1}) < 1e-12);
+    CHECK(length(arm.at(9).point({}) - Vec3d{-2, 0, 4}) < 1e-12);
+    const Motion still = Motion(Transform::translate({1, 2, 3})).then(KeyedTransform());
+    CHECK_FALSE(still.moves());
+    CHECK(length(still.at(5).point({}) - Vec3d{1, 2, 3}) == 0);
 }
