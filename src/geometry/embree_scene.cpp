@@ -4,34 +4,20 @@
 #include "base/parallel.h"
 #include "geometry/embree_device.h"
 #include "geometry/embree_sink.h"
-#include "geometry/instance.h"
+#include "geometry/instance_table.h"
 #include "geometry/surface_math.h"
 
 #include <array>
 #include <atomic>
 #include <embree3/rtcore.h>
+#include <map>
 
 namespace abbe {
 
 namespace {
 
-// Coordinates beyond this make Debian's Embree stop the process.
-constexpr float kLargestCoordinate = 1e18f;
 // False hits dropped on one ray before it is given up as a miss.
 constexpr int kMaxRecasts = 32;
-
-// An instance with its object: its scene, and where its records begin.
-struct PlacedObject {
-    Instance instance;
-    RTCScene scene;
-    std::size_t firstRecord;
-};
-
-// NaN fails every comparison.
-[[gnu::always_inline]] inline bool traceable(const Ray& ray) {
-    const Vec3 o = abs(ray.origin), d = abs(ray.direction);
-    return o.x + o.y + o.z < kLargestCoordinate && d.x + d.y + d.z < kLargestCoordinate && ray.tMax >= 0;
-}
 
 void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.org_x = ray.origin.x;
@@ -64,47 +50,50 @@ class EmbreeScene final : public Intersector {
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
-    std::vector<PlacedObject> placed;
+    std::vector<std::unique_ptr<const InstanceTable>> tables;
     Bounds3 bounds_;
 
   private:
-    const PlacedObject* placeOf(const RTCHit&) const;
-    const GeometryRecord& recordOf(const RTCHit&, const PlacedObject*) const;
-    void surface(const RTCHit&, float distance, const Ray&, SurfaceHit&) const;
-    bool resolve(RTCRayHit&, const Ray&, SurfaceHit&) const;
-    bool recompute(RTCHit&, const Ray&, float& distance) const;
+    using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
+
+    const GeometryRecord& recordOf(const RTCHit&, Path) const;
+    void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
+    void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;
+    bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
+    bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
 
     mutable std::atomic<std::uint64_t> rejected_{0};
 };
 
-void cast(RTCScene scene, RTCRayHit& rayHit) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+void cast(RTCScene scene, RayContext& context, RTCRayHit& rayHit) {
     rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context, &rayHit);
+    rtcIntersect1(scene, &context.rtc, &rayHit);
 }
 
-const PlacedObject* EmbreeScene::placeOf(const RTCHit& h) const {
-    return h.instID[0] == RTC_INVALID_GEOMETRY_ID ? nullptr : &placed[records[h.instID[0]].part];
+const GeometryRecord& EmbreeScene::recordOf(const RTCHit& h, Path path) const {
+    return records[h.geomID + (path.empty() ? 0 : path.back().table->firstRecord())];
 }
 
-const GeometryRecord& EmbreeScene::recordOf(const RTCHit& h, const PlacedObject* place) const {
-    return records[h.geomID + (place ? place->firstRecord : 0)];
-}
-
-void EmbreeScene::surface(const RTCHit& h, float distance, const Ray& ray, SurfaceHit& hit) const {
-    const PlacedObject* place = placeOf(h);
-    const GeometryRecord& record = recordOf(h, place);
+void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray& ray, SurfaceHit& hit) const {
+    const GeometryRecord& record = recordOf(h, path);
     const RawHit raw{h.u, h.v, distance, h.primID, record.part};
     hit.material = record.material;
     hit.light = record.light;
-    if (place) [[unlikely]] {
-        record.shape->surface(raw, place->instance.toObject(ray), hit);
-        place->instance.toRender(hit);
-    } else {
+    if (path.empty()) [[likely]] {
+        hit.instance = SurfaceHit::kNoInstance;
         record.shape->surface(raw, ray, hit);
+    } else {
+        surfaceInside(record, raw, path, ray, hit);
     }
+}
+
+void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw, Path path, const Ray& ray,
+                                SurfaceHit& hit) const {
+    Ray inside = ray;
+    for (const PlacementStep& step : path) inside = step.placement().toObject(inside);
+    record.shape->surface(raw, inside, hit);
+    for (std::size_t i = path.size(); i-- > 0;) Instance(path[i].placement()).toRender(hit);
+    hit.instance = static_cast<std::uint32_t>(path[0].table->firstInstance() + path[0].index);
 }
 
 // How far the hit point is from the ray's line, squared, and where along the ray it is.
@@ -118,15 +107,16 @@ Deviation deviation(const Ray& ray, const SurfaceHit& hit) {
 }
 
 bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
-    if (!traceable(ray)) [[unlikely]] {
+    if (!isTraceable(ray)) [[unlikely]] {
         rejected_.fetch_add(1, std::memory_order_relaxed);
         return false;
     }
     RTCRayHit rayHit;
     fill(rayHit.ray, ray, kNearestHit);
-    cast(scene.get(), rayHit);
+    RayContext context(rejected_);
+    cast(scene.get(), context, rayHit);
     if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    surface(rayHit.hit, rayHit.ray.tfar, ray, hit);
+    surface(rayHit.hit, context.path(rayHit.hit), rayHit.ray.tfar, ray, hit);
     // On triangles met edge-on Embree reports hits that are not there, and misplaces others; the point from the
     // barycentrics then lies off the ray (docs/hard_cases.md, case 4).
     const Deviation off = deviation(ray, hit);
@@ -134,32 +124,35 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     const bool near = off.offLine2 <= tolerance * tolerance;
     const bool same = std::abs(off.along - rayHit.ray.tfar) <= 1e-3f * off.along + tolerance;
     if (!(near && same && off.along > 0)) [[unlikely]]
-        return resolve(rayHit, ray, hit);
+        return resolve(rayHit, context, ray, hit);
     hit.distance = off.along;
     return true;
 }
 
 // Decides about a suspicious hit, and about those behind it if it is none, in double.
-[[gnu::noinline]] bool EmbreeScene::resolve(RTCRayHit& rayHit, const Ray& ray, SurfaceHit& hit) const {
+[[gnu::noinline]] bool EmbreeScene::resolve(RTCRayHit& rayHit, RayContext& context, const Ray& ray,
+                                            SurfaceHit& hit) const {
     bool found = false;
-    RTCHit nearest;
+    RTCHit nearest{};
+    std::array<PlacementStep, kMaxInstanceLevels> path;
     float distance = ray.tMax;
     for (int i = 0; i < kMaxRecasts && rayHit.hit.geomID != RTC_INVALID_GEOMETRY_ID; ++i) {
         const float reported = rayHit.ray.tfar;
         // A hit that truly lies farther than Embree said stands once nothing nearer is left.
         if (found && distance <= reported) break;
         float t = reported;
-        if (recompute(rayHit.hit, ray, t) && t <= distance) {
+        if (recompute(rayHit.hit, context.path(rayHit.hit), ray, t) && t <= distance) {
             nearest = rayHit.hit;
+            std::ranges::copy(context.path(nearest), path.begin());
             distance = t;
             found = true;
         }
         fill(rayHit.ray, ray, std::nextafter(reported, kInfinity));
         if (!(rayHit.ray.tnear < rayHit.ray.tfar)) break;
-        cast(scene.get(), rayHit);
+        cast(scene.get(), context, rayHit);
     }
     if (!found) return false;
-    surface(nearest, distance, ray, hit);
+    surface(nearest, {path.data(), nearest.instID[0]}, distance, ray, hit);
     hit.distance = distance;
     return true;
 }
@@ -169,7 +162,9 @@ struct Corners {
     std::array<std::array<Vec3d, 3>, 2> triangle;
     int count = 0;
 };
-Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, const PlacedObject* place) {
+Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, std::span<const PlacementStep> path) {
+    Transform toRender;
+    for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement().map());
     RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
     const auto* vertices = static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     const auto* indices =
@@ -177,7 +172,7 @@ Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, const Pla
     const auto vertex = [&](int i) {
         const std::size_t corners = kind == PrimitiveKind::quads ? 4 : 3;
         const Vec3d p(vertices[indices[corners * h.primID + static_cast<std::size_t>(i)]]);
-        return place ? place->instance.map().point(p) : p;
+        return path.empty() ? p : toRender.point(p);
     };
     if (kind == PrimitiveKind::triangles) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
     return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
@@ -185,12 +180,11 @@ Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, const Pla
 
 // The true barycentrics and distance of a hit [Moller1997]; false if the ray misses the primitive. Rays that pass an
 // edge within rounding count as hits, so that neighbours leave no crack.
-bool EmbreeScene::recompute(RTCHit& h, const Ray& ray, float& distance) const {
+bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distance) const {
     constexpr double slack = 1e-6;
-    const PlacedObject* place = placeOf(h);
-    const PrimitiveKind kind = recordOf(h, place).kind;
+    const PrimitiveKind kind = recordOf(h, path).kind;
     if (kind != PrimitiveKind::triangles && kind != PrimitiveKind::quads) return true; // computed in double already
-    const Corners corners = cornersOf(place ? place->scene : scene.get(), h, kind, place);
+    const Corners corners = cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, kind, path);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < corners.count; ++i) {
@@ -209,15 +203,14 @@ bool EmbreeScene::recompute(RTCHit& h, const Ray& ray, float& distance) const {
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const noexcept {
-    if (!traceable(ray)) [[unlikely]] {
+    if (!isTraceable(ray)) [[unlikely]] {
         rejected_.fetch_add(1, std::memory_order_relaxed);
         return false;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    RayContext context(rejected_);
     RTCRay r;
     fill(r, ray, kNearestHit);
-    rtcOccluded1(scene.get(), &context, &r);
+    rtcOccluded1(scene.get(), &context.rtc, &r);
     return r.tfar < 0;
 }
 
@@ -225,14 +218,24 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
 
 struct EmbreeSceneBuilder::Impl {
     using Shapes = std::vector<std::pair<const Shape*, Binding>>;
+    using Inside = std::pair<std::uint32_t, std::uint32_t>; // what holds placements, and the object placed
     Shapes shapes;
     std::vector<Shapes> objects;
-    std::vector<std::pair<std::uint32_t, Transform>> instances;
+    std::map<Inside, std::vector<Placement>> placements;
+
+    // What is known of an object's scene once it is built.
+    struct BuiltObject {
+        RTCScene scene = nullptr;
+        std::size_t firstRecord = 0;
+        Bounds3 bounds;
+        int levels = 0; // of objects inside of it
+    };
+    std::vector<BuiltObject> built;
+    std::uint64_t instanceCount = 0;
 
     static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
-    static Bounds3 fill(EmbreeScene&, RTCScene, const Shapes&);
-    void place(EmbreeScene&, std::size_t firstId, const std::vector<std::size_t>& firstRecords,
-               const std::vector<Bounds3>& objectBounds) const;
+    static void addShapes(EmbreeScene&, const Shapes&, BuiltObject&);
+    void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
 };
 
 EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
@@ -242,31 +245,31 @@ EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const
     return scene;
 }
 
-// Adds the shapes to the scene, their records to the target. Returns the bounds of the finite ones.
-Bounds3 EmbreeSceneBuilder::Impl::fill(EmbreeScene& target, RTCScene scene, const Shapes& shapes) {
-    EmbreeSink sink(target.device.get(), scene, target.records);
-    Bounds3 bounds;
+// Adds the shapes to the scene, their records to the target, and the bounds of the finite ones.
+void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& shapes, BuiltObject& object) {
+    object.firstRecord = target.records.size();
+    EmbreeSink sink(target.device.get(), object.scene, target.records);
     for (const auto& [shape, binding] : shapes) {
         sink.add(*shape, binding.material, binding.light);
-        if (std::isfinite(shape->area())) bounds.add(shape->bounds());
+        if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());
     }
-    return bounds;
 }
 
-void EmbreeSceneBuilder::Impl::place(EmbreeScene& s, std::size_t firstId, const std::vector<std::size_t>& firstRecords,
-                                     const std::vector<Bounds3>& objectBounds) const {
-    s.placed.reserve(instances.size());
-    for (const auto& [object, map] : instances) {
-        RTCScene scene = s.objectScenes[object].get();
-        const Instance& instance = s.placed.emplace_back(Instance(map), scene, firstRecords[object]).instance;
-        s.bounds_.add(instance.toRender(objectBounds[object]));
-        RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(geometry, scene);
-        rtcSetGeometryTimeStepCount(geometry, 1);
-        const auto matrix = instance.rowMajor();
-        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix.data());
-        attachGeometry(s.scene.get(), geometry, firstId + s.placed.size() - 1);
+// Adds what is placed inside, with geometry ids from the given one on, which no record needs: hits name what they met
+// in the innermost object.
+void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
+                                         BuiltObject& object) {
+    for (auto list = placements.lower_bound({inside, 0}); list != placements.end() && list->first.first == inside;
+         ++list) {
+        const BuiltObject& placed = built[list->first.second];
+        const auto& table = target.tables.emplace_back(std::make_unique<const InstanceTable>(
+            placed.scene, std::move(list->second), placed.firstRecord, instanceCount));
+        if (inside == kScene) instanceCount += table->size();
+        table->attach(target.device.get(), object.scene, geometryId++);
+        object.bounds.add(table->bounds(placed.bounds));
+        object.levels = std::max(object.levels, placed.levels + 1);
     }
+    ABBE_CHECK(object.levels <= kMaxInstanceLevels);
 }
 
 EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}
@@ -282,30 +285,41 @@ std::uint32_t EmbreeSceneBuilder::addObject(std::vector<std::pair<const Shape*, 
     return static_cast<std::uint32_t>(impl_->objects.size() - 1);
 }
 
-void EmbreeSceneBuilder::addInstance(std::uint32_t object, const Transform& objectToRender) {
-    ABBE_CHECK(object < impl_->objects.size());
-    impl_->instances.emplace_back(object, objectToRender);
+void EmbreeSceneBuilder::addInstance(std::uint32_t object, const Transform& map, std::uint32_t inside) {
+    ABBE_CHECK(object < impl_->objects.size() &&
+               (inside == kScene || (inside > object && inside < impl_->objects.size())));
+    impl_->placements[{inside, object}].emplace_back(map);
+}
+
+void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placement> placements, std::uint32_t inside) {
+    ABBE_CHECK(object < impl_->objects.size() &&
+               (inside == kScene || (inside > object && inside < impl_->objects.size())));
+    if (placements.empty()) return;
+    auto& list = impl_->placements[{inside, object}];
+    if (list.empty())
+        list = std::move(placements);
+    else
+        list.insert(list.end(), placements.begin(), placements.end());
 }
 
 std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
     auto result = std::make_unique<EmbreeScene>();
     EmbreeScene& s = *result;
     s.scene = Impl::newScene(s);
-    s.bounds_ = Impl::fill(s, s.scene.get(), impl_->shapes);
-    // Instances take the next geometry ids of the top scene, so their records come before those of the objects.
-    const std::size_t firstInstance = s.records.size();
-    for (std::size_t i = 0; i < impl_->instances.size(); ++i)
-        s.records.push_back({nullptr, nullptr, nullptr, static_cast<std::uint32_t>(i), PrimitiveKind::instance});
-
-    std::vector<std::size_t> firstRecords;
-    std::vector<Bounds3> objectBounds;
-    for (const auto& shapes : impl_->objects) {
-        firstRecords.push_back(s.records.size());
-        const auto& scene = s.objectScenes.emplace_back(Impl::newScene(s));
-        objectBounds.push_back(Impl::fill(s, scene.get(), shapes));
-        rtcCommitScene(scene.get());
+    Impl::BuiltObject top;
+    top.scene = s.scene.get();
+    Impl::addShapes(s, impl_->shapes, top); // first: its records stand at its geometry ids
+    const std::size_t firstTable = s.records.size();
+    for (std::uint32_t i = 0; i < impl_->objects.size(); ++i) {
+        Impl::BuiltObject object;
+        object.scene = s.objectScenes.emplace_back(Impl::newScene(s)).get();
+        Impl::addShapes(s, impl_->objects[i], object);
+        impl_->addTables(s, i, s.records.size() - object.firstRecord, object);
+        rtcCommitScene(object.scene);
+        impl_->built.push_back(object);
     }
-    impl_->place(s, firstInstance, firstRecords, objectBounds);
+    impl_->addTables(s, kScene, firstTable, top);
+    s.bounds_ = top.bounds;
     rtcCommitScene(s.scene.get());
     s.device.throwIfFailed();
     return result;

@@ -1,6 +1,7 @@
 // All geometry of a scene behind one intersector (Embree underneath, hidden in the .cpp).
 #pragma once
 
+#include "geometry/instance.h"
 #include "math/transform.h"
 #include "render/intersector.h"
 #include "render/shape.h"
@@ -29,10 +30,16 @@ class EmbreeSceneBuilder {
 
     // A shape in render space. Returns how many were added before.
     std::uint32_t addShape(const Shape&, Binding);
-    // Shapes in a space of their own, seen only through instances. Returns the object's number.
+    // Shapes in a space of their own, seen only through instances. Returns the object's number. There may be none: an
+    // object can consist of instances alone.
     std::uint32_t addObject(std::vector<std::pair<const Shape*, Binding>>);
-    // Requires an invertible map and an object number from addObject.
-    void addInstance(std::uint32_t object, const Transform& objectToRender);
+
+    static constexpr std::uint32_t kScene = 0xffffffffu;
+    // Places an object in the scene, or inside an object that was added after it; many times at 48 bytes each, and
+    // about 60 more for Embree. Requires maps without fault (Placement::findFault), object numbers from addObject, and
+    // objects in at most kMaxInstanceLevels objects.
+    void addInstance(std::uint32_t object, const Transform&, std::uint32_t inside = kScene);
+    void addInstances(std::uint32_t object, std::vector<Placement>, std::uint32_t inside = kScene);
     // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
     std::unique_ptr<Intersector> build();
 

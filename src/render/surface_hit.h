@@ -21,6 +21,8 @@ struct SurfaceHit {
     const Material* material = nullptr;
     const Light* light = nullptr; // the area light that this surface is, or null
     std::uint32_t primitive = 0;  // within its shape
+    static constexpr std::uint32_t kNoInstance = 0xffffffffu;
+    std::uint32_t instance = kNoInstance; // number of the outermost placement that it belongs to
 };
 
 // An origin on the side of the surface towards which `w` leaves, so far that no ray meets the surface again and no

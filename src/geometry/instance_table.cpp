@@ -1,0 +1,127 @@
+#include "geometry/instance_table.h"
+
+#include "base/check.h"
+#include "geometry/embree_sink.h"
+
+#include <cstddef>
+
+namespace abbe {
+
+namespace {
+
+const InstanceTable& tableOf(void* user) { return *static_cast<const InstanceTable*>(user); }
+
+// False only if the ray passes the box. Boxes of turned boxes are larger than needed, so that many rays do, and
+// Embree's own test would cost them a call. The factor covers the rounding of the distances [Ize2013].
+[[gnu::always_inline]] inline bool mayMeet(Float4 lower, Float4 upper, const RayLanes& ray, float near, float far) {
+    const Float4 inverse = 1 / ray.direction;
+    const Float4 t0 = (lower - ray.origin) * inverse, t1 = (upper - ray.origin) * inverse;
+    // A ray in the plane of a face gives a NaN, which the comparisons below pass over.
+    const auto back = t1 < t0;
+    const Float4 first = back ? t1 : t0, last = (back ? t0 : t1) * 1.0000004f;
+    for (int axis = 0; axis < 3; ++axis) {
+        near = first[axis] > near ? first[axis] : near;
+        far = last[axis] < far ? last[axis] : far;
+    }
+    return near <= far;
+}
+
+[[gnu::always_inline]] inline bool isTraceable(const RayLanes& ray) {
+    return isTraceable(
+        Ray{{ray.origin[0], ray.origin[1], ray.origin[2]}, {ray.direction[0], ray.direction[1], ray.direction[2]}});
+}
+
+// Origin and direction of a ray, each with the number behind it.
+RayLanes lanesOf(const RTCRay& r) {
+    RayLanes lanes;
+    std::memcpy(&lanes.origin, &r.org_x, sizeof lanes.origin);
+    std::memcpy(&lanes.direction, &r.dir_x, sizeof lanes.direction);
+    return lanes;
+}
+void setLanes(RTCRay& r, RayLanes lanes) {
+    lanes.origin[3] = r.tnear;
+    lanes.direction[3] = r.time;
+    std::memcpy(&r.org_x, &lanes.origin, sizeof lanes.origin);
+    std::memcpy(&r.dir_x, &lanes.direction, sizeof lanes.direction);
+}
+static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 12);
+static_assert(offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 12);
+
+RayContext& contextOf(RTCIntersectContext* context) { return *reinterpret_cast<RayContext*>(context); }
+
+} // namespace
+
+InstanceTable::InstanceTable(RTCScene object, std::vector<Placement> placements, std::size_t firstRecord,
+                             std::uint64_t firstInstance)
+    : object_(object), placements_(std::move(placements)), firstRecord_(firstRecord), firstInstance_(firstInstance) {
+    ABBE_CHECK(!placements_.empty() && placements_.size() < 0xffffffffu);
+    RTCBounds b;
+    rtcGetSceneBounds(object, &b);
+    lower_ = Float4{b.lower_x, b.lower_y, b.lower_z, 0};
+    upper_ = Float4{b.upper_x, b.upper_y, b.upper_z, 0};
+}
+
+void InstanceTable::attach(RTCDevice device, RTCScene scene, std::size_t geometryId) const {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(placements_.size()));
+    rtcSetGeometryUserData(geometry, const_cast<InstanceTable*>(this)); // read back as const
+    rtcSetGeometryBoundsFunction(geometry, boundsCallback, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersectCallback);
+    rtcSetGeometryOccludedFunction(geometry, occludedCallback);
+    attachGeometry(scene, geometry, geometryId);
+}
+
+Bounds3 InstanceTable::bounds(const Bounds3& object) const {
+    Bounds3 all;
+    if (object.empty()) return all;
+    for (const Placement& p : placements_) all.add(p.toOuter(object));
+    return all;
+}
+
+void InstanceTable::boundsCallback(const RTCBoundsFunctionArguments* args) {
+    const InstanceTable& table = tableOf(args->geometryUserPtr);
+    const Bounds3 b = table[args->primID].toOuter(
+        {{table.lower_[0], table.lower_[1], table.lower_[2]}, {table.upper_[0], table.upper_[1], table.upper_[2]}});
+    *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
+}
+
+bool InstanceTable::mayEnter(const RTCRay& ray, const RayLanes& inside, RayContext& context) const {
+    if (!mayMeet(lower_, upper_, inside, ray.tnear, ray.tfar)) return false;
+    if (isTraceable(inside)) [[likely]]
+        return true;
+    context.rejected.fetch_add(1, std::memory_order_relaxed);
+    return false;
+}
+
+void InstanceTable::intersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (args->N != 1 || args->valid[0] == 0) return;
+    const InstanceTable& table = tableOf(args->geometryUserPtr);
+    RayContext& context = contextOf(args->context);
+    auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const RayLanes outside = lanesOf(ray), inside = table[args->primID].toObject(outside);
+    if (!table.mayEnter(ray, inside, context)) return;
+    const unsigned outerHit = hit.geomID;
+    const unsigned level = context.rtc.instID[0]++;
+    hit.geomID = RTC_INVALID_GEOMETRY_ID; // tells a hit in here from one before
+    setLanes(ray, inside);
+    rtcIntersect1(table.object_, &context.rtc, reinterpret_cast<RTCRayHit*>(args->rayhit));
+    setLanes(ray, outside);
+    context.rtc.instID[0] = level;
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        hit.geomID = outerHit;
+    else
+        context.steps[level] = {&table, args->primID};
+}
+
+void InstanceTable::occludedCallback(const RTCOccludedFunctionNArguments* args) {
+    if (args->N != 1 || args->valid[0] == 0) return;
+    const InstanceTable& table = tableOf(args->geometryUserPtr);
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    const RayLanes outside = lanesOf(ray), inside = table[args->primID].toObject(outside);
+    if (!table.mayEnter(ray, inside, contextOf(args->context))) return;
+    setLanes(ray, inside);
+    rtcOccluded1(table.object_, args->context, &ray); // sets tfar to -∞ for the outer traversal, too
+    setLanes(ray, outside);
+}
+
+} // namespace abbe

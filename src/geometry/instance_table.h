@@ -1,0 +1,88 @@
+// Placements of one object in one Embree scene, as the primitives of one user geometry.
+#pragma once
+
+#include "geometry/instance.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <embree3/rtcore.h>
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+class InstanceTable;
+
+// Objects inside objects inside …: how deep at most.
+inline constexpr int kMaxInstanceLevels = 32;
+
+// One step from a scene into an object.
+struct PlacementStep {
+    const InstanceTable* table;
+    std::uint32_t index;
+
+    const Placement& placement() const;
+};
+
+// Embree's context of one ray, and the way to its nearest hit so far: steps [0, depth of the hit), outermost first. The
+// depth is in the hit's instID[0], which Embree copies from the context at every hit of its own.
+struct RayContext {
+    explicit RayContext(std::atomic<std::uint64_t>& rejectedRays) : rejected(rejectedRays) {
+        rtcInitIntersectContext(&rtc);
+        rtc.instID[0] = 0;
+    }
+    std::span<const PlacementStep> path(const RTCHit& hit) const { return {steps.data(), hit.instID[0]}; }
+
+    RTCIntersectContext rtc; // first: Embree hands its address to the callbacks
+    std::atomic<std::uint64_t>& rejected;
+    std::array<PlacementStep, kMaxInstanceLevels> steps; // only those of a hit are ever written or read
+};
+
+// Immutable once attached; the callbacks may run in any number of threads. Rays inside an object have the same
+// parameter t as outside, so the nearest hit of all is found without comparing distances between spaces.
+class InstanceTable {
+  public:
+    // Requires a committed scene that outlives the table, at least one placement, and fewer than 2^32 of them.
+    // `firstRecord` and `firstInstance` are for whoever reads hits.
+    InstanceTable(RTCScene object, std::vector<Placement> placements, std::size_t firstRecord,
+                  std::uint64_t firstInstance);
+    InstanceTable(const InstanceTable&) = delete;
+    InstanceTable& operator=(const InstanceTable&) = delete;
+
+    // A user geometry with a primitive per placement; the table must not move any more.
+    void attach(RTCDevice, RTCScene, std::size_t geometryId) const;
+
+    std::size_t size() const { return placements_.size(); }
+    RTCScene object() const { return object_; }
+    const Placement& operator[](std::uint32_t i) const { return placements_[i]; }
+    std::size_t firstRecord() const { return firstRecord_; }
+    std::uint64_t firstInstance() const { return firstInstance_; }
+    // Of all placements of a box in object space.
+    Bounds3 bounds(const Bounds3& object) const;
+
+  private:
+    static void boundsCallback(const RTCBoundsFunctionArguments*);
+    static void intersectCallback(const RTCIntersectFunctionNArguments*);
+    static void occludedCallback(const RTCOccludedFunctionNArguments*);
+
+    // Whether to follow a ray into the object; rays that cannot be traced are counted.
+    bool mayEnter(const RTCRay&, const RayLanes& inside, RayContext&) const;
+
+    RTCScene object_;
+    Float4 lower_, upper_; // bounds of Embree's scene, infinite shapes included
+    std::vector<Placement> placements_;
+    std::size_t firstRecord_;
+    std::uint64_t firstInstance_;
+};
+
+inline const Placement& PlacementStep::placement() const { return (*table)[index]; }
+
+// Coordinates beyond this make Debian's Embree stop the process; NaN fails every comparison.
+[[gnu::always_inline]] inline bool isTraceable(const Ray& ray) {
+    constexpr float largest = 1e18f;
+    const Vec3 o = abs(ray.origin), d = abs(ray.direction);
+    return o.x + o.y + o.z < largest && d.x + d.y + d.z < largest && ray.tMax >= 0;
+}
+
+} // namespace abbe
