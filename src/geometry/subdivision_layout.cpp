@@ -1,0 +1,155 @@
+#include "geometry/subdivision_layout.h"
+
+#include <opensubdiv/sdc/crease.h>
+#include <optional>
+
+namespace abbe {
+
+using namespace osd;
+
+namespace {
+
+using Impl = SubdivisionSurface::Impl;
+
+// The two sides of an edge across which the surface is smooth.
+struct Crossing {
+    std::uint32_t side[2];
+    int face[2];
+};
+
+std::optional<Crossing> smoothCrossing(const Impl& s, int edge) {
+    const Far::TopologyLevel& level = s.level();
+    if (s.scheme == Sdc::SCHEME_BILINEAR || level.IsEdgeNonManifold(edge) ||
+        Sdc::Crease::IsInfinite(level.GetEdgeSharpness(edge)))
+        return std::nullopt;
+    const Far::ConstIndexArray faces = level.GetEdgeFaces(edge);
+    if (faces.size() != 2) return std::nullopt;
+    const Far::ConstLocalIndexArray locals = level.GetEdgeFaceLocalIndices(edge);
+    Crossing c{};
+    for (int i = 0; i < 2; ++i) {
+        c.face[i] = faces[i];
+        if (!s.hasSurface[static_cast<std::size_t>(faces[i])]) return std::nullopt;
+        c.side[i] = s.firstCorner[static_cast<std::size_t>(faces[i])] + locals[i];
+    }
+    return c;
+}
+
+std::uint32_t next(const Impl& s, int face, std::uint32_t corner) {
+    const auto f = static_cast<std::size_t>(face);
+    return corner + 1 == s.firstCorner[f + 1] ? s.firstCorner[f] : corner + 1;
+}
+
+// The corners at one end of the edge, on either side of it. Manifold edges run oppositely in their two faces.
+std::array<std::uint32_t, 2> cornersAt(const Impl& s, const Crossing& c, int end) {
+    if (end == 0) return {c.side[0], next(s, c.face[1], c.side[1])};
+    return {next(s, c.face[0], c.side[0]), c.side[1]};
+}
+
+bool sameTexture(const Impl& s, const std::array<std::uint32_t, 2>& corners) {
+    return s.uvCorners.empty() || s.uvCorners[corners[0]] == s.uvCorners[corners[1]];
+}
+
+// Where faces meet without a common tangent plane, whatever the edges between them: an infinitely sharp corner, or
+// more than two infinitely sharp edges.
+bool isCorner(const Impl& s, int vertex) {
+    const Far::TopologyLevel& level = s.level();
+    if (level.IsVertexNonManifold(vertex) || Sdc::Crease::IsInfinite(level.GetVertexSharpness(vertex))) return true;
+    int sharp = 0;
+    for (const int edge : level.GetVertexEdges(vertex)) sharp += Sdc::Crease::IsInfinite(level.GetEdgeSharpness(edge));
+    return sharp > 2;
+}
+
+} // namespace
+
+SubdivisionLayout::SubdivisionLayout(const Impl& s, const std::vector<int>& edgeRates) {
+    joinCorners(s);
+    numberCorners(s);
+    numberSides(s, edgeRates);
+    joined_ = {};
+}
+
+std::uint32_t SubdivisionLayout::root(std::uint32_t corner) {
+    while (joined_[corner] != corner) corner = joined_[corner] = joined_[joined_[corner]];
+    return corner;
+}
+
+void SubdivisionLayout::joinCorners(const Impl& s) {
+    const Far::TopologyLevel& level = s.level();
+    joined_.resize(s.firstCorner.back());
+    for (std::uint32_t c = 0; c < joined_.size(); ++c) joined_[c] = c;
+    std::vector<std::uint8_t> corner(static_cast<std::size_t>(level.GetNumVertices()));
+    for (int v = 0; v < level.GetNumVertices(); ++v) corner[static_cast<std::size_t>(v)] = isCorner(s, v);
+    for (int e = 0; e < level.GetNumEdges(); ++e) {
+        const auto crossing = smoothCrossing(s, e);
+        if (!crossing) continue;
+        for (int end = 0; end < 2; ++end) {
+            const auto pair = cornersAt(s, *crossing, end);
+            const std::uint32_t inFace = pair[0] - s.firstCorner[static_cast<std::size_t>(crossing->face[0])];
+            const int v = level.GetFaceVertices(crossing->face[0])[static_cast<int>(inFace)];
+            if (corner[static_cast<std::size_t>(v)] || !sameTexture(s, pair)) continue;
+            const std::uint32_t a = root(pair[0]), b = root(pair[1]);
+            joined_[std::max(a, b)] = std::min(a, b); // the first corner leads
+        }
+    }
+}
+
+void SubdivisionLayout::numberCorners(const Impl& s) {
+    constexpr std::uint32_t none = 0xffffffffu;
+    const Far::TopologyLevel& level = s.level();
+    std::vector<std::uint32_t> firstOf(static_cast<std::size_t>(level.GetNumVertices()), none);
+    cornerVertex.assign(joined_.size(), none);
+    cornerLeads.assign(joined_.size(), 0);
+    for (int f = 0; f < s.faceCount(); ++f) {
+        if (!s.hasSurface[static_cast<std::size_t>(f)]) continue;
+        const Far::ConstIndexArray vertices = level.GetFaceVertices(f);
+        for (int i = 0; i < vertices.size(); ++i) {
+            const std::uint32_t c = s.firstCorner[static_cast<std::size_t>(f)] + static_cast<std::uint32_t>(i);
+            const std::uint32_t leader = root(c);
+            if (leader == c) {
+                cornerLeads[c] = 1;
+                cornerVertex[c] = vertexCount++;
+                std::uint32_t& first = firstOf[static_cast<std::size_t>(vertices[i])];
+                if (first == none)
+                    first = cornerVertex[c];
+                else
+                    seams.push_back({cornerVertex[c], first, 1});
+            }
+            cornerVertex[c] = cornerVertex[leader];
+        }
+    }
+}
+
+void SubdivisionLayout::numberSides(const Impl& s, const std::vector<int>& edgeRates) {
+    const Far::TopologyLevel& level = s.level();
+    sideFirst.assign(cornerVertex.size(), 0);
+    sideLeads.assign(cornerVertex.size(), 0);
+    sideReversed.assign(cornerVertex.size(), 0);
+    for (int e = 0; e < level.GetNumEdges(); ++e) {
+        const auto inside = static_cast<std::uint32_t>(edgeRates[static_cast<std::size_t>(e)] - 1);
+        const auto crossing = smoothCrossing(s, e);
+        const bool shared =
+            crossing && sameTexture(s, cornersAt(s, *crossing, 0)) && sameTexture(s, cornersAt(s, *crossing, 1));
+        const Far::ConstIndexArray faces = level.GetEdgeFaces(e);
+        const Far::ConstLocalIndexArray locals = level.GetEdgeFaceLocalIndices(e);
+        std::optional<std::uint32_t> first;
+        for (int k = 0; k < faces.size(); ++k) {
+            const auto f = static_cast<std::size_t>(faces[k]);
+            if (!s.hasSurface[f]) continue;
+            const std::uint32_t side = s.firstCorner[f] + locals[k];
+            sideReversed[side] = level.GetFaceVertices(faces[k])[locals[k]] != level.GetEdgeVertices(e)[0];
+            if (first && shared) {
+                sideFirst[side] = *first;
+                continue;
+            }
+            sideLeads[side] = 1;
+            sideFirst[side] = vertexCount;
+            vertexCount += inside;
+            if (!first)
+                first = sideFirst[side];
+            else if (inside > 0)
+                seams.push_back({sideFirst[side], *first, inside});
+        }
+    }
+}
+
+} // namespace abbe

@@ -1,0 +1,187 @@
+#include "geometry/subdivision_limit.h"
+
+#include "base/check.h"
+#include "math/bounds.h"
+
+#include <algorithm>
+#include <opensubdiv/far/topologyDescriptor.h>
+
+namespace abbe {
+
+using namespace osd;
+
+namespace {
+
+Sdc::SchemeType schemeOf(SubdivisionCage::Scheme s) {
+    return s == SubdivisionCage::Scheme::catmullClark ? Sdc::SCHEME_CATMARK
+           : s == SubdivisionCage::Scheme::loop       ? Sdc::SCHEME_LOOP
+                                                      : Sdc::SCHEME_BILINEAR;
+}
+
+Sdc::Options optionsOf(const SubdivisionCage& cage) {
+    Sdc::Options o;
+    // The enumerators of the cage stand in the order of the library's.
+    static_assert(static_cast<int>(SubdivisionCage::Boundary::edgeAndCorner) ==
+                  Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    static_assert(static_cast<int>(SubdivisionCage::FaceVarying::all) == Sdc::Options::FVAR_LINEAR_ALL);
+    o.SetVtxBoundaryInterpolation(static_cast<Sdc::Options::VtxBoundaryInterpolation>(cage.boundary));
+    o.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(cage.faceVarying));
+    o.SetCreasingMethod(cage.creasing == SubdivisionCage::Creasing::chaikin ? Sdc::Options::CREASE_CHAIKIN
+                                                                            : Sdc::Options::CREASE_UNIFORM);
+    o.SetTriangleSubdivision(cage.smoothTriangles ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
+    return o;
+}
+
+const int* ints(const std::vector<std::uint32_t>& v) { return reinterpret_cast<const int*>(v.data()); }
+
+std::unique_ptr<Far::TopologyRefiner> makeRefiner(const SubdivisionCage& cage) {
+    std::vector<int> creaseEnds;
+    std::vector<float> creaseWeights;
+    for (const auto& c : cage.creases) {
+        creaseEnds.insert(creaseEnds.end(), {static_cast<int>(c.a), static_cast<int>(c.b)});
+        creaseWeights.push_back(std::min(c.sharpness, 10.f));
+    }
+    std::vector<int> cornerVertices;
+    std::vector<float> cornerWeights;
+    for (const auto& c : cage.sharpCorners) {
+        cornerVertices.push_back(static_cast<int>(c.vertex));
+        cornerWeights.push_back(std::min(c.sharpness, 10.f));
+    }
+    Far::TopologyDescriptor d;
+    d.numVertices = static_cast<int>(cage.positions.size());
+    d.numFaces = static_cast<int>(cage.faceSizes.size());
+    d.numVertsPerFace = ints(cage.faceSizes);
+    d.vertIndicesPerFace = ints(cage.corners);
+    d.numCreases = static_cast<int>(creaseWeights.size());
+    d.creaseVertexIndexPairs = creaseEnds.data();
+    d.creaseWeights = creaseWeights.data();
+    d.numCorners = static_cast<int>(cornerWeights.size());
+    d.cornerVertexIndices = cornerVertices.data();
+    d.cornerWeights = cornerWeights.data();
+    d.numHoles = static_cast<int>(cage.holes.size());
+    d.holeIndices = ints(cage.holes);
+    Far::TopologyDescriptor::FVarChannel channel;
+    if (!cage.uvCorners.empty()) {
+        channel.numValues = static_cast<int>(cage.uvs.size());
+        channel.valueIndices = ints(cage.uvCorners);
+        d.numFVarChannels = 1;
+        d.fvarChannels = &channel;
+    }
+    using RefinerFactory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    std::unique_ptr<Far::TopologyRefiner> refiner(
+        RefinerFactory::Create(d, RefinerFactory::Options(schemeOf(cage.scheme), optionsOf(cage))));
+    ABBE_CHECK(refiner != nullptr); // findFault() refuses what the library refuses
+    return refiner;
+}
+
+// Sharpnesses above this level end as infinite ones, which is too early to be unseen.
+int sharpLevel(const SubdivisionCage& cage) {
+    float sharpest = 0;
+    const auto add = [&](float s) {
+        if (s < 10) sharpest = std::max(sharpest, s);
+    };
+    for (const auto& c : cage.creases) add(c.sharpness);
+    for (const auto& c : cage.sharpCorners) add(c.sharpness);
+    return std::clamp(static_cast<int>(std::ceil(sharpest)), 8, 10);
+}
+
+} // namespace
+
+SubdivisionSurface::Impl::Impl(const SubdivisionCage& cage)
+    : uvs(cage.uvs), uvCorners(cage.uvCorners), refiner(makeRefiner(cage)), scheme(schemeOf(cage.scheme)) {
+    Bounds3 box;
+    for (const Vec3 p : cage.positions) box.add(p);
+    center = box.lower * 0.5f + box.upper * 0.5f;
+    points.reserve(cage.positions.size());
+    for (const Vec3 p : cage.positions) points.push_back(p - center);
+    Factory::Options options;
+    options.SetApproxLevelSharp(sharpLevel(cage)).SetApproxLevelSmooth(6);
+    factory = std::make_unique<Factory>(*refiner, options);
+    const std::size_t faces = cage.faceSizes.size();
+    firstCorner.reserve(faces + 1);
+    hasSurface.reserve(faces);
+    std::uint32_t first = 0;
+    for (std::size_t f = 0; f < faces; ++f) {
+        firstCorner.push_back(first);
+        first += cage.faceSizes[f];
+        hasSurface.push_back(factory->FaceHasLimitSurface(static_cast<int>(f)));
+    }
+    firstCorner.push_back(first);
+}
+
+SubdivisionSurface::SubdivisionSurface(const SubdivisionCage& cage) : impl_(std::make_unique<Impl>(cage)) {}
+SubdivisionSurface::~SubdivisionSurface() = default;
+
+void FaceEvaluator::setFace(int face, bool withTexture) {
+    bool good = surface_.factory->InitVertexSurface(face, &limit_);
+    ABBE_CHECK(good);
+    patch_.resize(static_cast<std::size_t>(limit_.GetNumPatchPoints()) * 3);
+    limit_.PreparePatchPoints(&surface_.points[0].x, 3, patch_.data(), 3);
+    Bounds3 box;
+    const auto controls = static_cast<std::size_t>(limit_.GetNumControlPoints());
+    for (std::size_t i = 0; i < controls; ++i) box.add(Vec3(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
+    smallTangent_ = 1e-5f * maxComponent(box.upper - box.lower);
+    if (!withTexture) return;
+    good = surface_.factory->InitFaceVaryingSurface(face, &texture_, 0);
+    ABBE_CHECK(good);
+    texturePatch_.resize(static_cast<std::size_t>(texture_.GetNumPatchPoints()) * 2);
+    texture_.PreparePatchPoints(&surface_.uvs[0].x, 2, texturePatch_.data(), 2);
+}
+
+bool FaceEvaluator::normal(float u, float v, LimitPoint& out) const {
+    const float uv[2] = {u, v};
+    Vec3 p, du, dv;
+    limit_.Evaluate(uv, patch_.data(), 3, &p.x, &du.x, &dv.x);
+    out.position = p + surface_.center;
+    const float lu = length(du), lv = length(dv);
+    if (!(lu > smallTangent_) || !(lv > smallTangent_)) return false;
+    const Vec3 n = cross(du * (1 / lu), dv * (1 / lv));
+    const float l = length(n); // the sine of the angle between the tangents
+    if (!(l > 1e-4f)) return false;
+    out.normal = n * (1 / l);
+    return true;
+}
+
+void FaceEvaluator::towardsInside(float by, float uv[2]) const {
+    const Bfr::Parameterization param = limit_.GetParameterization();
+    if (param.GetType() == Bfr::Parameterization::QUAD_SUBFACES) {
+        float local[2];
+        const int subFace = param.ConvertCoordToNormalizedSubFace(uv, local);
+        for (float& x : local) x += by * (0.5f - x);
+        param.ConvertNormalizedSubFaceToCoord(subFace, local, uv);
+        return;
+    }
+    const float middle = param.GetType() == Bfr::Parameterization::TRI ? 1 / 3.f : 0.5f;
+    for (int i = 0; i < 2; ++i) uv[i] += by * (middle - uv[i]);
+}
+
+LimitPoint FaceEvaluator::point(float u, float v) const {
+    LimitPoint result;
+    if (normal(u, v, result)) return result;
+    // The tangents vanish or are parallel here: the limit from inside the face (docs/hard_cases.md, cases 13 and 14).
+    for (const float by : {1e-4f, 1e-3f, 1e-2f, 0.1f, 0.5f}) {
+        float uv[2] = {u, v};
+        towardsInside(by, uv);
+        LimitPoint inside;
+        if (!normal(uv[0], uv[1], inside)) continue;
+        result.normal = inside.normal;
+        break;
+    }
+    return result;
+}
+
+Vec3 FaceEvaluator::position(float u, float v) const {
+    const float uv[2] = {u, v};
+    Vec3 p;
+    limit_.Evaluate(uv, patch_.data(), 3, &p.x);
+    return p + surface_.center;
+}
+
+Vec2 FaceEvaluator::texture(float u, float v) const {
+    const float uv[2] = {u, v};
+    Vec2 t;
+    texture_.Evaluate(uv, texturePatch_.data(), 2, &t.x);
+    return t;
+}
+
+} // namespace abbe

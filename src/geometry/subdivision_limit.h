@@ -1,0 +1,69 @@
+// The limit surface, face by face (OpenSubdiv underneath). Included by the subdivision sources only.
+#pragma once
+
+#include "geometry/subdivision_surface.h"
+
+#include <memory>
+#include <mutex>
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/bfr/surfaceFactoryCache.h>
+#include <opensubdiv/far/topologyRefiner.h>
+#include <shared_mutex>
+#include <vector>
+
+namespace abbe {
+
+namespace osd = OpenSubdiv;
+
+// Immutable after construction and shared by threads: the factory's cache locks itself.
+struct SubdivisionSurface::Impl {
+    using Factory = osd::Bfr::RefinerSurfaceFactory<osd::Bfr::SurfaceFactoryCacheThreaded<
+        std::shared_mutex, std::shared_lock<std::shared_mutex>, std::unique_lock<std::shared_mutex>>>;
+
+    explicit Impl(const SubdivisionCage&);
+    const osd::Far::TopologyLevel& level() const { return refiner->GetLevel(0); }
+    int faceCount() const { return static_cast<int>(hasSurface.size()); }
+    // Index of an edge of a face: corner i to i + 1.
+    int edge(int face, int i) const { return level().GetFaceEdges(face)[i]; }
+
+    Vec3 center; // points are relative to it: differences stay exact far from the origin
+    std::vector<Vec3> points;
+    std::vector<Vec2> uvs;
+    std::vector<std::uint32_t> uvCorners;
+    std::vector<std::uint32_t> firstCorner; // of each face, and one past the last
+    std::unique_ptr<osd::Far::TopologyRefiner> refiner;
+    std::unique_ptr<Factory> factory;
+    std::vector<std::uint8_t> hasSurface; // per face
+    osd::Sdc::SchemeType scheme;
+};
+
+struct LimitPoint {
+    Vec3 position; // in the cage's own space
+    Vec3 normal;   // unit length, or 0 if the face is degenerate all over
+};
+
+// One face at a time; each thread has its own.
+class FaceEvaluator {
+  public:
+    explicit FaceEvaluator(const SubdivisionSurface::Impl& surface) : surface_(surface) {}
+
+    // Requires hasSurface[face].
+    void setFace(int face, bool withTexture);
+    // (u, v) in the parametrisation of the face.
+    LimitPoint point(float u, float v) const;
+    Vec3 position(float u, float v) const;
+    Vec2 texture(float u, float v) const;
+    osd::Bfr::Parameterization parameterization() const { return limit_.GetParameterization(); }
+
+  private:
+    bool normal(float u, float v, LimitPoint&) const;
+    void towardsInside(float by, float uv[2]) const;
+
+    const SubdivisionSurface::Impl& surface_;
+    osd::Bfr::Surface<float> limit_, texture_;
+    std::vector<float> patch_, texturePatch_;
+    float smallTangent_ = 0;
+};
+
+} // namespace abbe

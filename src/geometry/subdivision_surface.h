@@ -1,0 +1,75 @@
+// Subdivision surfaces: the smooth limit of a cage, diced into a mesh without cracks.
+#pragma once
+
+#include "math/mesh_data.h"
+#include "math/subdivision_cage.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace abbe {
+
+// How finely edges are cut. Every face takes the rates of its own edges, so neighbours always agree.
+struct Dicing {
+    enum class Mode : std::uint8_t { level, length, pixels };
+    Mode mode = Mode::level;
+    // level: every edge is cut into 2^level pieces (a whole number); length: pieces of at most about so long, in the
+    // units of the cage; pixels: pieces of at most about so many pixels.
+    double rate = 3;
+    // pixels: the size of a pixel at a point, in the units of the cage. Called from many threads.
+    std::function<double(Vec3)> pixelSize;
+};
+
+// What dicing will make, known before it takes memory.
+struct DicingPlan {
+    std::vector<int> edgeRates; // pieces of each edge, 1 … 1024
+    std::uint64_t triangles = 0;
+    std::uint64_t bytes = 0; // estimate for all of it, the acceleration structure included
+    double coarser = 1;      // how many times longer than asked for the pieces are, to stay within the budget
+};
+
+// Vertices `copy` … `copy + count - 1` have the positions of those from `original` on, bit by bit: normals or texture
+// coordinates differ between them, so that creases shade sharply and seams keep their two sides.
+struct DicedSeam {
+    std::uint32_t copy = 0, original = 0, count = 0;
+};
+
+// Whoever moves vertices moves those of a seam alike (once per original) and the surface stays closed.
+struct DicedSurface {
+    MeshData mesh; // normals always; uvs if the cage has them; quads, and triangles where rates meet
+    std::vector<DicedSeam> seams;
+};
+
+// Positions lie on the limit surface and normals are perpendicular to its tangents. Where these vanish (poles, sharp
+// corners of smooth boundaries) the normal is that of a point a little way inside the same face. Faces without limit
+// surface (holes, the rim under Boundary::none) are left out.
+class SubdivisionSurface {
+  public:
+    // Estimated memory of a diced triangle with its share of vertices, normals and acceleration structure
+    // (bench/dicing.cpp measures it).
+    static constexpr std::uint64_t kBytesPerTriangle = 110;
+    static constexpr int kMaxRate = 1024;
+    static constexpr int kMaxLevel = 10;
+
+    // Requires findFault() to find none in the cage.
+    explicit SubdivisionSurface(const SubdivisionCage&);
+    ~SubdivisionSurface();
+    SubdivisionSurface(const SubdivisionSurface&) = delete;
+    SubdivisionSurface& operator=(const SubdivisionSurface&) = delete;
+
+    // Chooses the rates; lowers all of them alike until the estimate is at most `maxBytes` or they are 1.
+    // Requires rate > 0 (level: 0 … kMaxLevel).
+    DicingPlan plan(const Dicing&, std::uint64_t maxBytes) const;
+    // Runs on threadCount() threads; the result does not depend on how many. Requires a plan of this surface.
+    DicedSurface dice(const DicingPlan&) const;
+
+    struct Impl;
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace abbe
