@@ -1,13 +1,26 @@
 #include "io/mesh_file.h"
 
+#include "io/cage_file.h"
 #include "io/file_bytes.h"
 
 namespace abbe {
 
+namespace {
+
+bool isPly(std::string_view bytes) {
+    return bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply ");
+}
+
+} // namespace
+
 MeshFile readMesh(const std::string& path) {
     const std::string bytes = readFileBytes(path);
-    const bool ply = bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply ");
-    return ply ? parsePly(bytes, path) : parseObj(bytes, path);
+    return isPly(bytes) ? parsePly(bytes, path) : parseObj(bytes, path);
+}
+
+CageFile readCage(const std::string& path) {
+    const std::string bytes = readFileBytes(path);
+    return isPly(bytes) ? parsePlyCage(bytes, path) : parseObjCage(bytes, path);
 }
 
 MeshData extractGroup(const MeshFile& file, const MeshGroup& group) {

@@ -25,9 +25,9 @@ struct MeshFile {
     std::uint64_t ignoredFaces = 0; // points and lines: fewer than three corners
 };
 
-// Wavefront OBJ: v, vt, vn, f (negative numbers too), g, o, usemtl; lines, points, s and mtllib are passed over.
-// Vertices are split where faces combine a position with different vt or vn; a corner without vt gets (0, 0), one
-// without vn the normal 0. Throws IoError with the line of the first fault.
+// Wavefront OBJ: v, vt, vn, f (negative numbers too), g, o, usemtl; lines, points, s, mtllib and subdivision tags (t)
+// are passed over. Vertices are split where faces combine a position with different vt or vn; a corner without vt gets
+// (0, 0), one without vn the normal 0. Throws IoError with the line of the first fault.
 MeshFile readObj(const std::string& path);
 // Stanford PLY, text or binary of either byte order. Throws IoError with the byte offset of the first fault.
 MeshFile readPly(const std::string& path);

@@ -1,3 +1,4 @@
+#include "io/cage_file.h"
 #include "io/file_bytes.h"
 #include "io/mesh_file.h"
 #include "io/number_scan.h"
@@ -25,6 +26,7 @@ class ObjParser {
         : p_(text.data()), end_(text.data() + text.size()), name_(name) {}
 
     MeshFile parse();
+    CageFile parseCage();
 
   private:
     [[noreturn]] void fail(const std::string& what) const { fail(line_, what); }
@@ -46,6 +48,7 @@ class ObjParser {
     std::int32_t index(std::size_t count, const char* list);
     void beginGroup();
 
+    void read();
     void checkForward() const;
     void buildVertices(MeshData&);
     std::uint32_t vertexOf(MeshData&, Corner);
@@ -78,6 +81,12 @@ class ObjParser {
     };
     std::string object_, group_, material_;
     std::vector<Section> sections_;
+
+    struct TagLine {
+        std::uint64_t line;
+        std::string_view text;
+    };
+    std::vector<TagLine> tags_; // of subdivision surfaces
 
     // Vertices already made from a position, as a list per position: the texture and normal that it was joined with.
     struct Joined {
@@ -248,6 +257,8 @@ void ObjParser::statement(std::string_view keyword) {
         target = std::string(restOfLine());
         if (keyword == "o") group_.clear();
         beginGroup();
+    } else if (keyword == "t") {
+        tags_.push_back({line_, restOfLine()});
     } else if (keyword == "l" || keyword == "p" || keyword == "s" || keyword == "mtllib" || keyword == "mg" ||
                keyword == "usemap" || keyword == "maplib" || keyword == "bevel" || keyword == "c_interp" ||
                keyword == "d_interp" || keyword == "lod" || keyword == "shadow_obj" || keyword == "trace_obj") {
@@ -315,7 +326,7 @@ void ObjParser::buildFaces(MeshFile& file) {
     closeGroup();
 }
 
-MeshFile ObjParser::parse() {
+void ObjParser::read() {
     sections_.push_back({"", "", 0});
     while (p_ < end_) {
         if (atLineEnd()) {
@@ -330,15 +341,45 @@ MeshFile ObjParser::parse() {
         throw IoError(fmt::format("cannot read `{}`: {}", name_,
                                   v_.empty() ? "there is no mesh in it" : "it has vertices but no faces"));
     checkForward();
+}
+
+MeshFile ObjParser::parse() {
+    read();
     MeshFile file;
     file.ignoredFaces = ignoredFaces_;
     buildFaces(file);
     return file;
 }
 
+CageFile ObjParser::parseCage() {
+    read();
+    CageFile file;
+    file.ignoredFaces = ignoredFaces_;
+    SubdivisionCage& cage = file.cage;
+    cage.positions = std::move(v_);
+    cage.faceSizes = std::move(faceSizes_);
+    cage.corners.reserve(corners_.size());
+    for (const Corner& c : corners_) cage.corners.push_back(static_cast<std::uint32_t>(c.v));
+    if (anyTexture_) {
+        const auto none = static_cast<std::uint32_t>(vt_.size()); // corners without one share the texture vertex (0, 0)
+        cage.uvs = std::move(vt_);
+        cage.uvs.emplace_back();
+        cage.uvCorners.reserve(corners_.size());
+        for (const Corner& c : corners_)
+            cage.uvCorners.push_back(c.vt == kNone ? none : static_cast<std::uint32_t>(c.vt));
+    }
+    for (const TagLine& tag : tags_)
+        if (const auto fault = applyObjTag(tag.text, file)) fail(tag.line, *fault);
+    return file;
+}
+
 } // namespace
 
 MeshFile parseObj(std::string_view text, const std::string& name) { return ObjParser(text, name).parse(); }
+
+CageFile parseObjCage(std::string_view text, const std::string& name) { return ObjParser(text, name).parseCage(); }
+
+CageFile readObjCage(const std::string& path) { return parseObjCage(readFileBytes(path), path); }
 
 MeshFile readObj(const std::string& path) { return parseObj(readFileBytes(path), path); }
 

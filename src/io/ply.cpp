@@ -1,3 +1,4 @@
+#include "io/cage_file.h"
 #include "io/file_bytes.h"
 #include "io/mesh_file.h"
 #include "io/number_scan.h"
@@ -54,6 +55,7 @@ class PlyParser {
           swap_((header_.encoding == PlyEncoding::bigEndian) == (std::endian::native == std::endian::little)) {}
 
     MeshFile parse();
+    CageFile parseCage();
 
   private:
     [[noreturn]] void fail(const std::string& what) const {
@@ -70,6 +72,7 @@ class PlyParser {
     double scalar(PlyScalar);
     double textScalar();
     std::uint64_t listLength(const PlyProperty&);
+    void read();
     void vertices(const PlyElement&);
     void faces(const PlyElement&);
     void skip(const PlyProperty&);
@@ -216,7 +219,7 @@ void PlyParser::skip(const PlyProperty& p) {
     for (std::uint64_t n = p.listCount ? listLength(p) : 1; n > 0; --n) scalar(p.type);
 }
 
-MeshFile PlyParser::parse() {
+void PlyParser::read() {
     for (const PlyElement& e : header_.elements) {
         if (e.name == "vertex")
             vertices(e);
@@ -227,6 +230,22 @@ MeshFile PlyParser::parse() {
                 for (const PlyProperty& p : e.properties) skip(p);
     }
     if (faceSizes_.empty()) fail("there are no faces");
+}
+
+CageFile PlyParser::parseCage() {
+    read();
+    CageFile file;
+    file.ignoredFaces = file_.ignoredFaces;
+    file.cage.positions = std::move(file_.mesh.positions);
+    file.cage.uvs = std::move(file_.mesh.uvs);
+    if (!file.cage.uvs.empty()) file.cage.uvCorners = corners_;
+    file.cage.corners = std::move(corners_);
+    file.cage.faceSizes = std::move(faceSizes_);
+    return file;
+}
+
+MeshFile PlyParser::parse() {
+    read();
     std::size_t next = 0;
     for (std::uint32_t size : faceSizes_) {
         if (!addPolygon(file_.mesh, std::span(corners_).subspan(next, size)))
@@ -240,6 +259,10 @@ MeshFile PlyParser::parse() {
 } // namespace
 
 MeshFile parsePly(std::string_view bytes, const std::string& name) { return PlyParser(bytes, name).parse(); }
+
+CageFile parsePlyCage(std::string_view bytes, const std::string& name) { return PlyParser(bytes, name).parseCage(); }
+
+CageFile readPlyCage(const std::string& path) { return parsePlyCage(readFileBytes(path), path); }
 
 MeshFile readPly(const std::string& path) { return parsePly(readFileBytes(path), path); }
 
