@@ -92,6 +92,10 @@ constexpr CodeInfo kCodes[] = {
     {"E0350", "a camera is placed twice", "`transform` places the camera instead of `from`, `look-at` and `up`."},
     {"E0351", "a camera is stretched or mirrored", "The transform of a camera may move and turn it; a uniform scale has no effect."},
     {"E0352", "a camera has no direction", "`look-at` is the camera's own position, or the camera looks along `up`. Change one of the three."},
+    {"E0353", "the camera's aperture or exposure is incomplete", "`iso` gives a pixel a meaning in lux seconds only together with `shutter` and `f-stop` (or `aperture`); `rotation` and `roundness` of an aperture belong to `blades`."},
+    {"E0354", "nothing to focus on", "`focus on=NAME` measures the distance to the middle of a shape's bounds. The shape must be finite, stand by itself or in groups, and lie in front of the camera; parts of an `object` have as many places as it has instances."},
+    {"E0355", "a lens prescription is wrong", "`surfaces` holds a row for each surface from the scene to the film: its radius (`flat` for a plane, `stop` for the stop), the thickness to the next one, the medium behind it and the semi-aperture. There is one stop, in air, and the last medium is air."},
+    {"E0356", "the lens makes no picture", "The lens diverges, cannot focus at this distance or open to this f-number, or leaves no room for a film behind it. The message says what it can do."},
     // E04: files
     {"E0401", "file not found", "Files are looked up beside the scene file. The message names a file with a similar name if there is one."},
     {"E0402", "the file cannot be used", "The path is a folder, or the file is not readable or not of the expected form."},

@@ -3,48 +3,30 @@
 #include "base/check.h"
 #include "math/warp.h"
 
+#include <cmath>
+
 namespace abbe {
 
 namespace {
 
 using schema::Dimension;
+using schema::field;
+using schema::FieldInfo;
 using schema::FieldType;
 
 constexpr double kDegree = kPiD / 180;
 constexpr double kDefaultLens = 0.05; // m
 
-std::vector<schema::FieldInfo> placementFields() {
-    return {
-        schema::field(FieldType::vector3, "from", &PerspectiveParams::from)
-            .unit({Dimension::length})
-            .doc("Position of the lens. Default: 0 0 0.")
-            .example("from 0 1 4")
-            .synonyms({"position", "eye", "origin", "location"}),
-        schema::field(FieldType::vector3, "look-at", &PerspectiveParams::lookAt)
-            .unit({Dimension::length})
-            .doc("A point in the middle of the picture. Without it the camera looks along -z (+y in a z-up scene).")
-            .example("look-at 0 0.5 0")
-            .synonyms({"target", "to", "at", "lookat"}),
-        schema::field(FieldType::vector3, "up", &PerspectiveParams::up)
-            .doc("A direction that is upright in the picture. Default: the up axis of the scene.")
-            .example("up 0 1 0")
-            .synonyms({"sky"}),
-        schema::field(FieldType::transform, "transform", &PerspectiveParams::transform)
-            .doc("Instead of `from`, `look-at` and `up`: places a camera at the origin that looks along its -z, +y up.")
-            .example("transform { rotate y 30 deg; translate 0 1 4 }")
-            .synonyms({"to-world", "matrix"})};
-}
-
-std::vector<schema::FieldInfo> lensFields() {
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    return {schema::field(FieldType::quantity, "lens", &PerspectiveParams::lens)
+std::vector<FieldInfo> viewFields() {
+    using P = PerspectiveParams;
+    return {field(FieldType::quantity, "lens", &P::lens)
                 .unit({Dimension::length})
                 .group("field of view")
                 .range(1e-4, 100)
                 .doc("Focal length. Default: 50 mm.")
                 .example("lens 35 mm")
                 .synonyms({"focal-length", "focallength", "focal_length"}),
-            schema::field(FieldType::quantity, "fov", &PerspectiveParams::fov)
+            field(FieldType::quantity, "fov", &P::fov)
                 .unit({Dimension::angle})
                 .group("field of view")
                 .range(0.001 * kDegree, 179.9 * kDegree)
@@ -52,65 +34,42 @@ std::vector<schema::FieldInfo> lensFields() {
                 .example("fov 40 deg")
                 .synonyms({"fovx", "angle", "field-of-view"})
                 .note("`fov` is the full horizontal angle"),
-            schema::field(FieldType::vector2, "sensor", &PerspectiveParams::sensor)
-                .unit({Dimension::length})
-                .byDefault("36 24 mm")
-                .range(1e-6, 100)
-                .doc("Width and height of the sensor. Where the film's shape differs, the width is kept.")
-                .example("sensor 24 16 mm")
-                .synonyms({"filmsize", "aperture-size", "sensor-width"}),
-            schema::field(FieldType::number, "f-stop", &PerspectiveParams::fStop)
-                .group("aperture")
-                .range(0.1, kInfinite)
-                .doc("Focal length over the diameter of the aperture. Without it the camera is a pinhole.")
-                .example("f-stop 2.8")
-                .synonyms({"fstop", "f-number", "fnumber"})
-                .note("f-number = focal length / aperture diameter; to give the diameter, use `aperture 30 mm`"),
-            schema::field(FieldType::quantity, "aperture", &PerspectiveParams::aperture)
+            fStopField("Focal length over the diameter of the aperture. Without it the camera is a pinhole."),
+            field(FieldType::quantity, "aperture", &P::aperture)
                 .unit({Dimension::length})
                 .group("aperture")
                 .range(0, 100)
                 .doc("Diameter of the aperture, instead of `f-stop`; 0 is a pinhole.")
                 .example("aperture 30 mm")
                 .synonyms({"lensdiameter", "aperture-diameter", "lens-radius", "aperture_radius"})
-                .note("for an f-number use `f-stop 2.8`"),
-            schema::field(FieldType::quantity, "focus", &PerspectiveParams::focus)
-                .unit({Dimension::length})
-                .range(1e-6, kInfinite)
-                .doc("Distance along the axis at which the picture is sharp. Default: that of `look-at`, or infinite.")
-                .example("focus 2.5 m")
-                .synonyms({"focus-distance", "focaldistance", "focal-distance", "focus_distance"}),
-            schema::field(FieldType::quantity, "exposure", &PerspectiveParams::exposure)
-                .unit({Dimension::stops})
-                .byDefault("0 stops")
-                .range(-100, 100)
-                .doc("Brightness of the picture; each stop doubles it.")
-                .example("exposure 3 stops")
-                .synonyms({"ev", "gain"})};
+                .note("for an f-number use `f-stop 2.8`")};
 }
 
-// Camera to file. Nothing after a diagnostic.
-std::optional<Transform> placement(const PerspectiveParams& params, const CameraContext& context,
-                                   Diagnostics& diagnostics) {
-    if (params.transform) {
-        if (params.from || params.lookAt || params.up) {
-            diagnostics.error("E0350", context.span, "the camera is placed twice",
-                              "keep `transform`, or `from`, `look-at` and `up`");
-            return std::nullopt;
-        }
-        const auto scale = params.transform->uniformScale();
-        if (scale && *scale > 0 && params.transform->determinant() > 0) return params.transform;
-        diagnostics.error("E0351", context.span, "a camera can be moved and turned, but not stretched or mirrored");
-        return std::nullopt;
-    }
-    const Vec3d from = params.from.value_or(Vec3d{});
-    const Vec3d to = params.lookAt.value_or(from + (context.zUp ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1}));
-    const Vec3d up = params.up.value_or(context.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0});
-    const auto result = Transform::lookAt(from, to, up);
-    if (!result)
-        diagnostics.error("E0352", context.span, "the camera has no direction",
-                          from == to ? "`look-at` is `from`" : "it looks along `up`");
-    return result;
+std::vector<FieldInfo> specialFields() {
+    using P = PerspectiveParams;
+    return {field(FieldType::number, "squeeze", &P::squeeze)
+                .byDefault("1")
+                .range(0.1, 10)
+                .doc("Squeeze of an anamorphic lens: the picture shows so many times the width of the sensor, and blur "
+                     "is so many times as high as wide. `lens` is the vertical focal length.")
+                .example("squeeze 2")
+                .synonyms({"anamorphic", "aperture-ratio", "bokeh-ratio"}),
+            field(FieldType::vector2, "shift", &P::shift)
+                .unit({Dimension::length})
+                .byDefault("0 0 mm")
+                .range(-100, 100)
+                .doc("Moves the lens along the sensor, right and up: the picture shows more of that side, and lines "
+                     "that are parallel to the sensor stay parallel.")
+                .example("shift 0 11 mm")
+                .synonyms({"lens-shift", "film-offset", "screenwindow", "principal-point"}),
+            field(FieldType::vector2, "tilt", &P::tilt)
+                .unit({Dimension::angle})
+                .byDefault("0 0 deg")
+                .range(-80 * kDegree, 80 * kDegree)
+                .doc("Turns the lens down and to the right, and with it the plane that is sharp; the field of view "
+                     "stays. `focus` is where that plane meets the axis.")
+                .example("tilt 8 0 deg")
+                .synonyms({"swing", "scheimpflug", "lens-tilt"})};
 }
 
 // Radius of the aperture; 0 for a pinhole.
@@ -119,10 +78,14 @@ double lensRadius(const PerspectiveParams& params, double focalLength) {
     return params.fStop && std::isfinite(*params.fStop) ? focalLength / *params.fStop / 2 : 0;
 }
 
-double focusDistance(const PerspectiveParams& params) {
-    if (params.focus) return *params.focus;
-    if (!params.lookAt) return std::numeric_limits<double>::infinity();
-    return length(*params.lookAt - params.from.value_or(Vec3d{}));
+std::optional<double> fNumber(const PerspectiveParams& params, double focalLength) {
+    if (!params.aperture) return params.fStop;
+    return *params.aperture > 0 ? std::optional(focalLength / *params.aperture) : std::nullopt;
+}
+
+// Towards the sensor, for a lens that is turned down and to the right.
+Vec3d lensNormal(Vec2d tilt) {
+    return {-std::sin(tilt.y) * std::cos(tilt.x), std::sin(tilt.x), std::cos(tilt.y) * std::cos(tilt.x)};
 }
 
 } // namespace
@@ -134,17 +97,35 @@ schema::TypeInfo perspectiveType() {
                           .example = "camera { from 0 1 4; look-at 0 0.5 0; lens 35 mm }",
                           .isDefault = true,
                           .fields = placementFields()};
-    for (schema::FieldInfo& f : lensFields()) type.fields.push_back(std::move(f));
+    for (auto* fields : {viewFields, lensCameraFields, specialFields})
+        for (FieldInfo& f : fields()) type.fields.push_back(std::move(f));
     return type;
 }
 
-PerspectiveCamera::PerspectiveCamera(const Frame& axes, Vec2i filmSize, double tanHalfFov, double lensRadius,
-                                     double focus)
-    : axes_(axes), lensRadius_(static_cast<float>(lensRadius)), invFocus_(static_cast<float>(1 / focus)) {
-    ABBE_CHECK(filmSize.x > 0 && filmSize.y > 0 && tanHalfFov > 0 && lensRadius >= 0 && focus > 0);
-    const double scale = 2 * tanHalfFov / filmSize.x;
+PerspectiveCamera::PerspectiveCamera(const Frame& axes, Vec2i filmSize, const ThinLens& lens)
+    : axes_(axes), lensRadius_(static_cast<float>(lens.aperture.radius())),
+      invFocus_(static_cast<float>(1 / lens.focus)), aperture_(lens.aperture),
+      invSqueeze_(static_cast<float>(1 / lens.squeeze)) {
+    ABBE_CHECK(filmSize.x > 0 && filmSize.y > 0 && lens.tanHalfFov > 0 && lens.focus > 0 && lens.focalLength > 0);
+    const double scale = 2 * lens.tanHalfFov / filmSize.x;
     scale_ = static_cast<float>(scale);
-    corner_ = {static_cast<float>(-tanHalfFov), static_cast<float>(scale * filmSize.y / 2)};
+    corner_ = {static_cast<float>(lens.shift.x - lens.tanHalfFov),
+               static_cast<float>(lens.shift.y + scale * filmSize.y / 2)};
+    const Vec3d m = lensNormal(lens.tilt);
+    special_ = !lens.aperture.isCircle() || lens.squeeze != 1 || m.z != 1;
+    const Vec3d x = normalize(Vec3d{m.z, 0, -m.x});
+    lensX_ = Vec3(x);
+    lensY_ = Vec3(cross(m, x));
+    lean_ = {static_cast<float>(-m.x / lens.focalLength), static_cast<float>(-m.y / lens.focalLength)};
+}
+
+// A point of the lens; bends the ray's direction.
+Vec3 PerspectiveCamera::special(Vec2 u, Vec3& direction) const noexcept {
+    const Vec2 p = aperture_.sample(u);
+    const Vec3 lens = lensX_ * (p.x * invSqueeze_) + lensY_ * p.y;
+    const float invDistance = std::fma(direction.x, lean_.x, std::fma(direction.y, lean_.y, invFocus_));
+    direction = direction - lens * invDistance;
+    return lens;
 }
 
 CameraRay PerspectiveCamera::ray(const CameraSample& sample) const noexcept {
@@ -153,9 +134,13 @@ CameraRay PerspectiveCamera::ray(const CameraSample& sample) const noexcept {
     if (lensRadius_ > 0) {
         // From the lens to the point of the sharp plane that the middle of the lens sees, over its distance: an
         // infinite distance needs no case of its own.
-        const Vec2 lens = squareToDisk(sample.lens) * lensRadius_;
-        direction = direction - Vec3{lens.x, lens.y, 0} * invFocus_;
-        result.ray.origin = axes_.toWorld({lens.x, lens.y, 0});
+        if (special_) {
+            result.ray.origin = axes_.toWorld(special(sample.lens, direction));
+        } else {
+            const Vec2 lens = squareToDisk(sample.lens) * lensRadius_;
+            direction = direction - Vec3{lens.x, lens.y, 0} * invFocus_;
+            result.ray.origin = axes_.toWorld({lens.x, lens.y, 0});
+        }
     }
     result.ray.direction = normalize(axes_.toWorld(direction));
     result.ray.time = sample.time;
@@ -164,17 +149,23 @@ CameraRay PerspectiveCamera::ray(const CameraSample& sample) const noexcept {
 
 std::optional<PlacedCamera> makePerspective(const PerspectiveParams& params, const CameraContext& context,
                                             Diagnostics& diagnostics) {
-    const auto toFile = placement(params, context, diagnostics);
-    if (!toFile) return std::nullopt;
-    const Transform toWorld = toFile->then(context.toWorld);
-    const auto axis = [&](Vec3d v) { return Vec3(normalize(toWorld.vector(v))); };
-    const double tanHalfFov =
-        params.fov ? std::tan(*params.fov / 2) : params.sensor.x / (2 * params.lens.value_or(kDefaultLens));
-    const double focalLength = params.sensor.x / (2 * tanHalfFov);
-    const Frame axes{axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})};
-    return PlacedCamera{std::make_unique<PerspectiveCamera>(axes, context.filmSize, tanHalfFov,
-                                                            lensRadius(params, focalLength), focusDistance(params)),
-                        toWorld.point({})};
+    const auto place = placeCamera(params, context, diagnostics);
+    if (!place) return std::nullopt;
+    const auto focus = focusDistance(params, *place, context, diagnostics);
+    const double width = params.sensor.x * params.squeeze;
+    ThinLens lens;
+    lens.tanHalfFov = params.fov ? std::tan(*params.fov / 2) : width / (2 * params.lens.value_or(kDefaultLens));
+    lens.focalLength = width / (2 * lens.tanHalfFov);
+    const auto aperture = apertureOf(params, lensRadius(params, lens.focalLength), context, diagnostics);
+    const auto exposure = exposureFactor(params, fNumber(params, lens.focalLength), context, diagnostics);
+    if (!focus || !aperture || !exposure) return std::nullopt;
+    lens.aperture = *aperture;
+    lens.focus = *focus;
+    lens.squeeze = params.squeeze;
+    lens.shift = {params.shift.x * params.squeeze / lens.focalLength, params.shift.y / lens.focalLength};
+    lens.tilt = params.tilt;
+    return PlacedCamera{std::make_unique<PerspectiveCamera>(place->axes, context.filmSize, lens), place->origin,
+                        *exposure, params.shutter.value_or(0)};
 }
 
 } // namespace abbe

@@ -1,62 +1,59 @@
 // Pinhole or thin lens, in the terms of real cameras or as a plain field of view.
 #pragma once
 
-#include "base/diagnostic.h"
-#include "math/frame.h"
-#include "math/transform.h"
-#include "render/camera.h"
-#include "schema/type.h"
-
-#include <memory>
-#include <optional>
+#include "cameras/camera_params.h"
 
 namespace abbe {
 
-// Lengths in m, angles in rad. Directions and points are those of the file.
-struct PerspectiveParams {
-    std::optional<Vec3d> from;          // 0 0 0
-    std::optional<Vec3d> lookAt;        // one metre ahead along -z (+y in a z-up scene)
-    std::optional<Vec3d> up;            // the file's up axis
-    std::optional<Transform> transform; // instead of the three: camera to world, looking along its -z, up its +y
-    std::optional<double> lens;         // focal length; 50 mm
-    Vec2d sensor{0.036, 0.024};
+struct PerspectiveParams : LensCameraParams {
+    std::optional<double> lens;     // focal length; 50 mm
     std::optional<double> fov;      // full horizontal angle, instead of `lens`
-    std::optional<double> fStop;    // focal length over aperture diameter
     std::optional<double> aperture; // diameter, instead of `fStop`; without both: a pinhole
-    std::optional<double> focus;    // distance of the sharp plane along the axis; the look-at point's
-    double exposure = 0;            // stops; applied by the film, not by the camera
+    double squeeze = 1;             // of an anamorphic lens: the picture is as much wider than the sensor
+    Vec2d shift;                    // of the lens on the sensor: right, up
+    Vec2d tilt;                     // of the lens: down, to the right
 };
 
 schema::TypeInfo perspectiveType();
 
-// The sharp plane lies perpendicular to the axis; every lens point has the same weight.
+// What a thin lens does, in camera space: x right, y up, looking along -z.
+struct ThinLens {
+    double tanHalfFov = 1;  // of the whole width
+    Aperture aperture;      // of the entrance pupil; a point: a pinhole
+    double squeeze = 1;     // the pupil's width is 1/squeeze of the aperture's
+    double focus = 1;       // distance of the sharp plane on the axis; may be infinite
+    Vec2d shift;            // of the picture's middle at distance 1
+    Vec2d tilt;             // rad: down, to the right; both below π/2
+    double focalLength = 1; // m; matters only where the lens is tilted
+};
+
+// Every lens point has the same weight. The sharp plane lies perpendicular to the axis, unless the lens is tilted: with
+// m its unit normal towards the sensor, a direction (x, y, -1) is sharp at the distance 1/Z = 1/Z0 - (x mx + y my) / f
+// along the axis, which is Scheimpflug's plane: it meets those of lens and sensor in one line [Ray2002].
 class PerspectiveCamera final : public Camera {
   public:
-    // The image spans 2 tanHalfFov at distance 1 across the film's width; pixels are square. `axes` has x to the
-    // right, y up and looks along -z, in render space. A lens radius of 0 is a pinhole; the focus may be infinite.
-    // Requires: tanHalfFov > 0, lensRadius >= 0, focus > 0.
-    PerspectiveCamera(const Frame& axes, Vec2i filmSize, double tanHalfFov, double lensRadius, double focus);
+    // The image spans 2 tanHalfFov at distance 1 across the film's width; pixels are square. `axes` is in render space.
+    // Requires: tanHalfFov > 0, focus > 0.
+    PerspectiveCamera(const Frame& axes, Vec2i filmSize, const ThinLens&);
+    // With a round and upright lens; a radius of 0 is a pinhole.
+    PerspectiveCamera(const Frame& axes, Vec2i filmSize, double tanHalfFov, double lensRadius, double focus)
+        : PerspectiveCamera(axes, filmSize, ThinLens{tanHalfFov, Aperture(lensRadius), 1, focus, {}, {}, 1}) {}
     CameraRay ray(const CameraSample&) const noexcept override;
     bool usesLens() const override { return lensRadius_ > 0; }
 
   private:
+    Vec3 special(Vec2 lens, Vec3& direction) const noexcept;
+
     Frame axes_;
     float scale_;      // of a pixel at distance 1
     Vec2 corner_;      // of the film at distance 1
     float lensRadius_; // m
     float invFocus_;   // 1/m
-};
-
-struct CameraContext {
-    Transform toWorld; // from the axes of the file: the rotation of a z-up scene
-    bool zUp = false;
-    Vec2i filmSize; // pixels, both > 0
-    Span span;      // of the definition's head
-};
-
-struct PlacedCamera {
-    std::unique_ptr<Camera> camera; // in render space: world space minus `origin`
-    Vec3d origin;                   // the camera's position in world space
+    bool special_;     // anything but a round lens that stands upright
+    Aperture aperture_;
+    float invSqueeze_;
+    Vec3 lensX_, lensY_; // the plane of the lens
+    Vec2 lean_;          // change of 1/Z per change of direction, 1/m
 };
 
 // Nothing after an error.

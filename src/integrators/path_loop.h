@@ -37,6 +37,8 @@ template <EffectBits E> class PathLoop {
     PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters)
         : context_(context), sampler_(sampler), arena_(arena), counters_(counters) {}
 
+    // The camera ray is that of the hero alone; to be called before radiance().
+    void startWithHero() { startWithHero_ = true; }
     // `rouletteScale` of the pixel, see RouletteReference.
     Spectrum radiance(Ray ray, const Wavelengths& lambda, float rouletteScale);
 
@@ -75,11 +77,15 @@ template <EffectBits E> class PathLoop {
     Arena& arena_;
     PathCounters& counters_;
     PathState<E> path_;
+    bool startWithHero_ = false;
 };
 
 template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelengths& lambda, float rouletteScale) {
     path_.lambda = lambda;
-    if constexpr (kDispersion) path_.densities.film = lambda;
+    if constexpr (kDispersion) {
+        path_.densities.film = lambda;
+        if (startWithHero_) endSecondaryWavelengths();
+    }
     const std::uint32_t maxDepth = context_.settings.maxDepth ? context_.settings.maxDepth : kMaxVertices;
     SurfaceHit hit;
     for (std::uint32_t depth = 0;; ++depth) {

@@ -63,11 +63,13 @@ template <EffectBits E> class TileKernel {
         const FilterSample filter = film_.filter(sampler_.film());
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
-        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time()});
+        const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
+        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
         radiance_ = Spectrum(0.f);
         if (!(camera.weight > 0)) return {};
-        const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters);
+        if constexpr (hasEffect(E, Effect::dispersion))
+            if (camera.heroOnly) loop.startWithHero();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
         return toXyz(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
     }

@@ -9,11 +9,13 @@ struct CameraSample {
     Vec2 film; // pixels from the upper left corner of the full frame; (0.5, 0.5) is the middle of the first pixel
     Vec2 lens; // [0, 1)²
     float time = 0;
+    float wavelength = 550; // of the hero, nm
 };
 
 struct CameraRay {
     Ray ray;
-    float weight = 1; // vignetting and the like; 0: no light comes through
+    float weight = 1;      // vignetting and the like; 0: no light comes through
+    bool heroOnly = false; // other wavelengths take other ways: weight and ray are the hero's alone
 };
 
 // Immutable, thread-safe. Render space has its origin at the camera (docs/conventions.md).
@@ -23,6 +25,8 @@ class Camera {
     virtual CameraRay ray(const CameraSample&) const noexcept = 0;
     // False if ray() does not look at CameraSample::lens.
     virtual bool usesLens() const { return true; }
+    // True if ray() may set CameraRay::heroOnly. A scene seen by such a camera has Effect::dispersion.
+    virtual bool disperses() const { return false; }
 };
 
 } // namespace abbe

@@ -1,6 +1,5 @@
 #include "scene/build.h"
 
-#include "cameras/perspective.h"
 #include "scene/planned_types.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
@@ -101,26 +100,6 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
     if (options_.timeLimit) built.render.timeLimit = *options_.timeLimit;
     if (!options_.strategy.empty()) built.render.strategy.word = options_.strategy;
     if (!options_.sampler.empty()) built.render.sampler.word = options_.sampler;
-}
-
-void SceneBuilder::buildCamera(BuiltScene& built) {
-    const Definition* definition = only(Kind::camera, options_.camera);
-    if (!definition) {
-        diagnostics_
-            .error("E0601", tree_.header.span,
-                   options_.camera.empty() ? std::string("the scene has no camera")
-                                           : fmt::format("no camera is named `{}`", options_.camera))
-            .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0 }`";
-        return;
-    }
-    const auto params = bound<PerspectiveParams>(*definition);
-    if (!params) return;
-    const Vec2i size{static_cast<int>(built.film.size.x), static_cast<int>(built.film.size.y)};
-    auto placed = makePerspective(*params, {{}, tree_.header.zUp, size, definition->span}, diagnostics_);
-    if (!placed) return;
-    built.scene.camera = std::move(placed->camera);
-    built.scene.origin = placed->origin;
-    built.exposure = std::exp2(params->exposure);
 }
 
 void SceneBuilder::noteEffects(BuiltScene& built) {

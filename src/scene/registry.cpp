@@ -1,7 +1,10 @@
 #include "scene/registry.h"
 
 #include "base/check.h"
+#include "cameras/lens_system.h"
+#include "cameras/orthographic.h"
 #include "cameras/perspective.h"
+#include "cameras/spherical.h"
 #include "film/film_params.h"
 #include "integrators/render_params.h"
 #include "lights/area_light_types.h"
@@ -37,8 +40,27 @@ constexpr MaterialEntry kMaterials[] = {
     {dielectricType, bound<DielectricParams, makeDielectric>},
 };
 
+struct CameraEntry {
+    schema::TypeInfo (*type)();
+    std::optional<PlacedCamera> (*make)(const BindParams&, const CameraContext&, Diagnostics&);
+};
+
+template <typename Params, auto make>
+std::optional<PlacedCamera> placed(const BindParams& bind, const CameraContext& context, Diagnostics& diagnostics) {
+    Params params;
+    return bind(&params) ? make(params, context, diagnostics) : std::nullopt;
+}
+
+// So is a camera.
+constexpr CameraEntry kCameras[] = {
+    {perspectiveType, placed<PerspectiveParams, makePerspective>},
+    {orthographicType, placed<OrthographicParams, makeOrthographic>},
+    {sphericalType, placed<SphericalParams, makeSpherical>},
+    {lensSystemType, placed<LensSystemParams, makeLensSystem>},
+};
+
 constexpr schema::TypeInfo (*kOthers[])() = {
-    perspectiveType, quadType,      sphereType,           diskType,      planeType,      meshType,
+    quadType,      sphereType,           diskType,      planeType,      meshType,
     lightQuadType,   lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType,
     sunLightType,    skyLightType,  environmentLightType, filmType,      renderType,
 };
@@ -48,6 +70,7 @@ constexpr schema::TypeInfo (*kOthers[])() = {
 schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
     for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
+    for (const CameraEntry& entry : kCameras) table.add(entry.type());
     for (const auto type : kOthers) table.add(type());
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
@@ -58,6 +81,14 @@ std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindPa
         if (entry.type().name == type) return entry.make(bind);
     ABBE_CHECK(!"a registered material type");
     return nullptr;
+}
+
+std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams& bind, const CameraContext& context,
+                                       Diagnostics& diagnostics) {
+    for (const CameraEntry& entry : kCameras)
+        if (entry.type().name == type) return entry.make(bind, context, diagnostics);
+    ABBE_CHECK(!"a registered camera type");
+    return std::nullopt;
 }
 
 std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance) {

@@ -1,6 +1,7 @@
 // The only list of types: every material, light, shape, camera, film and render type that a scene can name.
 #pragma once
 
+#include "cameras/camera_params.h"
 #include "render/material.h"
 #include "schema/type.h"
 
@@ -18,6 +19,9 @@ using BindParams = std::function<bool(void* params)>;
 
 // A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
+
+// A camera of a registered type from bound parameters, or nothing after an error. Requires a name out of the table.
+std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams&, const CameraContext&, Diagnostics&);
 
 // The material of shapes that name none, and of lamps.
 std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance);

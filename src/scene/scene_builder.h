@@ -52,13 +52,17 @@ class SceneBuilder final : public schema::Resolver {
     template <typename P> std::optional<P> bound(const Definition&);
 
     // build.cpp
-    void buildCamera(BuiltScene&);
     void buildSettings(BuiltScene&);
     void finish(BuiltScene&);
     void noteEffects(BuiltScene&);
     bool checkPlanned(const Definition&);
     void reportPlanned();
     const Definition* only(schema::Kind, std::string_view name);
+
+    // build_camera.cpp
+    void buildCamera(BuiltScene&);
+    const Definition* findShape(const std::vector<Definition>&, std::string_view name, Transform& place);
+    std::optional<Vec3d> middleOfShape(std::string_view name); // of its bounds, world space
 
     // build_shapes.cpp
     void placeAll(const std::vector<Definition>&, const Transform& toRender);

@@ -97,6 +97,27 @@ class Binding {
         if (!give(*field, node.headSpan()) || node.damaged()) return;
         const auto value = bindField(*field, Entry(node), context_);
         if (!isSecondOfGroup(*field)) store(*field, value);
+        if (!field->block.empty() && node.hasBlock()) settings(*field, node);
+    }
+
+    // The block behind a value.
+    void settings(const FieldInfo& field, const Node& node) {
+        std::vector<std::string_view> names;
+        for (const FieldInfo& f : field.block) names.push_back(f.name);
+        for (const Node child : node.children()) {
+            if (isPrivate(child.name())) continue;
+            const auto found = std::ranges::find(field.block, child.name(), &FieldInfo::name);
+            if (found != field.block.end()) {
+                if (give(*found, child.headSpan()) && !child.damaged())
+                    store(*found, bindField(*found, Entry(child), context_));
+                continue;
+            }
+            const auto meant = nearest(child.name(), names);
+            report(context_.diagnostics, child.nameSpan(), "E0201",
+                   fmt::format("the block of `{}` has no property `{}`", field.name, child.name()),
+                   meant.empty() ? "unknown property" : didYouMean(meant))
+                .help = "its properties are " + quotedList(names);
+        }
     }
 
     void unknown(const Node& node) {

@@ -8,8 +8,9 @@ namespace abbe::schema {
 
 namespace {
 
-bool takesBlock(FieldType type) {
-    switch (type) {
+bool takesBlock(const FieldInfo& field) {
+    if (!field.block.empty()) return true;
+    switch (field.type) {
     case FieldType::points:
     case FieldType::numbers:
     case FieldType::indexRows:
@@ -17,6 +18,7 @@ bool takesBlock(FieldType type) {
     case FieldType::complexIndex:
     case FieldType::reference:
     case FieldType::transform:
+    case FieldType::table:
         return true;
     default:
         return false;
@@ -26,11 +28,11 @@ bool takesBlock(FieldType type) {
 // Keys are read by those who know them: texts, spectra (`space=`) and inline definitions.
 bool readsKeys(FieldType type) {
     return type == FieldType::text || type == FieldType::file || type == FieldType::spectrum ||
-           type == FieldType::reference;
+           type == FieldType::reference || type == FieldType::place;
 }
 
 bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
-    if (entry.hasBlock() && !takesBlock(field.type)) {
+    if (entry.hasBlock() && !takesBlock(field)) {
         report(diagnostics, entry.span(), "E0214", fmt::format("`{}` takes no block", field.name), "remove the block");
         return false;
     }
@@ -104,10 +106,13 @@ std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, 
     case FieldType::points:
     case FieldType::numbers:
     case FieldType::indexRows:
+    case FieldType::table:
         return bindList(field, entry, context);
     case FieldType::spectrum:
     case FieldType::complexIndex:
         return bindOptical(field, entry, context);
+    case FieldType::place:
+        return bindPlace(field, entry, context);
     case FieldType::reference:
         return bindReference(field, entry, context);
     case FieldType::transform:

@@ -44,6 +44,39 @@ class ListBinder {
         return rows;
     }
 
+    std::optional<BoundValue> table() {
+        TableRows table;
+        table.span = entry_.span();
+        table.scale = reader_.defaultScale().factor;
+        if (entry_.count() > 1 || !entry_.hasBlock()) {
+            report(diagnostics_, entry_.span(), "E0309", fmt::format("`{}` needs a block of rows", field_.name),
+                   "only a unit may stand before it")
+                .help = fmt::format("for example `{}`", field_.example);
+            return std::nullopt;
+        }
+        if (entry_.count() == 1) {
+            const auto scale = reader_.unit(entry_.value(0));
+            if (!scale) return std::nullopt;
+            table.scale = scale->factor;
+        }
+        for (const Node child : entry_.node()->children()) {
+            if (!isRow(child)) return std::nullopt;
+            TableRow& row = table.rows.emplace_back();
+            row.span = child.headSpan();
+            for (std::size_t i = 0; i < child.valueCount(); ++i) {
+                const Value value = child.value(i);
+                TableCell& cell = row.cells.emplace_back();
+                cell.span = place(value);
+                if (value.kind == ValueKind::number)
+                    cell.number = value.number;
+                else
+                    cell.text = value.text;
+            }
+        }
+        if (table.rows.empty()) return empty();
+        return table;
+    }
+
   private:
     std::optional<BoundValue> empty() {
         auto& d =
@@ -125,6 +158,7 @@ class ListBinder {
 
 std::optional<BoundValue> bindList(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     ListBinder binder(field, entry, context);
+    if (field.type == FieldType::table) return binder.table();
     if (field.type == FieldType::points) return binder.points();
     return field.type == FieldType::numbers ? binder.numbers() : binder.indexRows();
 }

@@ -38,6 +38,35 @@ std::optional<BoundValue> valid(Reference reference) {
 
 } // namespace
 
+std::optional<BoundValue> bindPlace(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    if (entry.keys().empty()) {
+        const auto value = bindNumeric(field, entry, context);
+        if (!value) return std::nullopt;
+        return Location{std::get<double>(*value), {}, entry.span()};
+    }
+    const Key& key = entry.keys()[0];
+    if (key.name != "on" || entry.keys().size() > 1) {
+        const Key& wrong = key.name != "on" ? key : entry.keys()[1];
+        report(context.diagnostics, wrong.nameSpan, wrong.name == "on" ? "E0208" : "E0210",
+               fmt::format("`{}` takes one key, `on=`", field.name), "unexpected");
+        return std::nullopt;
+    }
+    if (entry.count() > 0) {
+        reportAt(context.diagnostics, entry.value(0), "E0306",
+                 fmt::format("`{}` takes a distance or `on=`", field.name), "not both");
+        return std::nullopt;
+    }
+    if (!key.value.isText()) {
+        reportAt(context.diagnostics, key.value, "E0314", "`on=` needs the name of a shape", "not a name");
+        return std::nullopt;
+    }
+    if (!context.tree.find(Kind::shape, key.value.text)) {
+        unknownName(Kind::shape, key.value, context);
+        return std::nullopt;
+    }
+    return Location{std::nullopt, std::string(key.value.text), place(key.value)};
+}
+
 // A bare word is first a defined name, then a type; with arguments or a block it is always a type.
 std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     const Kind kind = field.referenceKind;

@@ -22,5 +22,6 @@ std::optional<BoundValue> bindWord(const FieldInfo&, const Entry&, const BindCon
 std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindContext&);    // points, numbers, rows
 std::optional<BoundValue> bindOptical(const FieldInfo&, const Entry&, const BindContext&); // spectrum, complexIndex
 std::optional<BoundValue> bindReference(const FieldInfo&, const Entry&, const BindContext&); // reference
+std::optional<BoundValue> bindPlace(const FieldInfo&, const Entry&, const BindContext&);     // place
 
 } // namespace abbe::schema

@@ -81,6 +81,11 @@ std::string explainField(const TypeInfo& type, const FieldInfo& field) {
     for (const FieldKey& key : field.keys)
         text += line("key", fmt::format("{}= {}{}", key.name, key.doc,
                                         key.choices.empty() ? "" : " (" + words(key.choices) + ")"));
+    for (const FieldInfo& inner : field.block) {
+        const std::string range = describeRange(inner);
+        text += line("block", fmt::format("{}: {} ({}{}{})", inner.name, inner.doc, describeField(inner),
+                                          range.empty() ? "" : ", ", range));
+    }
     text += line("example", std::string(field.example));
     text += line("elsewhere", words(field.synonyms));
     text += line("note", std::string(field.note));
@@ -246,6 +251,10 @@ std::string describeField(const FieldInfo& field) {
         return fmt::format("the name of a {0}, or an inline {0}", keyword(field.referenceKind));
     case FieldType::transform:
         return "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`";
+    case FieldType::table:
+        return "a unit and a block of rows";
+    case FieldType::place:
+        return fmt::format("{}, or `on=` and the name of a shape", dimensionList(field));
     }
     return {};
 }

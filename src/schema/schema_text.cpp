@@ -11,9 +11,9 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr std::array kFieldTypes = {"integer",  "number",       "quantity",  "vector2",  "vector3", "toggle",
-                                    "choice",   "text",         "file",      "points",   "numbers", "indexRows",
-                                    "spectrum", "complexIndex", "reference", "transform"};
+constexpr std::array kFieldTypes = {"integer",  "number",       "quantity",  "vector2",   "vector3", "toggle",
+                                    "choice",   "text",         "file",      "points",    "numbers", "indexRows",
+                                    "spectrum", "complexIndex", "reference", "transform", "table",   "place"};
 constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
 constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
                                       "temperature", "power",      "luminousFlux", "luminousIntensity",
@@ -35,6 +35,7 @@ std::string markdownField(const FieldInfo& field) {
     if (!range.empty()) doc += fmt::format(" Range: {}.", range);
     if (!field.group.empty()) doc += fmt::format(" At most one way to state the {}.", field.group);
     for (const FieldKey& key : field.keys) doc += fmt::format(" Key `{}=`: {}", key.name, key.doc);
+    for (const FieldInfo& inner : field.block) doc += fmt::format(" In its block `{}`: {}", inner.name, inner.doc);
     if (!field.example.empty()) doc += fmt::format(" Example: `{}`.", field.example);
     const std::string value = field.required              ? "required"
                               : field.defaultText.empty() ? ""
@@ -89,6 +90,7 @@ std::string jsonField(const FieldInfo& field) {
                                return fmt::format(R"({{"name":{},"doc":{},"choices":{}}})", jsonString(key.name),
                                                   jsonString(key.doc), array(key.choices, jsonView));
                            }));
+    if (!field.block.empty()) out += fmt::format(R"(,"block":{})", array(field.block, jsonField));
     if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
     if (field.required) out += R"(,"required":true)";
     if (field.argument >= 0) out += fmt::format(R"(,"argument":{})", field.argument);

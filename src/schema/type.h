@@ -64,6 +64,29 @@ struct Text {
     Span span;
 };
 
+// Rows of words and numbers, as written: what the columns mean is the type's own matter.
+struct TableCell {
+    std::optional<double> number; // nothing for a word
+    std::string text;             // of a word
+    Span span;
+};
+struct TableRow {
+    std::vector<TableCell> cells;
+    Span span;
+};
+struct TableRows {
+    std::vector<TableRow> rows;
+    double scale = 1; // SI value of the unit behind the property's name, or of the header's length
+    Span span;
+};
+
+// A distance, or the name of the shape that it is measured to.
+struct Location {
+    std::optional<double> distance; // m
+    std::string shape;
+    Span span;
+};
+
 // Metals are a pair of curves.
 struct ComplexIndex {
     const Curve* n = nullptr;
@@ -72,7 +95,7 @@ struct ComplexIndex {
 
 using BoundValue =
     std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
-                 std::vector<Vec3d>, IndexRows, const Curve*, ComplexIndex, Reference, Transform>;
+                 std::vector<Vec3d>, IndexRows, TableRows, Location, const Curve*, ComplexIndex, Reference, Transform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -91,6 +114,8 @@ enum class FieldType : std::uint8_t {
     complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
     reference,    // name or inline definition of `referenceKind` -> Reference
     transform,    // block of translate/rotate/scale/matrix/look-at, top to bottom -> Transform
+    table,        // `[unit]` and a block of rows of words and numbers -> TableRows
+    place,        // a quantity, or `on=NAME` of a shape -> Location
 };
 
 struct FieldKey {
@@ -116,7 +141,8 @@ struct FieldInfo {
     std::string_view group;                 // at most one field of a group may be set ("amount")
     std::string_view note;                  // shown with a unit or range error
     bool required = false;
-    int argument = -1; // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
+    std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
+    int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
     std::function<void(void* params, const BoundValue&)> store;
 };
 
@@ -155,6 +181,7 @@ template <typename Params, typename Member> class Field {
     Field& group(std::string_view g) { return info_.group = g, *this; }
     Field& note(std::string_view n) { return info_.note = n, *this; }
     Field& required() { return info_.required = true, *this; }
+    Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
     Field& argument(int position) { return info_.argument = position, *this; }
     operator FieldInfo() const { return info_; }
 

@@ -11,7 +11,11 @@ namespace {
 constexpr double kDegree = kPiD / 180;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-CameraContext context(Vec2i size) { return {.toWorld = {}, .zUp = false, .filmSize = size, .span = {}}; }
+CameraContext context(Vec2i size) {
+    return {.toWorld = {}, .zUp = false, .filmSize = size, .span = {}, .middleOf = {}};
+}
+
+schema::Location at(double distance) { return {distance, {}, {}}; }
 
 PlacedCamera make(const PerspectiveParams& p, Vec2i size, bool zUp = false) {
     Diagnostics diagnostics;
@@ -94,7 +98,7 @@ TEST_CASE("all rays of a film point meet in the sharp plane, and only there") {
     PerspectiveParams p;
     p.lens = 0.05;
     p.fStop = 2;
-    p.focus = 3;
+    p.focus = at(3);
     const PlacedCamera c = make(p, {360, 240});
     test::Random random(1);
     const Vec2 film{70, 200};
@@ -140,7 +144,7 @@ TEST_CASE("the ends of all ranges give finite unit directions") {
             for (const double aperture : ends("aperture")) {
                 PerspectiveParams p;
                 p.fov = fov;
-                p.focus = focus;
+                p.focus = at(focus);
                 p.aperture = aperture;
                 const PlacedCamera c = make(p, {64, 32});
                 for (const Vec2 film : {Vec2{0, 0}, {64, 32}, {31.5f, 0.5f}})
@@ -164,7 +168,7 @@ TEST_CASE("the ends of all ranges give finite unit directions") {
 TEST_CASE("a focus at infinity gives parallel rays, an f-number of infinity a pinhole") {
     PerspectiveParams p;
     p.aperture = 0.1;
-    p.focus = kInfinite;
+    p.focus = at(kInfinite);
     const PlacedCamera c = make(p, {100, 100});
     CHECK(length(ray(c, {20, 30}, {0.1f, 0.9f}).direction - ray(c, {20, 30}).direction) < 1e-7f);
     CHECK(length(ray(c, {20, 30}, {0.1f, 0.9f}).origin) > 0.01f);

@@ -1,0 +1,79 @@
+// What the cameras of the language have in common: where they stand, what they focus on and how they expose.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "cameras/aperture.h"
+#include "math/frame.h"
+#include "math/transform.h"
+#include "render/camera.h"
+#include "schema/type.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace abbe {
+
+// Lengths in m, angles in rad, times in s. Directions and points are those of the file.
+struct CameraParams {
+    std::optional<Vec3d> from;          // 0 0 0
+    std::optional<Vec3d> lookAt;        // one metre ahead along -z (+y in a z-up scene)
+    std::optional<Vec3d> up;            // the file's up axis
+    std::optional<Transform> transform; // instead of the three: camera to world, looking along its -z, up its +y
+    std::optional<double> shutter;      // how long it is open
+    double exposure = 0;                // stops; applied by the film, not by the camera
+};
+
+// A camera with a sensor behind a lens.
+struct LensCameraParams : CameraParams {
+    Vec2d sensor{0.036, 0.024};
+    std::optional<double> fStop; // focal length over the diameter of the entrance pupil
+    std::int64_t blades = 0;     // 0: a circle
+    double bladeRotation = 0;
+    double bladeRoundness = 0;
+    std::optional<schema::Location> focus; // of the sharp plane along the axis; the look-at point's
+    std::optional<double> iso;
+};
+
+// Fields of the structs above, for any struct derived from them alone.
+std::vector<schema::FieldInfo> placementFields(); // and `shutter` and `exposure`
+std::vector<schema::FieldInfo> lensCameraFields();
+schema::FieldInfo fStopField(std::string_view doc); // with the block of its blades
+
+struct CameraContext {
+    Transform toWorld; // from the axes of the file: the rotation of a z-up scene
+    bool zUp = false;
+    Vec2i filmSize; // pixels, both > 0
+    Span span;      // of the definition's head
+    // Middle of the bounds of a named shape in world space; nothing if that shape has no size or place.
+    std::function<std::optional<Vec3d>(std::string_view)> middleOf = {};
+};
+
+struct PlacedCamera {
+    std::unique_ptr<Camera> camera; // in render space: world space minus `origin`
+    Vec3d origin;                   // the camera's position in world space
+    double exposure = 1;            // factor from radiance to pixel values
+    double shutter = 0;             // s
+};
+
+// A camera's place in world space and its axes: x right, y up, looking along -z. Nothing after an error.
+struct CameraPlace {
+    Vec3d origin;
+    Frame axes;
+};
+std::optional<CameraPlace> placeCamera(const CameraParams&, const CameraContext&, Diagnostics&);
+
+// Distance of the sharp plane along the axis; infinite without `focus` and `look-at`. Nothing after an error.
+std::optional<double> focusDistance(const LensCameraParams&, const CameraPlace&, const CameraContext&, Diagnostics&);
+
+// The opening whose circle of equal area has `radius`. Nothing after an error.
+std::optional<Aperture> apertureOf(const LensCameraParams&, double radius, const CameraContext&, Diagnostics&);
+
+// Pixel value per unit of radiance, of which Y = 1 stands for 72 983 nits. Without `iso` only 2^exposure. With it, a
+// pixel of 1 is the exposure that saturates a sensor of that speed, H_sat = 78 lx s / ISO [ISO12232, §6.2], where a
+// lens of f-number N gives H = t L π / (4 N²). A missing f-number is an infinite one. Nothing after an error.
+std::optional<double> exposureFactor(const LensCameraParams&, std::optional<double> fNumber, const CameraContext&,
+                                     Diagnostics&);
+
+} // namespace abbe

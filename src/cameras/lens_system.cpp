@@ -1,0 +1,177 @@
+#include "cameras/lens_system.h"
+
+#include "base/check.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe {
+
+using schema::Dimension;
+using schema::field;
+using schema::FieldInfo;
+using schema::FieldType;
+
+namespace {
+
+constexpr double kReference = 587.5618; // nm, the d line: focal length, focus and f-number are meant there
+
+std::vector<FieldInfo> lensFields() {
+    using P = LensSystemParams;
+    std::vector<std::string_view> names;
+    for (const PublishedLens& lens : publishedLenses()) names.push_back(lens.name);
+    return {field(FieldType::choice, "prescription", &P::prescription)
+                .group("lens")
+                .required()
+                .choices(names)
+                .doc("A published lens, see docs/lenses.md.")
+                .example("prescription double-gauss")
+                .synonyms({"lensfile", "lens-file", "lens-model"}),
+            field(FieldType::table, "surfaces", &P::surfaces)
+                .unit({Dimension::length})
+                .group("lens")
+                .required()
+                .doc("The surfaces from the scene to the film: radius (positive if the centre lies towards the film), "
+                     "`flat` or `stop`; thickness to the next; medium behind; semi-aperture.")
+                .example("surfaces mm { - stop 1 air 11.4; - 62.8 4 N-BK7 12.7; - -45.7 2.5 N-SF5 12.7; "
+                         "- -128.2 0 air 12.7 }"),
+            field(FieldType::quantity, "lens", &P::lens)
+                .unit({Dimension::length})
+                .range(1e-4, 100)
+                .doc("Scales the whole lens to this focal length. Default: that of the prescription.")
+                .example("lens 50 mm")
+                .synonyms({"focal-length", "focallength", "focal_length"}),
+            fStopField("Focal length over the diameter of the entrance pupil. Default: the stop wide open.")};
+}
+
+Diagnostic& fault(const CameraContext& context, Diagnostics& diagnostics, std::string message, std::string label) {
+    return diagnostics.error("E0356", context.span, std::move(message), std::move(label));
+}
+
+// The film's place for a distance of the sharp plane from the entrance pupil. Nothing after an error.
+std::optional<double> filmPlace(const LensTrain& train, const CardinalPoints& points, double focus,
+                                const CameraContext& context, Diagnostics& diagnostics) {
+    const double object = focus - (train.entrancePupil(kReference) - points.frontPrincipal); // to the principal point
+    const double f = points.focalLength;
+    if (!(object > f)) {
+        auto& d = fault(context, diagnostics, "the lens cannot focus so close",
+                        fmt::format("`focus` must be beyond {:.4g} m", f + focus - object));
+        d.help = "the image of anything nearer than the focal length is not real";
+        return std::nullopt;
+    }
+    const double film = points.rearPrincipal + 1 / (1 / f - 1 / object);
+    if (film > train.length() && film > train.rearEdge()) return film;
+    fault(context, diagnostics, "the lens has no room for a film",
+          fmt::format("its image lies {:.4g} mm in front of the last surface", 1e3 * (train.length() - film)));
+    return std::nullopt;
+}
+
+// The radius of the stop. Nothing after an error.
+std::optional<double> stopRadius(const LensSystemParams& params, const LensTrain& train, double focalLength,
+                                 const CameraContext& context, Diagnostics& diagnostics) {
+    const double scale = train.entrancePupilScale(kReference);
+    const double widest = focalLength / (2 * scale * train.stopRadius());
+    if (!params.fStop) return train.stopRadius();
+    if (*params.fStop >= widest * (1 - 1e-3))
+        return std::min(focalLength / (2 * scale * *params.fStop), train.stopRadius());
+    fault(context, diagnostics, fmt::format("the lens does not open to f/{:.4g}", *params.fStop),
+          fmt::format("wide open it has f/{:.3g}", widest));
+    return std::nullopt;
+}
+
+std::optional<LensTrain> trainOf(const LensSystemParams& params, const CameraContext& context,
+                                 Diagnostics& diagnostics) {
+    std::optional<LensPrescription> lens;
+    if (params.surfaces)
+        lens = readPrescription(*params.surfaces, diagnostics);
+    else
+        lens = publishedLens(params.prescription.word);
+    if (!lens) return std::nullopt;
+    LensTrain train(*lens);
+    const double f = train.cardinalPoints(kReference).focalLength;
+    if (!(f > 0) || !std::isfinite(f)) {
+        fault(context, diagnostics, "the lens does not gather light",
+              std::isfinite(f) ? fmt::format("its focal length is {:.4g} mm", 1e3 * f) : "it has no power");
+        return std::nullopt;
+    }
+    if (!params.lens) return train;
+    lens->rescale(*params.lens / f);
+    return LensTrain(*lens);
+}
+
+} // namespace
+
+schema::TypeInfo lensSystemType() {
+    schema::TypeInfo type{.kind = schema::Kind::camera,
+                          .name = "lens-system",
+                          .doc = "A lens of real glass, traced surface by surface: aberrations, colour errors and "
+                                 "vignetting come out by themselves.",
+                          .example = "camera lens-system { prescription double-gauss; lens 50 mm; f-stop 2.8; "
+                                     "from 0 1 4; look-at 0 0.5 0 }",
+                          .fields = placementFields()};
+    for (auto* fields : {lensFields, lensCameraFields})
+        for (FieldInfo& f : fields()) type.fields.push_back(std::move(f));
+    return type;
+}
+
+LensSystemCamera::LensSystemCamera(const Frame& axes, Vec2i filmSize, double width, LensTrain train,
+                                   const Optics& optics)
+    : axes_(axes), train_(std::move(train)), optics_(optics),
+      pixel_(width / filmSize.x), corner_{-width / 2, pixel_ * filmSize.y / 2} {
+    ABBE_CHECK(!optics.opening.isPoint() && filmSize.x > 0 && filmSize.y > 0 && width > 0);
+    exitPupil_ = ExitPupil(train_, optics_.opening, optics_.film, std::hypot(corner_.x, corner_.y));
+    const double distance = optics_.film - train_.length();
+    weight_ = 4 * optics_.fNumber * optics_.fNumber / (kPiD * distance * distance);
+}
+
+// The illuminance at a film point is the integral of L cos⁴θ / Z² over the exit pupil's plane at distance Z
+// [Kolb1995, eq. 3].
+CameraRay LensSystemCamera::ray(const CameraSample& sample) const noexcept {
+    CameraRay result;
+    result.heroOnly = train_.disperses();
+    // The image on the film stands on its head.
+    const Vec2d film{-(corner_.x + pixel_ * static_cast<double>(sample.film.x)),
+                     -(corner_.y - pixel_ * static_cast<double>(sample.film.y))};
+    const double r = std::hypot(film.x, film.y);
+    const ExitPupil::Box& box = exitPupil_.at(r);
+    const double x = box.lower.x + static_cast<double>(sample.lens.x) * (box.upper.x - box.lower.x);
+    const double y = box.lower.y + static_cast<double>(sample.lens.y) * (box.upper.y - box.lower.y);
+    const double cosine = r > 0 ? film.x / r : 1, sine = r > 0 ? film.y / r : 0;
+    const Vec3d from{film.x, film.y, optics_.film};
+    LensRay ray{from, normalize(Vec3d{cosine * x - sine * y, sine * x + cosine * y, train_.length()} - from)};
+    const double square = ray.d.z * ray.d.z;
+    result.weight = static_cast<float>(weight_ * box.area() * square * square);
+    if (!(result.weight > 0) || !train_.toScene(ray, static_cast<double>(sample.wavelength), optics_.opening)) {
+        result.weight = 0;
+        return result;
+    }
+    result.ray.origin = axes_.toWorld(Vec3(Vec3d{ray.p.x, ray.p.y, ray.p.z - optics_.pupil}));
+    result.ray.direction = normalize(axes_.toWorld(Vec3(ray.d)));
+    result.ray.time = sample.time;
+    return result;
+}
+
+std::optional<PlacedCamera> makeLensSystem(const LensSystemParams& params, const CameraContext& context,
+                                           Diagnostics& diagnostics) {
+    const auto place = placeCamera(params, context, diagnostics);
+    auto train = trainOf(params, context, diagnostics);
+    if (!place || !train) return std::nullopt;
+    const auto focus = focusDistance(params, *place, context, diagnostics);
+    const CardinalPoints points = train->cardinalPoints(kReference);
+    const auto radius = stopRadius(params, *train, points.focalLength, context, diagnostics);
+    if (!focus || !radius) return std::nullopt;
+    const auto film = filmPlace(*train, points, *focus, context, diagnostics);
+    const auto opening = apertureOf(params, *radius, context, diagnostics);
+    LensSystemCamera::Optics optics;
+    optics.fNumber = points.focalLength / (2 * train->entrancePupilScale(kReference) * *radius);
+    const auto exposure = exposureFactor(params, optics.fNumber, context, diagnostics);
+    if (!film || !opening || !exposure) return std::nullopt;
+    optics.film = *film;
+    optics.pupil = train->entrancePupil(kReference);
+    optics.opening = *opening;
+    return PlacedCamera{
+        std::make_unique<LensSystemCamera>(place->axes, context.filmSize, params.sensor.x, std::move(*train), optics),
+        place->origin, *exposure, params.shutter.value_or(0)};
+}
+
+} // namespace abbe

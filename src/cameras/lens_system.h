@@ -1,0 +1,52 @@
+// A camera with a lens of real glass: rays are traced from the film through every surface.
+#pragma once
+
+#include "cameras/camera_params.h"
+#include "cameras/exit_pupil.h"
+
+namespace abbe {
+
+struct LensSystemParams : LensCameraParams {
+    schema::Choice prescription; // name of a published lens, or
+    std::optional<schema::TableRows> surfaces;
+    std::optional<double> lens; // focal length to which the prescription is scaled; its own
+};
+
+schema::TypeInfo lensSystemType();
+
+// Aberrations, vignetting and chromatic errors are those of the glass. The whole lens moves for focusing. The camera's
+// place is the middle of the paraxial entrance pupil, so that it frames like a `perspective` camera with the same lens
+// and sensor. The picture is turned upright.
+class LensSystemCamera final : public Camera {
+  public:
+    struct Optics {
+        double film = 0;    // z of the film in lens coordinates, behind the last surface
+        double pupil = 0;   // z of the middle of the entrance pupil
+        double fNumber = 1; // against whose image-space cone π / (4 N²) rays are weighed
+        Aperture opening;   // of the stop
+    };
+    // `width`: of the film in m. Requires: opening not a point.
+    LensSystemCamera(const Frame& axes, Vec2i filmSize, double width, LensTrain, const Optics&);
+
+    // The weight is the illuminance at the film per radiance over π / (4 N²): 1 on the axis for a lens that obeys the
+    // sine condition and is focused at infinity, less towards the corners and at close range.
+    CameraRay ray(const CameraSample&) const noexcept override;
+    bool disperses() const override { return train_.disperses(); }
+    const LensTrain& train() const { return train_; }
+    const Optics& optics() const { return optics_; }
+    const ExitPupil& exitPupil() const { return exitPupil_; }
+
+  private:
+    Frame axes_;
+    LensTrain train_;
+    Optics optics_;
+    ExitPupil exitPupil_;
+    double pixel_;  // m
+    Vec2d corner_;  // of the upright picture, m
+    double weight_; // 4 N² / π over the squared distance of the film from the last vertex
+};
+
+// Nothing after an error.
+std::optional<PlacedCamera> makeLensSystem(const LensSystemParams&, const CameraContext&, Diagnostics&);
+
+} // namespace abbe

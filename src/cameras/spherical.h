@@ -1,0 +1,33 @@
+// Panoramas in longitude and latitude.
+#pragma once
+
+#include "cameras/camera_params.h"
+
+namespace abbe {
+
+struct SphericalParams : CameraParams {
+    double width = 2 * kPiD; // angle around the upright axis
+    double height = kPiD;    // angle from bottom to top
+};
+
+schema::TypeInfo sphericalType();
+
+// The picture's x is longitude and its y latitude, both linear; its middle looks along the axis. A whole sphere is the
+// image that `light environment` reads.
+class SphericalCamera final : public Camera {
+  public:
+    // Requires: 0 < width <= 2π, 0 < height <= π.
+    SphericalCamera(const Frame& axes, Vec2i filmSize, double width, double height);
+    CameraRay ray(const CameraSample&) const noexcept override;
+    bool usesLens() const override { return false; }
+
+  private:
+    Frame axes_;
+    Vec2d scale_; // rad per pixel
+    Vec2d corner_;
+};
+
+// Nothing after an error.
+std::optional<PlacedCamera> makeSpherical(const SphericalParams&, const CameraContext&, Diagnostics&);
+
+} // namespace abbe

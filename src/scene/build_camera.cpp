@@ -1,0 +1,80 @@
+// The camera, and what its focus may be measured to.
+#include "base/check.h"
+#include "cameras/camera_params.h"
+#include "scene/registry.h"
+#include "scene/scene_builder.h"
+
+#include <fmt/format.h>
+
+namespace abbe {
+
+using schema::Kind;
+
+// Looks through groups, whose transforms add up to `place`; the parts of objects have many places or none.
+const schema::Definition* SceneBuilder::findShape(const std::vector<Definition>& definitions, std::string_view name,
+                                                  Transform& place) {
+    for (const Definition& d : definitions) {
+        if (d.kind == Kind::shape && d.name == name) return &d;
+        if (d.kind != Kind::group) continue;
+        if (const Definition* found = findShape(d.children, name, place)) {
+            Diagnostics again; // what is wrong with the transform is reported when the group is placed
+            for (const schema::Node& property : d.properties)
+                if (property.name() == "transform")
+                    place = place.then(schema::bindTransform(property, tree_.header, again));
+            return found;
+        }
+    }
+    return nullptr;
+}
+
+std::optional<Vec3d> SceneBuilder::middleOfShape(std::string_view name) {
+    Transform toWorld;
+    const Definition* d = findShape(tree_.definitions, name, toWorld);
+    if (!d) return std::nullopt;
+    LoadedShape& loaded = loadedShape(*d);
+    if (!loaded.sound || loaded.infinite) return std::nullopt;
+    const Transform place = loaded.common.transform.then(toWorld);
+    Bounds3d box;
+    if (loaded.mesh) {
+        for (const Vec3& p : loaded.mesh->positions) box.add(place.point(Vec3d(p)));
+    } else if (const auto shape = loaded.place(place)) {
+        box = {Vec3d(shape->bounds().lower), Vec3d(shape->bounds().upper)};
+    }
+    return box.empty() ? std::nullopt : std::optional((box.lower + box.upper) / 2);
+}
+
+void SceneBuilder::buildCamera(BuiltScene& built) {
+    const Definition* definition = only(Kind::camera, options_.camera);
+    if (!definition) {
+        diagnostics_
+            .error("E0601", tree_.header.span,
+                   options_.camera.empty() ? std::string("the scene has no camera")
+                                           : fmt::format("no camera is named `{}`", options_.camera))
+            .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0 }`";
+        return;
+    }
+    const std::size_t before = diagnostics_.errorCount();
+    const auto bindInto = [&](void* params) {
+        schema::bind(*definition, tree_, types_, *this, params, diagnostics_);
+        return diagnostics_.errorCount() == before;
+    };
+    if (!definition->type) {
+        bindInto(nullptr);
+        return;
+    }
+    CameraContext context;
+    context.zUp = tree_.header.zUp;
+    context.filmSize = {static_cast<int>(built.film.size.x), static_cast<int>(built.film.size.y)};
+    context.span = definition->span;
+    context.middleOf = [this](std::string_view name) { return middleOfShape(name); };
+    auto placed = makeCamera(definition->type->name, bindInto, context, diagnostics_);
+    if (!placed) return;
+    built.scene.camera = std::move(placed->camera);
+    built.scene.origin = placed->origin;
+    built.exposure = placed->exposure;
+    if (!built.scene.camera->disperses()) return;
+    built.scene.effects |= Effect::dispersion;
+    built.scene.reasons.push_back({Effect::dispersion, definition->span, "the glass of its lens disperses"});
+}
+
+} // namespace abbe
