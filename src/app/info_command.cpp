@@ -49,6 +49,9 @@ std::string sceneJson(const SceneInfo& info) {
                                 {"triangles", std::uint64_t{f.triangles}},
                                 {"quads", std::uint64_t{f.quads}},
                                 {"analytic", std::uint64_t{f.analytic}},
+                                {"strands", std::uint64_t{f.strands}},
+                                {"segments", std::uint64_t{f.segments}},
+                                {"points", std::uint64_t{f.points}},
                                 {"objects", std::uint64_t{f.objects}},
                                 {"instances", std::uint64_t{f.instances}},
                                 {"materials", std::uint64_t{f.materials}},
@@ -67,6 +70,8 @@ std::string sceneText(const SceneInfo& info) {
     const SceneFacts& f = info.built.facts;
     std::string s = fmt::format("shapes     {} ({} triangles, {} quads, {} analytic)\n", f.shapes, f.triangles, f.quads,
                                 f.analytic);
+    if (f.segments > 0) s += fmt::format("curves     {} segments of {} strands\n", f.segments, f.strands);
+    if (f.points > 0) s += fmt::format("points     {}\n", f.points);
     if (f.objects > 0) s += fmt::format("objects    {}, placed {} times\n", f.objects, f.instances);
     s += fmt::format("materials  {}\n", f.materials);
     if (!f.bounds.empty()) {

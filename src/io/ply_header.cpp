@@ -66,8 +66,8 @@ PlyRole roleNamed(std::string_view name) {
 
 class HeaderParser {
   public:
-    HeaderParser(std::string_view bytes, const std::string& name)
-        : begin_(bytes.data()), p_(begin_), end_(begin_ + bytes.size()), name_(name) {}
+    HeaderParser(std::string_view bytes, const std::string& name, PlyContent content)
+        : begin_(bytes.data()), p_(begin_), end_(begin_ + bytes.size()), name_(name), content_(content) {}
 
     PlyHeader parse() {
         lines();
@@ -93,6 +93,7 @@ class HeaderParser {
     const char* p_;
     const char* end_;
     const std::string& name_;
+    PlyContent content_;
     PlyHeader header_;
 };
 
@@ -221,11 +222,13 @@ void HeaderParser::check() {
         }
     }
     if (!hasVertices) fail("there are no vertices");
-    if (!hasFaces) fail("there are no faces");
+    if (!hasFaces && content_ == PlyContent::mesh) fail("there are no faces");
 }
 
 } // namespace
 
-PlyHeader parsePlyHeader(std::string_view bytes, const std::string& name) { return HeaderParser(bytes, name).parse(); }
+PlyHeader parsePlyHeader(std::string_view bytes, const std::string& name, PlyContent content) {
+    return HeaderParser(bytes, name, content).parse();
+}
 
 } // namespace abbe

@@ -39,8 +39,11 @@ struct PlyHeader {
     bool normals = false, uvs = false; // the vertices have them
 };
 
-// Has vertices with x, y and z, and faces; no count promises more than the bytes can hold. Throws IoError with the
-// byte offset of the first fault; `name` is for messages.
-PlyHeader parsePlyHeader(std::string_view bytes, const std::string& name);
+// What a file must have besides vertices.
+enum class PlyContent : std::uint8_t { mesh, points };
+
+// Has vertices with x, y and z, and a mesh's file faces; no count promises more than the bytes can hold. Throws IoError
+// with the byte offset of the first fault; `name` is for messages.
+PlyHeader parsePlyHeader(std::string_view bytes, const std::string& name, PlyContent = PlyContent::mesh);
 
 } // namespace abbe

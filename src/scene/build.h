@@ -28,6 +28,7 @@ struct BuildOptions {
 // Facts for `abbe info` and the summary of a render.
 struct SceneFacts {
     std::size_t shapes = 0, triangles = 0, quads = 0, analytic = 0, objects = 0, instances = 0;
+    std::size_t strands = 0, segments = 0, points = 0; // of curves and points
     std::size_t lights = 0, materials = 0;
     Bounds3d bounds; // world space, m
     struct LightFact {

@@ -83,7 +83,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             };
     } else if (type == "mesh") {
         loadMeshShape(d, shape);
-    } else if (!checkPlanned(d)) {
+    } else if (!loadCurves(d, shape) && !checkPlanned(d)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
     if (shape.sound && shape.infinite && shape.common.emission) {
@@ -113,6 +113,10 @@ void SceneBuilder::countShape(const LoadedShape& shape) {
     if (shape.mesh) {
         facts.triangles += shape.mesh->triangles.size();
         facts.quads += shape.mesh->quads.size();
+    } else if (shape.segments + shape.points > 0) {
+        facts.strands += shape.strands;
+        facts.segments += shape.segments;
+        facts.points += shape.points;
     } else if (shape.definition->type->name == "quad") {
         ++facts.quads;
     } else {

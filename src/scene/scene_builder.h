@@ -36,6 +36,7 @@ class SceneBuilder final : public schema::Resolver {
         ShapeParams common;
         std::shared_ptr<const MeshData> mesh; // mesh shapes
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
+        std::size_t strands = 0, segments = 0, points = 0; // of curves and points
         bool infinite = false;
         bool sound = false;
     };
@@ -74,6 +75,10 @@ class SceneBuilder final : public schema::Resolver {
                  std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared);
     LoadedShape& loadedShape(const Definition&);
     void loadMeshShape(const Definition&, LoadedShape&);
+    // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
+    bool loadCurves(const Definition&, LoadedShape&);
+    void loadPoints(const Definition&, LoadedShape&);
+    bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
     Transform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);

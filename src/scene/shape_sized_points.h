@@ -1,0 +1,46 @@
+// What curves and points share: positions and widths, from the scene or from a file.
+#pragma once
+
+#include "io/ply_points.h"
+#include "scene/shape_curves.h"
+#include "scene/shape_fields.h"
+
+namespace abbe {
+
+// The points that the parameters name, each with its radius, and the rest of the file. The errors are located.
+std::optional<std::pair<std::vector<SizedPoint>, PointFile>> loadSizedPoints(const SizedPointsParams&, double unit,
+                                                                             Span, Diagnostics&);
+// Moves the points, scales the radii. False after an error.
+bool placeSizedPoints(std::vector<SizedPoint>&, const Transform& place, Span, Diagnostics&);
+
+template <typename P> void addSizedPointFields(std::vector<schema::FieldInfo>& fields) {
+    using namespace schema;
+    fields.push_back(field<P, Text>(FieldType::file, "file", &P::file)
+                         .argument(0)
+                         .group("source")
+                         .synonyms({"filename", "path"})
+                         .doc("PLY file, binary or text, with `radius` (or `width`) at its vertices.")
+                         .example("file \"fur.ply\""));
+    fields.push_back(field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
+                         .unit({Dimension::length})
+                         .group("source")
+                         .synonyms({"vertices", "P", "positions"})
+                         .doc("Positions, one row of three numbers each, or one long list.")
+                         .example("points { - 0 0 0; - 0 1 0; - 0 2 1; - 0 2 2 }"));
+    fields.push_back(field<P, std::optional<double>>(FieldType::quantity, "radius", &P::radius)
+                         .unit({Dimension::length})
+                         .range(0, 1e15)
+                         .group("thickness")
+                         .synonyms({"width", "thickness", "size"})
+                         .doc("Radius everywhere, also instead of a file's.")
+                         .example("radius 0.05 mm"));
+    fields.push_back(field<P, std::vector<double>>(FieldType::numbers, "radii", &P::radii)
+                         .unit({Dimension::length})
+                         .range(0, 1e15)
+                         .group("thickness")
+                         .synonyms({"widths"})
+                         .doc("Radius at each point.")
+                         .example("radii 2 2 1 0 mm"));
+}
+
+} // namespace abbe
