@@ -80,13 +80,13 @@ class PrescriptionReader {
     double size(const TableCell& cell, std::string_view what, bool mayBeZero) {
         if (!cell.number) {
             fault(cell.span, fmt::format("{} is a length", what), "not a number");
-            return 1;
+            return 0;
         }
         const double value = *cell.number * table_.scale;
         if (std::isfinite(value) && (value > 0 || (mayBeZero && value == 0))) return value;
         fault(cell.span, fmt::format("{} is {}", what, mayBeZero ? "at least 0" : "greater than 0"),
               value < 0 ? "is negative" : "is 0");
-        return 1;
+        return 0;
     }
 
     void medium(const TableCell& cell, LensSurface& surface) {
