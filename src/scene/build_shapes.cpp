@@ -83,7 +83,8 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             };
     } else if (type == "mesh") {
         loadMeshShape(d, shape);
-    } else if (!loadCurves(d, shape) && !checkPlanned(d)) {
+    } else if (!loadCurves(d, shape) && !loadSubdivision(d, shape) &&
+               !checkPlanned(d)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
     if (shape.sound && shape.infinite && shape.common.emission) {
@@ -106,6 +107,9 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
         return placeMesh(*shape.mesh, t, span, diagnostics_);
     };
 }
+    } else if (shape.dicedTriangles + shape.dicedQuads > 0) {
+        facts.triangles += shape.dicedTriangles;
+        facts.quads += shape.dicedQuads;
 
 void SceneBuilder::countShape(const LoadedShape& shape) {
     SceneFacts& facts = built_->facts;

@@ -1,7 +1,5 @@
 #include "scene/planned_types.h"
 
-#include "scene/shape_types.h"
-
 #include <algorithm>
 
 namespace abbe {
@@ -44,18 +42,9 @@ TypeInfo subsurfaceType() {
             }};
 }
 
-// A mesh in what it says; the limit surface instead of the facets in what it means.
-TypeInfo subdivisionType() {
-    TypeInfo type = meshType();
-    type.name = "subdivision";
-    type.doc = "Smooth limit surface of a polygon cage. Not rendered by this version.";
-    type.example = "shape subdivision \"body.obj\" { material diffuse }";
-    return type;
-}
-
 } // namespace
 
-std::vector<TypeInfo> plannedTypes() { return {subsurfaceType(), subdivisionType()}; }
+std::vector<TypeInfo> plannedTypes() { return {subsurfaceType()}; }
 
 bool isPlanned(Kind kind, std::string_view type) {
     const std::vector<TypeInfo> types = plannedTypes();
@@ -63,13 +52,9 @@ bool isPlanned(Kind kind, std::string_view type) {
 }
 
 void bindPlanned(Kind kind, const std::function<void(void* params)>& bind) {
-    if (kind == Kind::material) {
-        SubsurfaceParams params;
-        bind(&params);
-    } else {
-        MeshParams params;
-        bind(&params);
-    }
+    if (kind != Kind::material) return;
+    SubsurfaceParams params;
+    bind(&params);
 }
 
 } // namespace abbe

@@ -40,6 +40,7 @@ class Binding {
     // Notes that a field is given, and reports a second time. False if it must not be bound.
     bool give(const FieldInfo& field, Span span) {
         const auto [first, fresh] = given_.emplace(&field, span);
+        if (!fresh && field.type == FieldType::sharpRow) return true; // one row each time
         if (!fresh) {
             auto& d =
                 report(context_.diagnostics, span, "E0208", fmt::format("`{}` is given twice", field.name), "second");

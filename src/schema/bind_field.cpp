@@ -28,7 +28,7 @@ bool takesBlock(const FieldInfo& field) {
 // Keys are read by those who know them: texts, spectra (`space=`) and inline definitions.
 bool readsKeys(FieldType type) {
     return type == FieldType::text || type == FieldType::file || type == FieldType::spectrum ||
-           type == FieldType::reference || type == FieldType::place;
+           type == FieldType::sharpRow || type == FieldType::reference || type == FieldType::place;
 }
 
 bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
@@ -106,6 +106,7 @@ std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, 
     case FieldType::points:
     case FieldType::numbers:
     case FieldType::indexRows:
+    case FieldType::sharpRow:
     case FieldType::table:
         return bindList(field, entry, context);
     case FieldType::spectrum:

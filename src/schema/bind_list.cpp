@@ -44,6 +44,28 @@ class ListBinder {
         return rows;
     }
 
+    std::optional<BoundValue> sharpRow() {
+        SharpRow row;
+        row.span = entry_.span();
+        for (std::size_t i = 0; i < entry_.count(); ++i)
+            if (!addIndex(entry_.value(i), row.vertices)) return std::nullopt;
+        if (row.vertices.empty()) return empty();
+        for (const Key& key : entry_.keys()) {
+            if (key.name != "sharpness") {
+                report(diagnostics_, key.nameSpan, "E0210", fmt::format("`{}` has no key `{}`", field_.name, key.name),
+                       "its key is `sharpness=`");
+                return std::nullopt;
+            }
+            if (key.value.kind != ValueKind::number || !(key.value.number >= 0)) {
+                reportAt(diagnostics_, key.value, "E0303", "a sharpness is a number from 0 on",
+                         "10 is infinitely sharp");
+                return std::nullopt;
+            }
+            row.sharpness = key.value.number;
+        }
+        return row;
+    }
+
     std::optional<BoundValue> table() {
         TableRows table;
         table.span = entry_.span();
@@ -128,12 +150,20 @@ class ListBinder {
             return false;
         }
         for (std::size_t i = 0; i < count; ++i) {
-            const double x = row.allNumbers() ? row.numbers()[i] : row.value(i).number;
-            const bool isNumber = row.allNumbers() || row.value(i).kind == ValueKind::number;
-            if (!isNumber || !(x >= 0) || x != std::floor(x) || x > kLargestIndex) return badIndex(row.value(i));
-            rows.indices.push_back(static_cast<std::uint32_t>(x));
+            if (row.allNumbers() && isIndex(row.numbers()[i])) // the fast path of packed rows
+                rows.indices.push_back(static_cast<std::uint32_t>(row.numbers()[i]));
+            else if (!addIndex(row.value(i), rows.indices))
+                return false;
         }
         rows.counts.push_back(static_cast<std::uint32_t>(count));
+        return true;
+    }
+
+    static bool isIndex(double x) { return x >= 0 && x == std::floor(x) && x <= kLargestIndex; }
+
+    bool addIndex(const Value& value, std::vector<std::uint32_t>& out) {
+        if (value.kind != ValueKind::number || !isIndex(value.number)) return badIndex(value);
+        out.push_back(static_cast<std::uint32_t>(value.number));
         return true;
     }
 
@@ -158,6 +188,7 @@ class ListBinder {
 
 std::optional<BoundValue> bindList(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     ListBinder binder(field, entry, context);
+    if (field.type == FieldType::sharpRow) return binder.sharpRow();
     if (field.type == FieldType::table) return binder.table();
     if (field.type == FieldType::points) return binder.points();
     return field.type == FieldType::numbers ? binder.numbers() : binder.indexRows();

@@ -57,6 +57,13 @@ struct Choice {
     std::optional<double> number;
 };
 
+// Vertices in a row, from 0, and how sharp it is there: `crease 1 2 3 sharpness=3`.
+struct SharpRow {
+    std::vector<std::uint32_t> vertices;
+    std::optional<double> sharpness; // >= 0
+    Span span;
+};
+
 // A string with the keys its field allows (`output "a.exr" space=acescg`).
 struct Text {
     std::string value;
@@ -93,9 +100,9 @@ struct ComplexIndex {
     const Curve* k = nullptr;
 };
 
-using BoundValue =
-    std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
-                 std::vector<Vec3d>, IndexRows, TableRows, Location, const Curve*, ComplexIndex, Reference, Transform>;
+using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
+                                std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
+                                const Curve*, ComplexIndex, Reference, Transform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -122,6 +129,7 @@ struct FieldKey {
     std::string_view name;
     std::vector<std::string_view> choices;
     std::string_view doc;
+    sharpRow,     // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
 };
 
 struct FieldInfo {
@@ -204,6 +212,8 @@ template <typename Params, typename Member> class Field {
 
 template <typename Params, typename Member>
 Field<Params, Member> field(FieldType type, std::string_view name, Member Params::*member) {
+        } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
+            if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
     return {type, name, member};
 }
 

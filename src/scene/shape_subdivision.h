@@ -1,0 +1,41 @@
+// Subdivision surfaces in scenes: what they may say, and how they become meshes.
+#pragma once
+
+#include "geometry/subdivision_surface.h"
+#include "render/camera.h"
+#include "scene/shape_types.h"
+
+#include <functional>
+
+namespace abbe {
+
+struct SubdivisionParams : ShapeParams {
+    schema::Text file; // resolved path, or empty: points and faces
+    std::vector<Vec3d> points;
+    schema::IndexRows faces;
+    schema::Choice scheme;
+    std::optional<schema::Choice> boundary, faceVarying, creasing; // unset: the file's, or the manual's
+    std::vector<schema::SharpRow> creases, corners;
+    std::vector<double> holes;
+    schema::Quantity dicing;
+    double memory = 4096; // MiB
+};
+
+schema::TypeInfo subdivisionType();
+
+// The cage of a definition in its own space: from a file (OBJ or PLY, its coordinates times `unit`) or from points and
+// faces, with the properties applied. Sound, or nothing after an error.
+std::optional<SubdivisionCage> loadCage(const SubdivisionParams&, double unit, Span, Diagnostics&);
+
+// How to dice: nothing after an error. Pixels still need a Dicing::pixelSize.
+std::optional<Dicing> dicingOf(const schema::Quantity&, Diagnostics&);
+
+// The size of a pixel in the middle of the film, as a function of the distance to the camera, in render space.
+std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize);
+
+// Dices in the space that `place` leads to, whose outer side stays outside under mirrors. Before anything large is made
+// a warning says if the budget (MiB) lowers the rates. Null after an error located at `span`.
+std::unique_ptr<const Shape> placeSubdivision(SubdivisionCage, const Dicing&, double memory, const Transform& place,
+                                              Span, Diagnostics&);
+
+} // namespace abbe
