@@ -126,6 +126,8 @@ constexpr CodeInfo kCodes[] = {
     {"E0609", "the film is wrong", "The size is two whole numbers, the crop lies within it, and the filter has a positive radius; the message says which rule is broken."},
     {"E0610", "no light", "Without a light the picture would be black. Add one, `light sky { luminance 5000 nits }`, or an `emission` to a shape."},
     {"E0611", "a damaged mesh", "A face names a vertex that is not there, a number is missing, or a coordinate is not finite."},
+    {"E0613", "a torus crosses itself, or is a thread", "The radius of a torus's tube is at most that of the ring, else the surface would pass through itself and have no outer side; and at least 1e-5 of it, because thinner tubes drown in rounding. For threads use curves."},
+    {"E0614", "a box is stated wrongly", "A box has a `size` about its `center`, or two opposite corners, `min` and `max`, with `min` below `max` on every axis."},
     {"E0621", "damaged curves or points", "The numbers of points, radii, normals and `counts` must match. A strand needs two points if it is linear, at least four for B-splines and Catmull-Rom, and 4, 7, 10, … for Bézier curves."},
     {"E0622", "curves or points are stretched unevenly", "Their transform, with those of the groups around them, may move, turn, mirror and scale evenly: their radius is one number. An `instance` of an `object` may stretch them; tubes and spheres become elliptical."},
     {"E0623", "curves or points emit", "This version cannot make lights of them. Use shapes that can emit: `mesh`, `quad`, `disk`, `sphere`."},
@@ -136,7 +138,6 @@ constexpr CodeInfo kCodes[] = {
     {"W0630", "values beyond half floats", "The film's `output` asks for 16-bit values, whose largest is 65504. Larger ones were written as that."},
     {"W0631", "a channel was left out", "An ACES container (half, uncompressed, ACES2065-1) holds red, green and blue alone."},
     {"W0640", "samples were dropped", "A sample that is not finite or is negative never reaches the image: it is left out of its pixel's mean and counted. A few hint at a numerical limit, many at a mistake in the scene or in the program. `--pixel X,Y` repeats one pixel."},
-    {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"W0641", "a black image", "No light reaches the camera. It may look away from the scene or stand inside something; a light may face the other way or be enclosed; the exposure may be far too low."},
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},
 };
@@ -145,8 +146,6 @@ constexpr CodeInfo kCodes[] = {
 } // namespace
 
 const CodeInfo* findCode(std::string_view code) {
-    {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
-    {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
     for (const CodeInfo& info : kCodes)
         if (info.code == code) return &info;
     return nullptr;

@@ -38,7 +38,6 @@ class SceneBuilder final : public schema::Resolver {
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
         bool infinite = false;
-        std::size_t dicedTriangles = 0, dicedQuads = 0; // of the last placement of a subdivision surface
         bool sound = false;
     };
     // The geometry of an object that instances share.
@@ -76,14 +75,16 @@ class SceneBuilder final : public schema::Resolver {
                  std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared);
     LoadedShape& loadedShape(const Definition&);
     void loadMeshShape(const Definition&, LoadedShape&);
+    // shape_parametric.cpp; false for other types.
+    bool loadParametric(const Definition&, LoadedShape&, Vec3d up);
+    void loadBox(const Definition&, LoadedShape&);
+    void loadFrustum(const Definition&, LoadedShape&, Vec3d up);
+    void loadTorus(const Definition&, LoadedShape&, Vec3d up);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
-    // shape_subdivision.cpp; loadSubdivision is false for other types.
-    bool loadSubdivision(const Definition&, LoadedShape&);
-    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
     Transform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
@@ -131,4 +132,3 @@ template <typename P> std::optional<P> SceneBuilder::bound(const Definition& def
 }
 
 } // namespace abbe
-    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by

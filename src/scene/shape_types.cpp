@@ -1,36 +1,12 @@
 #include "scene/shape_types.h"
 
+#include "scene/shape_fields.h"
+
 namespace abbe {
 
 using namespace schema;
 
 namespace {
-
-template <typename P> void addShapeFields(std::vector<FieldInfo>& fields) {
-    fields.push_back(field<P, Reference>(FieldType::reference, "material", &P::material)
-                         .to(Kind::material)
-                         .synonyms({"bsdf", "shader", "surface"})
-                         .doc("Name of a material, or one written in place; grey and matte when absent.")
-                         .example("material diffuse { reflectance 0.5 }"));
-    fields.push_back(field<P, const Curve*>(FieldType::spectrum, "emission", &P::emission)
-                         .role(SpectrumRole::emission)
-                         .synonyms({"emitter", "glow", "Le"})
-                         .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm.")
-                         .example("emission 0.5"));
-    fields.push_back(field<P, Transform>(FieldType::transform, "transform", &P::transform)
-                         .synonyms({"to_world", "toWorld", "xform"})
-                         .doc("Places the shape: steps from top to bottom, as applied to the object.")
-                         .example("transform { scale 2; rotate y 45 deg; translate 0 1 0 }"));
-}
-
-template <typename P> FieldInfo centerField(std::string_view what) {
-    return field<P, Vec3d>(FieldType::vector3, "center", &P::center)
-        .unit({Dimension::length})
-        .byDefault("0 0 0")
-        .synonyms({"centre", "position", "origin"})
-        .doc(what)
-        .example("center 0 0.5 0");
-}
 
 template <typename P> FieldInfo radiusField() {
     return field<P, double>(FieldType::quantity, "radius", &P::radius)
