@@ -138,6 +138,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0630", "values beyond half floats", "The film's `output` asks for 16-bit values, whose largest is 65504. Larger ones were written as that."},
     {"W0631", "a channel was left out", "An ACES container (half, uncompressed, ACES2065-1) holds red, green and blue alone."},
     {"W0640", "samples were dropped", "A sample that is not finite or is negative never reaches the image: it is left out of its pixel's mean and counted. A few hint at a numerical limit, many at a mistake in the scene or in the program. `--pixel X,Y` repeats one pixel."},
+    {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"W0641", "a black image", "No light reaches the camera. It may look away from the scene or stand inside something; a light may face the other way or be enclosed; the exposure may be far too low."},
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},
 };
@@ -146,6 +147,8 @@ constexpr CodeInfo kCodes[] = {
 } // namespace
 
 const CodeInfo* findCode(std::string_view code) {
+    {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
+    {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
     for (const CodeInfo& info : kCodes)
         if (info.code == code) return &info;
     return nullptr;

@@ -20,6 +20,7 @@
 #include "scene/shape_curves.h"
 #include "scene/shape_parametric.h"
 #include "scene/shape_types.h"
+#include "scene/shape_subdivision.h"
 
 namespace abbe {
 
@@ -74,7 +75,7 @@ schema::TypeTable makeTypeTable() {
     for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
     for (const CameraEntry& entry : kCameras) table.add(entry.type());
     for (const auto type : kOthers) table.add(type());
-    for (const auto type : {curvesType, pointsType}) table.add(type());
+    for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
     for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;

@@ -38,6 +38,7 @@ class SceneBuilder final : public schema::Resolver {
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
         bool infinite = false;
+        std::size_t dicedTriangles = 0, dicedQuads = 0; // of the last placement of a subdivision surface
         bool sound = false;
     };
     // The geometry of an object that instances share.
@@ -85,6 +86,9 @@ class SceneBuilder final : public schema::Resolver {
     void loadPoints(const Definition&, LoadedShape&);
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
+    // shape_subdivision.cpp; loadSubdivision is false for other types.
+    bool loadSubdivision(const Definition&, LoadedShape&);
+    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
     Transform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
@@ -132,3 +136,4 @@ template <typename P> std::optional<P> SceneBuilder::bound(const Definition& def
 }
 
 } // namespace abbe
+    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by
