@@ -83,7 +83,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             };
     } else if (type == "mesh") {
         loadMeshShape(d, shape);
-    } else if (!loadCurves(d, shape) && !loadSubdivision(d, shape) &&
+    } else if (!loadParametric(d, shape, up) && !loadCurves(d, shape) && !loadSubdivision(d, shape) &&
                !checkPlanned(d)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
@@ -107,9 +107,6 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
         return placeMesh(*shape.mesh, t, span, diagnostics_);
     };
 }
-    } else if (shape.dicedTriangles + shape.dicedQuads > 0) {
-        facts.triangles += shape.dicedTriangles;
-        facts.quads += shape.dicedQuads;
 
 void SceneBuilder::countShape(const LoadedShape& shape) {
     SceneFacts& facts = built_->facts;
@@ -117,6 +114,9 @@ void SceneBuilder::countShape(const LoadedShape& shape) {
     if (shape.mesh) {
         facts.triangles += shape.mesh->triangles.size();
         facts.quads += shape.mesh->quads.size();
+    } else if (shape.dicedTriangles + shape.dicedQuads > 0) {
+        facts.triangles += shape.dicedTriangles;
+        facts.quads += shape.dicedQuads;
     } else if (shape.segments + shape.points > 0) {
         facts.strands += shape.strands;
         facts.segments += shape.segments;

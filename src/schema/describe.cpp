@@ -241,9 +241,9 @@ std::string describeField(const FieldInfo& field) {
         return "points, three numbers each, in a line or in rows";
     case FieldType::numbers:
         return isPlain(field) ? "numbers, in a line or in rows" : fmt::format("numbers, each {}", dimensionList(field));
-    case FieldType::indexRows:
     case FieldType::sharpRow:
         return "vertex numbers from 0, perhaps `sharpness=`; may be repeated";
+    case FieldType::indexRows:
         return "a row of vertex numbers from 0 on for each face";
     case FieldType::spectrum:
         return std::string(roleText(field.role)) + (isPlain(field) ? "" : ", " + dimensionList(field));

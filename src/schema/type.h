@@ -45,6 +45,13 @@ struct IndexRows {
     std::vector<std::uint32_t> indices;
 };
 
+// Vertices in a row, from 0, and how sharp it is there: `crease 1 2 3 sharpness=3`.
+struct SharpRow {
+    std::vector<std::uint32_t> vertices;
+    std::optional<double> sharpness; // >= 0
+    Span span;
+};
+
 // A named or inline definition, resolved to the index its builder gave it.
 struct Reference {
     std::uint32_t index = 0xffffffffu;
@@ -55,13 +62,6 @@ struct Reference {
 struct Choice {
     std::string word;
     std::optional<double> number;
-};
-
-// Vertices in a row, from 0, and how sharp it is there: `crease 1 2 3 sharpness=3`.
-struct SharpRow {
-    std::vector<std::uint32_t> vertices;
-    std::optional<double> sharpness; // >= 0
-    Span span;
 };
 
 // A string with the keys its field allows (`output "a.exr" space=acescg`).
@@ -117,6 +117,7 @@ enum class FieldType : std::uint8_t {
     points,       // x y z x y z … or a block of rows, in lengths unless `dimensions` is none -> std::vector<Vec3d>
     numbers,      // flat list or rows -> std::vector<double>
     indexRows,    // block of rows of integers -> IndexRows
+    sharpRow,     // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
     spectrum,     // any spectrum value -> const Curve*
     complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
     reference,    // name or inline definition of `referenceKind` -> Reference
@@ -129,7 +130,6 @@ struct FieldKey {
     std::string_view name;
     std::vector<std::string_view> choices;
     std::string_view doc;
-    sharpRow,     // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
 };
 
 struct FieldInfo {
@@ -200,6 +200,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
             if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
             if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
+        } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
+            if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
         } else if (const auto* same = std::get_if<M>(&value)) {
             member = *same;
         }
@@ -212,8 +214,6 @@ template <typename Params, typename Member> class Field {
 
 template <typename Params, typename Member>
 Field<Params, Member> field(FieldType type, std::string_view name, Member Params::*member) {
-        } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
-            if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
     return {type, name, member};
 }
 
