@@ -2,6 +2,7 @@
 
 #include "io/cage_file.h"
 #include "io/file_bytes.h"
+#include "io/gltf.h"
 
 namespace abbe {
 
@@ -15,11 +16,14 @@ bool isPly(std::string_view bytes) {
 
 MeshFile readMesh(const std::string& path) {
     const std::string bytes = readFileBytes(path);
+    if (looksLikeGltf(bytes)) return parseGltf(bytes, path);
     return isPly(bytes) ? parsePly(bytes, path) : parseObj(bytes, path);
 }
 
 CageFile readCage(const std::string& path) {
     const std::string bytes = readFileBytes(path);
+    if (looksLikeGltf(bytes))
+        throw IoError("cannot read `" + path + "`: glTF files hold triangles, no cages; `shape mesh` takes them");
     return isPly(bytes) ? parsePlyCage(bytes, path) : parseObjCage(bytes, path);
 }
 

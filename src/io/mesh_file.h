@@ -19,8 +19,12 @@ struct MeshGroup {
     std::size_t firstQuad = 0, quadCount = 0;
 };
 
+// What the format itself says about a file's coordinates.
+enum class MeshCoordinates : std::uint8_t { unstated, metresYUp };
+
 struct MeshFile {
-    MeshData mesh;                  // indices in range, numbers finite
+    MeshData mesh; // indices in range, numbers finite
+    MeshCoordinates coordinates = MeshCoordinates::unstated;
     std::vector<MeshGroup> groups;  // in file order, without empty ones; one for PLY
     std::uint64_t ignoredFaces = 0; // points and lines: fewer than three corners
 };
@@ -31,7 +35,7 @@ struct MeshFile {
 MeshFile readObj(const std::string& path);
 // Stanford PLY, text or binary of either byte order. Throws IoError with the byte offset of the first fault.
 MeshFile readPly(const std::string& path);
-// Either, told apart by content.
+// Either, or glTF (io/gltf.h), told apart by content.
 MeshFile readMesh(const std::string& path);
 
 // The same from memory; `name` is for messages.

@@ -1,0 +1,186 @@
+#include "io/gltf_document.h"
+
+#include "io/file_bytes.h"
+#include "io/gltf_container.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+// Required extensions that leave shapes and cameras as they are.
+bool harmless(std::string_view extension) {
+    return extension == "KHR_mesh_quantization" || extension.starts_with("KHR_materials_") ||
+           extension.starts_with("KHR_texture_") || extension.starts_with("EXT_texture_") ||
+           extension == "KHR_lights_punctual" || extension == "KHR_animation_pointer" ||
+           extension.starts_with("KHR_xmp");
+}
+
+bool keepNoImage(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+    return true;
+}
+
+// Buffers lie beside the file; images are not read at all. The user pointer is the folder.
+bool beside(const std::string& path, void* folder) {
+    const auto extension = std::filesystem::path(path).extension();
+    for (const char* image : {".png", ".jpg", ".jpeg", ".ktx2", ".webp", ".dds"})
+        if (extension == image) return false;
+    return path.starts_with(*static_cast<const std::string*>(folder)) && std::filesystem::is_regular_file(path);
+}
+
+std::string asItIs(const std::string& path, void*) { return path; }
+
+bool readWhole(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+    try {
+        const std::string bytes = readFileBytes(path);
+        out->assign(bytes.begin(), bytes.end());
+        return true;
+    } catch (const IoError& e) {
+        if (error) *error += e.what();
+        return false;
+    }
+}
+
+bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+
+// The library's messages end in line breaks and may be several.
+std::string oneLine(std::string text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ' || text.back() == '.')) text.pop_back();
+    std::replace(text.begin(), text.end(), '\n', ';');
+    return text.empty() ? "not a glTF file" : text;
+}
+
+} // namespace
+
+void GltfDocument::fail(const std::string& what) const {
+    throw IoError(fmt::format("cannot read `{}`: {}", name_, what));
+}
+
+GltfDocument::GltfDocument(std::string_view bytes, const std::string& name) : name_(name) {
+    if (const auto fault = findContainerFault(bytes)) fail(fmt::format("byte {}: {}", fault->byte, fault->what));
+    if (bytes.size() > 0xffffffffu) fail("glTF files have at most 4 GiB; keep the buffers in files of their own");
+    load(bytes);
+    checkExtensions();
+}
+
+void GltfDocument::load(std::string_view bytes) {
+    const std::filesystem::path parent = std::filesystem::path(name_).parent_path();
+    std::string folder = parent.empty() ? std::string(".") : parent.string();
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(keepNoImage, nullptr);
+    loader.SetFsCallbacks({beside, asItIs, readWhole, writeNothing, &folder});
+    std::string error, warning;
+    bool good = false;
+    try {
+        const auto size = static_cast<unsigned int>(bytes.size());
+        good = isBinaryGltf(bytes)
+                   ? loader.LoadBinaryFromMemory(&model_, &error, &warning,
+                                                 reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+                   : loader.LoadASCIIFromString(&model_, &error, &warning, bytes.data(), size, folder);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) { // of the JSON library, and of vectors of the wrong size
+        fail(oneLine(e.what()));
+    }
+    if (!good) fail(oneLine(error));
+    if (!model_.asset.version.starts_with("2.") && model_.asset.version != "2")
+        fail(fmt::format("asset.version is `{}`; only 2.x is known", model_.asset.version.substr(0, 20)));
+}
+
+void GltfDocument::checkExtensions() const {
+    for (std::size_t i = 0; i < model_.extensionsRequired.size(); ++i)
+        if (!harmless(model_.extensionsRequired[i]))
+            fail(fmt::format("extensionsRequired[{}]: `{}` is not supported; export the file without it", i,
+                             model_.extensionsRequired[i].substr(0, 60)));
+}
+
+Transform GltfDocument::localTransform(int index) const {
+    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
+    const auto check = [&](const std::vector<double>& v, std::size_t size, const char* what) {
+        if (v.empty()) return false;
+        if (v.size() != size || !std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); }))
+            fail(fmt::format("nodes[{}].{} is not {} finite numbers", index, what, size));
+        return true;
+    };
+    if (check(node.matrix, 16, "matrix")) { // by columns
+        Transform m;
+        for (std::size_t r = 0; r < 3; ++r)
+            for (std::size_t c = 0; c < 3; ++c) m.a[r][c] = node.matrix[4 * c + r];
+        m.t = {node.matrix[12], node.matrix[13], node.matrix[14]};
+        return m;
+    }
+    Transform result;
+    if (check(node.scale, 3, "scale")) result = Transform::scale({node.scale[0], node.scale[1], node.scale[2]});
+    if (check(node.rotation, 4, "rotation")) {
+        const auto& q = node.rotation; // x y z w
+        const Vec3d axis(q[0], q[1], q[2]);
+        const double sine = length(axis);
+        if (!(std::hypot(sine, q[3]) > 1e-6)) fail(fmt::format("nodes[{}].rotation has no length", index));
+        if (sine > 0) result = result.then(Transform::rotate(axis, 2 * std::atan2(sine, q[3])));
+    }
+    if (check(node.translation, 3, "translation"))
+        result = result.then(Transform::translate({node.translation[0], node.translation[1], node.translation[2]}));
+    return result;
+}
+
+std::vector<PlacedGltfNode> GltfDocument::nodes(const std::string& root) const {
+    const auto count = static_cast<int>(model_.nodes.size());
+    // Every node has one parent at most: then every walk downwards ends.
+    std::vector<int> parent(model_.nodes.size(), -1);
+    for (int i = 0; i < count; ++i) {
+        const auto& children = model_.nodes[static_cast<std::size_t>(i)].children;
+        for (std::size_t k = 0; k < children.size(); ++k) {
+            const int child = children[k];
+            if (child < 0 || child >= count)
+                fail(fmt::format("nodes[{}].children[{}] is {}, but there are {} nodes", i, k, child, count));
+            int& of = parent[static_cast<std::size_t>(child)];
+            if (of >= 0) fail(fmt::format("nodes[{}] is a child of nodes[{}] and of nodes[{}]", child, of, i));
+            of = i;
+        }
+    }
+    std::vector<int> roots;
+    const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
+    if (!root.empty()) {
+        const auto found = std::ranges::find(model_.nodes, root, &tinygltf::Node::name);
+        if (found == model_.nodes.end()) fail(fmt::format("no node is named `{}`", root));
+        roots.push_back(static_cast<int>(found - model_.nodes.begin()));
+    } else if (model_.scenes.empty()) {
+        for (int i = 0; i < count; ++i)
+            if (parent[static_cast<std::size_t>(i)] < 0) roots.push_back(i);
+    } else if (static_cast<std::size_t>(scene) < model_.scenes.size()) {
+        roots = model_.scenes[static_cast<std::size_t>(scene)].nodes;
+    } else {
+        fail(fmt::format("scene is {}, but there are {} scenes", scene, model_.scenes.size()));
+    }
+    std::vector<PlacedGltfNode> placed;
+    std::vector<bool> seen(model_.nodes.size(), false);
+    std::vector<PlacedGltfNode> open;
+    for (auto r = roots.rbegin(); r != roots.rend(); ++r) {
+        if (*r < 0 || *r >= count) fail(fmt::format("scenes[{}] names node {} of {}", scene, *r, count));
+        Transform above; // of a root that was named within a tree
+        int steps = 0;
+        for (int p = parent[static_cast<std::size_t>(*r)]; p >= 0; p = parent[static_cast<std::size_t>(p)]) {
+            above = above.then(localTransform(p));
+            if (++steps > count) fail(fmt::format("nodes[{}] is an ancestor of itself", p));
+        }
+        open.push_back({*r, above});
+    }
+    while (!open.empty()) {
+        const PlacedGltfNode next = open.back();
+        open.pop_back();
+        if (seen[static_cast<std::size_t>(next.node)])
+            fail(fmt::format("nodes[{}] is met twice in one scene", next.node));
+        seen[static_cast<std::size_t>(next.node)] = true;
+        placed.push_back({next.node, localTransform(next.node).then(next.map)});
+        if (!placed.back().map.isFinite()) fail(fmt::format("nodes[{}]: the transforms overflow", next.node));
+        const auto& children = model_.nodes[static_cast<std::size_t>(next.node)].children;
+        for (auto c = children.rbegin(); c != children.rend(); ++c) open.push_back({*c, placed.back().map});
+    }
+    return placed;
+}
+
+} // namespace abbe
