@@ -1,6 +1,5 @@
 #include "geometry/mesh_cleanup.h"
-#include "io/io_error.h"
-#include "io/mesh_file.h"
+#include "io/gltf.h"
 #include "scene/shape_types.h"
 
 #include <fmt/format.h>
@@ -9,11 +8,25 @@ namespace abbe {
 
 namespace {
 
-std::optional<MeshData> fromFile(const schema::Text& file, double unit, Span span, Diagnostics& diagnostics) {
+// glTF states metres and y up; other formats say nothing and are taken as the scene's own.
+void toScene(MeshFile& file, double unit, bool zUp) {
+    const bool stated = file.coordinates == MeshCoordinates::metresYUp;
+    const bool turn = stated && zUp;
+    for (Vec3& p : file.mesh.positions) {
+        if (turn) p = {p.x, -p.z, p.y};
+        if (!stated) p = Vec3(Vec3d(p) * unit);
+    }
+    if (turn)
+        for (Vec3& n : file.mesh.normals) n = {n.x, -n.z, n.y};
+}
+
+std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, Span span, Diagnostics& diagnostics) {
     try {
-        MeshData mesh = readMesh(file.value).mesh;
-        for (Vec3& p : mesh.positions) p = Vec3(Vec3d(p) * unit);
-        return mesh;
+        GltfSelection selection;
+        for (const auto& [key, value] : file.keys) (key == "node" ? selection.node : selection.mesh) = value;
+        MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selection);
+        toScene(read, unit, zUp);
+        return std::move(read.mesh);
     } catch (const IoError& e) {
         diagnostics.error("E0402", file.span.valid() ? file.span : span, e.what(), "cannot be read");
     } catch (const std::bad_alloc&) {
@@ -54,9 +67,9 @@ std::optional<MeshData> fromRows(const std::vector<Vec3d>& points, const schema:
 } // namespace
 
 std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
-                                 const schema::IndexRows& faces, Span span, Diagnostics& diagnostics) {
+                                 const schema::IndexRows& faces, Span span, Diagnostics& diagnostics, bool zUp) {
     auto mesh =
-        file.value.empty() ? fromRows(points, faces, span, diagnostics) : fromFile(file, unit, span, diagnostics);
+        file.value.empty() ? fromRows(points, faces, span, diagnostics) : fromFile(file, unit, zUp, span, diagnostics);
     if (!mesh) return std::nullopt;
     const MeshCleanup cleanup = cleanMesh(*mesh);
     if (cleanup.error) {

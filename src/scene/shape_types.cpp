@@ -79,7 +79,9 @@ TypeInfo meshType() {
             .argument(0)
             .group("source")
             .synonyms({"filename", "path"})
-            .doc("OBJ or PLY file, binary or text; quads are kept.")
+            .key({"node", {}, "Take this node of a glTF file, and those below it."})
+            .key({"mesh", {}, "Take this mesh of a glTF file."})
+            .doc("OBJ, PLY or glTF file, binary or text; quads are kept. glTF is in metres, with y up.")
             .example("file \"bunny.ply\""),
         field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
             .unit({Dimension::length})

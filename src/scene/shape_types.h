@@ -56,10 +56,10 @@ std::unique_ptr<const Shape> makeSphere(Vec3d center, double radius, const Trans
 std::unique_ptr<const Shape> makeDisk(Vec3d center, Vec3d normal, double radius, const Transform& place, Span,
                                       Diagnostics&);
 std::unique_ptr<const Shape> makePlane(Vec3d point, Vec3d normal, const Transform& place, Span, Diagnostics&);
-// A mesh in its own space: from a file (OBJ or PLY, told apart by content; its coordinates times `unit`) or from points
-// and faces. Cleaned and checked.
+// A mesh in its own space: from a file (OBJ or PLY, with coordinates times `unit`, or glTF, in metres and turned where
+// z is up; told apart by content) or from points and faces. Cleaned and checked.
 std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
-                                 const schema::IndexRows& faces, Span, Diagnostics&);
+                                 const schema::IndexRows& faces, Span, Diagnostics&, bool zUp = false);
 // Normals stay outward under mirrors.
 std::unique_ptr<const Shape> placeMesh(MeshData, const Transform& place, Span, Diagnostics&);
 
