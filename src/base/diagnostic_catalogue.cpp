@@ -121,7 +121,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0604", "a shape without area", "All of it lies in a line or a point, or a transform flattens it. It cannot be seen and cannot emit."},
     {"E0605", "a shape is too far away", "Positions are exact up to about 1e15 m from the camera. A wrong unit is the likely reason: see `length=` in the `scene` line."},
     {"E0606", "an infinite plane emits", "A light needs an end to have a power. Use a quad or a disk."},
-    {"E0607", "too many instances", "Instances inside instances multiply. More than 100 million are taken for a mistake."},
+    {"E0607", "too many instances", "More than 100 million places, or a million copies of lights and planes, are taken for a mistake. Instances inside instances multiply."},
     {"E0608", "a second one", "A scene has one `film` and one `render`."},
     {"E0609", "the film is wrong", "The size is two whole numbers, the crop lies within it, and the filter has a positive radius; the message says which rule is broken."},
     {"E0610", "no light", "Without a light the picture would be black. Add one, `light sky { luminance 5000 nits }`, or an `emission` to a shape."},
@@ -131,24 +131,28 @@ constexpr CodeInfo kCodes[] = {
     {"E0621", "damaged curves or points", "The numbers of points, radii, normals and `counts` must match. A strand needs two points if it is linear, at least four for B-splines and Catmull-Rom, and 4, 7, 10, … for Bézier curves."},
     {"E0622", "curves or points are stretched unevenly", "Their transform, with those of the groups around them, may move, turn, mirror and scale evenly: their radius is one number. An `instance` of an `object` may stretch them; tubes and spheres become elliptical."},
     {"E0623", "curves or points emit", "This version cannot make lights of them. Use shapes that can emit: `mesh`, `quad`, `disk`, `sphere`."},
+    {"E0630", "where instances are is not said, or wrongly", "`instances` takes exactly one of `points` (a PLY file), `grid` (three whole numbers) and `scatter` (a number). `over` and `area` belong to `scatter`."},
+    {"E0631", "a placement is unusable", "The place of an instance is not finite, flattens the object, or makes it so small or large that no ray can be followed into it. Scales of 0 and turns by a quaternion or normal of 0 do this."},
+    {"E0632", "nothing to scatter on", "`over` names a shape in the same group or object, or at the top level, where the instances are: a quad, a disk, or one that is made of polygons."},
+    {"E0633", "objects nest too deeply", "Objects are placed inside of objects over more than 32 levels."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
+    {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},
     {"W0630", "values beyond half floats", "The film's `output` asks for 16-bit values, whose largest is 65504. Larger ones were written as that."},
     {"W0631", "a channel was left out", "An ACES container (half, uncompressed, ACES2065-1) holds red, green and blue alone."},
     {"W0640", "samples were dropped", "A sample that is not finite or is negative never reaches the image: it is left out of its pixel's mean and counted. A few hint at a numerical limit, many at a mistake in the scene or in the program. `--pixel X,Y` repeats one pixel."},
-    {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"W0641", "a black image", "No light reaches the camera. It may look away from the scene or stand inside something; a light may face the other way or be enclosed; the exposure may be far too low."},
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},
+    {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
+    {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
 };
 // clang-format on
 
 } // namespace
 
 const CodeInfo* findCode(std::string_view code) {
-    {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
-    {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
     for (const CodeInfo& info : kCodes)
         if (info.code == code) return &info;
     return nullptr;

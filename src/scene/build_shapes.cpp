@@ -7,13 +7,6 @@ namespace abbe {
 
 using schema::Kind;
 
-namespace {
-
-// More instances than any machine holds: nested objects multiply quickly.
-constexpr std::size_t kMaxInstances = 100'000'000;
-
-} // namespace
-
 const Shape* SceneBuilder::keepShape(std::unique_ptr<const Shape> shape) {
     return shapes_.emplace_back(std::move(shape)).get();
 }
@@ -98,8 +91,7 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
     const auto params = bound<MeshParams>(d);
     if (!params) return;
     shape.common = *params;
-    auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_,
-                         tree_.header.zUp);
+    auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_);
     if (!mesh) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
     shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
@@ -153,94 +145,13 @@ void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Tr
             placeAll(d.children, ownTransform(d).then(toRender));
             break;
         case Kind::instance:
-            placeInstance(d, toRender);
+        case Kind::instances:
+            placeInstances(d, definitions, toRender);
             break;
         default:
             break;
         }
     }
-}
-
-void SceneBuilder::placeInstance(const Definition& d, const Transform& toRender) {
-    const Definition* object = tree_.find(Kind::object, d.target);
-    const Transform place = ownTransform(d).then(toRender);
-    if (object) expand(*object, place, d.targetSpan); // an unknown name has been reported by resolve()
-}
-
-// The parts of an object that its instances share are built once, in the object's own space. Emitters are made anew for
-// every instance, because each is a light of its own; so are planes, which have no end to transform.
-void SceneBuilder::collect(const std::vector<Definition>& definitions, const Transform& toObject, ObjectGeometry& out,
-                           std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared) {
-    for (const Definition& d : definitions) {
-        if (d.kind == Kind::group) {
-            collect(d.children, ownTransform(d).then(toObject), out, shared);
-        } else if (d.kind == Kind::instance) {
-            out.instances.emplace_back(&d, toObject);
-        } else if (d.kind == Kind::light) {
-            out.unshared.push_back(&d);
-            out.unsharedPlace.push_back(toObject);
-        } else if (d.kind == Kind::shape) {
-            LoadedShape& loaded = loadedShape(d);
-            if (!loaded.sound) continue;
-            if (loaded.common.emission || loaded.infinite) {
-                out.unshared.push_back(&d);
-                out.unsharedPlace.push_back(toObject);
-            } else if (auto shape = loaded.place(loaded.common.transform.then(toObject))) {
-                countShape(loaded);
-                shared.emplace_back(keepShape(std::move(shape)),
-                                    EmbreeSceneBuilder::Binding{materialOf(loaded.common), nullptr});
-            }
-        }
-    }
-}
-
-SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& object) {
-    const auto [found, isNew] = objects_.try_emplace(&object);
-    ObjectGeometry& geometry = found->second;
-    if (!isNew) return geometry;
-    ++built_->facts.objects;
-    std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>> shared;
-    collect(object.children, ownTransform(object), geometry, shared);
-    for (const auto& [shape, binding] : shared)
-        geometry.bounds.add(Bounds3d{Vec3d(shape->bounds().lower), Vec3d(shape->bounds().upper)});
-    if (!shared.empty()) geometry.embreeObject = embree_.addObject(std::move(shared));
-    return geometry;
-}
-
-void SceneBuilder::expand(const Definition& object, const Transform& toRender, Span asker) {
-    ObjectGeometry& geometry = objectGeometry(object);
-    if (geometry.busy) {
-        std::string chain;
-        for (const Definition* d : chain_) chain += fmt::format("`{}` → ", d->name);
-        diagnostics_.error("E0602", asker, fmt::format("object `{}` contains itself", object.name),
-                           fmt::format("{}`{}`", chain, object.name));
-        return;
-    }
-    if (++instanceCount_ > kMaxInstances) {
-        if (instanceCount_ == kMaxInstances + 1)
-            diagnostics_.error("E0607", asker, "nested objects expand to more than 100 million instances");
-        return;
-    }
-    geometry.busy = true;
-    chain_.push_back(&object);
-    if (geometry.embreeObject) {
-        embree_.addInstance(*geometry.embreeObject, toRender);
-        ++built_->facts.instances;
-        for (int corner = 0; corner < 8; ++corner)
-            bounds_.add(toRender.point({corner & 1 ? geometry.bounds.upper.x : geometry.bounds.lower.x,
-                                        corner & 2 ? geometry.bounds.upper.y : geometry.bounds.lower.y,
-                                        corner & 4 ? geometry.bounds.upper.z : geometry.bounds.lower.z}));
-    }
-    for (std::size_t i = 0; i < geometry.unshared.size(); ++i) {
-        const Transform place = geometry.unsharedPlace[i].then(toRender);
-        if (geometry.unshared[i]->kind == Kind::light)
-            placeLight(*geometry.unshared[i], place);
-        else
-            placeShape(*geometry.unshared[i], place);
-    }
-    for (const auto& [instance, place] : geometry.instances) placeInstance(*instance, place.then(toRender));
-    chain_.pop_back();
-    geometry.busy = false;
 }
 
 } // namespace abbe

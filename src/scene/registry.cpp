@@ -16,11 +16,12 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "scene/instances_type.h"
 #include "scene/planned_types.h"
 #include "scene/shape_curves.h"
 #include "scene/shape_parametric.h"
-#include "scene/shape_types.h"
 #include "scene/shape_subdivision.h"
+#include "scene/shape_types.h"
 
 namespace abbe {
 
@@ -63,9 +64,9 @@ constexpr CameraEntry kCameras[] = {
 };
 
 constexpr schema::TypeInfo (*kOthers[])() = {
-    quadType,      sphereType,           diskType,      planeType,      meshType,
-    lightQuadType,   lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType,
-    sunLightType,    skyLightType,  environmentLightType, filmType,      renderType,
+    quadType,      sphereType,           diskType,      planeType,      meshType,      lightQuadType,
+    lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType, sunLightType,
+    skyLightType,  environmentLightType, instancesType, filmType,       renderType,
 };
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "render/shape.h"
 #include "scene/build.h"
 #include "scene/curve_library.h"
+#include "scene/instances_type.h"
 #include "scene/shape_types.h"
 
 #include <map>
@@ -37,18 +38,27 @@ class SceneBuilder final : public schema::Resolver {
         std::shared_ptr<const MeshData> mesh; // mesh shapes
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
-        bool infinite = false;
         std::size_t dicedTriangles = 0, dicedQuads = 0; // of the last placement of a subdivision surface
+        bool infinite = false;
         bool sound = false;
+    };
+    struct ObjectGeometry;
+    // An object inside another one.
+    struct NestedObject {
+        const ObjectGeometry* object;
+        std::vector<Placement> placements;
     };
     // The geometry of an object that instances share.
     struct ObjectGeometry {
         std::optional<std::uint32_t> embreeObject; // absent: nothing in it can be shared
         std::vector<const Definition*> unshared;   // emitters, planes and lights, with the transform of their group
         std::vector<Transform> unsharedPlace;
-        std::vector<std::pair<const Definition*, Transform>> instances; // nested
-        Bounds3d bounds;                                                // of the shared shapes, object space
-        bool busy = false;                                              // being expanded: meeting it again is a cycle
+        std::vector<NestedObject> nested;
+        Bounds3 bounds;           // of what is shared, object space
+        std::size_t shown = 0;    // how many objects with shapes one instance shows, nested ones included
+        int levels = 0;           // of objects inside of it
+        bool hasUnshared = false; // nested ones included
+        bool busy = false;        // being built: meeting it again is a cycle
     };
 
     template <typename P> std::optional<P> bound(const Definition&);
@@ -69,11 +79,6 @@ class SceneBuilder final : public schema::Resolver {
     // build_shapes.cpp
     void placeAll(const std::vector<Definition>&, const Transform& toRender);
     void placeShape(const Definition&, const Transform& toRender);
-    void placeInstance(const Definition&, const Transform& toRender);
-    void expand(const Definition& object, const Transform& toRender, Span asker);
-    ObjectGeometry& objectGeometry(const Definition& object);
-    void collect(const std::vector<Definition>&, const Transform& toObject, ObjectGeometry&,
-                 std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shared);
     LoadedShape& loadedShape(const Definition&);
     void loadMeshShape(const Definition&, LoadedShape&);
     // shape_parametric.cpp; false for other types.
@@ -81,18 +86,30 @@ class SceneBuilder final : public schema::Resolver {
     void loadBox(const Definition&, LoadedShape&);
     void loadFrustum(const Definition&, LoadedShape&, Vec3d up);
     void loadTorus(const Definition&, LoadedShape&, Vec3d up);
+    // shape_subdivision.cpp; loadSubdivision is false for other types.
+    bool loadSubdivision(const Definition&, LoadedShape&);
+    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
-    // shape_subdivision.cpp; loadSubdivision is false for other types.
-    bool loadSubdivision(const Definition&, LoadedShape&);
-    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
     Transform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
     void countShape(const LoadedShape&);
+
+    // build_instances.cpp; `siblings` are the definitions among which an instance stands.
+    using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
+    void placeInstances(const Definition&, const std::vector<Definition>& siblings, const Transform& toRender);
+    std::vector<Placement> placements(const Definition&, const std::vector<Definition>& siblings,
+                                      const Transform& toParent);
+    bool scatterSurface(const schema::Text& over, const std::vector<Definition>& siblings, ScatterSurface&);
+    void placeUnshared(const ObjectGeometry&, const Transform& toRender, Span asker);
+    ObjectGeometry& objectGeometry(const Definition& object);
+    void collect(const std::vector<Definition>&, const Transform& toObject, ObjectGeometry&, SharedShapes&);
+    void collectNested(const Definition&, const std::vector<Definition>& siblings, const Transform& toObject,
+                       ObjectGeometry&);
 
     // build_lights.cpp
     void placeLight(const Definition&, const Transform& toRender);
@@ -121,9 +138,10 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
     std::map<const Definition*, LoadedShape> loaded_;
     std::map<const Definition*, ObjectGeometry> objects_;
-    std::vector<const Definition*> chain_; // objects being expanded
-    std::size_t instanceCount_ = 0;
+    std::vector<const Definition*> chain_; // objects being built
+    std::size_t instanceCount_ = 0, unsharedCount_ = 0;
     std::vector<std::pair<std::string, Span>> planned_; // types that this version does not render, and where
+    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by
     Bounds3d bounds_;                                   // of finite geometry, render space
 };
 
@@ -136,4 +154,3 @@ template <typename P> std::optional<P> SceneBuilder::bound(const Definition& def
 }
 
 } // namespace abbe
-    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by

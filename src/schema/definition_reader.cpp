@@ -12,10 +12,12 @@ namespace abbe::schema {
 namespace {
 
 constexpr auto kPlanned = std::to_array<std::string_view>(
-    {"include", "override", "remove", "variant", "instances", "volume", "medium", "texture", "atmosphere"});
+    {"include", "override", "remove", "variant", "volume", "medium", "texture", "atmosphere"});
+
+bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances; }
 
 bool isTyped(Kind kind) {
-    return kind != Kind::group && kind != Kind::object && kind != Kind::instance && kind != Kind::spectrum;
+    return kind != Kind::group && kind != Kind::object && !isPlacement(kind) && kind != Kind::spectrum;
 }
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -160,12 +162,12 @@ void DefinitionReader::spectrumHead(const Node& node, Definition& definition) co
     definition.arguments = valuesFrom(node, 1);
 }
 
-// `group [name]`, `object name`, `instance object-name`.
+// `group [name]`, `object name`, `instance object-name`, `instances object-name`.
 void DefinitionReader::containerHead(const Node& node, Definition& definition) const {
     const std::string_view kind = keyword(definition.kind);
     const std::size_t count = node.valueCount();
     const bool named = count > 0 && !node.allNumbers() && node.value(0).isText();
-    if (named && definition.kind == Kind::instance) {
+    if (named && isPlacement(definition.kind)) {
         definition.target = node.value(0).text;
         definition.targetSpan = place(node.value(0));
     } else if (named) {
@@ -234,8 +236,9 @@ void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Plac
         head.typedHead(node, definition);
     else
         head.containerHead(node, definition);
-    if (*kind == Kind::spectrum || isTyped(*kind)) {
-        definition.keys = keysOf(node);
+    if (*kind == Kind::instances) definition.type = table_.defaultOf(*kind);
+    if (*kind == Kind::spectrum || isTyped(*kind) || *kind == Kind::instances) {
+        if (*kind != Kind::instances) definition.keys = keysOf(node); // a container's keys have been reported
         definition.properties = childrenOf(node);
     } else {
         containerBlock(node, definition);

@@ -39,7 +39,7 @@ struct Definition {
     bool damaged = false;             // a syntax error took something out of the head
     std::vector<Node> properties;     // everything in the block that is not a nested definition
     std::vector<Definition> children; // nested definitions of group and object
-    std::string target;               // instance: the object it places
+    std::string target;               // instance, instances: the object that they place
     Span targetSpan;
 };
 

@@ -14,6 +14,7 @@ constexpr auto kKinds = std::to_array<std::pair<Kind, std::string_view>>({
     {Kind::group, "group"},
     {Kind::object, "object"},
     {Kind::instance, "instance"},
+    {Kind::instances, "instances"},
     {Kind::material, "material"},
     {Kind::spectrum, "spectrum"},
     {Kind::film, "film"},

@@ -19,7 +19,19 @@
 namespace abbe::schema {
 
 // What a definition can be. The keyword in a file is the enumerator's name.
-enum class Kind : std::uint8_t { camera, light, shape, group, object, instance, material, spectrum, film, render };
+enum class Kind : std::uint8_t {
+    camera,
+    light,
+    shape,
+    group,
+    object,
+    instance,
+    instances,
+    material,
+    spectrum,
+    film,
+    render
+};
 std::string_view keyword(Kind);
 std::optional<Kind> findKind(std::string_view keyword);
 

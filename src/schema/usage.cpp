@@ -15,6 +15,8 @@ namespace {
 using Definitions = std::vector<Definition>;
 using Texts = std::unordered_set<std::string_view>;
 
+bool isPlacement(const Definition& d) { return d.kind == Kind::instance || d.kind == Kind::instances; }
+
 void collectTexts(const Node& node, Texts& out) {
     if (!node.allNumbers())
         for (std::size_t i = 0; i < node.valueCount(); ++i)
@@ -31,7 +33,7 @@ void collectTexts(const Definitions& definitions, Texts& out) {
 
 void collectInstances(const Definitions& definitions, std::vector<const Definition*>& out) {
     for (const Definition& d : definitions) {
-        if (d.kind == Kind::instance) out.push_back(&d);
+        if (isPlacement(d)) out.push_back(&d);
         collectInstances(d.children, out);
     }
 }
@@ -39,7 +41,7 @@ void collectInstances(const Definitions& definitions, std::vector<const Definiti
 // The instances that appear wherever `owner` appears. An object inside of it is only defined there.
 void collectPlaced(const Definition& owner, std::vector<const Definition*>& out) {
     for (const Definition& d : owner.children) {
-        if (d.kind == Kind::instance) out.push_back(&d);
+        if (isPlacement(d)) out.push_back(&d);
         if (d.kind == Kind::group) collectPlaced(d, out);
     }
 }

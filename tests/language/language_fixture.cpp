@@ -171,7 +171,8 @@ namespace {
 void bindAll(Loaded& loaded, const std::vector<Definition>& definitions) {
     for (const Definition& d : definitions) {
         bindAll(loaded, d.children);
-        if (d.kind == Kind::group || d.kind == Kind::object || d.kind == Kind::instance || d.kind == Kind::spectrum)
+        if (d.kind == Kind::group || d.kind == Kind::object || d.kind == Kind::instance || d.kind == Kind::instances ||
+            d.kind == Kind::spectrum)
             continue;
         const std::string key = std::string(keyword(d.kind)) + (d.name.empty() ? "" : " " + d.name);
         Params params;
