@@ -91,7 +91,8 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
     const auto params = bound<MeshParams>(d);
     if (!params) return;
     shape.common = *params;
-    auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_);
+    auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_,
+                         tree_.header.zUp);
     if (!mesh) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
     shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
