@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kUnitLuminance = kLuminousEfficacy * kYIntegral; // cd/m² of Y = 1
-constexpr double kSaturation = 78;                                // lx s at ISO 1 [ISO12232, §6.2]
+constexpr double kSaturation = 78;                                // lx s at ISO 1 [ISO12232]
 
 // Camera to file. Nothing after a diagnostic.
 std::optional<Transform> toFile(const CameraParams& params, const CameraContext& context, Diagnostics& diagnostics) {

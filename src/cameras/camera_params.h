@@ -71,7 +71,7 @@ std::optional<double> focusDistance(const LensCameraParams&, const CameraPlace&,
 std::optional<Aperture> apertureOf(const LensCameraParams&, double radius, const CameraContext&, Diagnostics&);
 
 // Pixel value per unit of radiance, of which Y = 1 stands for 72 983 nits. Without `iso` only 2^exposure. With it, a
-// pixel of 1 is the exposure that saturates a sensor of that speed, H_sat = 78 lx s / ISO [ISO12232, §6.2], where a
+// pixel of 1 is the exposure that saturates a sensor of that speed, H_sat = 78 lx s / ISO [ISO12232], where a
 // lens of f-number N gives H = t L π / (4 N²). A missing f-number is an infinite one. Nothing after an error.
 std::optional<double> exposureFactor(const LensCameraParams&, std::optional<double> fNumber, const CameraContext&,
                                      Diagnostics&);

@@ -10,7 +10,7 @@ namespace abbe {
 // In the plane of the last vertex, boxes that hold every place through which light reaches the film at a distance from
 // the axis; found by tracing at setup, for points on the +x axis of the film, the others being turned to there. As long
 // as the stop is centred, a box that is too large costs samples and one that is too small would darken the picture, so
-// each is a cell of the search grid larger than what was found [Pharr2023, §5.4.5].
+// each is a cell of the search grid larger than what was found.
 class ExitPupil {
   public:
     struct Box {

@@ -24,7 +24,7 @@ std::vector<FieldInfo> lensFields() {
                 .group("lens")
                 .required()
                 .choices(names)
-                .doc("A published lens, see docs/lenses.md.")
+                .doc("A published lens, see docs/cameras.md.")
                 .example("prescription double-gauss")
                 .synonyms({"lensfile", "lens-file", "lens-model"}),
             field(FieldType::table, "surfaces", &P::surfaces)
@@ -125,7 +125,7 @@ LensSystemCamera::LensSystemCamera(const Frame& axes, Vec2i filmSize, double wid
 }
 
 // The illuminance at a film point is the integral of L cos⁴θ / Z² over the exit pupil's plane at distance Z
-// [Kolb1995, eq. 3].
+// [Kolb1995].
 CameraRay LensSystemCamera::ray(const CameraSample& sample) const noexcept {
     CameraRay result;
     result.heroOnly = train_.disperses();

@@ -40,7 +40,7 @@ double LensTrain::rearEdge() const {
     return s.z + c * h2 / (1 + std::sqrt(std::max(0.0, 1 - c * c * h2)));
 }
 
-// One surface, by the intersection nearest to its vertex and Snell's law as a vector [Welford1986, §4.2]: `ratio` is
+// One surface, by the intersection nearest to its vertex and Snell's law as a vector [Welford1986, ch. 4]: `ratio` is
 // the index in front of the surface over that behind it, along the ray, and `forward` the sign of the ray's dz.
 bool LensTrain::cross(const Surface& s, LensRay& ray, double ratio, double forward,
                       const Aperture& opening) const noexcept {

@@ -12,7 +12,7 @@ struct LensRay {
     Vec3d d; // unit
 };
 
-// Paraxial quantities of a lens in air at one wavelength [Born1999, §4.4]. Places are z on the axis.
+// Paraxial quantities of a lens in air at one wavelength [Born1999, ch. 4]. Places are z on the axis.
 struct CardinalPoints {
     double focalLength = 0;                       // negative: the lens diverges
     double frontFocus = 0, rearFocus = 0;         // focal points
