@@ -1,5 +1,12 @@
 #include "base/parallel.h"
 
+#ifdef __SANITIZE_THREAD__
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+#endif
 #include <memory>
 #include <pmmintrin.h>
 #include <tbb/global_control.h>
@@ -29,6 +36,31 @@ void flushDenormals() {
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
 }
 
+#ifdef __SANITIZE_THREAD__
+// TBB's library is not instrumented, so that the thread sanitizer sees no order between its tasks and reports races
+// everywhere. Under it the loop runs on plain threads.
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    std::atomic<std::size_t> next = 0;
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto work = [&] {
+        flushDenormals();
+        try {
+            for (std::size_t i = next++; i < count; i = next++) body(i);
+        } catch (...) {
+            next = count;
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (int i = 1; i < threadCount(); ++i) threads.emplace_back(work);
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+#else
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
@@ -38,5 +70,6 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
         },
         tbb::simple_partitioner{});
 }
+#endif
 
 } // namespace abbe

@@ -27,7 +27,7 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.dir_x = ray.direction.x;
     r.dir_y = ray.direction.y;
     r.dir_z = ray.direction.z;
-    r.time = 0;
+    r.time = ray.time;
     r.tfar = ray.tMax;
     r.mask = 0xffffffffu;
     r.id = 0;
@@ -42,7 +42,9 @@ class EmbreeScene final : public Intersector {
   public:
     bool intersect(const Ray&, SurfaceHit&) const noexcept override;
     bool occluded(const Ray&) const noexcept override;
-    bool occluded(Vec3 from, Vec3 to) const noexcept override { return occluded({from, to - from, kBeforeEnd, 0}); }
+    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
+        return occluded({from, to - from, kBeforeEnd, time});
+    }
     Bounds3 bounds() const override { return bounds_; }
     std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 
@@ -90,9 +92,9 @@ void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray&
 void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw, Path path, const Ray& ray,
                                 SurfaceHit& hit) const {
     Ray inside = ray;
-    for (const PlacementStep& step : path) inside = step.placement().toObject(inside);
+    for (const PlacementStep& step : path) inside = step.placement(ray.time).toObject(inside);
     record.shape->surface(raw, inside, hit);
-    for (std::size_t i = path.size(); i-- > 0;) Instance(path[i].placement()).toRender(hit);
+    for (std::size_t i = path.size(); i-- > 0;) Instance(path[i].placement(ray.time)).toRender(hit);
     hit.instance = static_cast<std::uint32_t>(path[0].table->firstInstance() + path[0].index);
 }
 
@@ -162,9 +164,10 @@ struct Corners {
     std::array<std::array<Vec3d, 3>, 2> triangle;
     int count = 0;
 };
-Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, std::span<const PlacementStep> path) {
+Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, std::span<const PlacementStep> path,
+                  float time) {
     Transform toRender;
-    for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement().map());
+    for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement(time).map());
     RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
     const auto* vertices = static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     const auto* indices =
@@ -184,7 +187,8 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     constexpr double slack = 1e-6;
     const PrimitiveKind kind = recordOf(h, path).kind;
     if (kind != PrimitiveKind::triangles && kind != PrimitiveKind::quads) return true; // computed in double already
-    const Corners corners = cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, kind, path);
+    const Corners corners =
+        cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, kind, path, ray.time);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < corners.count; ++i) {
@@ -222,6 +226,8 @@ struct EmbreeSceneBuilder::Impl {
     Shapes shapes;
     std::vector<Shapes> objects;
     std::map<Inside, std::vector<Placement>> placements;
+    std::map<std::uint32_t, std::vector<Motion>> moving; // by object, in the scene
+    Interval shutter;
 
     // What is known of an object's scene once it is built.
     struct BuiltObject {
@@ -236,6 +242,7 @@ struct EmbreeSceneBuilder::Impl {
     static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
     static void addShapes(EmbreeScene&, const Shapes&, BuiltObject&);
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
+    void addMoving(EmbreeScene&, std::size_t geometryId, BuiltObject& top);
 };
 
 EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
@@ -269,7 +276,20 @@ void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t insi
         object.bounds.add(table->bounds(placed.bounds));
         object.levels = std::max(object.levels, placed.levels + 1);
     }
+    if (inside == kScene) addMoving(target, geometryId, object);
     ABBE_CHECK(object.levels <= kMaxInstanceLevels);
+}
+
+void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::size_t geometryId, BuiltObject& top) {
+    for (auto& [number, motions] : moving) {
+        const BuiltObject& placed = built[number];
+        const auto& table = target.tables.emplace_back(std::make_unique<const InstanceTable>(
+            placed.scene, std::move(motions), shutter, placed.firstRecord, instanceCount));
+        instanceCount += table->size();
+        table->attach(target.device.get(), top.scene, geometryId++);
+        top.bounds.add(table->bounds(placed.bounds));
+        top.levels = std::max(top.levels, placed.levels + 1);
+    }
 }
 
 EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}
@@ -300,6 +320,13 @@ void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placemen
         list = std::move(placements);
     else
         list.insert(list.end(), placements.begin(), placements.end());
+}
+
+void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutter = {open, duration}; }
+
+void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion) {
+    ABBE_CHECK(object < impl_->objects.size());
+    impl_->moving[object].push_back(motion);
 }
 
 std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {

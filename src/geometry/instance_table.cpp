@@ -9,6 +9,9 @@ namespace abbe {
 
 namespace {
 
+// Time steps of what moves, for Embree's boxes alone; where an object is comes from its motion.
+constexpr unsigned kMotionSteps = 17;
+
 const InstanceTable& tableOf(void* user) { return *static_cast<const InstanceTable*>(user); }
 
 // False only if the ray passes the box. Boxes of turned boxes are larger than needed, so that many rays do, and
@@ -61,9 +64,46 @@ InstanceTable::InstanceTable(RTCScene object, std::vector<Placement> placements,
     upper_ = Float4{b.upper_x, b.upper_y, b.upper_z, 0};
 }
 
+InstanceTable::InstanceTable(RTCScene object, std::vector<Motion> motions, Interval shutter, std::size_t firstRecord,
+                             std::uint64_t firstInstance)
+    : object_(object), motions_(std::move(motions)), shutter_(shutter), firstRecord_(firstRecord),
+      firstInstance_(firstInstance) {
+    ABBE_CHECK(!motions_.empty() && motions_.size() < 0xffffffffu);
+    RTCBounds b;
+    rtcGetSceneBounds(object, &b);
+    lower_ = Float4{b.lower_x, b.lower_y, b.lower_z, 0};
+    upper_ = Float4{b.upper_x, b.upper_y, b.upper_z, 0};
+}
+
+Placement InstanceTable::movedTo(std::uint32_t i, double position) const {
+    return Placement(motions_[i].at(shutter_.open + position * shutter_.duration));
+}
+
+// Embree interpolates boxes linearly between its steps. Each box holds the object over both neighbouring steps, so that
+// whatever lies between two boxes holds it, too. In a step the way is sampled; between samples it is as curved as it is
+// around them, which twice the largest second difference bounds with a margin.
+Bounds3 InstanceTable::boundsAround(std::uint32_t i, unsigned step, const Bounds3& object) const {
+    constexpr int samples = 8; // per step
+    Bounds3 all, before, previous;
+    Vec3 bend;
+    for (int k = -samples; k <= samples; ++k) {
+        const double position = (step + static_cast<double>(k) / samples) / (kMotionSteps - 1);
+        if (position < 0 || position > 1) continue;
+        const Bounds3 box = movedTo(i, position).toOuter(object);
+        if (!before.empty())
+            bend = max(bend, max(abs(before.lower + box.lower - previous.lower * 2),
+                                 abs(before.upper + box.upper - previous.upper * 2)));
+        all.add(box);
+        before = previous;
+        previous = box;
+    }
+    return {all.lower - bend * 2, all.upper + bend * 2};
+}
+
 void InstanceTable::attach(RTCDevice device, RTCScene scene, std::size_t geometryId) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(placements_.size()));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(size()));
+    if (!motions_.empty()) rtcSetGeometryTimeStepCount(geometry, kMotionSteps);
     rtcSetGeometryUserData(geometry, const_cast<InstanceTable*>(this)); // read back as const
     rtcSetGeometryBoundsFunction(geometry, boundsCallback, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersectCallback);
@@ -75,13 +115,17 @@ Bounds3 InstanceTable::bounds(const Bounds3& object) const {
     Bounds3 all;
     if (object.empty()) return all;
     for (const Placement& p : placements_) all.add(p.toOuter(object));
+    for (std::uint32_t i = 0; i < motions_.size(); ++i)
+        for (unsigned step = 0; step < kMotionSteps; ++step) all.add(boundsAround(i, step, object));
     return all;
 }
 
 void InstanceTable::boundsCallback(const RTCBoundsFunctionArguments* args) {
     const InstanceTable& table = tableOf(args->geometryUserPtr);
-    const Bounds3 b = table[args->primID].toOuter(
-        {{table.lower_[0], table.lower_[1], table.lower_[2]}, {table.upper_[0], table.upper_[1], table.upper_[2]}});
+    const Bounds3 object{{table.lower_[0], table.lower_[1], table.lower_[2]},
+                         {table.upper_[0], table.upper_[1], table.upper_[2]}};
+    const Bounds3 b = table.motions_.empty() ? table.placements_[args->primID].toOuter(object)
+                                             : table.boundsAround(args->primID, args->timeStep, object);
     *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, 0};
 }
 
@@ -98,7 +142,7 @@ void InstanceTable::intersectCallback(const RTCIntersectFunctionNArguments* args
     const InstanceTable& table = tableOf(args->geometryUserPtr);
     RayContext& context = contextOf(args->context);
     auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const RayLanes outside = lanesOf(ray), inside = table[args->primID].toObject(outside);
+    const RayLanes outside = lanesOf(ray), inside = table.enter(args->primID, outside, ray.time);
     if (!table.mayEnter(ray, inside, context)) return;
     const unsigned outerHit = hit.geomID;
     const unsigned level = context.rtc.instID[0]++;
@@ -117,7 +161,7 @@ void InstanceTable::occludedCallback(const RTCOccludedFunctionNArguments* args) 
     if (args->N != 1 || args->valid[0] == 0) return;
     const InstanceTable& table = tableOf(args->geometryUserPtr);
     auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    const RayLanes outside = lanesOf(ray), inside = table[args->primID].toObject(outside);
+    const RayLanes outside = lanesOf(ray), inside = table.enter(args->primID, outside, ray.time);
     if (!table.mayEnter(ray, inside, contextOf(args->context))) return;
     setLanes(ray, inside);
     rtcOccluded1(table.object_, args->context, &ray); // sets tfar to -∞ for the outer traversal, too

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
+#include "math/keyed_transform.h"
 
 #include <array>
 #include <atomic>
@@ -17,12 +18,17 @@ class InstanceTable;
 // Objects inside objects inside …: how deep at most.
 inline constexpr int kMaxInstanceLevels = 32;
 
+// While the shutter is open, in s.
+struct Interval {
+    double open = 0, duration = 0;
+};
+
 // One step from a scene into an object.
 struct PlacementStep {
     const InstanceTable* table;
     std::uint32_t index;
 
-    const Placement& placement() const;
+    Placement placement(float time) const; // Ray::time
 };
 
 // Embree's context of one ray, and the way to its nearest hit so far: steps [0, depth of the hit), outermost first. The
@@ -47,21 +53,32 @@ class InstanceTable {
     // `firstRecord` and `firstInstance` are for whoever reads hits.
     InstanceTable(RTCScene object, std::vector<Placement> placements, std::size_t firstRecord,
                   std::uint64_t firstInstance);
+    // Objects that move: rays see them where they are at the time of the ray.
+    InstanceTable(RTCScene object, std::vector<Motion> motions, Interval shutter, std::size_t firstRecord,
+                  std::uint64_t firstInstance);
     InstanceTable(const InstanceTable&) = delete;
     InstanceTable& operator=(const InstanceTable&) = delete;
 
     // A user geometry with a primitive per placement; the table must not move any more.
     void attach(RTCDevice, RTCScene, std::size_t geometryId) const;
 
-    std::size_t size() const { return placements_.size(); }
+    std::size_t size() const { return motions_.empty() ? placements_.size() : motions_.size(); }
     RTCScene object() const { return object_; }
-    const Placement& operator[](std::uint32_t i) const { return placements_[i]; }
+    Placement placement(std::uint32_t i, float time) const {
+        return motions_.empty() ? placements_[i] : movedTo(i, static_cast<double>(time));
+    }
     std::size_t firstRecord() const { return firstRecord_; }
     std::uint64_t firstInstance() const { return firstInstance_; }
     // Of all placements of a box in object space.
     Bounds3 bounds(const Bounds3& object) const;
 
   private:
+    RayLanes enter(std::uint32_t i, const RayLanes& outside, float time) const {
+        return motions_.empty() ? placements_[i].toObject(outside)
+                                : movedTo(i, static_cast<double>(time)).toObject(outside);
+    }
+    Placement movedTo(std::uint32_t i, double position) const; // at a position in the shutter interval
+    Bounds3 boundsAround(std::uint32_t i, unsigned step, const Bounds3& object) const;
     static void boundsCallback(const RTCBoundsFunctionArguments*);
     static void intersectCallback(const RTCIntersectFunctionNArguments*);
     static void occludedCallback(const RTCOccludedFunctionNArguments*);
@@ -70,19 +87,21 @@ class InstanceTable {
     bool mayEnter(const RTCRay&, const RayLanes& inside, RayContext&) const;
 
     RTCScene object_;
-    Float4 lower_, upper_; // bounds of Embree's scene, infinite shapes included
-    std::vector<Placement> placements_;
+    Float4 lower_, upper_;              // bounds of Embree's scene, infinite shapes included
+    std::vector<Placement> placements_; // or, where they move,
+    std::vector<Motion> motions_;
+    Interval shutter_;
     std::size_t firstRecord_;
     std::uint64_t firstInstance_;
 };
 
-inline const Placement& PlacementStep::placement() const { return (*table)[index]; }
+inline Placement PlacementStep::placement(float time) const { return table->placement(index, time); }
 
 // Coordinates beyond this make Debian's Embree stop the process; NaN fails every comparison.
 [[gnu::always_inline]] inline bool isTraceable(const Ray& ray) {
     constexpr float largest = 1e18f;
     const Vec3 o = abs(ray.origin), d = abs(ray.direction);
-    return o.x + o.y + o.z < largest && d.x + d.y + d.z < largest && ray.tMax >= 0;
+    return o.x + o.y + o.z < largest && d.x + d.y + d.z < largest && ray.tMax >= 0 && ray.time >= 0 && ray.time <= 1;
 }
 
 } // namespace abbe

@@ -82,6 +82,7 @@ template <EffectBits E> class PathLoop {
 
 template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelengths& lambda, float rouletteScale) {
     path_.lambda = lambda;
+    path_.time = ray.time;
     if constexpr (kDispersion) {
         path_.densities.film = lambda;
         if (startWithHero_) endSecondaryWavelengths();
@@ -173,7 +174,9 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     // From the moved origin to the light's own moved point: neither surface shadows itself.
     const Vec3 origin = spawnOrigin(hit, light->wi);
     const Intersector& world = *context_.scene.intersector;
-    if (light->distance < kInfinity ? world.occluded(origin, light->p) : world.occluded({origin, light->wi})) return;
+    if (light->distance < kInfinity ? world.occluded(origin, light->p, path_.time)
+                                    : world.occluded({origin, light->wi, kInfinity, path_.time}))
+        return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
     if constexpr (kAbsorption) {
@@ -200,7 +203,7 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
     if (!sidesAgree(hit, eye, next.wi, direction)) return false;
     if constexpr (kAbsorption)
         if (next.lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
-    ray = {spawnOrigin(hit, direction), direction, kInfinity, ray.time};
+    ray = {spawnOrigin(hit, direction), direction, kInfinity, path_.time};
     return anyNonZero(path_.beta);
 }
 

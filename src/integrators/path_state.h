@@ -37,6 +37,7 @@ template <EffectBits E> struct PathState {
     Vec3 from;              // the last vertex, for the densities of lights
     float bsdfPdf = 1;      // density of the last direction; 1 at the eye
     bool delta = true;      // the last direction came from a delta lobe (or the eye): no other technique finds it
+    float time = 0;         // of the whole path, in the shutter interval
     float etaScale = 1;     // what refraction has scaled radiance by, undone for roulette
     [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::dispersion), path_detail::SpectralDensities,
                                              path_detail::Nothing>
