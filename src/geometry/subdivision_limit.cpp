@@ -93,9 +93,9 @@ SubdivisionSurface::Impl::Impl(const SubdivisionCage& cage)
     for (const Vec3 p : cage.positions) box.add(p);
     center = box.lower * 0.5f + box.upper * 0.5f;
     points.reserve(cage.positions.size());
-    for (const Vec3 p : cage.positions) points.push_back(p - center);
+    for (const Vec3 p : cage.positions) points.push_back(Vec3d(p) - Vec3d(center));
     Factory::Options options;
-    options.SetApproxLevelSharp(sharpLevel(cage)).SetApproxLevelSmooth(6);
+    options.SetApproxLevelSharp(sharpLevel(cage)).SetApproxLevelSmooth(7);
     factory = std::make_unique<Factory>(*refiner, options);
     const std::size_t faces = cage.faceSizes.size();
     firstCorner.reserve(faces + 1);
@@ -117,10 +117,10 @@ void FaceEvaluator::setFace(int face, bool withTexture) {
     ABBE_CHECK(good);
     patch_.resize(static_cast<std::size_t>(limit_.GetNumPatchPoints()) * 3);
     limit_.PreparePatchPoints(&surface_.points[0].x, 3, patch_.data(), 3);
-    Bounds3 box;
+    Bounds3d box;
     const auto controls = static_cast<std::size_t>(limit_.GetNumControlPoints());
-    for (std::size_t i = 0; i < controls; ++i) box.add(Vec3(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
-    smallTangent_ = 1e-5f * maxComponent(box.upper - box.lower);
+    for (std::size_t i = 0; i < controls; ++i) box.add(Vec3d(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
+    smallTangent_ = 1e-7 * maxComponent(box.upper - box.lower);
     if (!withTexture) return;
     good = surface_.factory->InitFaceVaryingSurface(face, &texture_, 0);
     ABBE_CHECK(good);
@@ -128,30 +128,30 @@ void FaceEvaluator::setFace(int face, bool withTexture) {
     texture_.PreparePatchPoints(&surface_.uvs[0].x, 2, texturePatch_.data(), 2);
 }
 
-bool FaceEvaluator::normal(float u, float v, LimitPoint& out) const {
-    const float uv[2] = {u, v};
-    Vec3 p, du, dv;
+bool FaceEvaluator::normal(double u, double v, LimitPoint& out) const {
+    const double uv[2] = {u, v};
+    Vec3d p, du, dv;
     limit_.Evaluate(uv, patch_.data(), 3, &p.x, &du.x, &dv.x);
-    out.position = p + surface_.center;
-    const float lu = length(du), lv = length(dv);
+    out.position = Vec3(p + Vec3d(surface_.center));
+    const double lu = length(du), lv = length(dv);
     if (!(lu > smallTangent_) || !(lv > smallTangent_)) return false;
-    const Vec3 n = cross(du * (1 / lu), dv * (1 / lv));
-    const float l = length(n); // the sine of the angle between the tangents
-    if (!(l > 1e-4f)) return false;
-    out.normal = n * (1 / l);
+    const Vec3d n = cross(du * (1 / lu), dv * (1 / lv));
+    const double l = length(n); // the sine of the angle between the tangents
+    if (!(l > 1e-5)) return false;
+    out.normal = Vec3(n * (1 / l));
     return true;
 }
 
-void FaceEvaluator::towardsInside(float by, float uv[2]) const {
+void FaceEvaluator::towardsInside(double by, double uv[2]) const {
     const Bfr::Parameterization param = limit_.GetParameterization();
     if (param.GetType() == Bfr::Parameterization::QUAD_SUBFACES) {
-        float local[2];
+        double local[2];
         const int subFace = param.ConvertCoordToNormalizedSubFace(uv, local);
-        for (float& x : local) x += by * (0.5f - x);
+        for (double& x : local) x += by * (0.5 - x);
         param.ConvertNormalizedSubFaceToCoord(subFace, local, uv);
         return;
     }
-    const float middle = param.GetType() == Bfr::Parameterization::TRI ? 1 / 3.f : 0.5f;
+    const double middle = param.GetType() == Bfr::Parameterization::TRI ? 1 / 3.0 : 0.5;
     for (int i = 0; i < 2; ++i) uv[i] += by * (middle - uv[i]);
 }
 
@@ -159,8 +159,8 @@ LimitPoint FaceEvaluator::point(float u, float v) const {
     LimitPoint result;
     if (normal(u, v, result)) return result;
     // The tangents vanish or are parallel here: the limit from inside the face (docs/hard_cases.md, cases 13 and 14).
-    for (const float by : {1e-4f, 1e-3f, 1e-2f, 0.1f, 0.5f}) {
-        float uv[2] = {u, v};
+    for (const double by : {1e-4, 1e-3, 1e-2, 0.1, 0.5}) {
+        double uv[2] = {u, v};
         towardsInside(by, uv);
         LimitPoint inside;
         if (!normal(uv[0], uv[1], inside)) continue;
@@ -171,10 +171,10 @@ LimitPoint FaceEvaluator::point(float u, float v) const {
 }
 
 Vec3 FaceEvaluator::position(float u, float v) const {
-    const float uv[2] = {u, v};
-    Vec3 p;
+    const double uv[2] = {u, v};
+    Vec3d p;
     limit_.Evaluate(uv, patch_.data(), 3, &p.x);
-    return p + surface_.center;
+    return Vec3(p + Vec3d(surface_.center));
 }
 
 Vec2 FaceEvaluator::texture(float u, float v) const {

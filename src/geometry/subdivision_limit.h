@@ -28,7 +28,7 @@ struct SubdivisionSurface::Impl {
     int edge(int face, int i) const { return level().GetFaceEdges(face)[i]; }
 
     Vec3 center; // points are relative to it: differences stay exact far from the origin
-    std::vector<Vec3> points;
+    std::vector<Vec3d> points;
     std::vector<Vec2> uvs;
     std::vector<std::uint32_t> uvCorners;
     std::vector<std::uint32_t> firstCorner; // of each face, and one past the last
@@ -57,13 +57,16 @@ class FaceEvaluator {
     osd::Bfr::Parameterization parameterization() const { return limit_.GetParameterization(); }
 
   private:
-    bool normal(float u, float v, LimitPoint&) const;
-    void towardsInside(float by, float uv[2]) const;
+    bool normal(double u, double v, LimitPoint&) const;
+    void towardsInside(double by, double uv[2]) const;
 
     const SubdivisionSurface::Impl& surface_;
-    osd::Bfr::Surface<float> limit_, texture_;
-    std::vector<float> patch_, texturePatch_;
-    float smallTangent_ = 0;
+    // Patches about irregular points shrink with every level, and what is left of their differences in float is noise.
+    osd::Bfr::Surface<double> limit_;
+    osd::Bfr::Surface<float> texture_;
+    std::vector<double> patch_;
+    std::vector<float> texturePatch_;
+    double smallTangent_ = 0;
 };
 
 } // namespace abbe
