@@ -1,0 +1,62 @@
+// Curves and points in white surroundings: what is white cannot be seen, and what is grey and convex is evenly grey,
+// unless a surface shadows itself.
+#include "support/scene_test.h"
+#include "support/scene_test_compare.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\nlight sky { radiance 1 }\n"
+                                "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\n";
+
+// `shape` with a place for "count"-many points and the rest of the block.
+std::string cloud(const std::string& head, int count, double scale) {
+    Random random(5);
+    std::string points;
+    for (int i = 0; i < count; ++i)
+        points += fmt::format("- {} {} {}; ", scale * (1.6 * random.uniform() - 0.8),
+                              scale * (1.6 * random.uniform() - 0.8), scale * (1.6 * random.uniform() - 0.8));
+    return head + " points { " + points + "} }\n";
+}
+
+void checkEven(const std::string& shape, double expected, std::uint32_t samples, double resolution) {
+    INFO(shape.substr(0, 120));
+    const auto scene = TestScene::parse(kHeader + shape);
+    REQUIRE(scene.report() == "");
+    const TestImage image = render(scene, samples);
+    checkSame(compareExpected(image.film, [&](int, int) { return expected; }), resolution);
+    CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
+    CHECK(image.statistics.cappedPaths == 0);
+}
+
+} // namespace
+
+TEST_CASE("white spheres, disks, tubes and ribbons in white surroundings cannot be seen") {
+    const std::string white = "material diffuse { reflectance 1 }; ";
+    for (const char* form : {"sphere", "disk"})
+        checkEven(cloud(fmt::format("shape points {{ {} form {}; radius 0.15;", white, form), 60, 1), 1, 128, 0.004);
+    for (const char* basis : {"linear", "bspline", "catmull-rom", "bezier"})
+        for (const char* form : {"round", "flat"})
+            checkEven(
+                cloud(fmt::format("shape curves {{ {} basis {}; form {}; radius 0.06;", white, basis, form), 31, 1), 1,
+                128, 0.004);
+}
+
+// A grey surface that no other part of it can see shows its reflectance, at any distance from the camera and any size.
+// Any false shadow makes it darker.
+TEST_CASE("grey tubes and spheres that fill the view are evenly grey") {
+    const std::string grey = "material diffuse { reflectance 0.5 }; ";
+    checkEven("shape points { " + grey + "radius 20; points { - 0 0 -20.5 } }\n", 0.5, 128, 0.002);
+    checkEven("shape points { " + grey + "form disk; radius 12; points { - 0 0 -30 } }\n", 0.5, 128, 0.002);
+    for (const char* basis : {"linear", "bspline", "catmull-rom", "bezier"})
+        checkEven(fmt::format(
+                      "shape curves {{ {} basis {}; radius 20; points {{ - 0 -60 -21; - 0 -20 -21; - 0 20 -21; - 0 60 "
+                      "-21 }} }}\n",
+                      grey, basis),
+                  0.5, 128, 0.002);
+}
+
+} // namespace abbe::test
