@@ -223,6 +223,35 @@ TEST_CASE("instance: sixteen rotations inside each other move a hit by less than
     CHECK(unbounded == 0);
 }
 
+// docs/hard_cases.md, cases 2 and 19: the rounding of the map is part of the bound.
+TEST_CASE("instance: rays leave convex objects far away without meeting them again") {
+    const Mesh mesh(icosphere(3, {}, 1));
+    const Transform map = Transform::rotate({1, 2, 3}, 1)
+                              .then(Transform::scale({1, 3, 0.5}))
+                              .then(Transform::translate({1000, -2000, 500}));
+    EmbreeSceneBuilder builder;
+    const auto ball = builder.addObject({{&mesh, {}}}), group = builder.addObject({});
+    builder.addInstance(ball, Transform::translate({-400, 0, 300}), group);
+    builder.addInstance(group, map);
+    const auto scene = builder.build();
+    Random random(8);
+    int met = 0, again = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3d o = around(random) * 3 + Vec3d(-400, 0, 300), target = around(random) * 0.5 + Vec3d(-400, 0, 300);
+        const Vec3 from(map.point(o));
+        SurfaceHit hit, other;
+        if (!scene->intersect({from, normalize(Vec3(map.point(target)) - from)}, hit)) continue;
+        if (dot(hit.ng, from - hit.p) <= 0) continue; // from inside
+        ++met;
+        const Vec3d side = around(random);
+        const Vec3 w = Frame::fromNormal(hit.ng).toWorld(
+            normalize(Vec3(static_cast<float>(side.x), static_cast<float>(side.y), i % 2 ? 0.02f : 1.f)));
+        again += scene->intersect({spawnOrigin(hit, w), w}, other);
+    }
+    CHECK(met > 10000);
+    CHECK(again == 0);
+}
+
 TEST_CASE("instance: slivers met edge-on are resolved inside instances, too") {
     // Long thin triangles in a fan, nearly in the plane of the rays.
     MeshData fan;
