@@ -27,7 +27,7 @@ schema::TypeInfo pointsType() {
     return {Kind::shape,
             "points",
             "Many small spheres or disks: spray, dust, particles.",
-            "shape points \"spray.ply\" { radius 1 mm }",
+            "shape points { radius 0.1; points { - 0 0 0; - 0 1 0 } }",
             false,
             std::move(fields)};
 }
