@@ -135,6 +135,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0631", "a placement is unusable", "The place of an instance is not finite, flattens the object, or makes it so small or large that no ray can be followed into it. Scales of 0 and turns by a quaternion or normal of 0 do this."},
     {"E0632", "nothing to scatter on", "`over` names a shape in the same group or object, or at the top level, where the instances are: a quad, a disk, or one that is made of polygons."},
     {"E0633", "objects nest too deeply", "Objects are placed inside of objects over more than 32 levels."},
+    {"E0634", "a lamp or plane cannot move", "An instance with keys shows an object with a lamp, an emitting shape or an infinite plane in it. Leave these out of the object."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},

@@ -43,6 +43,7 @@ struct BuiltScene {
     Scene scene;
     FilmParams film;
     RenderParams render;
+    double shutter = 0;  // s that the camera's shutter stays open, from time 0 on
     double exposure = 1; // factor from the camera's exposure in stops
     SceneFacts facts;
     double commitSeconds = 0; // of the building, what the acceleration structure took

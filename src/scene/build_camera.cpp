@@ -72,6 +72,8 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     built.scene.camera = std::move(placed->camera);
     built.scene.origin = placed->origin;
     built.exposure = placed->exposure;
+    built.shutter = placed->shutter;
+    embree_.setShutter(0, placed->shutter);
     if (!built.scene.camera->disperses()) return;
     built.scene.effects |= Effect::dispersion;
     built.scene.reasons.push_back({Effect::dispersion, definition->span, "the glass of its lens disperses"});

@@ -120,6 +120,11 @@ std::vector<Placement> SceneBuilder::placements(const Definition& d, const std::
 void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definition>& siblings,
                                   const Transform& toRender) {
     const Definition* object = tree_.find(Kind::object, d.target);
+    const std::size_t before = diagnostics_.errorCount();
+    if (const auto keys = ownKeys(d)) {
+        if (diagnostics_.errorCount() == before) placeMoving(d, Motion().then(*keys).then(toRender));
+        return;
+    }
     std::vector<Placement> places = placements(d, siblings, toRender);
     if (!object || places.empty()) return; // an unknown name has been reported by resolve()
     const ObjectGeometry& geometry = objectGeometry(*object);
@@ -131,6 +136,32 @@ void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definit
         bounds_.add(Bounds3d{Vec3d(b.lower), Vec3d(b.upper)});
     }
     if (geometry.embreeObject) embree_.addInstances(*geometry.embreeObject, std::move(places));
+}
+
+void SceneBuilder::placeMoving(const Definition& d, const Motion& toRender) {
+    const Definition* object = tree_.find(Kind::object, d.target);
+    if (!object) return;
+    const ObjectGeometry& geometry = objectGeometry(*object);
+    if (geometry.hasUnshared) {
+        diagnostics_.error("E0634", d.span, fmt::format("`{}` cannot move: a lamp or a plane is part of it", d.target),
+                           "this instance has keys");
+        return;
+    }
+    if (!geometry.embreeObject) return;
+    constexpr int samples = 64; // of the way, for faults and the scene's bounds
+    for (int i = 0; i <= samples; ++i) {
+        const Transform map = toRender.at(built_->shutter * i / samples);
+        if (const auto fault = Placement::findFault(map)) {
+            diagnostics_.error("E0631", d.span, fmt::format("this place cannot be used: {}", *fault),
+                               fmt::format("{:.6g} s after the shutter opens", built_->shutter * i / samples));
+            return;
+        }
+        const Bounds3 b = Placement(map).toOuter(geometry.bounds);
+        if (!geometry.bounds.empty()) bounds_.add(Bounds3d{Vec3d(b.lower), Vec3d(b.upper)});
+    }
+    ++instanceCount_;
+    built_->facts.instances += geometry.shown;
+    embree_.addMoving(*geometry.embreeObject, toRender);
 }
 
 // Emitters are made anew for every instance, because each is a light of its own; so are planes, which have no end to

@@ -98,8 +98,7 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     } else if (type == "mesh") {
         const auto p = bound<LightMeshParams>(d);
         if (!p) return nullptr;
-        auto mesh = loadMesh(p->file, tree_.header.length, p->points, p->faces, d.span, diagnostics_,
-                         tree_.header.zUp);
+        auto mesh = loadMesh(p->file, tree_.header.length, p->points, p->faces, d.span, diagnostics_, tree_.header.zUp);
         if (!mesh) return nullptr;
         if (!p->file.value.empty()) built_->facts.files.push_back(p->file.value);
         return placeMesh(std::move(*mesh), take(*p), d.span, diagnostics_);

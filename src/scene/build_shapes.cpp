@@ -24,6 +24,13 @@ Transform SceneBuilder::ownTransform(const Definition& d) {
     return result;
 }
 
+std::optional<KeyedTransform> SceneBuilder::ownKeys(const Definition& d) {
+    for (const schema::Node& property : d.properties)
+        if (property.name() == "transform" && schema::hasKeys(property))
+            return schema::bindMotion(property, tree_.header, diagnostics_);
+    return std::nullopt;
+}
+
 const Material* SceneBuilder::plainMaterial(double reflectance) {
     auto& index = plainMaterials_[reflectance];
     if (!index) {

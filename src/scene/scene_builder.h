@@ -38,7 +38,7 @@ class SceneBuilder final : public schema::Resolver {
         std::shared_ptr<const MeshData> mesh; // mesh shapes
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
-        std::size_t dicedTriangles = 0, dicedQuads = 0; // of the last placement of a subdivision surface
+        std::size_t dicedTriangles = 0, dicedQuads = 0;    // of the last placement of a subdivision surface
         bool infinite = false;
         bool sound = false;
     };
@@ -95,6 +95,7 @@ class SceneBuilder final : public schema::Resolver {
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
     Transform ownTransform(const Definition&);
+    std::optional<KeyedTransform> ownKeys(const Definition&); // of what can move; nothing without keys
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
     void countShape(const LoadedShape&);
@@ -102,6 +103,7 @@ class SceneBuilder final : public schema::Resolver {
     // build_instances.cpp; `siblings` are the definitions among which an instance stands.
     using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
     void placeInstances(const Definition&, const std::vector<Definition>& siblings, const Transform& toRender);
+    void placeMoving(const Definition&, const Motion& toRender);
     std::vector<Placement> placements(const Definition&, const std::vector<Definition>& siblings,
                                       const Transform& toParent);
     bool scatterSurface(const schema::Text& over, const std::vector<Definition>& siblings, ScatterSurface&);
@@ -141,7 +143,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<const Definition*> chain_; // objects being built
     std::size_t instanceCount_ = 0, unsharedCount_ = 0;
     std::vector<std::pair<std::string, Span>> planned_; // types that this version does not render, and where
-    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by
+    bool inObject_ = false;                             // placeInObject() is running: no camera to measure pixels by
     Bounds3d bounds_;                                   // of finite geometry, render space
 };
 

@@ -170,12 +170,6 @@ class MotionReader {
         return KeyedTransform(std::move(keys));
     }
 
-    static bool hasKeys(const Node& block) {
-        for (const Node child : block.children())
-            if (child.name() == "at") return true;
-        return false;
-    }
-
   private:
     std::optional<KeyedTransform::Key> readKey(const Node& node, double after) {
         if (node.damaged()) return std::nullopt;
@@ -229,6 +223,12 @@ class MotionReader {
 
 } // namespace
 
+bool hasKeys(const Node& block) {
+    for (const Node child : block.children())
+        if (child.name() == "at") return true;
+    return false;
+}
+
 KeyedTransform bindMotion(const Node& block, const Header& header, Diagnostics& diagnostics) {
     return MotionReader(header, diagnostics).read(block).value_or(KeyedTransform());
 }
@@ -236,7 +236,9 @@ KeyedTransform bindMotion(const Node& block, const Header& header, Diagnostics& 
 Transform bindTransform(const Node& block, const Header& header, Diagnostics& diagnostics) {
     for (const Node child : block.children())
         if (child.name() == "at") {
-            reportPlanned("at (motion)", child.nameSpan(), diagnostics);
+            report(diagnostics, child.nameSpan(), "E0206", "`at` (motion) is not available here in this version",
+                   "a word of the language without an implementation yet")
+                .help = "only an `instance` moves so far: put what moves into an `object`";
             return {};
         }
     return bindMotion(block, header, diagnostics).at(0);

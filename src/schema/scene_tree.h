@@ -112,6 +112,8 @@ void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void
 
 // The transform of a `transform { … }` block, top to bottom as applied to the object, or its keys `at TIME { … }`; the
 // identity after an error.
+// True if the block has keys.
+bool hasKeys(const Node& block);
 KeyedTransform bindMotion(const Node& block, const Header&, Diagnostics&);
 // The same where nothing can move: keys are an error.
 Transform bindTransform(const Node& block, const Header&, Diagnostics&);
