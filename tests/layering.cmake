@@ -20,10 +20,10 @@ set(allowed_scene ${below_render} geometry lights cameras film materials integra
 set(allowed_app ${allowed_scene} parser scene)
 set(folders base math spectrum schema parser io render geometry lights cameras film materials integrators scene app)
 
-# Libraries that only one folder may know.
+# Libraries that only one folder may know, or two.
 set(library_folders
-    "embree3/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "stb_image=io" "OpenColorIO/=io"
-    "CLI/=app" "nlohmann/=app")
+    "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
+    "CLI/=app" "nlohmann/=app|io")
 
 set(faults 0)
 macro(fault text)
@@ -65,7 +65,7 @@ foreach(folder IN LISTS folders)
                 string(REGEX MATCH "^(.*)=(.*)$" whole "${entry}")
                 set(pattern "${CMAKE_MATCH_1}")
                 set(owner "${CMAKE_MATCH_2}")
-                if(line MATCHES "[<\"]${pattern}" AND NOT folder STREQUAL owner)
+                if(line MATCHES "[<\"]${pattern}" AND NOT folder MATCHES "^(${owner})$")
                     fault("${shown}: only ${owner} may use this library: ${line}")
                 endif()
             endforeach()
