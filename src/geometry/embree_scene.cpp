@@ -243,6 +243,8 @@ struct EmbreeSceneBuilder::Impl {
     static void addShapes(EmbreeScene&, const Shapes&, BuiltObject&);
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     void addMoving(EmbreeScene&, std::size_t geometryId, BuiltObject& top);
+    static const InstanceTable& addTable(EmbreeScene&, std::size_t geometryId, const BuiltObject& placed,
+                                         BuiltObject& inside, std::unique_ptr<const InstanceTable>);
 };
 
 EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
@@ -269,12 +271,10 @@ void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t insi
     for (auto list = placements.lower_bound({inside, 0}); list != placements.end() && list->first.first == inside;
          ++list) {
         const BuiltObject& placed = built[list->first.second];
-        const auto& table = target.tables.emplace_back(std::make_unique<const InstanceTable>(
-            placed.scene, std::move(list->second), placed.firstRecord, instanceCount));
-        if (inside == kScene) instanceCount += table->size();
-        table->attach(target.device.get(), object.scene, geometryId++);
-        object.bounds.add(table->bounds(placed.bounds));
-        object.levels = std::max(object.levels, placed.levels + 1);
+        const auto& table = addTable(target, geometryId++, placed, object,
+                                     std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
+                                                                           placed.firstRecord, instanceCount));
+        if (inside == kScene) instanceCount += table.size();
     }
     if (inside == kScene) addMoving(target, geometryId, object);
     ABBE_CHECK(object.levels <= kMaxInstanceLevels);
@@ -283,13 +283,20 @@ void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t insi
 void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::size_t geometryId, BuiltObject& top) {
     for (auto& [number, motions] : moving) {
         const BuiltObject& placed = built[number];
-        const auto& table = target.tables.emplace_back(std::make_unique<const InstanceTable>(
-            placed.scene, std::move(motions), shutter, placed.firstRecord, instanceCount));
-        instanceCount += table->size();
-        table->attach(target.device.get(), top.scene, geometryId++);
-        top.bounds.add(table->bounds(placed.bounds));
-        top.levels = std::max(top.levels, placed.levels + 1);
+        const auto& table = addTable(target, geometryId++, placed, top,
+                                     std::make_unique<const InstanceTable>(placed.scene, std::move(motions), shutter,
+                                                                           placed.firstRecord, instanceCount));
+        instanceCount += table.size();
     }
+}
+
+const InstanceTable& EmbreeSceneBuilder::Impl::addTable(EmbreeScene& target, std::size_t geometryId,
+                                                        const BuiltObject& placed, BuiltObject& inside,
+                                                        std::unique_ptr<const InstanceTable> table) {
+    table->attach(target.device.get(), inside.scene, geometryId);
+    inside.bounds.add(table->bounds(placed.bounds));
+    inside.levels = std::max(inside.levels, placed.levels + 1);
+    return *target.tables.emplace_back(std::move(table));
 }
 
 EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}

@@ -54,25 +54,27 @@ RayContext& contextOf(RTCIntersectContext* context) { return *reinterpret_cast<R
 
 } // namespace
 
-InstanceTable::InstanceTable(RTCScene object, std::vector<Placement> placements, std::size_t firstRecord,
-                             std::uint64_t firstInstance)
-    : object_(object), placements_(std::move(placements)), firstRecord_(firstRecord), firstInstance_(firstInstance) {
-    ABBE_CHECK(!placements_.empty() && placements_.size() < 0xffffffffu);
+InstanceTable::InstanceTable(RTCScene object, std::size_t firstRecord, std::uint64_t firstInstance)
+    : object_(object), firstRecord_(firstRecord), firstInstance_(firstInstance) {
     RTCBounds b;
     rtcGetSceneBounds(object, &b);
     lower_ = Float4{b.lower_x, b.lower_y, b.lower_z, 0};
     upper_ = Float4{b.upper_x, b.upper_y, b.upper_z, 0};
 }
 
+InstanceTable::InstanceTable(RTCScene object, std::vector<Placement> placements, std::size_t firstRecord,
+                             std::uint64_t firstInstance)
+    : InstanceTable(object, firstRecord, firstInstance) {
+    placements_ = std::move(placements);
+    ABBE_CHECK(size() > 0 && size() < 0xffffffffu);
+}
+
 InstanceTable::InstanceTable(RTCScene object, std::vector<Motion> motions, Interval shutter, std::size_t firstRecord,
                              std::uint64_t firstInstance)
-    : object_(object), motions_(std::move(motions)), shutter_(shutter), firstRecord_(firstRecord),
-      firstInstance_(firstInstance) {
-    ABBE_CHECK(!motions_.empty() && motions_.size() < 0xffffffffu);
-    RTCBounds b;
-    rtcGetSceneBounds(object, &b);
-    lower_ = Float4{b.lower_x, b.lower_y, b.lower_z, 0};
-    upper_ = Float4{b.upper_x, b.upper_y, b.upper_z, 0};
+    : InstanceTable(object, firstRecord, firstInstance) {
+    motions_ = std::move(motions);
+    shutter_ = shutter;
+    ABBE_CHECK(size() > 0 && size() < 0xffffffffu);
 }
 
 Placement InstanceTable::movedTo(std::uint32_t i, double position) const {

@@ -73,6 +73,7 @@ class InstanceTable {
     Bounds3 bounds(const Bounds3& object) const;
 
   private:
+    InstanceTable(RTCScene object, std::size_t firstRecord, std::uint64_t firstInstance); // without placements
     RayLanes enter(std::uint32_t i, const RayLanes& outside, float time) const {
         return motions_.empty() ? placements_[i].toObject(outside)
                                 : movedTo(i, static_cast<double>(time)).toObject(outside);

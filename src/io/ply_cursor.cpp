@@ -50,8 +50,8 @@ PlyCursor::PlyCursor(const PlyHeader& header, std::string_view bytes, const std:
       text_(header.encoding == PlyEncoding::text),
       swap_((header.encoding == PlyEncoding::bigEndian) == (std::endian::native == std::endian::little)) {}
 
-void PlyCursor::fail(const std::string& what) const {
-    throw IoError(fmt::format("cannot read `{}`: byte {}: {}", name_, last_ - begin_, what));
+void PlyCursor::failAt(const char* place, const std::string& what) const {
+    throw IoError(fmt::format("cannot read `{}`: byte {}: {}", name_, place - begin_, what));
 }
 
 double PlyCursor::textScalar() {

@@ -11,7 +11,9 @@ class PlyCursor {
     PlyCursor(const PlyHeader&, std::string_view bytes, const std::string& name);
 
     // Throws, with the place of the last number begun.
-    [[noreturn]] void fail(const std::string& what) const;
+    [[noreturn]] void fail(const std::string& what) const { failAt(last_, what); }
+    // The same, with the place that has been reached.
+    [[noreturn]] void failHere(const std::string& what) const { failAt(p_, what); }
     double scalar(PlyScalar);
     // Requires a list; no length promises more than the file holds.
     std::uint64_t listLength(const PlyProperty&);
@@ -19,6 +21,7 @@ class PlyCursor {
     void skip(const PlyElement&);
 
   private:
+    [[noreturn]] void failAt(const char*, const std::string& what) const;
     std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - p_); }
     double textScalar();
 
