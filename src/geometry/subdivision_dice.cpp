@@ -13,14 +13,15 @@ using Impl = SubdivisionSurface::Impl;
 
 class Dicer {
   public:
-    Dicer(const Impl& s, const DicingPlan& plan)
-        : surface_(s), plan_(plan), layout_(s, plan.edgeRates), faces_(static_cast<std::size_t>(s.faceCount())),
+    Dicer(const Impl& s, const DicingPlan& plan, const CagePoints& points)
+        : surface_(s), points_(points), plan_(plan), layout_(s, plan.edgeRates),
+          faces_(static_cast<std::size_t>(s.faceCount())),
           block_(std::clamp<std::size_t>(faces_ / (16 * static_cast<std::size_t>(threadCount())), 1, 64)) {}
 
     DicedSurface run() {
         place();
         forBlocks([&](std::size_t begin, std::size_t end) {
-            FaceEvaluator face(surface_);
+            FaceEvaluator face(surface_, points_);
             PatternMaker maker;
             std::vector<int> rates;
             std::vector<std::uint32_t> around;
@@ -129,6 +130,7 @@ class Dicer {
     }
 
     const Impl& surface_;
+    const CagePoints& points_;
     const DicingPlan& plan_;
     SubdivisionLayout layout_;
     std::size_t faces_, block_;
@@ -140,7 +142,13 @@ class Dicer {
 
 DicedSurface SubdivisionSurface::dice(const DicingPlan& plan) const {
     ABBE_CHECK(plan.edgeRates.size() == static_cast<std::size_t>(impl_->level().GetNumEdges()));
-    return Dicer(*impl_, plan).run();
+    return Dicer(*impl_, plan, impl_->points).run();
+}
+
+DicedSurface SubdivisionSurface::dice(const DicingPlan& plan, std::span<const Vec3> points) const {
+    ABBE_CHECK(plan.edgeRates.size() == static_cast<std::size_t>(impl_->level().GetNumEdges()));
+    ABBE_CHECK(points.size() == impl_->points.offsets.size());
+    return Dicer(*impl_, plan, CagePoints(points)).run();
 }
 
 } // namespace abbe

@@ -87,13 +87,17 @@ int sharpLevel(const SubdivisionCage& cage) {
 
 } // namespace
 
-SubdivisionSurface::Impl::Impl(const SubdivisionCage& cage)
-    : uvs(cage.uvs), uvCorners(cage.uvCorners), refiner(makeRefiner(cage)), scheme(schemeOf(cage.scheme)) {
+CagePoints::CagePoints(std::span<const Vec3> positions) {
     Bounds3 box;
-    for (const Vec3 p : cage.positions) box.add(p);
+    for (const Vec3 p : positions) box.add(p);
     center = box.lower * 0.5f + box.upper * 0.5f;
-    points.reserve(cage.positions.size());
-    for (const Vec3 p : cage.positions) points.push_back(Vec3d(p) - Vec3d(center));
+    offsets.reserve(positions.size());
+    for (const Vec3 p : positions) offsets.push_back(Vec3d(p) - Vec3d(center));
+}
+
+SubdivisionSurface::Impl::Impl(const SubdivisionCage& cage)
+    : points(cage.positions), uvs(cage.uvs), uvCorners(cage.uvCorners), refiner(makeRefiner(cage)),
+      scheme(schemeOf(cage.scheme)) {
     Factory::Options options;
     options.SetApproxLevelSharp(sharpLevel(cage)).SetApproxLevelSmooth(7);
     factory = std::make_unique<Factory>(*refiner, options);
@@ -116,7 +120,7 @@ void FaceEvaluator::setFace(int face, bool withTexture) {
     bool good = surface_.factory->InitVertexSurface(face, &limit_);
     ABBE_CHECK(good);
     patch_.resize(static_cast<std::size_t>(limit_.GetNumPatchPoints()) * 3);
-    limit_.PreparePatchPoints(&surface_.points[0].x, 3, patch_.data(), 3);
+    limit_.PreparePatchPoints(&points_.offsets[0].x, 3, patch_.data(), 3);
     Bounds3d box;
     const auto controls = static_cast<std::size_t>(limit_.GetNumControlPoints());
     for (std::size_t i = 0; i < controls; ++i) box.add(Vec3d(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
@@ -132,7 +136,7 @@ bool FaceEvaluator::normal(double u, double v, LimitPoint& out) const {
     const double uv[2] = {u, v};
     Vec3d p, du, dv;
     limit_.Evaluate(uv, patch_.data(), 3, &p.x, &du.x, &dv.x);
-    out.position = Vec3(p + Vec3d(surface_.center));
+    out.position = Vec3(p + Vec3d(points_.center));
     const double lu = length(du), lv = length(dv);
     if (!(lu > smallTangent_) || !(lv > smallTangent_)) return false;
     const Vec3d n = cross(du * (1 / lu), dv * (1 / lv));
@@ -174,7 +178,7 @@ Vec3 FaceEvaluator::position(float u, float v) const {
     const double uv[2] = {u, v};
     Vec3d p;
     limit_.Evaluate(uv, patch_.data(), 3, &p.x);
-    return Vec3(p + Vec3d(surface_.center));
+    return Vec3(p + Vec3d(points_.center));
 }
 
 Vec2 FaceEvaluator::texture(float u, float v) const {

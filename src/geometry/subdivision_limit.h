@@ -16,6 +16,14 @@ namespace abbe {
 
 namespace osd = OpenSubdiv;
 
+// Relative to their middle: differences stay exact far from the origin.
+struct CagePoints {
+    explicit CagePoints(std::span<const Vec3> positions);
+
+    Vec3 center;
+    std::vector<Vec3d> offsets;
+};
+
 // Immutable after construction and shared by threads: the factory's cache locks itself.
 struct SubdivisionSurface::Impl {
     using Factory = osd::Bfr::RefinerSurfaceFactory<osd::Bfr::SurfaceFactoryCacheThreaded<
@@ -27,8 +35,7 @@ struct SubdivisionSurface::Impl {
     // Index of an edge of a face: corner i to i + 1.
     int edge(int face, int i) const { return level().GetFaceEdges(face)[i]; }
 
-    Vec3 center; // points are relative to it: differences stay exact far from the origin
-    std::vector<Vec3d> points;
+    CagePoints points;
     std::vector<Vec2> uvs;
     std::vector<std::uint32_t> uvCorners;
     std::vector<std::uint32_t> firstCorner; // of each face, and one past the last
@@ -46,7 +53,10 @@ struct LimitPoint {
 // One face at a time; each thread has its own.
 class FaceEvaluator {
   public:
-    explicit FaceEvaluator(const SubdivisionSurface::Impl& surface) : surface_(surface) {}
+    explicit FaceEvaluator(const SubdivisionSurface::Impl& surface) : FaceEvaluator(surface, surface.points) {}
+    // The surface of the same cage with other points, which must outlive this.
+    FaceEvaluator(const SubdivisionSurface::Impl& surface, const CagePoints& points)
+        : surface_(surface), points_(points) {}
 
     // Requires hasSurface[face].
     void setFace(int face, bool withTexture);
@@ -61,6 +71,7 @@ class FaceEvaluator {
     void towardsInside(double by, double uv[2]) const;
 
     const SubdivisionSurface::Impl& surface_;
+    const CagePoints& points_;
     // Patches about irregular points shrink with every level, and what is left of their differences in float is noise.
     osd::Bfr::Surface<double> limit_;
     osd::Bfr::Surface<float> texture_;

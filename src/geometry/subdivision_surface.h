@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace abbe {
@@ -65,6 +66,11 @@ class SubdivisionSurface {
     DicingPlan plan(const Dicing&, std::uint64_t maxBytes) const;
     // Runs on threadCount() threads; the result does not depend on how many. Requires a plan of this surface.
     DicedSurface dice(const DicingPlan&) const;
+    // The same for the cage deformed: `points` take the place of its positions, in their order. Faces, texture
+    // coordinates, seams and the order of vertices are those of dice(plan) to the bit, whatever the points, so the
+    // results are keys of one moving mesh; only positions and normals differ. Choose the plan once, from the cage
+    // given to the constructor. Requires as many points as the cage has, finite and below 1e15.
+    DicedSurface dice(const DicingPlan&, std::span<const Vec3> points) const;
 
     struct Impl;
 

@@ -33,6 +33,11 @@ std::optional<Dicing> dicingOf(const schema::Quantity&, Diagnostics&);
 // The size of a pixel in the middle of the film, as a function of the distance to the camera, in render space.
 std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize);
 
+// How much a plan makes, in words.
+std::string describe(const DicingPlan&);
+// Says that the budget `memory` (MiB) lowered the rates of a plan.
+void warnOfBudget(const SubdivisionSurface&, const Dicing&, const DicingPlan&, double memory, Span, Diagnostics&);
+
 // Dices in the space that `place` leads to, whose outer side stays outside under mirrors. Before anything large is made
 // a warning says if the budget (MiB) lowers the rates. Null after an error located at `span`.
 std::unique_ptr<const Shape> placeSubdivision(SubdivisionCage, const Dicing&, double memory, const Transform& place,

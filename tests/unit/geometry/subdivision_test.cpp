@@ -138,6 +138,26 @@ TEST_CASE("subdivision: far from the origin the normals stay") {
     for (std::size_t i = 0; i < here.normals.size(); ++i) CHECK(here.normals[i] == there.normals[i]);
 }
 
+TEST_CASE("subdivision: a deformed cage is diced like the cage at rest") {
+    for (const auto& [name, cage, closed] : namedCages()) {
+        CAPTURE(name);
+        SubdivisionCage bent = cage;
+        for (Vec3& p : bent.positions) p = {p.x + 0.3f * p.z * p.z, 1.7f * p.y + 5, p.z - 0.2f * p.x};
+        const SubdivisionSurface surface(cage), other(bent);
+        const DicingPlan plan = surface.plan({Dicing::Mode::length, 0.2, {}}, kPlenty);
+        const DicedSurface rest = surface.dice(plan), moved = surface.dice(plan, bent.positions);
+        const DicedSurface expected = other.dice(plan);
+        CHECK(moved.mesh.positions == expected.mesh.positions);
+        CHECK(moved.mesh.normals == expected.mesh.normals);
+        CHECK(moved.mesh.positions != rest.mesh.positions);
+        CHECK(moved.mesh.triangles == rest.mesh.triangles);
+        CHECK(moved.mesh.quads == rest.mesh.quads);
+        CHECK(moved.mesh.uvs == rest.mesh.uvs);
+        CHECK(moved.seams.size() == rest.seams.size());
+        if (closed) CHECK(openEdges(moved.mesh) == 0);
+    }
+}
+
 TEST_CASE("subdivision: edges are cut to the length asked for") {
     const SubdivisionSurface surface(gridCage(4));
     const auto longest = [](const MeshData& m) {

@@ -1,0 +1,99 @@
+#include "scene/shape_fields.h"
+#include "scene/shape_subdivision.h"
+#include "scene/shape_subdivision_words.h"
+
+namespace abbe {
+
+using namespace subdivision_words;
+
+namespace {
+
+template <std::size_t n> std::vector<std::string_view> words(const std::string_view (&list)[n]) {
+    return {list, list + n};
+}
+
+} // namespace
+
+schema::TypeInfo subdivisionType() {
+    using namespace schema;
+    using P = SubdivisionParams;
+    std::vector<FieldInfo> fields = {
+        field<P, Text>(FieldType::file, "file", &P::file)
+            .argument(0)
+            .group("source")
+            .synonyms({"filename", "path"})
+            .doc("OBJ file with its creases and other `t` tags, or PLY file: the cage.")
+            .example("file \"body.obj\""),
+        field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
+            .unit({Dimension::length})
+            .group("source")
+            .synonyms({"vertices", "P", "positions"})
+            .doc("Points of the cage, one row of three numbers each, or one long list.")
+            .example("points { - 0 0 0; - 1 0 0; - 1 1 0; - 0 1 0 }"),
+        field<P, IndexRows>(FieldType::indexRows, "faces", &P::faces)
+            .synonyms({"indices", "polygons"})
+            .doc("Rows of point numbers from 0, counter-clockwise seen from outside; polygons of any size.")
+            .example("faces { - 0 1 2 3 }"),
+        field<P, Choice>(FieldType::choice, "scheme", &P::scheme)
+            .choices(words(kSchemes))
+            .byDefault("catmull-clark")
+            .synonyms({"type"})
+            .doc("How the cage is smoothed: catmull-clark for quads mostly, loop for triangles only; bilinear not at "
+                 "all.")
+            .example("scheme loop"),
+        field<P, std::optional<Choice>>(FieldType::choice, "boundary", &P::boundary)
+            .choices(words(kBoundaries))
+            .synonyms({"interpolateboundary", "interpolate-boundary"})
+            .doc("Open edges: the rim faces left out, its edges kept, or its corners too. The file's own choice when "
+                 "absent, else edge-and-corner.")
+            .example("boundary edge-only"),
+        field<P, std::optional<Choice>>(FieldType::choice, "texture-boundary", &P::faceVarying)
+            .choices(words(kFaceVarying))
+            .synonyms({"facevaryinginterpolateboundary", "fvar-interpolation", "face-varying"})
+            .doc("Where texture coordinates are linear instead of smooth. The file's own choice when absent, else "
+                 "corners-plus1.")
+            .example("texture-boundary boundaries"),
+        field<P, std::optional<Choice>>(FieldType::choice, "creasing", &P::creasing)
+            .choices(words(kCreasings))
+            .synonyms({"creasemethod", "crease-method"})
+            .doc("How sharpness fades along a crease of several values. The file's own choice when absent, else "
+                 "uniform.")
+            .example("creasing chaikin"),
+        field<P, std::vector<SharpRow>>(FieldType::sharpRow, "crease", &P::creases)
+            .synonyms({"creases", "crease-edges"})
+            .doc("A chain of points whose edges stay sharp: 0 smooth, 10 (when absent) infinitely sharp.")
+            .example("crease 0 1 2 3 sharpness=2.5"),
+        field<P, std::vector<SharpRow>>(FieldType::sharpRow, "corner", &P::corners)
+            .synonyms({"corners", "sharp-vertices"})
+            .doc("Points that stay sharp: 0 smooth, 10 (when absent) infinitely sharp.")
+            .example("corner 4 7 sharpness=3"),
+        field<P, std::vector<double>>(FieldType::numbers, "holes", &P::holes)
+            .range(0, 4294967294.0)
+            .synonyms({"hole"})
+            .doc("Numbers of faces, from 0, that shape the surface and are left out.")
+            .example("holes 3 4"),
+        field<P, Quantity>(FieldType::quantity, "dicing", &P::dicing)
+            .unit({Dimension::none, Dimension::pixels, Dimension::length})
+            .range(0, 1e15)
+            .byDefault("2 px")
+            .synonyms({"dicing-rate", "edge-length", "levels", "level", "subdivision-level"})
+            .doc("How finely: the length of edges in pixels or as a length, or a level, 0 to 10, that cuts every edge "
+                 "into 2^level pieces. Pixels are those in the middle of the picture, at the distance of the edge; in "
+                 "an `object` those of the shape filling the height of the picture.")
+            .example("dicing 0.5 px"),
+        field<P, double>(FieldType::number, "memory", &P::memory)
+            .range(1, 1e9)
+            .byDefault("4096")
+            .doc("Most memory for the diced surface, in MiB: a finer `dicing` is made coarser, with a warning.")
+            .example("memory 512"),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape,
+            "subdivision",
+            "Smooth limit surface of a polygon cage.",
+            "shape subdivision \"body.obj\" { crease 0 1 2 sharpness=3; material diffuse }",
+            false,
+            std::move(fields)};
+}
+
+} // namespace abbe
