@@ -40,6 +40,14 @@ Vec3d mapNormal(const Cofactors& c, Vec3d n) {
     return (c.x * n.x + c.y * n.y + c.z * n.z) * (c.determinant < 0 ? -1.0 : 1.0);
 }
 
+// The direction in the surface whose projection along the shading normal is the frame's tangent. Only this one can be
+// carried over: after an uneven scale the projections of equal directions differ.
+Vec3d tangentInSurface(const SurfaceHit& hit) {
+    const Vec3d x(hit.shading.x), n(hit.shading.z), ng(hit.ng);
+    const double cosine = dot(n, ng);
+    return cosine > 1e-3 ? x - n * (dot(x, ng) / cosine) : x;
+}
+
 } // namespace
 
 std::optional<std::string> Placement::findFault(const Transform& m) {
@@ -109,10 +117,11 @@ void Instance::toRender(SurfaceHit& hit) const {
     hit.p = Vec3(p);
     const auto column = [&m](int j) { return Vec3d(m.a[0][j], m.a[1][j], m.a[2][j]); };
     const Cofactors c = cofactors(column(0), column(1), column(2));
+    const Vec3d tangent = m.vector(tangentInSurface(hit));
     hit.ng = Vec3(normalize(mapNormal(c, Vec3d(hit.ng))));
     Vec3 n = Vec3(normalize(mapNormal(c, Vec3d(hit.shading.z))));
     if (dot(n, hit.ng) < 0) n = -n;
-    hit.shading = Frame::fromNormalTangent(n, Vec3(m.vector(Vec3d(hit.shading.x))));
+    hit.shading = Frame::fromNormalTangent(n, Vec3(normalize(tangent)));
 }
 
 Bounds3 Instance::toRender(const Bounds3& b) const { return Placement(objectToRender_).toOuter(b); }

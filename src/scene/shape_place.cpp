@@ -6,6 +6,8 @@
 #include "geometry/transformed.h"
 #include "scene/shape_types.h"
 
+#include <cmath>
+
 namespace abbe {
 
 namespace {
@@ -85,9 +87,12 @@ std::unique_ptr<const Shape> placeMesh(MeshData mesh, const Transform& place, Sp
         if (!inReach(q)) return outOfReach(span, diagnostics), nullptr;
         p = Vec3(q);
     }
+    // Unit normals become as long as the map makes them, up to one factor for all: the lengths weigh the blend between
+    // corners, which is then the same as that of an instance, whose normals are mapped after blending.
+    const double size = std::cbrt(square(place.determinant()));
     for (Vec3& n : mesh.normals) {
-        const Vec3d m = place.normal(Vec3d(n));
-        n = length(m) > 0 ? Vec3(normalize(m)) : Vec3{};
+        const double l = length(Vec3d(n));
+        n = l > 0 && size > 0 ? Vec3(place.normal(Vec3d(n) * (1 / l)) * (1 / size)) : Vec3{};
     }
     if (place.determinant() < 0) { // a mirror turns windings: turn them back, so that outside stays outside
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
