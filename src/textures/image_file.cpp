@@ -1,0 +1,74 @@
+#include "textures/image_file.h"
+
+#include "textures/image_module.h"
+
+#include <dlfcn.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <new>
+
+namespace abbe {
+
+namespace {
+
+constexpr const char* kModule = "abbe_images.so";
+
+// Beside the program, beside the folder of the tests, or where `cmake --install` puts it.
+std::filesystem::path findModule() {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* folder : {".", "..", "../lib/abbe"}) {
+        auto path = program / folder / kModule;
+        if (std::filesystem::exists(path, error)) return path;
+    }
+    throw ImageFileError(fmt::format("image textures need the module `{}`, which is not beside the program in {}",
+                                     kModule, program.string()));
+}
+
+AbbeReadImage loadModule() {
+    // Never closed: its libraries hold threads of their own. A second call finds it loaded.
+    void* const module = dlopen(findModule().c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    if (!module) throw ImageFileError(fmt::format("the module for image textures cannot be loaded: {}", dlerror()));
+    void* const function = dlsym(module, kAbbeReadImage);
+    if (!function)
+        throw ImageFileError(fmt::format("the module for image textures is of another version: {}", dlerror()));
+    return reinterpret_cast<AbbeReadImage>(function);
+}
+
+struct Reading {
+    ImagePixels image;
+    std::string fault;
+    bool outOfMemory = false;
+};
+
+float* begin(void* user, int width, int height, int channels, const char* colorSpace) {
+    auto& reading = *static_cast<Reading*>(user);
+    try {
+        ImagePixels& image = reading.image;
+        image.width = width;
+        image.height = height;
+        image.channels = channels;
+        image.colorSpace = colorSpace;
+        image.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                            static_cast<std::size_t>(channels));
+        return image.values.data();
+    } catch (const std::exception&) { // must not cross the interface
+        reading.outOfMemory = true;
+        return nullptr;
+    }
+}
+
+void fail(void* user, const char* reason) { static_cast<Reading*>(user)->fault = reason; }
+
+} // namespace
+
+ImagePixels readImageFile(const std::string& path) {
+    Reading reading;
+    const AbbeImageSink sink{&reading, begin, fail};
+    const bool good = loadModule()(path.c_str(), 3, &sink);
+    if (reading.outOfMemory) throw std::bad_alloc();
+    if (!good) throw ImageFileError(reading.fault.empty() ? "it cannot be read" : reading.fault);
+    return std::move(reading.image);
+}
+
+} // namespace abbe

@@ -1,0 +1,25 @@
+// Image files of any format that OpenImageIO reads, as float pixels.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+struct ImagePixels {
+    int width = 0, height = 0, channels = 0; // 1 or 3
+    std::vector<float> values;               // rows from the top, channels interleaved
+    std::string colorSpace;                  // how the file is tagged, or empty
+};
+
+// What went wrong, to be shown to the user.
+struct ImageFileError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// Loads the module that reads images with the first call; it then stays. Throws ImageFileError, or std::bad_alloc if
+// the pixels do not fit into memory.
+ImagePixels readImageFile(const std::string& path);
+
+} // namespace abbe

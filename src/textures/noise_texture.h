@@ -1,0 +1,38 @@
+// Fractal noise in space: no texture coordinates and no files.
+#pragma once
+
+#include "render/texture.h"
+#include "schema/type.h"
+
+#include <memory>
+
+namespace abbe {
+
+struct NoiseTextureParams {
+    double scale = 0.1; // m
+    std::int64_t octaves = 4;
+    double lacunarity = 2;
+    double gain = 0.5;
+    std::int64_t seed = 0;
+};
+
+// Gradient noise with quintic blending [Perlin2002], twice continuously differentiable, summed over octaves: 0.5 + Σ
+// gain^k n(p lacunarity^k / scale) / (2 Σ gain^k). Always within 0 … 1 and 0.5 on average; octaves are shifted against
+// each other, so that their zeros do not coincide. A pure function of the position and the parameters. Three channels
+// are three independent noises.
+class NoiseTexture final : public Texture {
+  public:
+    explicit NoiseTexture(const NoiseTextureParams&);
+
+    int channels() const override { return 3; }
+    bool needsUv() const override { return false; }
+    TextureJet jet(const TexturePoint&, int channels) const noexcept override;
+
+  private:
+    NoiseTextureParams params_;
+    double total_ = 0; // Σ gain^k
+};
+
+schema::TypeInfo noiseTextureType();
+
+} // namespace abbe
