@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "geometry/curves_surface.h"
 #include "geometry/surface_math.h"
+#include "geometry/time_steps.h"
 
 #include <numeric>
 
@@ -28,7 +29,8 @@ bool visible(CurveBasis basis, const SizedPoint* p) {
 
 Curves::Curves(CurveData data) : data_(std::move(data)) {
     const std::uint64_t total = std::accumulate(data_.strandSizes.begin(), data_.strandSizes.end(), std::uint64_t{0});
-    ABBE_CHECK(total == data_.points.size() && total < 0xffffffffu);
+    ABBE_CHECK(total == data_.points.size() && total < 0xffffffffu && data_.later.size() < kMaxTimeSteps);
+    for (const auto& step : data_.later) ABBE_CHECK(step.size() == total);
     strandFirst_.reserve(data_.strandSizes.size() + 1);
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < data_.strandSizes.size(); ++i) {
@@ -46,21 +48,14 @@ void Curves::addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t 
     const bool joined = data_.basis == CurveBasis::linear && data_.form == CurveForm::round;
     bool previous = false;
     for (std::uint32_t i = first; i + least <= first + size; i += step) {
-        const bool seen = visible(data_.basis, &data_.points[i]);
+        const bool seen = isVisible(i);
         if (joined && seen && previous) neighbours_.back() |= kNextSegment;
         if (seen) {
             firstPoints_.push_back(i);
             strand_.push_back(strand);
             if (joined) neighbours_.push_back(previous ? kPreviousSegment : 0);
-            std::array<Vec3d, 4> points;
-            std::array<double, 4> radii;
-            CurveSegment(data_.basis, &data_.points[i]).bezier(points, radii);
-            const double r = *std::max_element(radii.begin(), radii.end());
-            for (Vec3d p : points) {
-                const Vec3d margin = (abs(p) + Vec3d(r, r, r)) * 0x1p-22 + Vec3d(r, r, r);
-                bounds_.add(Vec3(p - margin));
-                bounds_.add(Vec3(p + margin));
-            }
+            addBounds(data_.points, i);
+            for (const auto& later : data_.later) addBounds(later, i);
         } else {
             ++omitted_;
         }
@@ -68,19 +63,51 @@ void Curves::addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t 
     }
 }
 
+// What moves in straight lines stays in the hull of where it is at the steps.
+void Curves::addBounds(const std::vector<SizedPoint>& step, std::uint32_t first) {
+    std::array<Vec3d, 4> points;
+    std::array<double, 4> radii;
+    CurveSegment(data_.basis, &step[first]).bezier(points, radii);
+    const double r = *std::max_element(radii.begin(), radii.end());
+    for (Vec3d p : points) {
+        const Vec3d margin = (abs(p) + Vec3d(r, r, r)) * 0x1p-22 + Vec3d(r, r, r);
+        bounds_.add(Vec3(p - margin));
+        bounds_.add(Vec3(p + margin));
+    }
+}
+
+bool Curves::isVisible(std::uint32_t first) const {
+    return visible(data_.basis, &data_.points[first]) ||
+           std::ranges::any_of(data_.later, [&](const auto& step) { return visible(data_.basis, &step[first]); });
+}
+
+const SizedPoint* Curves::pointsAt(std::uint32_t first, std::uint32_t count, float time, SizedPoint* room) const {
+    if (data_.later.empty()) [[likely]]
+        return &data_.points[first];
+    const StepPosition at = stepAt(time, data_.later.size() + 1);
+    const auto& from = at.step == 0 ? data_.points : data_.later[at.step - 1];
+    const auto& to = data_.later[at.step];
+    for (std::uint32_t i = 0; i < count; ++i) room[i] = between(from[first + i], to[first + i], at.fraction);
+    return room;
+}
+
 std::size_t Curves::bytes() const {
-    return data_.points.size() * sizeof(SizedPoint) + neighbours_.size() +
+    return data_.points.size() * sizeof(SizedPoint) * (1 + data_.later.size()) + neighbours_.size() +
            (firstPoints_.size() + strand_.size() + strandFirst_.size()) * sizeof(std::uint32_t);
 }
 
 void Curves::commit(GeometrySink& sink) const {
-    if (!firstPoints_.empty()) sink.curves(data_.basis, data_.form, data_.points, firstPoints_, neighbours_);
+    std::vector<std::span<const SizedPoint>> steps{data_.points};
+    for (const auto& step : data_.later) steps.emplace_back(step);
+    if (!firstPoints_.empty()) sink.curves(data_.basis, data_.form, steps, firstPoints_, neighbours_);
 }
 
 // Embree's arithmetic for round linear curves loses digits with the square of length / radius and more below a
 // millimetre: it finds hits behind the ray's origin, and on ends that are buried in the next segment.
 bool Curves::confirms(const RawHit& raw, const Ray& ray) const {
-    const SizedPoint* p = &data_.points[firstPoints_[raw.primitive]];
+    const std::uint32_t first = firstPoints_[raw.primitive];
+    std::array<SizedPoint, 4> room;
+    const SizedPoint* p = pointsAt(first, 2, ray.time, room.data());
     const Vec3d o(ray.origin), direction(ray.direction);
     const double l = length(direction), reported = static_cast<double>(raw.distance) * l;
     const Vec3d d = direction * (1 / l);
@@ -88,17 +115,20 @@ bool Curves::confirms(const RawHit& raw, const Ray& ray) const {
     if (!met) return false;
     const double t = reported - met->x < met->y - reported ? met->x : met->y;
     if (!(t > 0)) return false;
-    const auto buried = [&](const SizedPoint* q) {
+    const auto buried = [&](std::uint32_t neighbour) {
+        const SizedPoint* q = pointsAt(neighbour, 2, ray.time, room.data());
         const double slack = 1e-6 * static_cast<double>(std::max(q[0].radius, q[1].radius));
         const auto inside = meetCone(q[0], q[1], o, d);
         return inside && inside->x < t - slack && t + slack < inside->y;
     };
     const std::uint8_t neighbours = neighbours_[raw.primitive];
-    return !((neighbours & kPreviousSegment) && buried(p - 1)) && !((neighbours & kNextSegment) && buried(p + 1));
+    return !((neighbours & kPreviousSegment) && buried(first - 1)) &&
+           !((neighbours & kNextSegment) && buried(first + 1));
 }
 
 void Curves::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
-    const SizedPoint* points = &data_.points[firstPoints_[raw.primitive]];
+    std::array<SizedPoint, 4> room;
+    const SizedPoint* points = pointsAt(firstPoints_[raw.primitive], leastPoints(data_.basis), ray.time, room.data());
     const Vec3d o(ray.origin), direction(ray.direction);
     const double l = length(direction), t = static_cast<double>(raw.distance) * l, u = static_cast<double>(raw.u);
     const Vec3d d = direction * (1 / l);

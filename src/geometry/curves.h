@@ -13,31 +13,33 @@ struct CurveData {
     CurveForm form = CurveForm::round;
     std::vector<SizedPoint> points;
     std::vector<std::uint32_t> strandSizes;
+    // The same points at further time steps (see TimeSteps), after `points` at the first; none: all stands still.
+    std::vector<std::vector<SizedPoint>> later = {};
 };
 
 // Control points that a strand needs at the least, and how many each further segment takes.
 constexpr std::uint32_t leastPoints(CurveBasis b) { return b == CurveBasis::linear ? 2 : 4; }
 constexpr std::uint32_t pointStep(CurveBasis b) { return b == CurveBasis::bezier ? 3 : 1; }
 
-// Segments without width or length are left out: nobody can see them.
+// Segments without width or length at all times are left out: nobody can see them.
 // Hits: u runs from 0 to 1 along the whole strand, v across it as the ray sees it (0.5 in the middle). The primitive is
 // the strand. The shading frame's x is the direction of travel; ng points out of tubes and to the ray from ribbons.
 // Under maps that stretch unevenly tubes become elliptical and ribbons turn to the ray of their own space.
 class Curves final : public Shape {
   public:
     // Requires finite positions, finite radii >= 0, sizes that sum to the number of points and that each are
-    // leastPoints + a multiple of pointStep.
+    // leastPoints + a multiple of pointStep; and as many points at every time step, at most kMaxTimeSteps of them.
     explicit Curves(CurveData);
 
     std::size_t segmentCount() const { return firstPoints_.size(); }
     std::size_t omittedSegments() const { return omitted_; }
     std::size_t bytes() const; // of the data that rays refer to, without the acceleration structure
 
-    Bounds3 bounds() const override { return bounds_; }
+    Bounds3 bounds() const override { return bounds_; } // at all times
     void commit(GeometrySink&) const override;
     bool confirms(const RawHit&, const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
-    double area() const override; // of tubes without ends; of ribbons seen from the side
+    double area() const override; // of tubes without ends; of ribbons seen from the side; at first
 
     // Curves do not emit.
     std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
@@ -45,6 +47,10 @@ class Curves final : public Shape {
 
   private:
     void addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size);
+    void addBounds(const std::vector<SizedPoint>& step, std::uint32_t first);
+    bool isVisible(std::uint32_t first) const;
+    // Points in a row at a time: those kept, or moved ones, made in `room`, which holds four.
+    const SizedPoint* pointsAt(std::uint32_t first, std::uint32_t count, float time, SizedPoint* room) const;
 
     CurveData data_;
     std::vector<std::uint32_t> firstPoints_; // of each segment

@@ -6,6 +6,7 @@
 #include "geometry/embree_sink.h"
 #include "geometry/instance_table.h"
 #include "geometry/surface_math.h"
+#include "geometry/time_steps.h"
 
 #include <array>
 #include <atomic>
@@ -164,20 +165,26 @@ struct Corners {
     std::array<std::array<Vec3d, 3>, 2> triangle;
     int count = 0;
 };
-Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, std::span<const PlacementStep> path,
+Corners cornersOf(RTCScene scene, const RTCHit& h, const GeometryRecord& record, std::span<const PlacementStep> path,
                   float time) {
     Transform toRender;
     for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement(time).map());
     RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
-    const auto* vertices = static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto verticesOf = [&](unsigned step) {
+        return static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, step));
+    };
+    const StepPosition at = record.steps > 1 ? stepAt(time, record.steps) : StepPosition{};
+    const Vec3* const vertices = verticesOf(at.step);
+    const Vec3* const next = record.steps > 1 ? verticesOf(at.step + 1) : vertices;
     const auto* indices =
         static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
-    const auto vertex = [&](int i) {
-        const std::size_t corners = kind == PrimitiveKind::quads ? 4 : 3;
-        const Vec3d p(vertices[indices[corners * h.primID + static_cast<std::size_t>(i)]]);
+    const std::size_t corners = record.kind == PrimitiveKind::quads ? 4 : 3;
+    const auto vertex = [&](std::size_t i) {
+        const std::uint32_t v = indices[corners * h.primID + i];
+        const Vec3d p(record.steps > 1 ? between(vertices[v], next[v], at.fraction) : vertices[v]);
         return path.empty() ? p : toRender.point(p);
     };
-    if (kind == PrimitiveKind::triangles) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
+    if (corners == 3) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
     return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
 }
 
@@ -185,10 +192,11 @@ Corners cornersOf(RTCScene scene, const RTCHit& h, PrimitiveKind kind, std::span
 // edge within rounding count as hits, so that neighbours leave no crack.
 bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distance) const {
     constexpr double slack = 1e-6;
-    const PrimitiveKind kind = recordOf(h, path).kind;
+    const GeometryRecord& record = recordOf(h, path);
+    const PrimitiveKind kind = record.kind;
     if (kind != PrimitiveKind::triangles && kind != PrimitiveKind::quads) return true; // computed in double already
     const Corners corners =
-        cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, kind, path, ray.time);
+        cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, record, path, ray.time);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < corners.count; ++i) {
@@ -330,6 +338,7 @@ void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placemen
 }
 
 void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutter = {open, duration}; }
+Interval EmbreeSceneBuilder::shutter() const { return impl_->shutter; }
 
 void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion) {
     ABBE_CHECK(object < impl_->objects.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
+#include "math/key_grid.h"
 #include "math/keyed_transform.h"
 #include "render/intersector.h"
 #include "render/shape.h"
@@ -42,6 +43,7 @@ class EmbreeSceneBuilder {
     void addInstances(std::uint32_t object, std::vector<Placement>, std::uint32_t inside = kScene);
     // The time, in s, at which Ray::time is 0, and how much later it is 1. Before the first addMoving.
     void setShutter(double open, double duration);
+    Interval shutter() const;
     // Places an object that moves while the shutter is open. Requires maps without fault at all times of the interval.
     void addMoving(std::uint32_t object, const Motion&);
     // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.

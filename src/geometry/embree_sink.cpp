@@ -53,23 +53,32 @@ EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRec
     : device_(device), scene_(scene), records_(records), firstRecord_(records.size()) {}
 
 void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light) {
-    next_ = {&shape, material, light, 0, PrimitiveKind::analytic};
+    next_ = {&shape, material, light, 0, PrimitiveKind::analytic, 1};
     shape.commit(*this);
 }
 
-void EmbreeSink::triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) {
+// A buffer per time step; Embree refuses other numbers of them than the geometry has.
+template <typename T>
+void EmbreeSink::shareSteps(RTCGeometry geometry, RTCBufferType type, RTCFormat format, TimeSteps<T> steps) {
+    next_.steps = static_cast<std::uint16_t>(steps.size());
+    if (steps.size() > 1) rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps.size()));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        rtcSetSharedGeometryBuffer(geometry, type, static_cast<unsigned>(i), format, steps[i].data(), 0, sizeof(T),
+                                   steps[i].size());
+}
+
+void EmbreeSink::triangles(TimeSteps<Vec3> vertices, Triangles indices) {
     mesh(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, vertices, indices.data(), sizeof(indices[0]), indices.size());
 }
 
-void EmbreeSink::quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) {
+void EmbreeSink::quads(TimeSteps<Vec3> vertices, Quads indices) {
     mesh(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, vertices, indices.data(), sizeof(indices[0]), indices.size());
 }
 
-void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, std::span<const Vec3> vertices, const void* indices,
+void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, TimeSteps<Vec3> vertices, const void* indices,
                       std::size_t stride, std::size_t count) {
     RTCGeometry geometry = rtcNewGeometry(device_, type);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, sizeof(Vec3),
-                               vertices.size());
+    shareSteps(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
     attach(geometry, type == RTC_GEOMETRY_TYPE_QUAD ? PrimitiveKind::quads : PrimitiveKind::triangles);
 }
@@ -80,7 +89,7 @@ void confirmHit(const RTCFilterFunctionNArguments* args) {
     if (args->N != 1 || args->valid[0] == 0) return;
     const auto& r = *reinterpret_cast<const RTCRay*>(args->ray);
     const auto& h = *reinterpret_cast<const RTCHit*>(args->hit);
-    const Ray ray{Vec3(r.org_x, r.org_y, r.org_z), Vec3(r.dir_x, r.dir_y, r.dir_z)};
+    const Ray ray{Vec3(r.org_x, r.org_y, r.org_z), Vec3(r.dir_x, r.dir_y, r.dir_z), kInfinity, r.time};
     const RawHit hit{.u = h.u, .v = h.v, .distance = r.tfar, .primitive = h.primID};
     if (!shapeOf(args->geometryUserPtr).confirms(hit, ray)) args->valid[0] = 0;
 }
@@ -106,11 +115,10 @@ static_assert(int(kNextSegment) == int(RTC_CURVE_FLAG_NEIGHBOR_RIGHT));
 
 } // namespace
 
-void EmbreeSink::curves(CurveBasis basis, CurveForm form, std::span<const SizedPoint> points,
+void EmbreeSink::curves(CurveBasis basis, CurveForm form, TimeSteps<SizedPoint> points,
                         std::span<const std::uint32_t> firstPoints, std::span<const std::uint8_t> neighbours) {
     RTCGeometry geometry = rtcNewGeometry(device_, curveType(basis, form));
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points.data(), 0,
-                               sizeof(SizedPoint), points.size());
+    shareSteps(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, points);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, firstPoints.data(), 0,
                                sizeof(std::uint32_t), firstPoints.size());
     if (!neighbours.empty())
@@ -124,15 +132,12 @@ void EmbreeSink::curves(CurveBasis basis, CurveForm form, std::span<const SizedP
     attach(geometry, PrimitiveKind::curves);
 }
 
-void EmbreeSink::points(PointForm form, std::span<const SizedPoint> points, std::span<const Vec3> normals) {
+void EmbreeSink::points(PointForm form, TimeSteps<SizedPoint> points, TimeSteps<Vec3> normals) {
     RTCGeometry geometry = rtcNewGeometry(device_, form == PointForm::sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT
                                                    : form == PointForm::disk ? RTC_GEOMETRY_TYPE_DISC_POINT
                                                                              : RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points.data(), 0,
-                               sizeof(SizedPoint), points.size());
-    if (!normals.empty())
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, normals.data(), 0,
-                                   sizeof(Vec3), normals.size());
+    shareSteps(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, points);
+    if (!normals.empty()) shareSteps(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, normals);
     attach(geometry, PrimitiveKind::points);
 }
 

@@ -12,7 +12,7 @@ namespace abbe {
 class Material;
 class Light;
 
-enum class PrimitiveKind : std::uint32_t { triangles, quads, curves, points, analytic, instance };
+enum class PrimitiveKind : std::uint16_t { triangles, quads, curves, points, analytic, instance };
 
 // What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
 struct GeometryRecord {
@@ -21,6 +21,7 @@ struct GeometryRecord {
     const Light* light = nullptr;
     std::uint32_t part = 0;
     PrimitiveKind kind = PrimitiveKind::instance;
+    std::uint16_t steps = 1; // in time
 };
 static_assert(sizeof(GeometryRecord) == 32);
 
@@ -35,16 +36,17 @@ class EmbreeSink final : public GeometrySink {
 
     void add(const Shape&, const Material*, const Light*);
 
-    void triangles(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 3>>) override;
-    void quads(std::span<const Vec3>, std::span<const std::array<std::uint32_t, 4>>) override;
-    void curves(CurveBasis, CurveForm, std::span<const SizedPoint>, std::span<const std::uint32_t> firstPoints,
+    void triangles(TimeSteps<Vec3>, Triangles) override;
+    void quads(TimeSteps<Vec3>, Quads) override;
+    void curves(CurveBasis, CurveForm, TimeSteps<SizedPoint>, std::span<const std::uint32_t> firstPoints,
                 std::span<const std::uint8_t> neighbours) override;
-    void points(PointForm, std::span<const SizedPoint>, std::span<const Vec3> normals) override;
+    void points(PointForm, TimeSteps<SizedPoint>, TimeSteps<Vec3> normals) override;
     void analytic(const Bounds3&) override;
 
   private:
-    void mesh(RTCGeometryType, RTCFormat, std::span<const Vec3> vertices, const void* indices, std::size_t stride,
+    void mesh(RTCGeometryType, RTCFormat, TimeSteps<Vec3> vertices, const void* indices, std::size_t stride,
               std::size_t count);
+    template <typename T> void shareSteps(RTCGeometry, RTCBufferType, RTCFormat, TimeSteps<T>);
     void attach(RTCGeometry, PrimitiveKind);
 
     RTCDevice device_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
+#include "math/key_grid.h"
 #include "math/keyed_transform.h"
 
 #include <array>
@@ -17,11 +18,6 @@ class InstanceTable;
 
 // Objects inside objects inside …: how deep at most.
 inline constexpr int kMaxInstanceLevels = 32;
-
-// While the shutter is open, in s.
-struct Interval {
-    double open = 0, duration = 0;
-};
 
 // One step from a scene into an object.
 struct PlacementStep {

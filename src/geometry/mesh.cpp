@@ -1,6 +1,7 @@
 #include "geometry/mesh.h"
 
 #include "base/check.h"
+#include "geometry/mesh_corners.h"
 #include "geometry/surface_math.h"
 #include "math/warp.h"
 
@@ -8,16 +9,8 @@ namespace abbe {
 
 namespace {
 
-// Corners of the two triangles of a quad, in Embree's order.
-constexpr std::array<std::array<std::uint8_t, 3>, 2> kQuadHalves{{{0, 1, 3}, {2, 3, 1}}};
-
 Vec3 interpolate(const std::vector<Vec3>& v, std::uint32_t a, std::uint32_t b, std::uint32_t c, float s, float t) {
     return v[a] * (1 - s - t) + v[b] * s + v[c] * t;
-}
-
-bool usable(Vec3 n) {
-    const float l2 = lengthSquared(n);
-    return l2 > 0 && l2 < kInfinity; // false for NaN
 }
 
 } // namespace
@@ -59,7 +52,7 @@ void Mesh::countNormals() {
     for (std::uint64_t i = 0; i < triangleCount(); ++i)
         for (std::uint32_t v : triangle(i)) {
             const Vec3 n = data_.normals[v];
-            if (!usable(n))
+            if (!isUsableNormal(n))
                 ++normalReport_.missing;
             else if (dot(n, faceNormals_[i]) < 0)
                 ++normalReport_.inverted;
@@ -71,26 +64,8 @@ void Mesh::commit(GeometrySink& sink) const {
     if (!data_.quads.empty()) sink.quads(data_.positions, data_.quads);
 }
 
-Mesh::Corners Mesh::corners(const RawHit& raw) const {
-    const auto triangles = static_cast<std::uint32_t>(data_.triangles.size());
-    if (raw.part == 0 && triangles > 0) {
-        const auto& [a, b, c] = data_.triangles[raw.primitive];
-        return {a, b, c, raw.u, raw.v, raw.primitive, raw.primitive};
-    }
-    const bool second = raw.u + raw.v > 1; // Embree's own split
-    const auto& quad = data_.quads[raw.primitive];
-    const auto& half = kQuadHalves[second];
-    return {quad[half[0]],
-            quad[half[1]],
-            quad[half[2]],
-            second ? 1 - raw.u : raw.u,
-            second ? 1 - raw.v : raw.v,
-            triangles + 2 * raw.primitive + second,
-            triangles + raw.primitive};
-}
-
 void Mesh::surface(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
-    const Corners c = corners(raw);
+    const MeshCorners c = cornersOf(data_, raw);
     const auto& p = data_.positions;
     trianglePoint(p[c.a], p[c.b], p[c.c], c.s, c.t, hit.p, hit.pError);
     hit.ng = faceNormals_[c.normal];
@@ -102,11 +77,11 @@ void Mesh::surface(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
         shade(c, hit);
 }
 
-void Mesh::shade(const Corners& c, SurfaceHit& hit) const {
+void Mesh::shade(const MeshCorners& c, SurfaceHit& hit) const {
     Vec3 n = hit.ng;
     if (!data_.normals.empty()) {
         const Vec3 smooth = interpolate(data_.normals, c.a, c.b, c.c, c.s, c.t);
-        if (usable(smooth)) {
+        if (isUsableNormal(smooth)) {
             n = normalize(smooth);
             if (dot(n, hit.ng) < 0) n = -n;
         }
@@ -118,13 +93,8 @@ void Mesh::shade(const Corners& c, SurfaceHit& hit) const {
     const auto& uv = data_.uvs;
     const Vec2 s = uv[c.b] - uv[c.a], t = uv[c.c] - uv[c.a];
     hit.uv = uv[c.a] + s * c.s + t * c.t;
-    // dp/du up to a positive factor; parallel or equal uv edges give no direction (docs/hard_cases.md, case 10).
-    const float determinant = s.x * t.y - s.y * t.x;
-    const float scale = std::max(s.x * s.x + s.y * s.y, t.x * t.x + t.y * t.y);
     const auto& p = data_.positions;
-    const Vec3 tangent = ((p[c.b] - p[c.a]) * t.y - (p[c.c] - p[c.a]) * s.y) * std::copysign(1.f, determinant);
-    const bool defined = std::abs(determinant) > 1e-6f * scale && isFinite(tangent);
-    hit.shading = defined ? Frame::fromNormalTangent(n, tangent) : Frame::fromNormal(n);
+    hit.shading = texturedFrame(n, p[c.b] - p[c.a], p[c.c] - p[c.a], s, t);
 }
 
 void Mesh::weighByArea() const {

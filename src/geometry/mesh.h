@@ -11,6 +11,8 @@
 
 namespace abbe {
 
+struct MeshCorners;
+
 // How the vertex normals of a mesh agree with its faces; corners are counted, one per face and vertex.
 struct NormalReport {
     std::uint64_t missing = 0;  // zero or not finite: the face normal is used
@@ -37,16 +39,9 @@ class Mesh final : public Shape {
     float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
 
   private:
-    struct Corners {
-        std::uint32_t a, b, c;
-        float s, t;           // the point is a + s (b - a) + t (c - a)
-        std::uint32_t normal; // into faceNormals_
-        std::uint32_t primitive;
-    };
-    Corners corners(const RawHit&) const;
     std::uint64_t triangleCount() const { return data_.triangles.size() + 2 * data_.quads.size(); }
     std::array<std::uint32_t, 3> triangle(std::uint64_t) const; // quads count as two
-    void shade(const Corners&, SurfaceHit&) const;
+    void shade(const MeshCorners&, SurfaceHit&) const;
     void countNormals();
     void weighByArea() const;
 

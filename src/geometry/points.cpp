@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "geometry/surface_math.h"
+#include "geometry/time_steps.h"
 
 namespace abbe {
 
@@ -24,11 +25,21 @@ float turn(double y, double x) {
 } // namespace
 
 Points::Points(PointData data) : data_(std::move(data)) {
-    ABBE_CHECK(data_.points.size() < 0xffffffffu);
+    ABBE_CHECK(data_.points.size() < 0xffffffffu && data_.later.size() < kMaxTimeSteps);
     ABBE_CHECK(data_.normals.size() == (data_.form == PointForm::orientedDisk ? data_.points.size() : 0));
+    for (const PointData::Step& step : data_.later)
+        ABBE_CHECK(step.points.size() == data_.points.size() && step.normals.size() == data_.normals.size());
     removeInvisible();
     data_.normals.reserve(data_.normals.size() + 2); // Embree reads normals as 16 bytes
-    for (const SizedPoint& p : data_.points) {
+    addBounds(data_.points);
+    for (PointData::Step& step : data_.later) {
+        step.normals.reserve(step.normals.size() + 2);
+        addBounds(step.points);
+    }
+}
+
+void Points::addBounds(const std::vector<SizedPoint>& points) {
+    for (const SizedPoint& p : points) {
         const float r = p.radius;
         const Vec3 half = (abs(p.position) + Vec3(r, r, r)) * 0x1p-22f + Vec3(r, r, r);
         bounds_.add(p.position - half);
@@ -38,34 +49,70 @@ Points::Points(PointData data) : data_(std::move(data)) {
 
 void Points::removeInvisible() {
     std::size_t kept = 0;
+    const auto keep = [&](std::size_t i, std::vector<SizedPoint>& points, std::vector<Vec3>& normals) {
+        points[kept] = points[i];
+        if (!normals.empty()) normals[kept] = normals[i];
+    };
+    const auto isWide = [](const SizedPoint& p) { return p.radius > 0; };
     for (std::size_t i = 0; i < data_.points.size(); ++i) {
-        if (!(data_.points[i].radius > 0)) continue;
-        data_.points[kept] = data_.points[i];
-        if (!data_.normals.empty()) data_.normals[kept] = data_.normals[i];
+        if (!isWide(data_.points[i]) &&
+            std::ranges::none_of(data_.later, [&](const auto& step) { return isWide(step.points[i]); }))
+            continue;
+        keep(i, data_.points, data_.normals);
+        for (PointData::Step& step : data_.later) keep(i, step.points, step.normals);
         ++kept;
     }
     omitted_ = data_.points.size() - kept;
-    data_.points.resize(kept);
-    if (!data_.normals.empty()) data_.normals.resize(kept);
+    const auto cut = [kept](std::vector<SizedPoint>& points, std::vector<Vec3>& normals) {
+        points.resize(kept);
+        if (!normals.empty()) normals.resize(kept);
+    };
+    cut(data_.points, data_.normals);
+    for (PointData::Step& step : data_.later) cut(step.points, step.normals);
 }
 
 std::size_t Points::bytes() const {
-    return data_.points.size() * sizeof(SizedPoint) + data_.normals.size() * sizeof(Vec3);
+    return (data_.points.size() * sizeof(SizedPoint) + data_.normals.size() * sizeof(Vec3)) * (1 + data_.later.size());
 }
 
 void Points::commit(GeometrySink& sink) const {
-    if (!data_.points.empty()) sink.points(data_.form, data_.points, data_.normals);
+    if (data_.points.empty()) return;
+    std::vector<std::span<const SizedPoint>> steps{data_.points};
+    std::vector<std::span<const Vec3>> normals{data_.normals};
+    for (const PointData::Step& step : data_.later) {
+        steps.emplace_back(step.points);
+        normals.emplace_back(step.normals);
+    }
+    if (data_.normals.empty()) normals.clear();
+    sink.points(data_.form, steps, normals);
+}
+
+SizedPoint Points::pointAt(std::uint32_t i, float time) const {
+    if (data_.later.empty()) [[likely]]
+        return data_.points[i];
+    const StepPosition at = stepAt(time, data_.later.size() + 1);
+    return between(at.step == 0 ? data_.points[i] : data_.later[at.step - 1].points[i], data_.later[at.step].points[i],
+                   at.fraction);
+}
+
+Vec3 Points::normalAt(std::uint32_t i, float time) const {
+    if (data_.later.empty()) [[likely]]
+        return data_.normals[i];
+    const StepPosition at = stepAt(time, data_.later.size() + 1);
+    const Vec3 first = at.step == 0 ? data_.normals[i] : data_.later[at.step - 1].normals[i];
+    const Vec3 n = between(first, data_.later[at.step].normals[i], at.fraction);
+    return lengthSquared(n) > 0 ? normalize(n) : first; // a disk that turns over has no side halfway
 }
 
 void Points::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
-    const SizedPoint& point = data_.points[raw.primitive];
+    const SizedPoint point = pointAt(raw.primitive, ray.time);
     const Vec3d o(ray.origin), direction(ray.direction);
     const double l = length(direction);
     const Vec3d d = direction * (1 / l);
     if (data_.form == PointForm::sphere)
         sphere(point, o, d, static_cast<double>(raw.distance) * l, hit);
     else
-        disk(point, data_.form == PointForm::disk ? Vec3(-d) : data_.normals[raw.primitive], o, d, hit);
+        disk(point, data_.form == PointForm::disk ? Vec3(-d) : normalAt(raw.primitive, ray.time), o, d, hit);
     hit.pError = errorBound(point);
     hit.primitive = raw.primitive;
 }

@@ -49,20 +49,32 @@ enum class PointForm : std::uint8_t { sphere, disk, orientedDisk };
 
 class Shape;
 
+// Data of the same primitives at equally spaced times, the first when the shutter opens (Ray::time 0), the last when it
+// closes (1); in between all moves in straight lines. One: it stands still. As long as the first at every step.
+template <typename T> using TimeSteps = std::span<const std::span<const T>>;
+inline constexpr std::size_t kMaxTimeSteps = 129;
+
 // Receives a shape's primitives. Data are copied or kept by reference until the shape is gone (see EmbreeScene).
 class GeometrySink {
   public:
+    using Triangles = std::span<const std::array<std::uint32_t, 3>>;
+    using Quads = std::span<const std::array<std::uint32_t, 4>>;
+
     virtual ~GeometrySink() = default;
-    virtual void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) = 0;
-    virtual void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) = 0;
+    virtual void triangles(TimeSteps<Vec3> vertices, Triangles) = 0;
+    virtual void quads(TimeSteps<Vec3> vertices, Quads) = 0;
     // Segment i has the control points from `firstPoints[i]` on. `neighbours` has an entry per segment for round linear
     // curves, else none.
-    virtual void curves(CurveBasis, CurveForm, std::span<const SizedPoint> points,
-                        std::span<const std::uint32_t> firstPoints, std::span<const std::uint8_t> neighbours) = 0;
-    // A normal per point for oriented disks, else none.
-    virtual void points(PointForm, std::span<const SizedPoint>, std::span<const Vec3> normals) = 0;
+    virtual void curves(CurveBasis, CurveForm, TimeSteps<SizedPoint> points, std::span<const std::uint32_t> firstPoints,
+                        std::span<const std::uint8_t> neighbours) = 0;
+    // A normal per point for oriented disks, at each step, else none.
+    virtual void points(PointForm, TimeSteps<SizedPoint>, TimeSteps<Vec3> normals) = 0;
     // One primitive that intersects itself through Shape::intersect.
     virtual void analytic(const Bounds3&) = 0;
+
+    // What stands still.
+    void triangles(std::span<const Vec3> vertices, Triangles indices) { triangles({&vertices, 1}, indices); }
+    void quads(std::span<const Vec3> vertices, Quads indices) { quads({&vertices, 1}, indices); }
 };
 
 // Immutable after construction; methods are thread-safe and do not throw. Coordinates are those in which the shape was

@@ -19,18 +19,20 @@ constexpr std::size_t kMaxUnshared = 1'000'000;
 class TriangleSink final : public GeometrySink {
   public:
     explicit TriangleSink(ScatterSurface& surface) : surface_(surface) {}
-    void triangles(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> indices) override {
+    void triangles(TimeSteps<Vec3> steps, Triangles indices) override {
+        const std::span<const Vec3> vertices = steps[0]; // where instances are scattered once and for all
         for (const auto& t : indices) add(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
     }
-    void quads(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 4>> indices) override {
+    void quads(TimeSteps<Vec3> steps, Quads indices) override {
+        const std::span<const Vec3> vertices = steps[0];
         for (const auto& q : indices) {
             add(vertices[q[0]], vertices[q[1]], vertices[q[3]]);
             add(vertices[q[2]], vertices[q[3]], vertices[q[1]]);
         }
     }
-    void curves(CurveBasis, CurveForm, std::span<const SizedPoint>, std::span<const std::uint32_t>,
+    void curves(CurveBasis, CurveForm, TimeSteps<SizedPoint>, std::span<const std::uint32_t>,
                 std::span<const std::uint8_t>) override {}
-    void points(PointForm, std::span<const SizedPoint>, std::span<const Vec3>) override {}
+    void points(PointForm, TimeSteps<SizedPoint>, TimeSteps<Vec3>) override {}
     void analytic(const Bounds3&) override {}
 
   private:

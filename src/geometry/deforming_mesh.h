@@ -1,0 +1,46 @@
+// A polygon mesh whose vertices move while the shutter is open.
+#pragma once
+
+#include "math/mesh_data.h"
+#include "render/shape.h"
+
+#include <vector>
+
+namespace abbe {
+
+// The vertices of a mesh at one time; `normals` as long as `positions`, or empty at all times.
+struct MeshStep {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+};
+
+// As Mesh, but between equally spaced steps vertices move in straight lines. At any time the face normals are those of
+// the faces as they are then; vertex normals are interpolated. Texture coordinates stay with their vertices.
+class DeformingMesh final : public Shape {
+  public:
+    // Requires data in which cleanMesh() finds no error at any step, and 2 … kMaxTimeSteps steps. The positions and
+    // normals of `faces` itself are not used. Faces without area at some time are no fault.
+    DeformingMesh(MeshData faces, std::vector<MeshStep> steps);
+
+    std::size_t triangleCount() const { return faces_.triangles.size(); }
+    std::size_t quadCount() const { return faces_.quads.size(); }
+    std::size_t steps() const { return steps_.size(); }
+    std::size_t bytes() const; // of the data that rays refer to, without the acceleration structure
+
+    Bounds3 bounds() const override { return bounds_; } // at all times
+    void commit(GeometrySink&) const override;
+    // Primitives are numbered triangles first, then quads.
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    double area() const override; // the largest of all steps
+
+    // Deforming meshes do not emit: their area changes.
+    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+
+  private:
+    MeshData faces_; // and texture coordinates
+    std::vector<MeshStep> steps_;
+    Bounds3 bounds_;
+};
+
+} // namespace abbe
