@@ -108,6 +108,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0431", "the image must be an EXR", "`-o` and the film's `output` name an OpenEXR file. `--png` or `--png=FILE` adds a PNG through a display view."},
     {"E0440", "an environment image is empty", "The image has no pixels."},
     {"E0441", "an environment image is not finite", "Pixels that are infinite or not a number cannot be rendered; the message counts them. They often come from a division by zero, or from values above 65504 in a half-float file."},
+    {"E0451", "an image texture is not finite", "Pixels that are infinite or not a number cannot be part of a texture; the message counts them. Set them to a number in the program that wrote the file."},
     {"W0440", "negative pixels in an environment image", "Radiance cannot be negative. Such pixels, often colours outside of the file's gamut or ringing of a filter, are taken as 0."},
     // E05: layers
     {"E0501", "unknown language edition", "`scene N` names the edition of the language that a file is written in. This version of the program reads edition 1."},
@@ -138,6 +139,10 @@ constexpr CodeInfo kCodes[] = {
     {"E0634", "a lamp or plane cannot move", "An instance with keys shows an object with a lamp, an emitting shape or an infinite plane in it. Leave these out of the object."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
+    {"E0670", "no texture coordinates to displace by", "A displacement by an image, or along tangents, follows the texture coordinates of the cage: `vt` in an OBJ file, or `uvs`. Noise needs none."},
+    {"E0671", "a vector map with one channel", "A displacement of `kind vector` takes its three parts from three channels. Heights move the surface along its normal: leave `kind` out."},
+    {"E0672", "a missing tile", "Faces of the shape have texture coordinates in a UDIM tile that has no file beside the others. Tile 1001 + i + 10 j covers u from i to i + 1 and v from j to j + 1."},
+    {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},

@@ -13,8 +13,8 @@ using Impl = SubdivisionSurface::Impl;
 
 class Dicer {
   public:
-    Dicer(const Impl& s, const DicingPlan& plan, const CagePoints& points)
-        : surface_(s), points_(points), plan_(plan), layout_(s, plan.edgeRates),
+    Dicer(const Impl& s, const DicingPlan& plan, const CagePoints& points, const Displacement* displacement)
+        : surface_(s), points_(points), plan_(plan), displacement_(displacement), layout_(s, plan.edgeRates),
           faces_(static_cast<std::size_t>(s.faceCount())),
           block_(std::clamp<std::size_t>(faces_ / (16 * static_cast<std::size_t>(threadCount())), 1, 64)) {}
 
@@ -29,6 +29,7 @@ class Dicer {
                 if (surface_.hasSurface[f]) dice(f, face, maker, rates, around);
         });
         // Faces on two sides of a crease find the same point up to rounding: rays would slip through the difference.
+        if (displacement_) joinDisplaced();
         for (const DicedSeam& seam : layout_.seams)
             std::copy_n(out_.mesh.positions.begin() + seam.original, seam.count,
                         out_.mesh.positions.begin() + seam.copy);
@@ -37,6 +38,12 @@ class Dicer {
     }
 
   private:
+    // What displacement does to a vertex on the boundary of a face; after joining, sums over those in one place.
+    struct Moved {
+        Vec3 position, direction;
+        float length = 0;
+        std::uint32_t count = 0;
+    };
     struct Start {
         std::uint64_t inside = 0, triangles = 0, quads = 0;
     };
@@ -78,6 +85,7 @@ class Dicer {
         m.positions.resize(all.inside);
         m.normals.resize(all.inside);
         if (textured()) m.uvs.resize(all.inside);
+        if (displacement_ && !layout_.seams.empty()) moved_.resize(layout_.vertexCount);
         m.triangles.resize(all.triangles);
         m.quads.resize(all.quads);
     }
@@ -85,10 +93,53 @@ class Dicer {
     bool textured() const { return !surface_.uvCorners.empty(); }
 
     void evaluate(const FaceEvaluator& face, Vec2 at, std::uint32_t vertex) {
+        if (displacement_) return evaluateDisplaced(face, at, vertex);
         const LimitPoint p = face.point(at.x, at.y);
         out_.mesh.positions[vertex] = p.position;
         out_.mesh.normals[vertex] = p.normal;
         if (textured()) out_.mesh.uvs[vertex] = face.texture(at.x, at.y);
+    }
+
+    void evaluateDisplaced(const FaceEvaluator& face, Vec2 at, std::uint32_t vertex) {
+        const DisplacedLimit d = face.displaced(at.x, at.y, *displacement_);
+        out_.mesh.positions[vertex] = d.place();
+        out_.mesh.normals[vertex] = Vec3(d.moved.normal);
+        if (textured()) out_.mesh.uvs[vertex] = face.texture(at.x, at.y);
+        if (vertex < moved_.size())
+            moved_[vertex] = {Vec3(d.position), Vec3(d.moved.direction), static_cast<float>(d.moved.length), 1};
+    }
+
+    // The faces at a seam move its points to different places: all go to the mean, else rays would slip through.
+    void joinDisplaced() {
+        const auto each = [](const std::vector<DicedSeam>& seams, const auto& body) {
+            for (const DicedSeam& seam : seams)
+                for (std::uint32_t i = 0; i < seam.count; ++i) body(seam.copy + i, seam.original + i);
+        };
+        each(layout_.seams, [&](std::uint32_t copy, std::uint32_t original) {
+            Moved& sum = moved_[original];
+            sum.direction += moved_[copy].direction;
+            sum.length += moved_[copy].length;
+            ++sum.count;
+        });
+        each(layout_.seams, [&](std::uint32_t, std::uint32_t original) {
+            out_.mesh.positions[original] = meanPlace(moved_[original]);
+        });
+        std::vector<Vec3>& normals = out_.mesh.normals;
+        each(layout_.smoothSeams,
+             [&](std::uint32_t copy, std::uint32_t original) { normals[original] += normals[copy]; });
+        each(layout_.smoothSeams, [&](std::uint32_t, std::uint32_t original) {
+            if (const float l = length(normals[original]); l > 0) normals[original] = normals[original] / l;
+        });
+        each(layout_.smoothSeams,
+             [&](std::uint32_t copy, std::uint32_t original) { normals[copy] = normals[original]; });
+    }
+
+    Vec3 meanPlace(const Moved& sum) const {
+        const auto count = static_cast<float>(sum.count);
+        const float l = length(sum.direction);
+        if (displacement_->space != Displacement::Space::normal) return sum.position + sum.direction / count;
+        if (!(l > 1e-3f * count)) return sum.position; // normals that cancel: a blade's edge stays
+        return sum.position + sum.direction * (sum.length / (count * l));
     }
 
     void dice(std::size_t f, FaceEvaluator& face, PatternMaker& maker, std::vector<int>& rates,
@@ -132,6 +183,8 @@ class Dicer {
     const Impl& surface_;
     const CagePoints& points_;
     const DicingPlan& plan_;
+    const Displacement* displacement_;
+    std::vector<Moved> moved_; // if there are seams
     SubdivisionLayout layout_;
     std::size_t faces_, block_;
     std::vector<Start> starts_; // of each face, and one past the last
@@ -140,15 +193,16 @@ class Dicer {
 
 } // namespace
 
-DicedSurface SubdivisionSurface::dice(const DicingPlan& plan) const {
+DicedSurface SubdivisionSurface::dice(const DicingPlan& plan, const Displacement* displacement) const {
     ABBE_CHECK(plan.edgeRates.size() == static_cast<std::size_t>(impl_->level().GetNumEdges()));
-    return Dicer(*impl_, plan, impl_->points).run();
+    return Dicer(*impl_, plan, impl_->points, displacement).run();
 }
 
-DicedSurface SubdivisionSurface::dice(const DicingPlan& plan, std::span<const Vec3> points) const {
+DicedSurface SubdivisionSurface::dice(const DicingPlan& plan, std::span<const Vec3> points,
+                                      const Displacement* displacement) const {
     ABBE_CHECK(plan.edgeRates.size() == static_cast<std::size_t>(impl_->level().GetNumEdges()));
     ABBE_CHECK(points.size() == impl_->points.offsets.size());
-    return Dicer(*impl_, plan, CagePoints(points)).run();
+    return Dicer(*impl_, plan, CagePoints(points), displacement).run();
 }
 
 } // namespace abbe

@@ -62,9 +62,13 @@ bool isCorner(const Impl& s, int vertex) {
 } // namespace
 
 SubdivisionLayout::SubdivisionLayout(const Impl& s, const std::vector<int>& edgeRates) {
-    joinCorners(s);
+    joinCorners(s, false);
     numberCorners(s);
     numberSides(s, edgeRates);
+    if (!s.uvCorners.empty()) {
+        joinCorners(s, true);
+        pairSmoothCorners(s);
+    }
     joined_ = {};
 }
 
@@ -73,7 +77,7 @@ std::uint32_t SubdivisionLayout::root(std::uint32_t corner) {
     return corner;
 }
 
-void SubdivisionLayout::joinCorners(const Impl& s) {
+void SubdivisionLayout::joinCorners(const Impl& s, bool acrossTexture) {
     const Far::TopologyLevel& level = s.level();
     joined_.resize(s.firstCorner.back());
     for (std::uint32_t c = 0; c < joined_.size(); ++c) joined_[c] = c;
@@ -86,7 +90,7 @@ void SubdivisionLayout::joinCorners(const Impl& s) {
             const auto pair = cornersAt(s, *crossing, end);
             const std::uint32_t inFace = pair[0] - s.firstCorner[static_cast<std::size_t>(crossing->face[0])];
             const int v = level.GetFaceVertices(crossing->face[0])[static_cast<int>(inFace)];
-            if (corner[static_cast<std::size_t>(v)] || !sameTexture(s, pair)) continue;
+            if (corner[static_cast<std::size_t>(v)] || (!acrossTexture && !sameTexture(s, pair))) continue;
             const std::uint32_t a = root(pair[0]), b = root(pair[1]);
             joined_[std::max(a, b)] = std::min(a, b); // the first corner leads
         }
@@ -119,6 +123,17 @@ void SubdivisionLayout::numberCorners(const Impl& s) {
     }
 }
 
+// Requires joined_ across seams of texture coordinates.
+void SubdivisionLayout::pairSmoothCorners(const Impl& s) {
+    for (int f = 0; f < s.faceCount(); ++f) {
+        if (!s.hasSurface[static_cast<std::size_t>(f)]) continue;
+        for (std::uint32_t c = s.firstCorner[static_cast<std::size_t>(f)];
+             c < s.firstCorner[static_cast<std::size_t>(f) + 1]; ++c)
+            if (const std::uint32_t first = root(c); cornerLeads[c] && first != c)
+                smoothSeams.push_back({cornerVertex[c], cornerVertex[first], 1});
+    }
+}
+
 void SubdivisionLayout::numberSides(const Impl& s, const std::vector<int>& edgeRates) {
     const Far::TopologyLevel& level = s.level();
     sideFirst.assign(cornerVertex.size(), 0);
@@ -148,6 +163,8 @@ void SubdivisionLayout::numberSides(const Impl& s, const std::vector<int>& edgeR
                 first = sideFirst[side];
             else if (inside > 0)
                 seams.push_back({sideFirst[side], *first, inside});
+            if (crossing && inside > 0 && sideFirst[side] != *first)
+                smoothSeams.push_back({sideFirst[side], *first, inside});
         }
     }
 }

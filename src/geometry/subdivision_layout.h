@@ -19,10 +19,12 @@ struct SubdivisionLayout {
     std::vector<std::uint8_t> cornerLeads, sideLeads;
     std::vector<std::uint8_t> sideReversed; // the face runs against the direction of the edge
     std::vector<DicedSeam> seams;
-    std::uint32_t vertexCount = 0; // without those inside faces
+    std::vector<DicedSeam> smoothSeams; // of vertices that only texture coordinates tell apart; pairs of their own
+    std::uint32_t vertexCount = 0;      // without those inside faces
 
   private:
-    void joinCorners(const SubdivisionSurface::Impl&);
+    void joinCorners(const SubdivisionSurface::Impl&, bool acrossTexture);
+    void pairSmoothCorners(const SubdivisionSurface::Impl&);
     void numberCorners(const SubdivisionSurface::Impl&);
     void numberSides(const SubdivisionSurface::Impl&, const std::vector<int>& edgeRates);
     std::uint32_t root(std::uint32_t corner);

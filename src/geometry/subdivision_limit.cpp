@@ -125,11 +125,15 @@ void FaceEvaluator::setFace(int face, bool withTexture) {
     const auto controls = static_cast<std::size_t>(limit_.GetNumControlPoints());
     for (std::size_t i = 0; i < controls; ++i) box.add(Vec3d(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
     smallTangent_ = 1e-7 * maxComponent(box.upper - box.lower);
+    textured_ = withTexture;
     if (!withTexture) return;
     good = surface_.factory->InitFaceVaryingSurface(face, &texture_, 0);
     ABBE_CHECK(good);
     texturePatch_.resize(static_cast<std::size_t>(texture_.GetNumPatchPoints()) * 2);
     texture_.PreparePatchPoints(&surface_.uvs[0].x, 2, texturePatch_.data(), 2);
+    float middle[2];
+    limit_.GetParameterization().GetCenterCoord(middle);
+    texture_.Evaluate(middle, texturePatch_.data(), 2, &home_.x);
 }
 
 bool FaceEvaluator::normal(double u, double v, LimitPoint& out) const {
@@ -186,6 +190,42 @@ Vec2 FaceEvaluator::texture(float u, float v) const {
     Vec2 t;
     texture_.Evaluate(uv, texturePatch_.data(), 2, &t.x);
     return t;
+}
+
+SurfaceJet FaceEvaluator::jet(const double uv[2]) const {
+    SurfaceJet s;
+    limit_.Evaluate(uv, patch_.data(), 3, &s.p.x, &s.u.x, &s.v.x, &s.uu.x, &s.uv.x, &s.vv.x);
+    if (!textured_) return s;
+    const float at[2] = {static_cast<float>(uv[0]), static_cast<float>(uv[1])};
+    Vec2 t[6];
+    texture_.Evaluate(at, texturePatch_.data(), 2, &t[0].x, &t[1].x, &t[2].x, &t[3].x, &t[4].x, &t[5].x);
+    Vec2d* const to[6] = {&s.t, &s.tu, &s.tv, &s.tuu, &s.tuv, &s.tvv};
+    for (int i = 0; i < 6; ++i) *to[i] = {static_cast<double>(t[i].x), static_cast<double>(t[i].y)};
+    return s;
+}
+
+DisplacedLimit FaceEvaluator::displaced(float u, float v, const Displacement& d) const {
+    const Vec3d center(points_.center);
+    const double uv[2] = {u, v};
+    const SurfaceJet here = jet(uv);
+    DisplacedLimit result;
+    result.position = here.p + center;
+    auto moved = displace(here, d, center, home_, smallTangent_);
+    if (moved) result.moved = *moved;
+    // Where the limit surface or the displaced one has no normal: that of the displacement a little way inside.
+    for (const double by : {1e-4, 1e-3, 1e-2, 0.1, 0.5}) {
+        if (lengthSquared(result.moved.normal) > 0) break;
+        double inside[2] = {u, v};
+        towardsInside(by, inside);
+        SurfaceJet near = jet(inside);
+        near.p = here.p;
+        near.t = here.t;
+        const auto other = displace(near, d, center, home_, smallTangent_);
+        if (!other) continue;
+        if (!moved) moved = result.moved = *other;
+        result.moved.normal = other->normal;
+    }
+    return result;
 }
 
 } // namespace abbe

@@ -1,6 +1,7 @@
 // The limit surface, face by face (OpenSubdiv underneath). Included by the subdivision sources only.
 #pragma once
 
+#include "geometry/displacement.h"
 #include "geometry/subdivision_surface.h"
 
 #include <memory>
@@ -50,6 +51,14 @@ struct LimitPoint {
     Vec3 normal;   // unit length, or 0 if the face is degenerate all over
 };
 
+// A point of the displaced surface: position + direction * length, in the cage's own space.
+struct DisplacedLimit {
+    Vec3d position; // of the limit surface
+    DisplacedPoint moved;
+
+    Vec3 place() const { return Vec3(position + moved.direction * moved.length); }
+};
+
 // One face at a time; each thread has its own.
 class FaceEvaluator {
   public:
@@ -64,11 +73,14 @@ class FaceEvaluator {
     LimitPoint point(float u, float v) const;
     Vec3 position(float u, float v) const;
     Vec2 texture(float u, float v) const;
+    // Requires setFace(…, true) if the cage has texture coordinates.
+    DisplacedLimit displaced(float u, float v, const Displacement&) const;
     osd::Bfr::Parameterization parameterization() const { return limit_.GetParameterization(); }
 
   private:
     bool normal(double u, double v, LimitPoint&) const;
     void towardsInside(double by, double uv[2]) const;
+    SurfaceJet jet(const double uv[2]) const;
 
     const SubdivisionSurface::Impl& surface_;
     const CagePoints& points_;
@@ -78,6 +90,8 @@ class FaceEvaluator {
     std::vector<double> patch_;
     std::vector<float> texturePatch_;
     double smallTangent_ = 0;
+    bool textured_ = false;
+    Vec2 home_; // texture coordinates of the middle
 };
 
 } // namespace abbe

@@ -1,8 +1,10 @@
 // Subdivision surfaces: the smooth limit of a cage, diced into a mesh without cracks.
 #pragma once
 
+#include "geometry/displacement.h"
 #include "math/mesh_data.h"
 #include "math/subdivision_cage.h"
+#include "math/transform.h"
 
 #include <array>
 #include <cstdint>
@@ -22,6 +24,8 @@ struct Dicing {
     double rate = 3;
     // pixels: the size of a pixel at a point, in the units of the cage. Called from many threads.
     std::function<double(Vec3)> pixelSize;
+    // Takes the cage to the space where lengths and pixels are measured; nothing: they are measured in its own.
+    std::optional<Transform> place;
 };
 
 // What dicing will make, known before it takes memory.
@@ -52,6 +56,7 @@ class SubdivisionSurface {
     // Estimated memory of a diced triangle with its share of vertices, normals and acceleration structure
     // (bench/dicing.cpp measures it).
     static constexpr std::uint64_t kBytesPerTriangle = 110;
+    static constexpr std::uint64_t kDisplacedBytesPerTriangle = 130; // with what it takes to join seams
     static constexpr int kMaxRate = 1024;
     static constexpr int kMaxLevel = 10;
 
@@ -63,14 +68,18 @@ class SubdivisionSurface {
 
     // Chooses the rates; lowers all of them alike until the estimate is at most `maxBytes` or they are 1.
     // Requires rate > 0 (level: 0 … kMaxLevel).
-    DicingPlan plan(const Dicing&, std::uint64_t maxBytes) const;
+    // With a displacement, edges are measured where it takes them.
+    DicingPlan plan(const Dicing&, std::uint64_t maxBytes, const Displacement* = nullptr) const;
     // Runs on threadCount() threads; the result does not depend on how many. Requires a plan of this surface.
-    DicedSurface dice(const DicingPlan&) const;
+    // Displaced normals are those of the displaced surface. Points of seams go to one place: the mean of where their
+    // faces take them (along a normal: the mean way along the mean direction). Where the surface is smooth across a
+    // seam of texture coordinates, so is the displaced one: its two normals are averaged.
+    DicedSurface dice(const DicingPlan&, const Displacement* = nullptr) const;
     // The same for the cage deformed: `points` take the place of its positions, in their order. Faces, texture
     // coordinates, seams and the order of vertices are those of dice(plan) to the bit, whatever the points, so the
     // results are keys of one moving mesh; only positions and normals differ. Choose the plan once, from the cage
     // given to the constructor. Requires as many points as the cage has, finite and below 1e15.
-    DicedSurface dice(const DicingPlan&, std::span<const Vec3> points) const;
+    DicedSurface dice(const DicingPlan&, std::span<const Vec3> points, const Displacement* = nullptr) const;
 
     struct Impl;
 

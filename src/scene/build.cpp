@@ -26,6 +26,7 @@ schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagn
 }
 
 schema::Reference SceneBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
+    if (definition.kind == Kind::texture) return texture(definition, diagnostics);
     if (definition.kind != Kind::material) return {};
     const bool named = !definition.name.empty();
     if (named)
@@ -148,7 +149,7 @@ void SceneBuilder::build(BuiltScene& built) {
     placeAll(tree_.definitions, Transform::translate(-built.scene.origin));
     // What nothing refers to is checked all the same.
     for (const Definition& d : tree_.definitions) {
-        if (d.kind == Kind::material) reference(d, diagnostics_);
+        if (d.kind == Kind::material || d.kind == Kind::texture) reference(d, diagnostics_);
         if (d.kind == Kind::object) objectGeometry(d);
     }
     reportPlanned();

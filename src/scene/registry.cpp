@@ -22,6 +22,8 @@
 #include "scene/shape_parametric.h"
 #include "scene/shape_subdivision.h"
 #include "scene/shape_types.h"
+#include "textures/image_texture.h"
+#include "textures/noise_texture.h"
 
 namespace abbe {
 
@@ -43,6 +45,23 @@ constexpr MaterialEntry kMaterials[] = {
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
 };
+
+struct TextureEntry {
+    schema::TypeInfo (*type)();
+    std::unique_ptr<const Texture> (*make)(const BindParams&, Diagnostics&);
+};
+
+std::unique_ptr<const Texture> makeImage(const BindParams& bind, Diagnostics& diagnostics) {
+    ImageTextureParams params;
+    return bind(&params) ? makeImageTexture(params, diagnostics) : nullptr;
+}
+
+std::unique_ptr<const Texture> makeNoise(const BindParams& bind, Diagnostics&) {
+    NoiseTextureParams params;
+    return bind(&params) ? std::make_unique<NoiseTexture>(params) : nullptr;
+}
+
+constexpr TextureEntry kTextures[] = {{imageTextureType, makeImage}, {noiseTextureType, makeNoise}};
 
 struct CameraEntry {
     schema::TypeInfo (*type)();
@@ -74,6 +93,7 @@ constexpr schema::TypeInfo (*kOthers[])() = {
 schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
     for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
+    for (const TextureEntry& entry : kTextures) table.add(entry.type());
     for (const CameraEntry& entry : kCameras) table.add(entry.type());
     for (const auto type : kOthers) table.add(type());
     for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
@@ -86,6 +106,13 @@ std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindPa
     for (const MaterialEntry& entry : kMaterials)
         if (entry.type().name == type) return entry.make(bind);
     ABBE_CHECK(!"a registered material type");
+    return nullptr;
+}
+
+std::unique_ptr<const Texture> makeTexture(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
+    for (const TextureEntry& entry : kTextures)
+        if (entry.type().name == type) return entry.make(bind, diagnostics);
+    ABBE_CHECK(!"a registered texture type");
     return nullptr;
 }
 

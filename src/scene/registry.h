@@ -3,6 +3,7 @@
 
 #include "cameras/camera_params.h"
 #include "render/material.h"
+#include "render/texture.h"
 #include "schema/type.h"
 
 #include <functional>
@@ -19,6 +20,9 @@ using BindParams = std::function<bool(void* params)>;
 
 // A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
+
+// A texture of a registered type from bound parameters, or null after an error. Requires a name out of the table.
+std::unique_ptr<const Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);
 
 // A camera of a registered type from bound parameters, or nothing after an error. Requires a name out of the table.
 std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams&, const CameraContext&, Diagnostics&);

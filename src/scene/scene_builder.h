@@ -5,6 +5,7 @@
 #include "lights/area_light_types.h"
 #include "lights/light_context.h"
 #include "render/shape.h"
+#include "render/texture.h"
 #include "scene/build.h"
 #include "scene/curve_library.h"
 #include "scene/instances_type.h"
@@ -89,6 +90,9 @@ class SceneBuilder final : public schema::Resolver {
     // shape_subdivision.cpp; loadSubdivision is false for other types.
     bool loadSubdivision(const Definition&, LoadedShape&);
     std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
+    // textures.cpp
+    schema::Reference texture(const Definition&, Diagnostics&);
+    const Texture* textureOf(schema::Reference) const; // null for none
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
@@ -132,6 +136,8 @@ class SceneBuilder final : public schema::Resolver {
 
     std::vector<std::unique_ptr<const Material>> materials_;
     std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
+    std::vector<std::unique_ptr<const Texture>> textures_;
+    std::unordered_map<const Definition*, schema::Reference> textureIndex_; // of named textures
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;             // who made it, for effects
     std::map<double, std::optional<std::uint32_t>> plainMaterials_;          // by reflectance
     std::set<std::uint32_t> usedMaterials_;                                  // of shapes that were placed

@@ -75,13 +75,20 @@ class Binding {
                    fmt::format("{} has no key `{}`", title(definition_), key.name), "unknown key");
         const auto fields = argumentFields(type_);
         const auto& values = definition_.arguments;
+        // Keys behind the arguments are those of the last one.
+        const bool keyed = !values.empty() && !fields.empty() && !fields.back()->keys.empty();
+        for (const Key& key : keyed ? std::span<const Key>() : std::span(definition_.keys))
+            report(context_.diagnostics, key.nameSpan, "E0210",
+                   fmt::format("{} has no key `{}`", title(definition_), key.name), "unknown key");
         std::size_t next = 0;
         for (std::size_t i = 0; i < fields.size() && next < values.size(); ++i) {
             // The last field takes what is left; the ones before it take one value each.
             const std::size_t end = i + 1 == fields.size() ? values.size() : next + 1;
             const std::vector<Value> part(values.begin() + static_cast<std::ptrdiff_t>(next),
                                           values.begin() + static_cast<std::ptrdiff_t>(end));
-            const Entry entry(fields[i]->name, spanOf(part), part);
+            const bool last = i + 1 == fields.size() || end == values.size();
+            const Entry entry(fields[i]->name, spanOf(part), part,
+                              keyed && last ? std::span<const Key>(definition_.keys) : std::span<const Key>());
             if (give(*fields[i], entry.span())) store(*fields[i], bindField(*fields[i], entry, context_));
             next = end;
         }

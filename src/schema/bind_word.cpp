@@ -72,7 +72,7 @@ class WordBinder {
         Text result{std::string(value.text), {}, place(value)};
         const bool goodKeys = keys(result);
         if (isFile) {
-            const auto path = findFile(value, tree_, diagnostics_);
+            const auto path = findFile(value, tree_, diagnostics_, field_.tiles);
             if (!path) return std::nullopt;
             result.value = path->string();
         }

@@ -25,9 +25,19 @@ std::string similarFile(const fs::path& written, const fs::path& folder) {
     return found.empty() ? std::string() : (written.parent_path() / found).generic_string();
 }
 
+bool hasTile(const fs::path& path) {
+    const std::string pattern = path.string();
+    const std::size_t at = pattern.find("<UDIM>");
+    if (at == std::string::npos) return false;
+    std::error_code error;
+    for (int tile = 1001; tile < 2000; ++tile)
+        if (fs::exists(std::string(pattern).replace(at, 6, std::to_string(tile)), error)) return true;
+    return false;
+}
+
 } // namespace
 
-std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics) {
+std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics, bool tiles) {
     const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
     const fs::path written(nameable ? value.text : std::string_view());
     const fs::path path = written.is_absolute() ? written : tree.directory / written;
@@ -37,7 +47,7 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
         reportAt(diagnostics, value, "E0402", fmt::format("`{}` is a folder", value.text), "a file is needed");
         return std::nullopt;
     }
-    if (nameable && fs::exists(status)) return path;
+    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
     const std::string folder = written.is_absolute() ? written.parent_path().string() : tree.directory.string();
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
                        fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));

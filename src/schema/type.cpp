@@ -17,6 +17,7 @@ constexpr auto kKinds = std::to_array<std::pair<Kind, std::string_view>>({
     {Kind::instances, "instances"},
     {Kind::material, "material"},
     {Kind::spectrum, "spectrum"},
+    {Kind::texture, "texture"},
     {Kind::film, "film"},
     {Kind::render, "render"},
 });

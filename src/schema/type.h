@@ -29,6 +29,7 @@ enum class Kind : std::uint8_t {
     instances,
     material,
     spectrum,
+    texture,
     film,
     render
 };
@@ -161,6 +162,7 @@ struct FieldInfo {
     std::string_view group;                 // at most one field of a group may be set ("amount")
     std::string_view note;                  // shown with a unit or range error
     bool required = false;
+    bool tiles = false; // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
     std::function<void(void* params, const BoundValue&)> store;
@@ -201,6 +203,7 @@ template <typename Params, typename Member> class Field {
     Field& group(std::string_view g) { return info_.group = g, *this; }
     Field& note(std::string_view n) { return info_.note = n, *this; }
     Field& required() { return info_.required = true, *this; }
+    Field& tiles() { return info_.tiles = true, *this; }
     Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
     Field& argument(int position) { return info_.argument = position, *this; }
     operator FieldInfo() const { return info_; }
