@@ -3,13 +3,14 @@
 
 #include "geometry/subdivision_surface.h"
 #include "render/camera.h"
+#include "scene/shape_displacement.h"
 #include "scene/shape_types.h"
 
 #include <functional>
 
 namespace abbe {
 
-struct SubdivisionParams : ShapeParams {
+struct SubdivisionParams : ShapeParams, DisplacementParams {
     schema::Text file; // resolved path, or empty: points and faces
     std::vector<Vec3d> points;
     schema::IndexRows faces;
@@ -36,11 +37,15 @@ std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize);
 // How much a plan makes, in words.
 std::string describe(const DicingPlan&);
 // Says that the budget `memory` (MiB) lowered the rates of a plan.
-void warnOfBudget(const SubdivisionSurface&, const Dicing&, const DicingPlan&, double memory, Span, Diagnostics&);
+void warnOfBudget(const SubdivisionSurface&, const Dicing&, const DicingPlan&, double memory, Span, Diagnostics&,
+                  const Displacement* = nullptr);
 
 // Dices in the space that `place` leads to, whose outer side stays outside under mirrors. Before anything large is made
 // a warning says if the budget (MiB) lowers the rates. Null after an error located at `span`.
 std::unique_ptr<const Shape> placeSubdivision(SubdivisionCage, const Dicing&, double memory, const Transform& place,
                                               Span, Diagnostics&);
+// The same displaced in the cage's own space, before `place`.
+std::unique_ptr<const Shape> placeDisplaced(const SubdivisionCage&, const Displacement&, const Dicing&, double memory,
+                                            const Transform& place, Span, Diagnostics&);
 
 } // namespace abbe

@@ -54,8 +54,8 @@ std::string describe(const DicingPlan& plan) {
 }
 
 void warnOfBudget(const SubdivisionSurface& surface, const Dicing& dicing, const DicingPlan& plan, double memory,
-                  Span span, Diagnostics& diagnostics) {
-    const DicingPlan asked = surface.plan(dicing, ~std::uint64_t{0});
+                  Span span, Diagnostics& diagnostics, const Displacement* displacement) {
+    const DicingPlan asked = surface.plan(dicing, ~std::uint64_t{0}, displacement);
     const std::string rate = dicing.mode == Dicing::Mode::level
                                  ? fmt::format("level {:g} instead of {:g}",
                                                std::max(0.0, dicing.rate - std::log2(plan.coarser)), dicing.rate)

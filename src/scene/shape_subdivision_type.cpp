@@ -81,6 +81,7 @@ schema::TypeInfo subdivisionType() {
                  "into 2^level pieces. Pixels are those in the middle of the picture, at the distance of the edge; in "
                  "an `object` those of the shape filling the height of the picture.")
             .example("dicing 0.5 px"),
+        displacementField<P>(),
         field<P, double>(FieldType::number, "memory", &P::memory)
             .range(1, 1e9)
             .byDefault("4096")
