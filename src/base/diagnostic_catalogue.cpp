@@ -96,6 +96,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0354", "nothing to focus on", "`focus on=NAME` measures the distance to the middle of a shape's bounds. The shape must be finite, stand by itself or in groups, and lie in front of the camera; parts of an `object` have as many places as it has instances."},
     {"E0355", "a lens prescription is wrong", "`surfaces` holds a row for each surface from the scene to the film: its radius (`flat` for a plane, `stop` for the stop), the thickness to the next one, the medium behind it and the semi-aperture. There is one stop, in air, and the last medium is air."},
     {"E0356", "the lens makes no picture", "The lens diverges, cannot focus at this distance or open to this f-number, or leaves no room for a film behind it. The message says what it can do."},
+    {"E0358", "no such camera in the glTF file", "`camera gltf` takes the camera whose node is named by `name`, or the only one of the file; the message lists those that there are. An orthographic camera has no aperture, focus, speed, shift or tilt."},
     // E04: files
     {"E0401", "file not found", "Files are looked up beside the scene file. The message names a file with a similar name if there is one."},
     {"E0402", "the file cannot be used", "The path is a folder, or the file is not readable or not of the expected form."},

@@ -16,6 +16,7 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "scene/camera_gltf.h"
 #include "scene/instances_type.h"
 #include "scene/planned_types.h"
 #include "scene/shape_curves.h"
@@ -80,6 +81,7 @@ constexpr CameraEntry kCameras[] = {
     {orthographicType, placed<OrthographicParams, makeOrthographic>},
     {sphericalType, placed<SphericalParams, makeSpherical>},
     {lensSystemType, placed<LensSystemParams, makeLensSystem>},
+    {gltfCameraType, placed<GltfCameraParams, makeGltfCamera>},
 };
 
 constexpr schema::TypeInfo (*kOthers[])() = {
