@@ -1,13 +1,15 @@
 // Dicing of subdivision surfaces: million triangles per second on one thread, and bytes per triangle with the
-// acceleration structure. `dicing [LEVEL]`
+// acceleration structure; still, then displaced by noise and by an image. `dicing [LEVEL]`
 #include "base/parallel.h"
 #include "geometry/embree_scene.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
+#include "textures/image_texture.h"
+#include "textures/noise_texture.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <fmt/format.h>
 #include <fstream>
 #include <string>
@@ -16,7 +18,8 @@ using namespace abbe;
 
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+// Processor time of one thread, which other work on the machine does not change.
+double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // A torus of quads; of triangles and pentagons too if `irregular`, so that many vertices are extraordinary.
 SubdivisionCage torus(std::uint32_t around, std::uint32_t across, bool irregular) {
@@ -51,12 +54,12 @@ double resident() {
     return pages * 4096;
 }
 
-void measure(const std::string& name, const SubdivisionCage& cage, double level) {
+void measure(const std::string& name, const SubdivisionCage& cage, double level, const Displacement* d = nullptr) {
     const double before = resident(), start = now();
     const SubdivisionSurface surface(cage);
     const double built = now();
-    const DicingPlan plan = surface.plan({Dicing::Mode::level, level, {}}, 1ull << 40);
-    MeshData mesh = surface.dice(plan).mesh;
+    const DicingPlan plan = surface.plan({Dicing::Mode::level, level, {}, {}}, 1ull << 40, d);
+    MeshData mesh = surface.dice(plan, d).mesh;
     const double diced = now();
     const double triangles = static_cast<double>(mesh.triangles.size() + 2 * mesh.quads.size());
     const Mesh shape(std::move(mesh));
@@ -67,6 +70,16 @@ void measure(const std::string& name, const SubdivisionCage& cage, double level)
     fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} |\n", name, cage.faceSizes.size(),
                triangles * 1e-6, triangles * 1e-6 / (diced - built), committed - diced, (built - start) * 1e3,
                (resident() - before) / triangles);
+}
+
+// Every face has the whole image; heights without meaning.
+ImageTexture image(int size) {
+    ImagePixels pixels;
+    pixels.width = pixels.height = size;
+    pixels.channels = 1;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(size * size); ++i)
+        pixels.values.push_back(static_cast<float>(i % 1009 * 7919 % 1009) / 1009.f);
+    return ImageTexture(std::move(pixels), Wrap::periodic);
 }
 
 } // namespace
@@ -80,4 +93,14 @@ int main(int argc, char** argv) {
     measure("torus with triangles", torus(64, 32, true), level + 1);
     measure("regular torus, fine cage", torus(256, 128, false), level - 1);
     measure("fine cage with triangles", torus(256, 128, true), level - 1);
+    NoiseTextureParams params;
+    const NoiseTexture noise(params);
+    const ImageTexture pixels = image(2048);
+    const Displacement byNoise{Displacement::Space::normal, 0.05, 0.5, &noise};
+    const Displacement byImage{Displacement::Space::normal, 0.02, 0.5, &pixels};
+    measure("regular torus, noise of 4 octaves", torus(64, 32, false), level + 1, &byNoise);
+    measure("regular torus, image", torus(64, 32, false), level + 1, &byImage);
+    measure("torus with triangles, image", torus(64, 32, true), level + 1, &byImage);
+    measure("fine cage with triangles, noise", torus(256, 128, true), level - 1, &byNoise);
+    measure("fine cage with triangles, image", torus(256, 128, true), level - 1, &byImage);
 }

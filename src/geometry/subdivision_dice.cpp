@@ -104,7 +104,7 @@ class Dicer {
         const DisplacedLimit d = face.displaced(at.x, at.y, *displacement_);
         out_.mesh.positions[vertex] = d.place();
         out_.mesh.normals[vertex] = Vec3(d.moved.normal);
-        if (textured()) out_.mesh.uvs[vertex] = face.texture(at.x, at.y);
+        if (textured()) out_.mesh.uvs[vertex] = d.texture;
         if (vertex < moved_.size())
             moved_[vertex] = {Vec3(d.position), Vec3(d.moved.direction), static_cast<float>(d.moved.length), 1};
     }

@@ -192,13 +192,16 @@ Vec2 FaceEvaluator::texture(float u, float v) const {
     return t;
 }
 
-SurfaceJet FaceEvaluator::jet(const double uv[2]) const {
+SurfaceJet FaceEvaluator::jet(const double uv[2], bool bentTexture) const {
     SurfaceJet s;
     limit_.Evaluate(uv, patch_.data(), 3, &s.p.x, &s.u.x, &s.v.x, &s.uu.x, &s.uv.x, &s.vv.x);
     if (!textured_) return s;
     const float at[2] = {static_cast<float>(uv[0]), static_cast<float>(uv[1])};
     Vec2 t[6];
-    texture_.Evaluate(at, texturePatch_.data(), 2, &t[0].x, &t[1].x, &t[2].x, &t[3].x, &t[4].x, &t[5].x);
+    if (bentTexture)
+        texture_.Evaluate(at, texturePatch_.data(), 2, &t[0].x, &t[1].x, &t[2].x, &t[3].x, &t[4].x, &t[5].x);
+    else
+        texture_.Evaluate(at, texturePatch_.data(), 2, &t[0].x, &t[1].x, &t[2].x);
     Vec2d* const to[6] = {&s.t, &s.tu, &s.tv, &s.tuu, &s.tuv, &s.tvv};
     for (int i = 0; i < 6; ++i) *to[i] = {static_cast<double>(t[i].x), static_cast<double>(t[i].y)};
     return s;
@@ -207,9 +210,11 @@ SurfaceJet FaceEvaluator::jet(const double uv[2]) const {
 DisplacedLimit FaceEvaluator::displaced(float u, float v, const Displacement& d) const {
     const Vec3d center(points_.center);
     const double uv[2] = {u, v};
-    const SurfaceJet here = jet(uv);
+    const bool bent = d.space == Displacement::Space::tangent;
+    const SurfaceJet here = jet(uv, bent);
     DisplacedLimit result;
     result.position = here.p + center;
+    result.texture = {static_cast<float>(here.t.x), static_cast<float>(here.t.y)};
     auto moved = displace(here, d, center, home_, smallTangent_);
     if (moved) result.moved = *moved;
     // Where the limit surface or the displaced one has no normal: that of the displacement a little way inside.
@@ -217,7 +222,7 @@ DisplacedLimit FaceEvaluator::displaced(float u, float v, const Displacement& d)
         if (lengthSquared(result.moved.normal) > 0) break;
         double inside[2] = {u, v};
         towardsInside(by, inside);
-        SurfaceJet near = jet(inside);
+        SurfaceJet near = jet(inside, bent);
         near.p = here.p;
         near.t = here.t;
         const auto other = displace(near, d, center, home_, smallTangent_);

@@ -54,6 +54,7 @@ struct LimitPoint {
 // A point of the displaced surface: position + direction * length, in the cage's own space.
 struct DisplacedLimit {
     Vec3d position; // of the limit surface
+    Vec2 texture;
     DisplacedPoint moved;
 
     Vec3 place() const { return Vec3(position + moved.direction * moved.length); }
@@ -80,7 +81,7 @@ class FaceEvaluator {
   private:
     bool normal(double u, double v, LimitPoint&) const;
     void towardsInside(double by, double uv[2]) const;
-    SurfaceJet jet(const double uv[2]) const;
+    SurfaceJet jet(const double uv[2], bool bentTexture) const; // second derivatives of the texture too?
 
     const SubdivisionSurface::Impl& surface_;
     const CagePoints& points_;

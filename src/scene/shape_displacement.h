@@ -34,7 +34,8 @@ template <typename P> schema::FieldInfo displacementField() {
         .unit({Dimension::length})
         .range(-1e9, 1e9)
         .synonyms({"displace", "bump", "height"})
-        .note("to displace a mesh write `shape subdivision … { scheme bilinear }`")
+        .elsewhere(
+            "only `shape subdivision` is displaced; for a polygon mesh write `shape subdivision … { scheme bilinear }`")
         .doc("Moves the surface by the length times the map less its midpoint, in the shape's own space.")
         .example("displacement 2 mm { map noise { scale 1 cm } }")
         .block({

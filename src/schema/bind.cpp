@@ -143,6 +143,11 @@ class Binding {
             meant_.push_back(meant);
             return;
         }
+        for (const TypeInfo* other : context_.table.of(type_.kind))
+            if (const FieldInfo* field = other->find(name); field && !field->elsewhere.empty()) {
+                d.help = field->elsewhere;
+                return;
+            }
         std::vector<std::string_view> names;
         for (const FieldInfo& field : type_.fields) names.push_back(field.name);
         d.help = names.empty() ? "it has no properties" : "its properties are " + quotedList(names);

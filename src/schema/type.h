@@ -161,6 +161,7 @@ struct FieldInfo {
     std::vector<std::string_view> synonyms; // other renderers' names for it: suggested, never accepted
     std::string_view group;                 // at most one field of a group may be set ("amount")
     std::string_view note;                  // shown with a unit or range error
+    std::string_view elsewhere;             // shown when another type of the kind is given it
     bool required = false;
     bool tiles = false; // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
@@ -202,6 +203,7 @@ template <typename Params, typename Member> class Field {
     Field& synonyms(std::vector<std::string_view> s) { return info_.synonyms = std::move(s), *this; }
     Field& group(std::string_view g) { return info_.group = g, *this; }
     Field& note(std::string_view n) { return info_.note = n, *this; }
+    Field& elsewhere(std::string_view text) { return info_.elsewhere = text, *this; }
     Field& required() { return info_.required = true, *this; }
     Field& tiles() { return info_.tiles = true, *this; }
     Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
