@@ -96,6 +96,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0354", "nothing to focus on", "`focus on=NAME` measures the distance to the middle of a shape's bounds. The shape must be finite, stand by itself or in groups, and lie in front of the camera; parts of an `object` have as many places as it has instances."},
     {"E0355", "a lens prescription is wrong", "`surfaces` holds a row for each surface from the scene to the film: its radius (`flat` for a plane, `stop` for the stop), the thickness to the next one, the medium behind it and the semi-aperture. There is one stop, in air, and the last medium is air."},
     {"E0356", "the lens makes no picture", "The lens diverges, cannot focus at this distance or open to this f-number, or leaves no room for a film behind it. The message says what it can do."},
+    {"E0357", "a shutter closes before it is open", "`opening` and `closing` of a `shutter` are the lengths of its ramps in units of the exposure time. Together they are at most 2: then the shutter closes as soon as it is open."},
     {"E0358", "no such camera in the glTF file", "`camera gltf` takes the camera whose node is named by `name`, or the only one of the file; the message lists those that there are. An orthographic camera has no aperture, focus, speed, shift or tilt."},
     // E04: files
     {"E0401", "file not found", "Files are looked up beside the scene file. The message names a file with a similar name if there is one."},
@@ -137,7 +138,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0631", "a placement is unusable", "The place of an instance is not finite, flattens the object, or makes it so small or large that no ray can be followed into it. Scales of 0 and turns by a quaternion or normal of 0 do this."},
     {"E0632", "nothing to scatter on", "`over` names a shape in the same group or object, or at the top level, where the instances are: a quad, a disk, or one that is made of polygons."},
     {"E0633", "objects nest too deeply", "Objects are placed inside of objects over more than 32 levels."},
-    {"E0634", "a lamp or plane cannot move", "An instance with keys shows an object with a lamp, an emitting shape or an infinite plane in it. Leave these out of the object."},
+    {"E0634", "a light or plane cannot move like this", "A light that moves keeps its shape: it may be moved, turned and scaled evenly while the shutter is open, but not be stretched or mirrored. An infinite plane stands still. This holds for groups and instances with keys, too."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"E0670", "no texture coordinates to displace by", "A displacement by an image, or along tangents, follows the texture coordinates of the cage: `vt` in an OBJ file, or `uvs`. Noise needs none."},

@@ -18,27 +18,119 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kUnitLuminance = kLuminousEfficacy * kYIntegral; // cd/m² of Y = 1
 constexpr double kSaturation = 78;                                // lx s at ISO 1 [ISO12232]
 
+std::optional<Vec3d> firstOf(const std::optional<Vec3d>& a, const std::optional<Vec3d>& b) { return a ? a : b; }
+
+// Camera to file at one moment. Nothing after a diagnostic.
+std::optional<Transform> lookAt(const CameraParams& params, const CameraMoment& moment, bool zUp,
+                                Diagnostics& diagnostics) {
+    const Vec3d from = firstOf(moment.from, params.from).value_or(Vec3d{});
+    const Vec3d to = firstOf(moment.lookAt, params.lookAt).value_or(from + (zUp ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1}));
+    const Vec3d up = firstOf(moment.up, params.up).value_or(zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0});
+    const auto result = Transform::lookAt(from, to, up);
+    if (!result)
+        diagnostics.error("E0352", moment.span, "the camera has no direction",
+                          from == to ? "`look-at` is `from`" : "it looks along `up`");
+    return result;
+}
+
+// Rays are turned and moved, and what the lens measures stays: so must the scale, which has no meaning else.
+bool isRigid(const KeyedTransform& transform, const Shutter& shutter) {
+    constexpr int samples = 64;
+    const auto first = transform.at(shutter.open).uniformScale();
+    for (int i = 0; i <= samples; ++i) {
+        const Transform m = transform.at(shutter.timeAt(static_cast<double>(i) / samples));
+        const auto scale = m.uniformScale();
+        if (!scale || !(*scale > 0) || !(m.determinant() > 0) || !(std::abs(*scale / *first - 1) < 1e-6)) return false;
+    }
+    return true;
+}
+
 // Camera to file. Nothing after a diagnostic.
-std::optional<Transform> toFile(const CameraParams& params, const CameraContext& context, Diagnostics& diagnostics) {
+std::optional<KeyedTransform> toFile(const CameraParams& params, const Shutter& shutter, const CameraContext& context,
+                                     Diagnostics& diagnostics) {
     if (params.transform) {
-        if (params.from || params.lookAt || params.up) {
+        if (params.from || params.lookAt || params.up || !params.moments.empty()) {
             diagnostics.error("E0350", context.span, "the camera is placed twice",
                               "keep `transform`, or `from`, `look-at` and `up`");
             return std::nullopt;
         }
-        const auto scale = params.transform->uniformScale();
-        if (scale && *scale > 0 && params.transform->determinant() > 0) return params.transform;
+        if (isRigid(*params.transform, shutter)) return params.transform;
         diagnostics.error("E0351", context.span, "a camera can be moved and turned, but not stretched or mirrored");
         return std::nullopt;
     }
-    const Vec3d from = params.from.value_or(Vec3d{});
-    const Vec3d to = params.lookAt.value_or(from + (context.zUp ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1}));
-    const Vec3d up = params.up.value_or(context.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0});
-    const auto result = Transform::lookAt(from, to, up);
-    if (!result)
-        diagnostics.error("E0352", context.span, "the camera has no direction",
-                          from == to ? "`look-at` is `from`" : "it looks along `up`");
-    return result;
+    if (params.moments.empty()) return lookAt(params, {0, context.span, {}, {}, {}}, context.zUp, diagnostics);
+    std::vector<KeyedTransform::Key> keys;
+    for (const CameraMoment& moment : params.moments) {
+        const auto place = lookAt(params, moment, context.zUp, diagnostics);
+        if (!place) return std::nullopt;
+        keys.push_back({moment.time, {{TransformStep::Kind::matrix, {}, 0, *place}}});
+    }
+    return KeyedTransform(std::move(keys));
+}
+
+// From the camera to what it looks at when the shutter opens; between two moments it changes evenly.
+std::optional<double> lookAtDistance(const CameraParams& params) {
+    std::optional<double> before;
+    double timeBefore = 0;
+    const auto at = [&](const CameraMoment& m) -> std::optional<double> {
+        const auto to = firstOf(m.lookAt, params.lookAt);
+        return to ? std::optional(length(*to - firstOf(m.from, params.from).value_or(Vec3d{}))) : std::nullopt;
+    };
+    if (params.moments.empty()) return at({});
+    for (const CameraMoment& m : params.moments) {
+        const auto distance = at(m);
+        if (m.time >= params.time) {
+            if (!before || !distance) return distance;
+            return *before + (*distance - *before) * (params.time - timeBefore) / (m.time - timeBefore);
+        }
+        before = distance;
+        timeBefore = m.time;
+    }
+    return before;
+}
+
+std::optional<Shutter> shutterOf(const CameraParams& params, Span span, Diagnostics& diagnostics) {
+    const Shutter shutter{params.time, params.shutter.value_or(0), params.opening, params.closing};
+    if (params.opening + params.closing <= 2) return shutter;
+    diagnostics
+        .error("E0357", span, "the shutter closes before it is open",
+               fmt::format("`opening` and `closing` are {:.6g} together", params.opening + params.closing))
+        .help = "they are parts of the exposure time, at most 2 together: a triangle";
+    return std::nullopt;
+}
+
+FieldInfo momentsField() {
+    using M = CameraMoment;
+    const auto triple = [](std::string_view name, std::optional<Vec3d> M::*member, std::string_view doc) {
+        return field(FieldType::vector3, name, member).doc(doc);
+    };
+    return field(FieldType::moments, "at", &CameraParams::moments)
+        .doc("Where a moving camera is at a time. What a block leaves out is as the camera has it.")
+        .example("at \"1/24\" s { from 0.2 1 4; look-at 0 0.5 0 }")
+        .block({triple("from", &M::from, "Position of the lens.").unit({Dimension::length}).example("from 0 1 4"),
+                triple("look-at", &M::lookAt, "A point in the middle of the picture.")
+                    .unit({Dimension::length})
+                    .example("look-at 0 0.5 0"),
+                triple("up", &M::up, "A direction that is upright in the picture.").example("up 0 1 0")});
+}
+
+FieldInfo shutterField() {
+    using P = CameraParams;
+    return field(FieldType::quantity, "shutter", &P::shutter)
+        .unit({Dimension::time})
+        .range(1e-9, 1e9)
+        .doc("How long the shutter is open. Brightness follows it only where `iso` is given.")
+        .example("shutter \"1/48\" s { opening 0.1; closing 0.3 }")
+        .synonyms({"exposure-time", "shutter-speed", "shutterspeed"})
+        .block({field(FieldType::number, "opening", &P::opening)
+                    .range(0, 2)
+                    .doc("How long it takes to open, in units of `shutter`. It stays open longer for that, so that as "
+                         "much light comes in.")
+                    .example("opening 0.1"),
+                field(FieldType::number, "closing", &P::closing)
+                    .range(0, 2)
+                    .doc("The same for closing.")
+                    .example("closing 0.3")});
 }
 
 } // namespace
@@ -60,16 +152,18 @@ std::vector<FieldInfo> placementFields() {
             .doc("A direction that is upright in the picture. Default: the up axis of the scene.")
             .example("up 0 1 0")
             .synonyms({"sky"}),
+        momentsField(),
         field(FieldType::transform, "transform", &P::transform)
             .doc("Instead of `from`, `look-at` and `up`: places a camera at the origin that looks along its -z, +y up.")
             .example("transform { rotate y 30 deg; translate 0 1 4 }")
             .synonyms({"to-world", "matrix"}),
-        field(FieldType::quantity, "shutter", &P::shutter)
+        field(FieldType::quantity, "time", &P::time)
             .unit({Dimension::time})
-            .range(1e-9, 1e9)
-            .doc("How long the shutter is open. Brightness follows it only where `iso` is given.")
-            .example("shutter \"1/48\" s")
-            .synonyms({"exposure-time", "shutter-speed", "shutterspeed"}),
+            .byDefault("0 s")
+            .doc("When the shutter opens: which moment of the motion is shown.")
+            .example("time \"101/24\" s")
+            .synonyms({"shutter-open", "shutteropen", "frame"}),
+        shutterField(),
         field(FieldType::quantity, "exposure", &P::exposure)
             .unit({Dimension::stops})
             .byDefault("0 stops")
@@ -128,19 +222,24 @@ FieldInfo fStopField(std::string_view doc) {
 
 std::optional<CameraPlace> placeCamera(const CameraParams& params, const CameraContext& context,
                                        Diagnostics& diagnostics) {
-    const auto inFile = toFile(params, context, diagnostics);
+    const auto shutter = shutterOf(params, context.span, diagnostics);
+    if (!shutter) return std::nullopt;
+    const auto inFile = toFile(params, *shutter, context, diagnostics);
     if (!inFile) return std::nullopt;
-    const Transform toWorld = inFile->then(context.toWorld);
+    const Transform toWorld = inFile->at(shutter->open).then(context.toWorld);
     const auto axis = [&](Vec3d v) { return Vec3(normalize(toWorld.vector(v))); };
-    return CameraPlace{toWorld.point({}), Frame{axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})}};
+    const bool moves = inFile->movesDuring(shutter->open, shutter->timeAt(1));
+    return CameraPlace{toWorld.point({}), Frame{axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})},
+                       lookAtDistance(params), *shutter,
+                       moves ? Motion().then(*inFile).then(context.toWorld) : Motion(toWorld)};
 }
 
 std::optional<double> focusDistance(const LensCameraParams& params, const CameraPlace& place,
                                     const CameraContext& context, Diagnostics& diagnostics) {
-    if (!params.focus) return params.lookAt ? length(*params.lookAt - params.from.value_or(Vec3d{})) : kInfinite;
+    if (!params.focus) return place.lookAtDistance.value_or(kInfinite);
     if (params.focus->distance) return params.focus->distance;
     const Span span = params.focus->span;
-    const auto middle = context.middleOf ? context.middleOf(params.focus->shape) : std::nullopt;
+    const auto middle = context.middleOf ? context.middleOf(params.focus->shape, place.shutter.open) : std::nullopt;
     if (!middle) {
         diagnostics
             .error("E0354", span, fmt::format("nothing can be focused on `{}`", params.focus->shape),

@@ -3,8 +3,9 @@
 
 #include "base/diagnostic.h"
 #include "cameras/aperture.h"
+#include "cameras/shutter.h"
 #include "math/frame.h"
-#include "math/transform.h"
+#include "math/keyed_transform.h"
 #include "render/camera.h"
 #include "schema/type.h"
 
@@ -15,14 +16,25 @@
 
 namespace abbe {
 
+// Where the camera is at a time; what is not given is as CameraParams has it.
+struct CameraMoment {
+    double time = 0; // s
+    Span span;
+    std::optional<Vec3d> from, lookAt, up;
+};
+
 // Lengths in m, angles in rad, times in s. Directions and points are those of the file.
 struct CameraParams {
-    std::optional<Vec3d> from;          // 0 0 0
-    std::optional<Vec3d> lookAt;        // one metre ahead along -z (+y in a z-up scene)
-    std::optional<Vec3d> up;            // the file's up axis
-    std::optional<Transform> transform; // instead of the three: camera to world, looking along its -z, up its +y
-    std::optional<double> shutter;      // how long it is open
-    double exposure = 0;                // stops; applied by the film, not by the camera
+    std::optional<Vec3d> from;         // 0 0 0
+    std::optional<Vec3d> lookAt;       // one metre ahead along -z (+y in a z-up scene)
+    std::optional<Vec3d> up;           // the file's up axis
+    std::vector<CameraMoment> moments; // of the three, at increasing times
+    // Instead of all these: camera to world, looking along its -z, up its +y.
+    std::optional<KeyedTransform> transform;
+    double time = 0;                 // when the shutter opens
+    std::optional<double> shutter;   // how long it is open: see Shutter::exposure
+    double opening = 0, closing = 0; // its ramps, in units of that
+    double exposure = 0;             // stops; applied by the film, not by the camera
 };
 
 // A camera with a sensor behind a lens.
@@ -37,7 +49,7 @@ struct LensCameraParams : CameraParams {
 };
 
 // Fields of the structs above, for any struct derived from them alone.
-std::vector<schema::FieldInfo> placementFields(); // and `shutter` and `exposure`
+std::vector<schema::FieldInfo> placementFields(); // and `time`, `shutter` and `exposure`
 std::vector<schema::FieldInfo> lensCameraFields();
 schema::FieldInfo fStopField(std::string_view doc); // with the block of its blades
 
@@ -46,22 +58,27 @@ struct CameraContext {
     bool zUp = false;
     Vec2i filmSize; // pixels, both > 0
     Span span;      // of the definition's head
-    // Middle of the bounds of a named shape in world space; nothing if that shape has no size or place.
-    std::function<std::optional<Vec3d>(std::string_view)> middleOf = {};
+    // Middle of the bounds of a named shape in world space at a time; nothing if that shape has no size or place.
+    std::function<std::optional<Vec3d>(std::string_view, double)> middleOf = {};
 };
 
 struct PlacedCamera {
     std::unique_ptr<Camera> camera; // in render space: world space minus `origin`
     Vec3d origin;                   // the camera's position in world space
     double exposure = 1;            // factor from radiance to pixel values
-    double shutter = 0;             // s
+    Shutter shutter;
+    Motion toWorld; // of camera space; moves only if it does so while the shutter is open
 };
 
-// A camera's place in world space and its axes: x right, y up, looking along -z. Nothing after an error.
+// A camera's place in world space and its axes when the shutter opens: x right, y up, looking along -z.
 struct CameraPlace {
     Vec3d origin;
     Frame axes;
+    std::optional<double> lookAtDistance;
+    Shutter shutter;
+    Motion toWorld; // as for PlacedCamera
 };
+// Nothing after an error.
 std::optional<CameraPlace> placeCamera(const CameraParams&, const CameraContext&, Diagnostics&);
 
 // Distance of the sharp plane along the axis; infinite without `focus` and `look-at`. Nothing after an error.

@@ -171,7 +171,7 @@ std::optional<PlacedCamera> makeLensSystem(const LensSystemParams& params, const
     optics.opening = *opening;
     return PlacedCamera{
         std::make_unique<LensSystemCamera>(place->axes, context.filmSize, params.sensor.x, std::move(*train), optics),
-        place->origin, *exposure, params.shutter.value_or(0)};
+        place->origin, *exposure, place->shutter, place->toWorld};
 }
 
 } // namespace abbe

@@ -165,7 +165,7 @@ std::optional<PlacedCamera> makePerspective(const PerspectiveParams& params, con
     lens.shift = {params.shift.x * params.squeeze / lens.focalLength, params.shift.y / lens.focalLength};
     lens.tilt = params.tilt;
     return PlacedCamera{std::make_unique<PerspectiveCamera>(place->axes, context.filmSize, lens), place->origin,
-                        *exposure, params.shutter.value_or(0)};
+                        *exposure, place->shutter, place->toWorld};
 }
 
 } // namespace abbe

@@ -234,7 +234,7 @@ struct EmbreeSceneBuilder::Impl {
     Shapes shapes;
     std::vector<Shapes> objects;
     std::map<Inside, std::vector<Placement>> placements;
-    std::map<std::uint32_t, std::vector<Motion>> moving; // by object, in the scene
+    std::map<Inside, std::vector<Motion>> moving;
     Interval shutter;
 
     // What is known of an object's scene once it is built.
@@ -250,7 +250,7 @@ struct EmbreeSceneBuilder::Impl {
     static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
     static void addShapes(EmbreeScene&, const Shapes&, BuiltObject&);
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
-    void addMoving(EmbreeScene&, std::size_t geometryId, BuiltObject& top);
+    void addMoving(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     static const InstanceTable& addTable(EmbreeScene&, std::size_t geometryId, const BuiltObject& placed,
                                          BuiltObject& inside, std::unique_ptr<const InstanceTable>);
 };
@@ -284,17 +284,18 @@ void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t insi
                                                                            placed.firstRecord, instanceCount));
         if (inside == kScene) instanceCount += table.size();
     }
-    if (inside == kScene) addMoving(target, geometryId, object);
+    addMoving(target, inside, geometryId, object);
     ABBE_CHECK(object.levels <= kMaxInstanceLevels);
 }
 
-void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::size_t geometryId, BuiltObject& top) {
-    for (auto& [number, motions] : moving) {
-        const BuiltObject& placed = built[number];
-        const auto& table = addTable(target, geometryId++, placed, top,
-                                     std::make_unique<const InstanceTable>(placed.scene, std::move(motions), shutter,
-                                                                           placed.firstRecord, instanceCount));
-        instanceCount += table.size();
+void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
+                                         BuiltObject& object) {
+    for (auto list = moving.lower_bound({inside, 0}); list != moving.end() && list->first.first == inside; ++list) {
+        const BuiltObject& placed = built[list->first.second];
+        const auto& table = addTable(target, geometryId++, placed, object,
+                                     std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
+                                                                           shutter, placed.firstRecord, instanceCount));
+        if (inside == kScene) instanceCount += table.size();
     }
 }
 
@@ -340,9 +341,10 @@ void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placemen
 void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutter = {open, duration}; }
 Interval EmbreeSceneBuilder::shutter() const { return impl_->shutter; }
 
-void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion) {
-    ABBE_CHECK(object < impl_->objects.size());
-    impl_->moving[object].push_back(motion);
+void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, std::uint32_t inside) {
+    ABBE_CHECK(object < impl_->objects.size() &&
+               (inside == kScene || (inside > object && inside < impl_->objects.size())));
+    impl_->moving[{inside, object}].push_back(motion);
 }
 
 std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {

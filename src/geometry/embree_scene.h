@@ -44,8 +44,9 @@ class EmbreeSceneBuilder {
     // The time, in s, at which Ray::time is 0, and how much later it is 1. Before the first addMoving.
     void setShutter(double open, double duration);
     Interval shutter() const;
-    // Places an object that moves while the shutter is open. Requires maps without fault at all times of the interval.
-    void addMoving(std::uint32_t object, const Motion&);
+    // Places an object that moves while the shutter is open, as addInstance. Requires maps without fault at all times
+    // of the interval.
+    void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene);
     // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
     std::unique_ptr<Intersector> build();
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
-#include "math/key_grid.h"
+#include "math/interval.h"
 #include "math/keyed_transform.h"
 
 #include <array>

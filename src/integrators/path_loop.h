@@ -142,7 +142,7 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     float lightPdf = 0;
     if (!path_.delta && strategy == Strategy::mis)
-        lightPdf = context_.lights.probability(hit.light) * hit.light->pdfSolidAngle(path_.from, hit);
+        lightPdf = context_.lights.probability(hit.light) * hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
     path_.radiance = fma(path_.beta * weight, emitted, path_.radiance);
 }
@@ -153,8 +153,8 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
         if (!path_.delta && strategy == Strategy::mis)
-            lightPdf = context_.lights.probability(light) * light->pdfEscaped(direction);
-        const Spectrum arriving = light->escaped(direction, path_.lambda);
+            lightPdf = context_.lights.probability(light) * light->pdfEscaped(direction, path_.time);
+        const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
         path_.radiance = fma(path_.beta * scatteringWeight(lightPdf), arriving, path_.radiance);
     }
 }
@@ -165,7 +165,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick);
-    const auto light = picked.light->sample(hit.p, sample.light, path_.lambda);
+    const auto light = picked.light->sample(hit.p, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
     const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);

@@ -2,6 +2,7 @@
 
 #include "lights/area_light_types.h"
 #include "lights/light_context.h"
+#include "lights/moving_light.h"
 
 namespace abbe {
 
@@ -12,27 +13,33 @@ AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
         std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiantIntegral(*radiance.curve) * radiance.scale : 0;
 }
 
-std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda, float) const noexcept {
     const std::optional<ShapeSample> s = shape_.sample(from, u);
-    if (!s || !(s->pdfSolidAngle > 0) || !(s->pdfSolidAngle < kInfinity)) return std::nullopt;
-    const Vec3 offset = s->p - from;
+    if (!s) return std::nullopt;
+    return arriving(*s, from, lambda);
+}
+
+std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from,
+                                               const Wavelengths& lambda) const noexcept {
+    if (!(s.pdfSolidAngle > 0) || !(s.pdfSolidAngle < kInfinity)) return std::nullopt;
+    const Vec3 offset = s.p - from;
     const float distance = length(offset);
     if (!(distance > 0)) return std::nullopt;
     const Vec3 wi = offset * (1 / distance);
-    if (!emits(s->ng, -wi)) return std::nullopt;
+    if (!emits(s.ng, -wi)) return std::nullopt;
     // The end of a shadow ray is as uncertain as its direction: without a margin of a few roundings of the distance,
     // half of all rays to a far sphere or disk would end behind its surface.
     const float rounding = 0x1p-21f * distance;
-    const Vec3 p = spawnOrigin(s->p, s->pError + Vec3{rounding, rounding, rounding}, s->ng, -wi);
+    const Vec3 p = spawnOrigin(s.p, s.pError + Vec3{rounding, rounding, rounding}, s.ng, -wi);
     // In place, as every Bsdf::sample (render/bsdf.h).
-    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda), s->pdfSolidAngle);
+    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda), s.pdfSolidAngle);
 }
 
 Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {
     return emits(hit.ng, w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-float AreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept {
+float AreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float) const noexcept {
     if (!emits(hit.ng, from - hit.p)) return 0;
     const float pdf = shape_.pdfSolidAngle(from, hit);
     return pdf < kInfinity ? pdf : 0; // as in sample
@@ -48,6 +55,7 @@ std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape&
     const auto radiance = absoluteSpectrum(params, *context.defaultColor, {.power = sides * kPiD * shape.area()},
                                            context.span, diagnostics);
     if (!radiance) return nullptr;
+    if (context.motion) return std::make_unique<MovingAreaLight>(shape, *radiance, params.twoSided, *context.motion);
     return std::make_unique<AreaLight>(shape, *radiance, params.twoSided);
 }
 

@@ -9,18 +9,23 @@
 
 namespace abbe {
 
-class AreaLight final : public Light {
+class AreaLight : public Light {
   public:
     // The shape is in render space; shape and curve outlive the light.
     AreaLight(const Shape&, ScaledCurve radiance, bool twoSided);
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept override;
-    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3) const noexcept override { return 0; }
+    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float) const noexcept override;
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
+
+  protected:
+    const Shape& shape() const { return shape_; }
+    // The light from a point of the shape; nothing if none arrives.
+    std::optional<LightSample> arriving(const ShapeSample&, Vec3 from, const Wavelengths&) const noexcept;
 
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lights/amount.h"
-#include "math/transform.h"
+#include "math/keyed_transform.h"
 
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace abbe {
 
 struct AreaLightParams : AmountParams {
     bool twoSided = false;
-    Transform transform; // light to parent
+    KeyedTransform transform; // light to parent
 };
 
 // A rectangle of `size` in the xy-plane about the origin, facing +z, or four corners, counter-clockwise seen from

@@ -173,7 +173,7 @@ Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
     return mix(upper, lower, fy);
 }
 
-std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
     const CellSample cell = distribution_.sample(u);
     // Uniform in the cosine within the cell, so that its density is constant even at the poles.
     const double cosTheta = lerp(rowCosine_[cell.row], rowCosine_[cell.row + 1], static_cast<double>(cell.offset.y));
@@ -183,15 +183,15 @@ std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Waveleng
     const Vec3 local{sinTheta * std::sin(phi), static_cast<float>(cosTheta), -sinTheta * std::cos(phi)};
     const Vec3 wi = normalize(axes_.toWorld(local));
     const double pdf = cell.probability / cellSolidAngle(static_cast<int>(cell.row));
-    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, escaped(wi, lambda),
+    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, escaped(wi, lambda, 0),
                                       static_cast<float>(pdf));
 }
 
-Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {
+Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexcept {
     return upsampling_->at(lookup(imagePoint(axes_.toLocal(w))), lambda) * scale_;
 }
 
-float EnvironmentLight::pdfEscaped(Vec3 w) const noexcept {
+float EnvironmentLight::pdfEscaped(Vec3 w, float) const noexcept {
     const Vec2 point = imagePoint(axes_.toLocal(w));
     const int column = std::clamp(static_cast<int>(point.x), 0, image_.width - 1);
     const int row = std::clamp(static_cast<int>(point.y), 0, image_.height - 1);
@@ -230,7 +230,7 @@ std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params
                                             const LightContext& context, Diagnostics& diagnostics) {
     if (!checkEnvironmentImage(image, context.span, diagnostics)) return nullptr;
     const Transform upright = context.zUp ? Transform::rotate({1, 0, 0}, kPiD / 2) : Transform{};
-    const Transform toRender = upright.then(params.transform).then(context.toRender);
+    const Transform toRender = upright.then(params.transform.at(context.time)).then(context.toRender);
     if (!toRender.uniformScale()) {
         diagnostics.error("E0348", context.span, "an environment can be turned, but not stretched");
         return nullptr;

@@ -32,7 +32,7 @@ struct EnvironmentLightParams {
     schema::Text image;                        // resolved path; key `space`
     std::optional<schema::Quantity> luminance; // cd/m² of a texel of (1, 1, 1); default: 683 ∫ȳ dλ = 72 983
     double exposure = 0;                       // stops, on top of that
-    Transform transform;                       // light to parent; a rotation, mirrored or not, and a uniform scale
+    KeyedTransform transform;                  // light to parent; a rotation, mirrored or not, and a uniform scale
 };
 
 schema::TypeInfo environmentLightType();
@@ -49,11 +49,11 @@ class EnvironmentLight final : public Light {
     void commit(const Bounds3&) override;
     double power() const override { return power_; } // 0: all texels are black, and the light must be left out
     bool infinite() const override { return true; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
-    Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept override;
-    float pdfEscaped(Vec3 w) const noexcept override;
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
+    float pdfEscaped(Vec3 w, float) const noexcept override;
 
   private:
     Vec2 imagePoint(Vec3 local) const noexcept;

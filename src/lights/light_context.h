@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/source.h"
-#include "math/transform.h"
+#include "lights/light_motion.h"
 #include "spectrum/curve.h"
 
 namespace abbe {
@@ -12,6 +12,8 @@ struct LightContext {
     const Curve* defaultColor = nullptr; // illuminant D65, any scale; lives as long as the light
     Span span;                           // of the definition's head
     bool zUp = false;                    // what `elevation`, `azimuth` and an environment's poles refer to
+    double time = 0;                     // s, for which it is made: when the shutter opens
+    const LightMotion* motion = nullptr; // null: it stands still; read while the light is made
 };
 
 } // namespace abbe

@@ -32,7 +32,7 @@ PointLight::PointLight(Vec3 position, ScaledCurve intensity)
     : position_(position), intensity_(intensity),
       power_(4 * kPiD * radiantIntegral(*intensity.curve) * intensity.scale) {}
 
-std::optional<LightSample> PointLight::sample(Vec3 from, Vec2, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> PointLight::sample(Vec3 from, Vec2, const Wavelengths& lambda, float) const noexcept {
     const Vec3 offset = position_ - from;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
@@ -51,7 +51,7 @@ std::unique_ptr<Light> makePointLight(const PointLightParams& params, const Ligh
     const auto intensity =
         absoluteSpectrum(params, *context.defaultColor, {.power = 4 * kPiD}, context.span, diagnostics);
     if (!intensity) return nullptr;
-    const Vec3d position = params.transform.then(context.toRender).point(params.position);
+    const Vec3d position = params.transform.at(context.time).then(context.toRender).point(params.position);
     return std::make_unique<PointLight>(Vec3(position), *intensity);
 }
 

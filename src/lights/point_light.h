@@ -11,7 +11,7 @@ namespace abbe {
 
 struct PointLightParams : AmountParams {
     Vec3d position;
-    Transform transform; // light to parent
+    KeyedTransform transform; // light to parent
 };
 
 schema::TypeInfo pointLightType();
@@ -22,11 +22,11 @@ class PointLight final : public Light {
     PointLight(Vec3 position, ScaledCurve intensity);
 
     double power() const override { return power_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3) const noexcept override { return 0; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 
   private:
     Vec3 position_;

@@ -32,12 +32,12 @@ SkyLight::SkyLight(ScaledCurve radiance)
 
 void SkyLight::commit(const Bounds3& bounds) { power_ = 4 * kPiD * radiant_ * sceneDiskArea(bounds); }
 
-std::optional<LightSample> SkyLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> SkyLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
     return std::optional<LightSample>(std::in_place, squareToSphere(u), Vec3{}, kInfinity, radiance_.at(lambda),
                                       kSpherePdf);
 }
 
-float SkyLight::pdfEscaped(Vec3) const noexcept { return kSpherePdf; }
+float SkyLight::pdfEscaped(Vec3, float) const noexcept { return kSpherePdf; }
 
 std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {

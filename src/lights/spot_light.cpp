@@ -85,7 +85,7 @@ float SpotLight::falloff(Vec3 w) const noexcept {
     return t * t * (3 - 2 * t);
 }
 
-std::optional<LightSample> SpotLight::sample(Vec3 from, Vec2, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> SpotLight::sample(Vec3 from, Vec2, const Wavelengths& lambda, float) const noexcept {
     const Vec3 offset = position_ - from;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
@@ -103,7 +103,7 @@ std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightC
         reportMissingAmount(kSpotAmounts, context.span, diagnostics);
         return nullptr;
     }
-    const Transform toRender = params.transform.then(context.toRender);
+    const Transform toRender = params.transform.at(context.time).then(context.toRender);
     const Vec3d local = params.lookAt ? *params.lookAt - params.position : params.toward.value_or(Vec3d{0, 0, -1});
     const Vec3d axis = toRender.vector(local);
     const double norm = length(axis);

@@ -15,7 +15,7 @@ struct SpotLightParams : AmountParams {
     std::optional<Vec3d> toward;      // or its direction; without both: 0 0 -1
     double angle = kPiD / 4;          // rad, full angle of the outer cone
     std::optional<double> innerAngle; // rad, full; 0.8 of `angle` when not given
-    Transform transform;              // light to parent
+    KeyedTransform transform;         // light to parent
 };
 
 schema::TypeInfo spotLightType();
@@ -30,11 +30,11 @@ class SpotLight final : public Light {
     static double solidAngle(double innerHalfAngle, double outerHalfAngle);
 
     double power() const override { return power_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3) const noexcept override { return 0; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 
   private:
     float falloff(Vec3 w) const noexcept; // w leaves the light

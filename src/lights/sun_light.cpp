@@ -90,17 +90,17 @@ bool SunLight::inside(Vec3 w) const noexcept {
     return length(w - frame_.z) <= chord_;
 }
 
-std::optional<LightSample> SunLight::sample(Vec3, Vec2 u, const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> SunLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
     const Vec3 wi = delta_ ? frame_.z : frame_.toWorld(squareToCone(u, oneMinusCos_));
     return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, radiance_.at(lambda), delta_ ? 1 : pdf_,
                                       delta_);
 }
 
-Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda) const noexcept {
+Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexcept {
     return !delta_ && inside(w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-float SunLight::pdfEscaped(Vec3 w) const noexcept { return inside(w) ? pdf_ : 0; }
+float SunLight::pdfEscaped(Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
 
 std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {
@@ -109,7 +109,7 @@ std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightCon
                           "keep `toward`, or `elevation` and `azimuth`");
         return nullptr;
     }
-    const Transform toRender = params.transform.then(context.toRender);
+    const Transform toRender = params.transform.at(context.time).then(context.toRender);
     const Vec3d direction = toRender.vector(sunDirection(params, context.zUp));
     const double norm = length(direction);
     if (!(norm > 0 && std::isfinite(norm))) {

@@ -16,7 +16,7 @@ struct SunLightParams : AmountParams {
     std::optional<double> elevation;            // rad above the horizon
     std::optional<double> azimuth;              // rad clockwise from north, seen from above
     double angularDiameter = 0.53 * kPiD / 180; // rad
-    Transform transform;                        // light to parent; only its rotation matters
+    KeyedTransform transform;                   // light to parent; only its rotation matters
 };
 
 schema::TypeInfo sunLightType();
@@ -33,11 +33,11 @@ class SunLight final : public Light {
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
     bool infinite() const override { return !delta_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
-    Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept override;
-    float pdfEscaped(Vec3 w) const noexcept override;
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
+    float pdfEscaped(Vec3 w, float) const noexcept override;
 
   private:
     bool inside(Vec3 w) const noexcept;

@@ -1,3 +1,4 @@
+// A span of time.
 #pragma once
 
 namespace abbe {

@@ -31,6 +31,11 @@ bool alike(const TransformStep& a, const TransformStep& b) {
     return true;
 }
 
+// Requires alike steps.
+bool same(const TransformStep& a, const TransformStep& b) {
+    return a.angle == b.angle && (a.kind == TransformStep::Kind::rotate || a.vector == b.vector);
+}
+
 TransformStep mix(const TransformStep& a, const TransformStep& b, double u) {
     TransformStep step = a;
     if (a.kind != TransformStep::Kind::rotate) step.vector = a.vector * (1 - u) + b.vector * u;
@@ -58,11 +63,28 @@ KeyedTransform::KeyedTransform(std::vector<Key> keys) : keys_(std::move(keys)) {
     for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
         const Key &a = keys_[i], &b = keys_[i + 1];
         ABBE_CHECK(a.time < b.time);
-        const bool same =
+        const bool similar =
             a.steps.size() == b.steps.size() && std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), alike);
         auto& pair = apart_.emplace_back();
-        if (!same) pair = {Decomposition::of(compose(a.steps)), Decomposition::of(compose(b.steps))};
+        if (!similar) pair = {Decomposition::of(compose(a.steps)), Decomposition::of(compose(b.steps))};
     }
+    for (std::size_t i = 0; i + 1 < keys_.size(); ++i)
+        if (changesAfter(i)) return;
+    if (keys_.empty()) return;
+    keys_.resize(1);
+    apart_.clear();
+}
+
+bool KeyedTransform::changesAfter(std::size_t key) const {
+    const auto &a = keys_[key].steps, &b = keys_[key + 1].steps;
+    if (apart_[key]) return !equal(compose(a), compose(b));
+    return !std::equal(a.begin(), a.end(), b.begin(), same);
+}
+
+bool KeyedTransform::movesDuring(double from, double to) const {
+    for (std::size_t i = 0; i + 1 < keys_.size(); ++i)
+        if (std::max(keys_[i].time, from) < std::min(keys_[i + 1].time, to) && changesAfter(i)) return true;
+    return false;
 }
 
 Transform KeyedTransform::at(double time) const {
@@ -92,6 +114,12 @@ Motion Motion::then(const Transform& next) const {
     Motion result = *this;
     result.outer_ = outer_.then(next);
     return result;
+}
+
+Motion Motion::then(const Motion& next) const {
+    Motion result = *this;
+    for (const Link& link : next.links_) result = result.then(link.before).then(link.keyed);
+    return result.then(next.outer_);
 }
 
 Transform Motion::at(double time) const {

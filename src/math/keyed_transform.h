@@ -32,13 +32,17 @@ class KeyedTransform {
     };
 
     KeyedTransform() = default; // the identity, always
-    // Requires strictly increasing finite times and invertible steps.
+    KeyedTransform(const Transform& still) : keys_{{0, {{TransformStep::Kind::matrix, {}, 0, still}}}} {}
+    // Requires strictly increasing finite times and invertible steps. Keys that are all the same stand still.
     explicit KeyedTransform(std::vector<Key>);
 
     bool moves() const { return keys_.size() > 1; }
+    // Whether it changes between two times, the first of which is the earlier one or the same.
+    bool movesDuring(double from, double to) const;
     Transform at(double time) const;
 
   private:
+    bool changesAfter(std::size_t key) const; // up to the next one
     std::vector<Key> keys_;
     // Between key i and the next: both composed maps taken apart, or nothing where the steps are alike.
     std::vector<std::optional<std::array<Decomposition, 2>>> apart_;
@@ -52,6 +56,7 @@ class Motion {
 
     Motion then(const KeyedTransform&) const;
     Motion then(const Transform&) const;
+    Motion then(const Motion&) const;
     bool moves() const { return !links_.empty(); }
     Transform at(double time) const;
 

@@ -33,17 +33,18 @@ class Light {
     virtual double power() const = 0;
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
-    // Light that can arrive at `from`; nothing if none can. u in [0, 1)².
-    virtual std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&) const noexcept = 0;
+    // Light that can arrive at `from`; nothing if none can. u in [0, 1)². Here and below `time` is Ray::time, which
+    // only lights that move look at.
+    virtual std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept = 0;
 
     // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which sample(from, ·)
     // makes that point.
     virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
-    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const noexcept = 0;
+    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept = 0;
 
     // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and its density.
-    virtual Spectrum escaped(Vec3 w, const Wavelengths&) const noexcept = 0;
-    virtual float pdfEscaped(Vec3 w) const noexcept = 0;
+    virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
+    virtual float pdfEscaped(Vec3 w, float time) const noexcept = 0;
 };
 
 } // namespace abbe

@@ -146,7 +146,9 @@ void SceneBuilder::build(BuiltScene& built) {
     built_ = &built;
     buildSettings(built);
     buildCamera(built);
-    placeAll(tree_.definitions, Transform::translate(-built.scene.origin));
+    Place scene;
+    scene.motion = Motion(Transform::translate(-built.scene.origin));
+    placeAll(tree_.definitions, scene);
     // What nothing refers to is checked all the same.
     for (const Definition& d : tree_.definitions) {
         if (d.kind == Kind::material || d.kind == Kind::texture) reference(d, diagnostics_);

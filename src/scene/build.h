@@ -4,6 +4,7 @@
 #include "base/diagnostic.h"
 #include "film/film_params.h"
 #include "integrators/render_params.h"
+#include "math/interval.h"
 #include "render/scene.h"
 #include "schema/scene_tree.h"
 
@@ -43,7 +44,7 @@ struct BuiltScene {
     Scene scene;
     FilmParams film;
     RenderParams render;
-    double shutter = 0;  // s that the camera's shutter stays open, from time 0 on
+    Interval shutter;    // when the camera's shutter is open, from its first light to its last
     double exposure = 1; // factor from the camera's exposure in stops
     SceneFacts facts;
     double commitSeconds = 0; // of the building, what the acceleration structure took

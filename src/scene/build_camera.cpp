@@ -1,6 +1,6 @@
 // The camera, and what its focus may be measured to.
 #include "base/check.h"
-#include "cameras/camera_params.h"
+#include "cameras/shutter_camera.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 
@@ -12,28 +12,28 @@ using schema::Kind;
 
 // Looks through groups, whose transforms add up to `place`; the parts of objects have many places or none.
 const schema::Definition* SceneBuilder::findShape(const std::vector<Definition>& definitions, std::string_view name,
-                                                  Transform& place) {
+                                                  double time, Transform& place) {
     for (const Definition& d : definitions) {
         if (d.kind == Kind::shape && d.name == name) return &d;
         if (d.kind != Kind::group) continue;
-        if (const Definition* found = findShape(d.children, name, place)) {
+        if (const Definition* found = findShape(d.children, name, time, place)) {
             Diagnostics again; // what is wrong with the transform is reported when the group is placed
             for (const schema::Node& property : d.properties)
                 if (property.name() == "transform")
-                    place = place.then(schema::bindTransform(property, tree_.header, again));
+                    place = place.then(schema::bindMotion(property, tree_.header, again).at(time));
             return found;
         }
     }
     return nullptr;
 }
 
-std::optional<Vec3d> SceneBuilder::middleOfShape(std::string_view name) {
+std::optional<Vec3d> SceneBuilder::middleOfShape(std::string_view name, double time) {
     Transform toWorld;
-    const Definition* d = findShape(tree_.definitions, name, toWorld);
+    const Definition* d = findShape(tree_.definitions, name, time, toWorld);
     if (!d) return std::nullopt;
     LoadedShape& loaded = loadedShape(*d);
     if (!loaded.sound || loaded.infinite) return std::nullopt;
-    const Transform place = loaded.common.transform.then(toWorld);
+    const Transform place = loaded.common.transform.at(time).then(toWorld);
     Bounds3d box;
     if (loaded.mesh) {
         for (const Vec3& p : loaded.mesh->positions) box.add(place.point(Vec3d(p)));
@@ -66,14 +66,18 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     context.zUp = tree_.header.zUp;
     context.filmSize = {static_cast<int>(built.film.size.x), static_cast<int>(built.film.size.y)};
     context.span = definition->span;
-    context.middleOf = [this](std::string_view name) { return middleOfShape(name); };
+    context.middleOf = [this](std::string_view name, double time) { return middleOfShape(name, time); };
     auto placed = makeCamera(definition->type->name, bindInto, context, diagnostics_);
     if (!placed) return;
     built.scene.camera = std::move(placed->camera);
     built.scene.origin = placed->origin;
     built.exposure = placed->exposure;
-    built.shutter = placed->shutter;
-    embree_.setShutter(0, placed->shutter);
+    const Shutter& shutter = placed->shutter;
+    built.shutter = {shutter.open, shutter.duration()};
+    embree_.setShutter(built.shutter.open, built.shutter.duration);
+    if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)
+        built.scene.camera = std::make_unique<ShutterCamera>(
+            std::move(built.scene.camera), placed->toWorld.then(Transform::translate(-placed->origin)), shutter);
     if (!built.scene.camera->disperses()) return;
     built.scene.effects |= Effect::dispersion;
     built.scene.reasons.push_back({Effect::dispersion, definition->span, "the glass of its lens disperses"});

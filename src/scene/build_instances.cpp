@@ -62,7 +62,7 @@ bool SceneBuilder::scatterSurface(const schema::Text& over, const std::vector<De
         if (d.name != over.value) continue;
         LoadedShape& loaded = loadedShape(d);
         if (!loaded.sound) return false;
-        const auto shape = placeInObject(loaded, loaded.common.transform);
+        const auto shape = placeInObject(loaded, loaded.common.transform.at(built_->shutter.open));
         if (!shape) return false;
         TriangleSink sink(surface);
         shape->commit(sink);
@@ -81,13 +81,12 @@ bool SceneBuilder::scatterSurface(const schema::Text& over, const std::vector<De
     return false;
 }
 
-// Where an `instance` or `instances` puts its object; nothing after an error.
-std::vector<Placement> SceneBuilder::placements(const Definition& d, const std::vector<Definition>& siblings,
-                                                const Transform& toParent) {
+std::vector<Placement> SceneBuilder::placements(const Definition& d, const InstancesParams* params,
+                                                const std::vector<Definition>& siblings, const Transform& outwards) {
     std::vector<Placement> result;
     const auto add = [&](const Transform& map) {
         if (const auto fault = Placement::findFault(map)) {
-            const std::string which = d.kind == Kind::instance ? "this place" : fmt::format("place {}", result.size());
+            const std::string which = params ? fmt::format("place {}", result.size()) : "this place";
             diagnostics_.error("E0631", d.span, fmt::format("{} cannot be used: {}", which, *fault), "from here");
         } else if (++instanceCount_ > kMaxInstances) {
             diagnostics_.error("E0607", d.span, "more than 100 million instances", "here they end");
@@ -99,12 +98,10 @@ std::vector<Placement> SceneBuilder::placements(const Definition& d, const std::
         return false;
     };
     if (instanceCount_ > kMaxInstances) return result; // has been reported
-    if (d.kind == Kind::instance) {
-        add(ownTransform(d).then(toParent));
+    if (!params) {
+        add(outwards);
         return result;
     }
-    const auto params = bound<InstancesParams>(d);
-    if (!params) return result;
     ScatterSurface surface;
     PlaceContext context{tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0}, tree_.header.length, nullptr, d.span};
     if (!params->over.value.empty()) {
@@ -112,63 +109,76 @@ std::vector<Placement> SceneBuilder::placements(const Definition& d, const std::
         context.surface = &surface;
     }
     if (!params->points.value.empty()) built_->facts.files.push_back(params->points.value);
-    const Transform outwards = params->transform.then(toParent);
     if (params->count) result.reserve(static_cast<std::size_t>(*params->count));
     visitPlaces(*params, context, diagnostics_,
                 [&](std::uint64_t, const Transform& place) { return add(place.then(outwards)); });
     return result;
 }
 
-void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definition>& siblings,
-                                  const Transform& toRender) {
-    const Definition* object = tree_.find(Kind::object, d.target);
+void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definition>& siblings, const Place& outer) {
     const std::size_t before = diagnostics_.errorCount();
-    if (const auto keys = ownKeys(d)) {
-        if (diagnostics_.errorCount() == before) placeMoving(d, Motion().then(*keys).then(toRender));
-        return;
+    std::optional<InstancesParams> params;
+    if (d.kind == Kind::instances) {
+        params = bound<InstancesParams>(d);
+        if (!params) return;
     }
-    std::vector<Placement> places = placements(d, siblings, toRender);
-    if (!object || places.empty()) return; // an unknown name has been reported by resolve()
-    const ObjectGeometry& geometry = objectGeometry(*object);
-    built_->facts.instances += saturated(places.size(), geometry.shown);
-    for (const Placement& place : places) {
-        if (geometry.hasUnshared) placeUnshared(geometry, place.map(), d.span);
-        if (geometry.bounds.empty()) continue;
-        const Bounds3 b = place.toOuter(geometry.bounds);
-        bounds_.add(Bounds3d{Vec3d(b.lower), Vec3d(b.upper)});
+    const KeyedTransform own = params ? params->transform : ownTransform(d);
+    const ObjectGeometry* geometry = instanced(d, outer);
+    if (!geometry || diagnostics_.errorCount() != before) return;
+    if (!params && moves(own)) {
+        Place place = outer;
+        place.motion = within(outer.motion, own);
+        return placeMoving(d, *geometry, place);
     }
-    if (geometry.embreeObject) embree_.addInstances(*geometry.embreeObject, std::move(places));
+    carry(own, outer, d.span, [&](const Place& place) {
+        placeStill(d, placements(d, params ? &*params : nullptr, siblings, atOpening(place.motion)), *geometry, place);
+    });
 }
 
-void SceneBuilder::placeMoving(const Definition& d, const Motion& toRender) {
-    const Definition* object = tree_.find(Kind::object, d.target);
-    if (!object) return;
-    const ObjectGeometry& geometry = objectGeometry(*object);
+// In the place, which may itself move.
+void SceneBuilder::placeStill(const Definition& d, std::vector<Placement> places, const ObjectGeometry& geometry,
+                              const Place& place) {
+    if (places.empty() || (place.into && !nest(*place.into, geometry.levels, d.targetSpan))) return;
+    (place.object ? place.object->shown : built_->facts.instances) += saturated(places.size(), geometry.shown);
     if (geometry.hasUnshared) {
-        diagnostics_.error("E0634", d.span, fmt::format("`{}` cannot move: a lamp or a plane is part of it", d.target),
-                           "this instance has keys");
-        return;
+        const Motion carried = place.motion.moves() ? fromOpening(place.motion) : Motion();
+        if (place.object)
+            place.object->nested.push_back({&geometry, places, carried});
+        else
+            for (const Placement& p : places) placeUnshared(geometry, Motion(p.map()).then(carried), d.span);
     }
+    Bounds3 box;
+    if (!geometry.bounds.empty())
+        for (const Placement& p : places) box.add(p.toOuter(geometry.bounds));
+    if (place.into)
+        place.into->bounds.add(box);
+    else if (!box.empty())
+        bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
     if (!geometry.embreeObject) return;
-    constexpr int samples = 64; // of the way, for faults and the scene's bounds
-    for (int i = 0; i <= samples; ++i) {
-        const Transform map = toRender.at(built_->shutter * i / samples);
-        if (const auto fault = Placement::findFault(map)) {
-            diagnostics_.error("E0631", d.span, fmt::format("this place cannot be used: {}", *fault),
-                               fmt::format("{:.6g} s after the shutter opens", built_->shutter * i / samples));
-            return;
-        }
-        const Bounds3 b = Placement(map).toOuter(geometry.bounds);
-        if (!geometry.bounds.empty()) bounds_.add(Bounds3d{Vec3d(b.lower), Vec3d(b.upper)});
-    }
+    if (place.into)
+        place.into->placed.emplace_back(*geometry.embreeObject, std::move(places));
+    else
+        embree_.addInstances(*geometry.embreeObject, std::move(places));
+}
+
+// An instance with keys of its own.
+void SceneBuilder::placeMoving(const Definition& d, const ObjectGeometry& geometry, const Place& place) {
+    if (!checkMotion(place.motion, d.span)) return;
     ++instanceCount_;
-    built_->facts.instances += geometry.shown;
-    embree_.addMoving(*geometry.embreeObject, toRender);
+    (place.object ? place.object->shown : built_->facts.instances) += geometry.shown;
+    if (geometry.hasUnshared) {
+        if (place.object)
+            place.object->nested.push_back({&geometry, {Placement(Transform())}, place.motion});
+        else
+            placeUnshared(geometry, place.motion, d.span);
+    }
+    if (geometry.embreeObject)
+        addMoving(*geometry.embreeObject, geometry.levels, geometry.bounds, place.motion, place.base, d.targetSpan);
 }
 
 // Emitters are made anew for every instance, because each is a light of its own; so are planes, which have no end to
 // transform.
-void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Transform& toRender, Span asker) {
+void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& toRender, Span asker) {
     unsharedCount_ += geometry.unshared.size();
     if (unsharedCount_ > kMaxUnshared) {
         if (unsharedCount_ - geometry.unshared.size() <= kMaxUnshared)
@@ -177,7 +187,8 @@ void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Transform
         return;
     }
     for (std::size_t i = 0; i < geometry.unshared.size(); ++i) {
-        const Transform place = geometry.unsharedPlace[i].then(toRender);
+        Place place;
+        place.motion = geometry.unsharedPlace[i].then(toRender);
         if (geometry.unshared[i]->kind == Kind::light)
             placeLight(*geometry.unshared[i], place);
         else
@@ -185,60 +196,30 @@ void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Transform
     }
     for (const NestedObject& nested : geometry.nested)
         for (const Placement& place : nested.placements)
-            placeUnshared(*nested.object, place.map().then(toRender), asker);
+            placeUnshared(*nested.object, Motion(place.map()).then(nested.carried).then(toRender), asker);
 }
 
-// The parts of an object that its instances share are built once, in the object's own space.
-void SceneBuilder::collect(const std::vector<Definition>& definitions, const Transform& toObject, ObjectGeometry& out,
-                           SharedShapes& shared) {
-    for (const Definition& d : definitions) {
-        if (d.kind == Kind::group) {
-            collect(d.children, ownTransform(d).then(toObject), out, shared);
-        } else if (d.kind == Kind::instance || d.kind == Kind::instances) {
-            collectNested(d, definitions, toObject, out);
-        } else if (d.kind == Kind::light) {
-            out.unshared.push_back(&d);
-            out.unsharedPlace.push_back(toObject);
-        } else if (d.kind == Kind::shape) {
-            LoadedShape& loaded = loadedShape(d);
-            if (!loaded.sound) continue;
-            if (loaded.common.emission || loaded.infinite) {
-                out.unshared.push_back(&d);
-                out.unsharedPlace.push_back(toObject);
-            } else if (auto shape = placeInObject(loaded, loaded.common.transform.then(toObject))) {
-                countShape(loaded);
-                shared.emplace_back(keepShape(std::move(shape)),
-                                    EmbreeSceneBuilder::Binding{materialOf(loaded.common), nullptr});
-            }
-        }
-    }
-}
-
-// An object inside the one that is being built stays an object of its own: a level that rays enter, not a copy.
-void SceneBuilder::collectNested(const Definition& d, const std::vector<Definition>& siblings,
-                                 const Transform& toObject, ObjectGeometry& out) {
+// The object of an instance. One inside the object that is being built stays an object of its own: a level that rays
+// enter, not a copy. Null after an error; an unknown name has been reported by resolve().
+const SceneBuilder::ObjectGeometry* SceneBuilder::instanced(const Definition& d, const Place& place) {
     const Definition* object = tree_.find(Kind::object, d.target);
-    if (!object) return;
+    if (!object) return nullptr;
     const auto known = objects_.find(object);
     if (known != objects_.end() && known->second.busy) {
         std::string chain;
         for (const Definition* c : chain_) chain += fmt::format("`{}` → ", c->name);
         diagnostics_.error("E0602", d.targetSpan, fmt::format("object `{}` contains itself", object->name),
                            fmt::format("{}`{}`", chain, object->name));
-        return;
+        return nullptr;
     }
-    const auto tooDeep = [&] {
-        diagnostics_.error("E0633", d.targetSpan,
-                           fmt::format("objects nest more than {} levels deep", kMaxInstanceLevels),
-                           fmt::format("`{}` is too deep", object->name));
-    };
-    if (known == objects_.end() && chain_.size() > kMaxInstanceLevels) return tooDeep();
-    const ObjectGeometry& inner = objectGeometry(*object);
-    if (inner.levels + 2 > kMaxInstanceLevels) return tooDeep();
-    out.nested.push_back({&inner, placements(d, siblings, toObject)});
-    out.levels = std::max(out.levels, inner.levels + 1);
+    if (known == objects_.end() && place.object && chain_.size() > kMaxInstanceLevels) {
+        tooDeep(d.targetSpan);
+        return nullptr;
+    }
+    return &objectGeometry(*object);
 }
 
+// The parts of an object that its instances share are built once, in the object's own space.
 SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& object) {
     const auto [found, isNew] = objects_.try_emplace(&object);
     ObjectGeometry& geometry = found->second;
@@ -246,31 +227,18 @@ SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& obj
     ++built_->facts.objects;
     geometry.busy = true;
     chain_.push_back(&object);
-    SharedShapes shared;
-    collect(object.children, ownTransform(object), geometry, shared);
+    Assembly parts;
+    carry(ownTransform(object), {Motion(), &parts, &parts, &geometry}, object.span,
+          [&](const Place& place) { placeAll(object.children, place); });
     chain_.pop_back();
     geometry.busy = false;
 
-    for (const auto& [shape, binding] : shared) geometry.bounds.add(shape->bounds());
-    geometry.shown = shared.empty() ? 0 : 1;
-    geometry.hasUnshared = !geometry.unshared.empty();
-    bool visible = !shared.empty();
-    for (const NestedObject& nested : geometry.nested) {
-        geometry.hasUnshared |= nested.object->hasUnshared;
-        visible |= nested.object->embreeObject.has_value() && !nested.placements.empty();
-        geometry.shown += saturated(nested.placements.size(), nested.object->shown);
-    }
-    if (visible) geometry.embreeObject = embree_.addObject(std::move(shared));
-    for (NestedObject& nested : geometry.nested) {
-        if (!nested.object->embreeObject || nested.placements.empty()) continue;
-        if (!nested.object->bounds.empty())
-            for (const Placement& place : nested.placements) geometry.bounds.add(place.toOuter(nested.object->bounds));
-        if (nested.object->hasUnshared) // its lights will ask where they are
-            embree_.addInstances(*nested.object->embreeObject, nested.placements, *geometry.embreeObject);
-        else
-            embree_.addInstances(*nested.object->embreeObject, std::move(nested.placements), *geometry.embreeObject);
-    }
-    std::erase_if(geometry.nested, [](const NestedObject& nested) { return !nested.object->hasUnshared; });
+    geometry.bounds = parts.bounds;
+    geometry.levels = parts.levels;
+    geometry.shown += geometry.hasShapes;
+    geometry.hasUnshared = !geometry.unshared.empty() || !geometry.nested.empty();
+    if (!parts.shapes.empty() || !parts.placed.empty() || !parts.moving.empty())
+        geometry.embreeObject = addAssembly(std::move(parts));
     return geometry;
 }
 

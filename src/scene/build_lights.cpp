@@ -2,6 +2,7 @@
 #include "io/io_error.h"
 #include "lights/area_light.h"
 #include "lights/environment_light.h"
+#include "lights/moving_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
@@ -13,8 +14,14 @@
 
 namespace abbe {
 
-LightContext SceneBuilder::lightContext(const Definition& d, const Transform& toRender) {
-    return {toRender, curves_.daylight(), d.span, tree_.header.zUp};
+LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRender) {
+    LightContext context;
+    context.toRender = atOpening(toRender);
+    context.defaultColor = curves_.daylight();
+    context.span = d.span;
+    context.zUp = tree_.header.zUp;
+    context.time = built_->shutter.open;
+    return context;
 }
 
 void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
@@ -23,60 +30,82 @@ void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
 
-const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed) {
-    if (!shape.common.emission) return nullptr;
-    lights_.push_back(std::make_unique<AreaLight>(placed, ScaledCurve{shape.common.emission, 1}, false));
+const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender) {
+    const ScaledCurve radiance{shape.common.emission, 1};
+    std::optional<LightMotion> motion;
+    if (!radiance.curve || !lightMotion(toRender, shape.definition->span, motion)) return nullptr;
+    if (motion)
+        lights_.push_back(std::make_unique<MovingAreaLight>(placed, radiance, false, std::move(*motion)));
+    else
+        lights_.push_back(std::make_unique<AreaLight>(placed, radiance, false));
     lightNames_.emplace_back(shape.definition->name, "shape");
     return lights_.back().get();
 }
 
-void SceneBuilder::placeLight(const Definition& d, const Transform& toRender) {
-    const LightContext context = lightContext(d, toRender);
+template <typename P, typename Make>
+void SceneBuilder::placeBareLight(const Definition& d, const Place& place, Make make) {
+    const auto params = bound<P>(d);
+    if (!params) return;
+    LightContext context = lightContext(d, place.motion);
+    std::optional<LightMotion> motion;
+    if (!lightMotion(within(place.motion, params->transform), d.span, motion)) return;
+    if (motion) context.motion = &*motion;
+    addLight(inMotion(make(*params, context, diagnostics_), context), d);
+}
+
+void SceneBuilder::placeLight(const Definition& d, const Place& place) {
+    if (place.object) {
+        place.object->unshared.push_back(&d);
+        place.object->unsharedPlace.push_back(place.motion);
+        return;
+    }
     const std::string_view type = d.type ? d.type->name : "";
     if (type == "point") {
-        if (const auto p = bound<PointLightParams>(d)) addLight(makePointLight(*p, context, diagnostics_), d);
+        placeBareLight<PointLightParams>(d, place, makePointLight);
     } else if (type == "spot") {
-        if (const auto p = bound<SpotLightParams>(d)) addLight(makeSpotLight(*p, context, diagnostics_), d);
+        placeBareLight<SpotLightParams>(d, place, makeSpotLight);
     } else if (type == "sun") {
-        if (const auto p = bound<SunLightParams>(d)) addLight(makeSunLight(*p, context, diagnostics_), d);
+        placeBareLight<SunLightParams>(d, place, makeSunLight);
     } else if (type == "sky") {
-        if (const auto p = bound<SkyLightParams>(d)) addLight(makeSkyLight(*p, context, diagnostics_), d);
+        if (const auto p = bound<SkyLightParams>(d))
+            addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d);
     } else if (type == "environment") {
-        placeEnvironment(d, context);
+        placeBareLight<EnvironmentLightParams>(d, place,
+                                               [this](const EnvironmentLightParams& p, const LightContext& context,
+                                                      Diagnostics&) { return makeEnvironment(p, context); });
     } else {
-        placeAreaLight(d, toRender);
+        placeAreaLight(d, place);
     }
 }
 
-void SceneBuilder::placeEnvironment(const Definition& d, const LightContext& context) {
-    const auto params = bound<EnvironmentLightParams>(d);
-    if (!params) return;
-    const std::string& path = params->image.value;
+std::unique_ptr<Light> SceneBuilder::makeEnvironment(const EnvironmentLightParams& params,
+                                                     const LightContext& context) {
+    const std::string& path = params.image.value;
     RgbImage file;
     try {
         file = readImage(path);
     } catch (const IoError& e) {
-        diagnostics_.error("E0402", params->image.span, e.what(), "cannot be read");
-        return;
+        diagnostics_.error("E0402", params.image.span, e.what(), "cannot be read");
+        return nullptr;
     }
     built_->facts.files.push_back(path);
     RgbSpace space = file.chromaticities ? file.chromaticities->space() : rgb::rec709;
-    for (const auto& [key, word] : params->image.keys)
+    for (const auto& [key, word] : params.image.keys)
         if (key == "space") space = findRgbSpace(word).value_or(space);
     std::string reason;
     auto upsampling = makeRgbRadiance(space, reason);
     if (!upsampling) {
-        diagnostics_.error("E0403", params->image.span, reason);
-        return;
+        diagnostics_.error("E0403", params.image.span, reason);
+        return nullptr;
     }
     const bool compensated = built_->render.strategy.word == "mis"; // else its samples must cover everything
-    auto light = makeEnvironmentLight(*params, {file.width(), file.height(), std::move(file.rgb)},
-                                      std::move(upsampling), compensated, context, diagnostics_);
+    auto light = makeEnvironmentLight(params, {file.width(), file.height(), std::move(file.rgb)}, std::move(upsampling),
+                                      compensated, context, diagnostics_);
     if (light && !(light->power() > 0)) {
-        diagnostics_.warning("W0602", params->image.span, "this environment is black; the light is left out");
-        return;
+        diagnostics_.warning("W0602", params.image.span, "this environment is black; the light is left out");
+        return nullptr;
     }
-    addLight(std::move(light), d);
+    return light;
 }
 
 std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const Transform& toRender,
@@ -84,7 +113,7 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     const std::string_view type = d.type ? d.type->name : "";
     const auto take = [&](const auto& params) {
         amount = params;
-        return params.transform.then(toRender);
+        return params.transform.at(built_->shutter.open).then(toRender);
     };
     if (type == "quad") {
         if (const auto p = bound<LightQuadParams>(d))
@@ -108,17 +137,21 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     return nullptr;
 }
 
-void SceneBuilder::placeAreaLight(const Definition& d, const Transform& toRender) {
+void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
     AreaLightParams amount;
-    auto shape = lightShape(d, toRender, amount);
+    auto shape = lightShape(d, atOpening(outer.motion), amount);
     if (!shape) return;
-    auto light = makeAreaLight(amount, *shape, lightContext(d, toRender), diagnostics_);
-    if (!light) return;
-    const Shape* placed = keepShape(std::move(shape));
-    const Bounds3 box = placed->bounds();
-    bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
-    embree_.addShape(*placed, {plainMaterial(0), light.get()}); // a lamp emits and reflects nothing
-    addLight(std::move(light), d);
+    carry(amount.transform, outer, d.span, [&](const Place& place) {
+        LightContext context = lightContext(d, outer.motion);
+        std::optional<LightMotion> motion;
+        if (!lightMotion(place.motion, d.span, motion)) return;
+        if (motion) context.motion = &*motion;
+        auto light = makeAreaLight(amount, *shape, context, diagnostics_);
+        if (!light) return;
+        // A lamp emits and reflects nothing.
+        addPlaced(*keepShape(std::move(shape)), {plainMaterial(0), light.get()}, place);
+        addLight(std::move(light), d);
+    });
 }
 
 } // namespace abbe

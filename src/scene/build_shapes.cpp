@@ -11,24 +11,17 @@ const Shape* SceneBuilder::keepShape(std::unique_ptr<const Shape> shape) {
     return shapes_.emplace_back(std::move(shape)).get();
 }
 
-Transform SceneBuilder::ownTransform(const Definition& d) {
-    Transform result;
+KeyedTransform SceneBuilder::ownTransform(const Definition& d) {
+    KeyedTransform result;
     for (const schema::Node& property : d.properties) {
         if (property.name() == "transform")
-            result = schema::bindTransform(property, tree_.header, diagnostics_);
+            result = schema::bindMotion(property, tree_.header, diagnostics_);
         else
             diagnostics_.error("E0201", property.nameSpan(),
                                fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
                                "only `transform` is possible here");
     }
     return result;
-}
-
-std::optional<KeyedTransform> SceneBuilder::ownKeys(const Definition& d) {
-    for (const schema::Node& property : d.properties)
-        if (property.name() == "transform" && schema::hasKeys(property))
-            return schema::bindMotion(property, tree_.header, diagnostics_);
-    return std::nullopt;
 }
 
 const Material* SceneBuilder::plainMaterial(double reflectance) {
@@ -129,32 +122,60 @@ void SceneBuilder::countShape(const LoadedShape& shape) {
     }
 }
 
-void SceneBuilder::placeShape(const Definition& d, const Transform& toRender) {
+// Emitters and planes are placed once for each instance of an object, each by itself; everything else once in it.
+void SceneBuilder::placeShape(const Definition& d, const Place& outer) {
     LoadedShape& loaded = loadedShape(d);
     if (!loaded.sound) return;
-    auto shape = loaded.place(loaded.common.transform.then(toRender));
-    if (!shape) return;
-    countShape(loaded);
-    const Shape* placed = keepShape(std::move(shape));
-    if (!loaded.infinite) bounds_.add(Bounds3d{Vec3d(placed->bounds().lower), Vec3d(placed->bounds().upper)});
-    embree_.addShape(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed)});
+    if (outer.object && (loaded.common.emission || loaded.infinite)) {
+        outer.object->unshared.push_back(&d);
+        outer.object->unsharedPlace.push_back(outer.motion);
+        return;
+    }
+    carry(loaded.common.transform, outer, d.span, [&](const Place& place) { placeLoaded(loaded, place); });
 }
 
-void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Transform& toRender) {
+void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
+    if (loaded.infinite && place.motion.moves()) {
+        diagnostics_
+            .error("E0634", loaded.definition->span, "an infinite plane cannot move", "it or what holds it moves")
+            .help = "give it an end: use a quad or a disk";
+        return;
+    }
+    const Transform here = atOpening(place.motion);
+    auto shape = place.object ? placeInObject(loaded, here) : loaded.place(here);
+    if (!shape) return;
+    countShape(loaded);
+    if (place.object) place.object->hasShapes = true;
+    const Shape* placed = keepShape(std::move(shape));
+    addPlaced(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion)}, place);
+}
+
+void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {
+    const Bounds3 box = shape.bounds();
+    if (place.into) {
+        place.into->shapes.emplace_back(&shape, binding);
+        place.into->bounds.add(box);
+        return;
+    }
+    if (std::isfinite(shape.area())) bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
+    embree_.addShape(shape, binding);
+}
+
+void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Place& place) {
     for (const Definition& d : definitions) {
         switch (d.kind) {
         case Kind::shape:
-            placeShape(d, toRender);
+            placeShape(d, place);
             break;
         case Kind::light:
-            placeLight(d, toRender);
+            placeLight(d, place);
             break;
         case Kind::group:
-            placeAll(d.children, ownTransform(d).then(toRender));
+            carry(ownTransform(d), place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
             break;
         case Kind::instance:
         case Kind::instances:
-            placeInstances(d, definitions, toRender);
+            placeInstances(d, definitions, place);
             break;
         default:
             break;

@@ -73,7 +73,7 @@ TypeInfo instancesType() {
             .byDefault("off")
             .doc("Scattered instances stand along the normal of the surface, not upright.")
             .example("align on"),
-        field<P, Transform>(FieldType::transform, "transform", &P::transform)
+        field<P, KeyedTransform>(FieldType::transform, "transform", &P::transform)
             .synonyms({"to_world", "toWorld", "xform"})
             .doc("Moves all places together.")
             .example("transform { translate 0 0.1 0 }"),

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/transform.h"
+#include "math/keyed_transform.h"
 #include "schema/type.h"
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct InstancesParams {
     schema::Text over;         // name of a shape
     std::optional<Vec2d> area; // rectangle about the origin, instead of a shape
     std::int64_t seed = 0;
-    double turn = 2 * kPiD; // rad, at most, about up
-    Vec2d scale{1, 1};      // smallest and largest
-    bool align = false;     // up becomes the normal of the surface
-    Transform transform;    // of all places together
+    double turn = 2 * kPiD;   // rad, at most, about up
+    Vec2d scale{1, 1};        // smallest and largest
+    bool align = false;       // up becomes the normal of the surface
+    KeyedTransform transform; // of all places together
 };
 
 schema::TypeInfo instancesType();

@@ -3,7 +3,9 @@
 
 #include "geometry/embree_scene.h"
 #include "lights/area_light_types.h"
+#include "lights/environment_light.h"
 #include "lights/light_context.h"
+#include "lights/light_motion.h"
 #include "render/shape.h"
 #include "render/texture.h"
 #include "scene/build.h"
@@ -44,21 +46,40 @@ class SceneBuilder final : public schema::Resolver {
         bool sound = false;
     };
     struct ObjectGeometry;
-    // An object inside another one.
+    using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
+    // What is placed together in one space: the parts of an object, or what moves as one, where it is when the shutter
+    // opens.
+    struct Assembly {
+        SharedShapes shapes;
+        std::vector<std::pair<std::uint32_t, std::vector<Placement>>> placed; // objects by number
+        std::vector<std::pair<std::uint32_t, Motion>> moving;
+        Bounds3 bounds;
+        int levels = 0; // of objects inside of it
+    };
+    // Where definitions are placed.
+    struct Place {
+        Motion motion;                    // from their space to that of the scene or of `object`
+        Assembly* into = nullptr;         // null: the scene
+        Assembly* base = nullptr;         // where what moves by itself goes: `into`, or what `into` moves in
+        ObjectGeometry* object = nullptr; // being built, if any
+    };
+    // An object inside another one, which is to be taken apart because of its lights.
     struct NestedObject {
         const ObjectGeometry* object;
         std::vector<Placement> placements;
+        Motion carried; // from there on
     };
     // The geometry of an object that instances share.
     struct ObjectGeometry {
         std::optional<std::uint32_t> embreeObject; // absent: nothing in it can be shared
         std::vector<const Definition*> unshared;   // emitters, planes and lights, with the transform of their group
-        std::vector<Transform> unsharedPlace;
+        std::vector<Motion> unsharedPlace;
         std::vector<NestedObject> nested;
         Bounds3 bounds;           // of what is shared, object space
         std::size_t shown = 0;    // how many objects with shapes one instance shows, nested ones included
         int levels = 0;           // of objects inside of it
         bool hasUnshared = false; // nested ones included
+        bool hasShapes = false;   // of its own
         bool busy = false;        // being built: meeting it again is a cycle
     };
 
@@ -74,12 +95,14 @@ class SceneBuilder final : public schema::Resolver {
 
     // build_camera.cpp
     void buildCamera(BuiltScene&);
-    const Definition* findShape(const std::vector<Definition>&, std::string_view name, Transform& place);
-    std::optional<Vec3d> middleOfShape(std::string_view name); // of its bounds, world space
+    const Definition* findShape(const std::vector<Definition>&, std::string_view name, double time, Transform& place);
+    std::optional<Vec3d> middleOfShape(std::string_view name, double time); // of its bounds, world space
 
     // build_shapes.cpp
-    void placeAll(const std::vector<Definition>&, const Transform& toRender);
-    void placeShape(const Definition&, const Transform& toRender);
+    void placeAll(const std::vector<Definition>&, const Place&);
+    void placeShape(const Definition&, const Place&);
+    void placeLoaded(LoadedShape&, const Place&); // whose own transform is part of the place
+    void addPlaced(const Shape&, EmbreeSceneBuilder::Binding, const Place&);
     LoadedShape& loadedShape(const Definition&);
     void loadMeshShape(const Definition&, LoadedShape&);
     // shape_parametric.cpp; false for other types.
@@ -98,33 +121,47 @@ class SceneBuilder final : public schema::Resolver {
     void loadPoints(const Definition&, LoadedShape&);
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
-    Transform ownTransform(const Definition&);
-    std::optional<KeyedTransform> ownKeys(const Definition&); // of what can move; nothing without keys
+    KeyedTransform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
     void countShape(const LoadedShape&);
 
+    // build_motion.cpp
+    bool moves(const KeyedTransform&) const; // while the shutter is open
+    Motion within(const Motion& outer, const KeyedTransform& own) const;
+    Transform atOpening(const Motion& motion) const { return motion.at(built_->shutter.open); }
+    Motion fromOpening(const Motion&) const; // requires an invertible map at the opening
+    bool checkMotion(const Motion&, Span asker);
+    Bounds3 swept(const Motion&, const Bounds3&) const;
+    void carry(const KeyedTransform& own, const Place& outer, Span asker, const std::function<void(const Place&)>&);
+    std::uint32_t addAssembly(Assembly);
+    void addMoving(std::uint32_t object, int levels, const Bounds3&, const Motion&, Assembly* into, Span asker);
+    bool nest(Assembly& into, int levels, Span asker); // makes room for an object with so many in it, or reports
+    void tooDeep(Span asker);
+    // False after an error; nothing if the light stands still.
+    bool lightMotion(const Motion& toRender, Span asker, std::optional<LightMotion>&);
+
     // build_instances.cpp; `siblings` are the definitions among which an instance stands.
-    using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
-    void placeInstances(const Definition&, const std::vector<Definition>& siblings, const Transform& toRender);
-    void placeMoving(const Definition&, const Motion& toRender);
-    std::vector<Placement> placements(const Definition&, const std::vector<Definition>& siblings,
-                                      const Transform& toParent);
+    void placeInstances(const Definition&, const std::vector<Definition>& siblings, const Place&);
+    void placeMoving(const Definition&, const ObjectGeometry&, const Place&);
+    void placeStill(const Definition&, std::vector<Placement>, const ObjectGeometry&, const Place&);
+    // Where an `instance` (without parameters) or `instances` puts its object; nothing after an error.
+    std::vector<Placement> placements(const Definition&, const InstancesParams*,
+                                      const std::vector<Definition>& siblings, const Transform& outwards);
     bool scatterSurface(const schema::Text& over, const std::vector<Definition>& siblings, ScatterSurface&);
-    void placeUnshared(const ObjectGeometry&, const Transform& toRender, Span asker);
+    void placeUnshared(const ObjectGeometry&, const Motion& toRender, Span asker);
     ObjectGeometry& objectGeometry(const Definition& object);
-    void collect(const std::vector<Definition>&, const Transform& toObject, ObjectGeometry&, SharedShapes&);
-    void collectNested(const Definition&, const std::vector<Definition>& siblings, const Transform& toObject,
-                       ObjectGeometry&);
+    const ObjectGeometry* instanced(const Definition&, const Place&);
 
     // build_lights.cpp
-    void placeLight(const Definition&, const Transform& toRender);
-    void placeAreaLight(const Definition&, const Transform& toRender);
-    void placeEnvironment(const Definition&, const LightContext&);
+    void placeLight(const Definition&, const Place&);
+    void placeAreaLight(const Definition&, const Place&);
+    template <typename P, typename Make> void placeBareLight(const Definition&, const Place&, Make);
+    std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
     void addLight(std::unique_ptr<Light>, const Definition&);
-    const Light* emitterOf(const LoadedShape&, const Shape&);
-    LightContext lightContext(const Definition&, const Transform& toRender);
+    const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender);
+    LightContext lightContext(const Definition&, const Motion& toRender);
 
     const schema::SceneTree& tree_;
     const schema::TypeTable& types_;

@@ -17,7 +17,7 @@ template <typename P> void addShapeFields(std::vector<schema::FieldInfo>& fields
                          .synonyms({"emitter", "glow", "Le"})
                          .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm.")
                          .example("emission 0.5"));
-    fields.push_back(field<P, Transform>(FieldType::transform, "transform", &P::transform)
+    fields.push_back(field<P, KeyedTransform>(FieldType::transform, "transform", &P::transform)
                          .synonyms({"to_world", "toWorld", "xform"})
                          .doc("Places the shape: steps from top to bottom, as applied to the object.")
                          .example("transform { scale 2; rotate y 45 deg; translate 0 1 0 }"));

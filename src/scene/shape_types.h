@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "math/keyed_transform.h"
 #include "math/mesh_data.h"
-#include "math/transform.h"
 #include "render/shape.h"
 #include "schema/type.h"
 
@@ -17,7 +17,7 @@ namespace abbe {
 struct ShapeParams {
     schema::Reference material;      // unset: grey diffuse
     const Curve* emission = nullptr; // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
-    Transform transform;
+    KeyedTransform transform;
 };
 
 struct QuadParams : ShapeParams {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <utility>
 
 namespace abbe::schema {
 
@@ -102,6 +103,7 @@ class Binding {
         if (isPrivate(node.name())) return;
         const FieldInfo* const field = type_.find(node.name());
         if (!field) return unknown(node);
+        if (field->type == FieldType::moments) return moment(*field, node);
         if (!give(*field, node.headSpan()) || node.damaged()) return;
         const auto value = bindField(*field, Entry(node), context_);
         if (!isSecondOfGroup(*field)) store(*field, value);
@@ -128,10 +130,23 @@ class Binding {
         }
     }
 
+    // `at TIME { … }`: one element of a list, with its own fields.
+    void moment(const FieldInfo& field, const Node& node) {
+        given_.emplace(&field, node.headSpan());
+        if (node.damaged()) return;
+        const auto time = bindMoment(field, node, momentTimes_, context_.tree.header, context_.diagnostics);
+        void* const owner = params_;
+        params_ = owner && time ? field.append(owner, *time, node.headSpan()) : nullptr;
+        const auto ownersFields = std::exchange(given_, {});
+        settings(field, node);
+        given_ = ownersFields;
+        params_ = owner;
+    }
+
     void unknown(const Node& node) {
         const std::string_view name = node.name();
         if (name == "at" || isPlanned(name))
-            return reportPlanned(name == "at" ? "at (motion)" : name, node.nameSpan(), context_.diagnostics);
+            return reportPlanned(name == "at" ? "at (deformation)" : name, node.nameSpan(), context_.diagnostics);
         const bool byType = !type_.isDefault;
         auto& d = report(context_.diagnostics, node.nameSpan(), "E0201",
                          byType ? fmt::format("`{} {}` has no property `{}`", keyword(type_.kind), type_.name, name)
@@ -200,6 +215,7 @@ class Binding {
     void* params_;
     std::map<const FieldInfo*, Span> given_;
     std::map<std::string_view, std::pair<const FieldInfo*, Span>> groups_; // the first given field of each group
+    std::map<const FieldInfo*, double> momentTimes_;                       // of the last moment of each
     std::vector<const FieldInfo*> meant_;                                  // by misspelt properties
 };
 

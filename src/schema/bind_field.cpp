@@ -19,6 +19,7 @@ bool takesBlock(const FieldInfo& field) {
     case FieldType::reference:
     case FieldType::transform:
     case FieldType::table:
+    case FieldType::moments:
         return true;
     default:
         return false;
@@ -52,7 +53,9 @@ std::optional<BoundValue> bindTransformField(const FieldInfo& field, const Entry
         return std::nullopt;
     }
     const std::size_t before = context.diagnostics.errorCount();
-    const Transform transform = bindTransform(*entry.node(), context.tree.header, context.diagnostics);
+    const Header& header = context.tree.header;
+    const KeyedTransform transform = field.canMove ? bindMotion(*entry.node(), header, context.diagnostics)
+                                                   : bindTransform(*entry.node(), header, context.diagnostics);
     return context.diagnostics.errorCount() > before ? std::nullopt : std::optional<BoundValue>(transform);
 }
 
@@ -118,6 +121,8 @@ std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, 
         return bindReference(field, entry, context);
     case FieldType::transform:
         return bindTransformField(field, entry, context);
+    case FieldType::moments:
+        break; // several values: bind() itself
     }
     return std::nullopt;
 }

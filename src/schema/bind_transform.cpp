@@ -1,3 +1,4 @@
+#include "schema/binding.h"
 #include "schema/definition_reader.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
@@ -145,6 +146,17 @@ class StepReader {
     Diagnostics& diagnostics_;
 };
 
+// The time of a key `at TIME { … }`, which comes after another; nothing after a diagnostic.
+std::optional<double> keyTime(const Node& node, double after, const Header& header, Diagnostics& diagnostics) {
+    const Measure measure{"at", kTime, -HUGE_VAL, HUGE_VAL, {}, "at 0.5 s { … }"};
+    const auto time = MeasureReader(measure, header, diagnostics).row(Entry(node), 0, 1);
+    if (!time) return std::nullopt;
+    if (time->values[0] > after) return time->values[0];
+    report(diagnostics, node.headSpan(), "E0313", "keys must follow each other in time",
+           fmt::format("not after {} s", plain(after)));
+    return std::nullopt;
+}
+
 // A block of steps, or of keys `at TIME { steps }` in the order of time.
 class MotionReader {
   public:
@@ -178,17 +190,11 @@ class MotionReader {
                    fmt::format("put `{}` into the `at` blocks", node.name()));
             return std::nullopt;
         }
-        const Measure measure{"at", kTime, -HUGE_VAL, HUGE_VAL, {}, "at 0.5 s { rotate y 30 deg }"};
-        const auto time = MeasureReader(measure, header_, diagnostics_).row(Entry(node), 0, 1);
+        const auto time = keyTime(node, after, header_, diagnostics_);
         if (!time) return std::nullopt;
-        if (!(time->values[0] > after)) {
-            report(diagnostics_, node.headSpan(), "E0313", "keys must follow each other in time",
-                   fmt::format("not after {} s", plain(after)));
-            return std::nullopt;
-        }
         auto steps = readSteps(node);
         if (!steps) return std::nullopt;
-        return KeyedTransform::Key{time->values[0], std::move(*steps)};
+        return KeyedTransform::Key{*time, std::move(*steps)};
     }
 
     std::optional<std::vector<TransformStep>> readSteps(const Node& block) {
@@ -223,6 +229,14 @@ class MotionReader {
 
 } // namespace
 
+std::optional<double> bindMoment(const FieldInfo& field, const Node& node, std::map<const FieldInfo*, double>& last,
+                                 const Header& header, Diagnostics& diagnostics) {
+    const auto [previous, first] = last.emplace(&field, -HUGE_VAL);
+    const auto time = keyTime(node, previous->second, header, diagnostics);
+    if (time) previous->second = *time;
+    return time;
+}
+
 bool hasKeys(const Node& block) {
     for (const Node child : block.children())
         if (child.name() == "at") return true;
@@ -236,9 +250,7 @@ KeyedTransform bindMotion(const Node& block, const Header& header, Diagnostics& 
 Transform bindTransform(const Node& block, const Header& header, Diagnostics& diagnostics) {
     for (const Node child : block.children())
         if (child.name() == "at") {
-            report(diagnostics, child.nameSpan(), "E0206", "`at` (motion) is not available here in this version",
-                   "a word of the language without an implementation yet")
-                .help = "only an `instance` moves so far: put what moves into an `object`";
+            report(diagnostics, child.nameSpan(), "E0313", "this transform cannot have keys", "does not move");
             return {};
         }
     return bindMotion(block, header, diagnostics).at(0);

@@ -3,6 +3,8 @@
 
 #include "schema/entry.h"
 
+#include <map>
+
 namespace abbe::schema {
 
 // What the fields of a definition may refer to.
@@ -23,5 +25,10 @@ std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindCon
 std::optional<BoundValue> bindOptical(const FieldInfo&, const Entry&, const BindContext&); // spectrum, complexIndex
 std::optional<BoundValue> bindReference(const FieldInfo&, const Entry&, const BindContext&); // reference
 std::optional<BoundValue> bindPlace(const FieldInfo&, const Entry&, const BindContext&);     // place
+
+// The time of `at TIME { … }`, in s, which has to come after that field's last one and then becomes it; nothing after a
+// diagnostic.
+std::optional<double> bindMoment(const FieldInfo&, const Node&, std::map<const FieldInfo*, double>& last, const Header&,
+                                 Diagnostics&);
 
 } // namespace abbe::schema

@@ -253,9 +253,13 @@ std::string describeField(const FieldInfo& field) {
     case FieldType::reference:
         return fmt::format("the name of a {0}, or an inline {0}", keyword(field.referenceKind));
     case FieldType::transform:
-        return "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`";
+        return field.canMove
+                   ? "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`, or keys `at TIME { … }`"
+                   : "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`";
     case FieldType::table:
         return "a unit and a block of rows";
+    case FieldType::moments:
+        return "a time and a block; may be repeated, in the order of time";
     case FieldType::place:
         return fmt::format("{}, or `on=` and the name of a shape", dimensionList(field));
     }

@@ -69,6 +69,15 @@ std::optional<double> parseFraction(std::string_view text) {
     return parts[0] / parts[1];
 }
 
+std::optional<MeasuredFraction> parseMeasuredFraction(std::string_view text) {
+    const auto space = text.find(' ');
+    if (space == std::string_view::npos) return std::nullopt;
+    const auto unit = text.find_first_not_of(' ', space);
+    const auto value = parseFraction(text.substr(0, space));
+    if (!value || unit == std::string_view::npos) return std::nullopt;
+    return MeasuredFraction{*value, text.substr(unit)};
+}
+
 std::string plain(double value) {
     const bool large = std::abs(value) >= 1e6 && std::abs(value) < 1e15 && value == std::floor(value);
     return large ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
@@ -200,8 +209,23 @@ void MeasureReader::wrongCount(const Entry& entry, std::size_t first, std::size_
     if (!measure_.example.empty()) d->help = fmt::format("for example `{}`", measure_.example);
 }
 
+// As `"1/48" s`, which is how it is written otherwise.
+std::optional<Row> MeasureReader::measuredFraction(const Value& value, const MeasuredFraction& parts) const {
+    Value word = value, number = value;
+    word.text = parts.unit;
+    number.kind = ValueKind::string;
+    number.text = value.text.substr(0, value.text.find(' '));
+    const auto scale = unit(word);
+    const auto x = this->number(number);
+    if (!scale || !x || !inRange(*x * scale->factor, *scale, number)) return std::nullopt;
+    return Row{{*x * scale->factor}, *scale};
+}
+
 std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std::size_t count) const {
     const std::size_t total = entry.count();
+    if (count == 1 && first + 1 == total && entry.value(first).kind == ValueKind::string)
+        if (const auto parts = parseMeasuredFraction(entry.value(first).text))
+            return measuredFraction(entry.value(first), *parts);
     std::size_t found = 0;
     while (first + found < total && isNumeric(entry.value(first + found))) ++found;
     if (found == 0 && first < total) {

@@ -35,6 +35,13 @@ struct Row {
     Scale scale;
 };
 
+// "1/48 s", a fraction and its unit in one text, as its two parts; nothing if the text has no such form.
+struct MeasuredFraction {
+    double value = 0;
+    std::string_view unit;
+};
+std::optional<MeasuredFraction> parseMeasuredFraction(std::string_view);
+
 // Reads the values of `entry` from `first` on.
 class MeasureReader {
   public:
@@ -58,6 +65,7 @@ class MeasureReader {
     bool appendPacked(const Entry&, std::vector<double>& out) const;
     void wrongDimension(const Value& word, const Unit&) const;
     void unknownUnit(const Value& word) const;
+    std::optional<Row> measuredFraction(const Value&, const MeasuredFraction&) const;
     void wrongCount(const Entry&, std::size_t first, std::size_t count, std::size_t found) const;
 
     Measure measure_;

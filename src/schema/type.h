@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/source.h"
-#include "math/transform.h"
+#include "math/keyed_transform.h"
 #include "schema/unit.h"
 #include "spectrum/curve.h"
 
@@ -115,7 +115,7 @@ struct ComplexIndex {
 
 using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
                                 std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
-                                const Curve*, ComplexIndex, Reference, Transform>;
+                                const Curve*, ComplexIndex, Reference, KeyedTransform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -134,9 +134,12 @@ enum class FieldType : std::uint8_t {
     spectrum,     // any spectrum value -> const Curve*
     complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
     reference,    // name or inline definition of `referenceKind` -> Reference
-    transform,    // block of translate/rotate/scale/matrix/look-at, top to bottom -> Transform
-    table,        // `[unit]` and a block of rows of words and numbers -> TableRows
-    place,        // a quantity, or `on=NAME` of a shape -> Location
+    transform, // block of translate/rotate/scale/matrix/look-at, top to bottom; with keys `at TIME { … }` where the
+               // member is a KeyedTransform -> KeyedTransform (or, without keys, a Transform)
+    table,     // `[unit]` and a block of rows of words and numbers -> TableRows
+    place,     // a quantity, or `on=NAME` of a shape -> Location
+    moments,   // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time`
+               // and `Span span`, whose other fields stand in the block
 };
 
 struct FieldKey {
@@ -166,7 +169,9 @@ struct FieldInfo {
     bool tiles = false; // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
+    bool canMove = false;         // a transform that may have keys
     std::function<void(void* params, const BoundValue&)> store;
+    std::function<void*(void* params, double time, Span)> append; // moments: a new element, to store its fields into
 };
 
 struct TypeInfo {
@@ -187,9 +192,18 @@ template <typename Params, typename Member> class Field {
     Field(FieldType type, std::string_view name, Member Params::*member) {
         info_.type = type;
         info_.name = name;
-        info_.store = [member](void* params, const BoundValue& value) {
-            assign(static_cast<Params*>(params)->*member, value);
-        };
+        info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
+        if constexpr (requires(Member m) { m.emplace_back().time; })
+            info_.append = [member](void* params, double time, Span span) -> void* {
+                auto& moment = (static_cast<Params*>(params)->*member).emplace_back();
+                moment.time = time;
+                moment.span = span;
+                return &moment;
+            };
+        else
+            info_.store = [member](void* params, const BoundValue& value) {
+                assign(static_cast<Params*>(params)->*member, value);
+            };
     }
     Field& doc(std::string_view d) { return info_.doc = d, *this; }
     Field& example(std::string_view e) { return info_.example = e, *this; }
@@ -217,6 +231,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
             if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
             if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
+        } else if constexpr (std::is_same_v<M, Transform>) {
+            if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
             if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
         } else if (const auto* same = std::get_if<M>(&value)) {

@@ -41,12 +41,12 @@ test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int w
         for (int c = 0; c < columns; ++c) {
             const double theta = kPiD * (r + 0.5) / rows, phi = 2 * kPiD * (c + 0.5) / columns - kPiD;
             const Vec3d local{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-            expected.push_back(light.pdfEscaped(Vec3(turn.vector(local))) * solidAngle(r) * samples);
+            expected.push_back(light.pdfEscaped(Vec3(turn.vector(local)), 0) * solidAngle(r) * samples);
         }
     const Transform back = turn.inverse().value();
     test::Random random(seed);
     for (int i = 0; i < samples; ++i) {
-        const Vec3d w = back.vector(Vec3d(light.sample({}, {random.uniform(), random.uniform()}, kAt)->wi));
+        const Vec3d w = back.vector(Vec3d(light.sample({}, {random.uniform(), random.uniform()}, kAt, 0)->wi));
         const double phi = std::atan2(w.x, -w.z), theta = std::atan2(std::hypot(w.x, w.z), w.y);
         const int c = std::clamp(static_cast<int>((phi / (2 * kPiD) + 0.5) * columns), 0, columns - 1);
         const int r = std::clamp(static_cast<int>(theta / kPiD * rows), 0, rows - 1);
@@ -76,8 +76,8 @@ TEST_CASE("sun: directions are uniform over the disk") {
         test::Random random(7);
         int outside = 0;
         for (int i = 0; i < samples; ++i) {
-            const auto s = sun.sample({}, {random.uniform(), random.uniform()}, kAt);
-            outside += sun.pdfEscaped(s->wi) == 0;
+            const auto s = sun.sample({}, {random.uniform(), random.uniform()}, kAt, 0);
+            outside += sun.pdfEscaped(s->wi, 0) == 0;
             const Vec3d w = normalize(Vec3d(s->wi));
             const double sine = std::hypot(w.x, w.y), h = sine * sine / (1 + w.z); // 1 - cos
             const int r = std::min(static_cast<int>(h / (2 * square(std::sin(half / 2))) * n), n - 1);
@@ -94,7 +94,7 @@ test::Moments irradiance(const Light& light, Vec3 n, std::uint64_t seed) {
     test::Moments result;
     test::Random random(seed);
     for (int i = 0; i < 400000; ++i) {
-        const auto s = light.sample({}, {random.uniform(), random.uniform()}, kAt);
+        const auto s = light.sample({}, {random.uniform(), random.uniform()}, kAt, 0);
         result.add(s->radiance[0] * std::max(0.f, dot(n, s->wi)) / s->pdfSolidAngle);
     }
     return result;
@@ -122,7 +122,7 @@ TEST_CASE("irradiance of an image, sampled without compensation, is that of esca
     test::Random random(11);
     for (int i = 0; i < 1000000; ++i) {
         const Vec3 w = squareToSphere({random.uniform(), random.uniform()});
-        uniform.add(light.escaped(w, kAt)[0] * std::max(0.f, dot(n, w)) / kSpherePdf);
+        uniform.add(light.escaped(w, kAt, 0)[0] * std::max(0.f, dot(n, w)) / kSpherePdf);
     }
     CHECK(test::sameMeanTest(irradiance(light, n, 12), uniform) > 1e-4);
 }

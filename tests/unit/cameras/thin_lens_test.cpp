@@ -163,7 +163,7 @@ TEST_CASE("the focus on a shape is the distance of its middle along the axis") {
     p.lookAt = Vec3d{1, 2, 0};
     p.focus = schema::Location{std::nullopt, "ball", {}};
     CameraContext context = test::cameraContext({100, 100});
-    context.middleOf = [](std::string_view name) {
+    context.middleOf = [](std::string_view name, double) {
         return name == "ball"     ? std::optional(Vec3d{3, 1, 4})
                : name == "behind" ? std::optional(Vec3d{0, 0, 12})
                                   : std::nullopt;
@@ -186,7 +186,7 @@ TEST_CASE("exposure in the units of photography") {
     CHECK(make(p).exposure == 2);
     p.shutter = 0.01;
     CHECK(make(p).exposure == 2); // the shutter alone moves, and does not expose
-    CHECK(make(p).shutter == 0.01);
+    CHECK(make(p).shutter.exposure == 0.01);
     // Sunny 16: f/16 and a shutter of 1/ISO. A grey card of 18 % under 100 000 lx has 5730 nits; the sensor receives
     // 5730 π / (4·256) lx · 0.01 s = 0.1758 lx s of the 0.78 that saturate it: 22.5 %.
     p.exposure = 0;

@@ -22,11 +22,13 @@ class TestLight final : public Light {
     explicit TestLight(double power, bool infinite = false) : power_(power), infinite_(infinite) {}
     double power() const override { return power_; }
     bool infinite() const override { return infinite_; }
-    std::optional<LightSample> sample(Vec3, Vec2, const Wavelengths&) const noexcept override { return std::nullopt; }
+    std::optional<LightSample> sample(Vec3, Vec2, const Wavelengths&, float) const noexcept override {
+        return std::nullopt;
+    }
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return {}; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&) const noexcept override { return {}; }
-    float pdfEscaped(Vec3) const noexcept override { return 0; }
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return {}; }
+    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 
   private:
     double power_;

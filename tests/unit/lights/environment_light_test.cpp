@@ -46,7 +46,8 @@ TEST_CASE("the middle of the image is towards -z, its right half towards +x, its
         set(im, column, row - (row > 0), {1, 0, 0});
         set(im, column - 1, row - (row > 0), {1, 0, 0});
         Diagnostics diagnostics;
-        return makeEnvironmentLight({}, im, std::make_unique<Bands>(), false, context, diagnostics)->escaped(w, red)[0];
+        return makeEnvironmentLight({}, im, std::make_unique<Bands>(), false, context, diagnostics)
+            ->escaped(w, red, 0)[0];
     };
     const LightContext yUp{};
     LightContext zUp;
@@ -59,21 +60,21 @@ TEST_CASE("the middle of the image is towards -z, its right half towards +x, its
     CHECK(value(6, 2, {1, 0, 0}, zUp) == doctest::Approx(1));
     EnvironmentImage top = image(8, 4);
     for (int column = 0; column < 8; ++column) set(top, column, 0, {1, 0, 0});
-    CHECK(light(top).escaped({0, 1, 0}, red)[0] == doctest::Approx(1));
-    CHECK(light(top).escaped({0, -1, 0}, red)[0] == 0);
+    CHECK(light(top).escaped({0, 1, 0}, red, 0)[0] == doctest::Approx(1));
+    CHECK(light(top).escaped({0, -1, 0}, red, 0)[0] == 0);
 }
 
 // Hard case 33.
 TEST_CASE("there is no seam, and the poles are finite") {
     const EnvironmentLight sky = light(noise(16, 8));
     const Wavelengths w = Wavelengths::sample(0.4f);
-    const float a = sky.escaped(normalize(Vec3{1e-6f, 0.2f, 1}), w)[2];
-    const float b = sky.escaped(normalize(Vec3{-1e-6f, 0.2f, 1}), w)[2];
+    const float a = sky.escaped(normalize(Vec3{1e-6f, 0.2f, 1}), w, 0)[2];
+    const float b = sky.escaped(normalize(Vec3{-1e-6f, 0.2f, 1}), w, 0)[2];
     CHECK(a == doctest::Approx(b).epsilon(1e-4));
     for (const Vec3 pole : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{1e-20f, 1, -1e-20f}, Vec3{-0.f, -1, -0.f}}) {
-        CHECK(isFinite(sky.escaped(pole, w)[0]));
-        CHECK(sky.pdfEscaped(pole) > 0);
-        CHECK(sky.pdfEscaped(pole) < 100);
+        CHECK(isFinite(sky.escaped(pole, w, 0)[0]));
+        CHECK(sky.pdfEscaped(pole, 0) > 0);
+        CHECK(sky.pdfEscaped(pole, 0) < 100);
     }
 }
 
@@ -84,7 +85,7 @@ TEST_CASE("a constant image gives π L, for any way of sampling") {
         test::Moments irradiance;
         test::Random random(5);
         for (int i = 0; i < 200000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w);
+            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
             irradiance.add(s->radiance[4] * std::max(s->wi.y, 0.f) / s->pdfSolidAngle);
         }
         CHECK(test::meanTest(irradiance, kPiD) > 1e-4);
@@ -100,13 +101,13 @@ TEST_CASE("what is sampled is what is looked up") {
         test::Random random(6);
         int borders = 0;
         for (int i = 0; i < 20000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w);
+            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
             REQUIRE(s);
             CHECK(s->pdfSolidAngle > 0);
             CHECK(std::isinf(s->distance));
             CHECK(length(s->wi) == doctest::Approx(1).epsilon(1e-5));
-            CHECK(s->radiance[1] == sky.escaped(s->wi, w)[1]);
-            borders += std::abs(sky.pdfEscaped(s->wi) / s->pdfSolidAngle - 1) > 1e-5f;
+            CHECK(s->radiance[1] == sky.escaped(s->wi, w, 0)[1]);
+            borders += std::abs(sky.pdfEscaped(s->wi, 0) / s->pdfSolidAngle - 1) > 1e-5f;
         }
         CHECK(borders < 5); // directions that round into the next cell
     }
@@ -121,7 +122,7 @@ double integralOfPdf(const EnvironmentLight& sky) {
             const double theta = kPiD * (i + 0.5) / n, phi = 2 * kPiD * (j + 0.5) / n;
             const Vec3 w{static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)),
                          static_cast<float>(std::sin(theta) * std::sin(phi))};
-            sum += sky.pdfEscaped(w) * (std::cos(kPiD * i / n) - std::cos(kPiD * (i + 1) / n)) * 2 * kPiD / n;
+            sum += sky.pdfEscaped(w, 0) * (std::cos(kPiD * i / n) - std::cos(kPiD * (i + 1) / n)) * 2 * kPiD / n;
         }
     return sum;
 }
@@ -146,14 +147,14 @@ TEST_CASE("sampling without compensation misses no light: the mean is right for 
             const double theta = kPiD * (j + 0.5) / 1000, phi = 2 * kPiD * (i + 0.5) / 2000;
             const Vec3 d{static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)),
                          static_cast<float>(std::sin(theta) * std::sin(phi))};
-            reference += upright.escaped(d, w)[0] * std::sin(theta) * kPiD / 1000 * 2 * kPiD / 2000;
+            reference += upright.escaped(d, w, 0)[0] * std::sin(theta) * kPiD / 1000 * 2 * kPiD / 2000;
         }
     for (int turn = 0; turn < 7; ++turn) {
         const EnvironmentLight sky = light(im, Transform::rotate({1, 1.0 * turn, -1}, 0.9 * turn));
         test::Moments total;
         test::Random random(static_cast<std::uint64_t>(turn) + 20);
         for (int i = 0; i < 100000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w);
+            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
             total.add(s->radiance[0] / s->pdfSolidAngle);
         }
         CHECK(test::meanTest(total, reference) > 1e-4);
@@ -165,11 +166,11 @@ TEST_CASE("compensation samples only what exceeds the mean, in proportion") {
     for (int dy = 0; dy < 3; ++dy)
         for (int dx = 0; dx < 3; ++dx) set(im, 9 + dx, 3 + dy, {101, 101, 101});
     const EnvironmentLight sky = light(im, {}, true);
-    CHECK(sky.pdfEscaped({0, 1, 0}) == 0);
+    CHECK(sky.pdfEscaped({0, 1, 0}, 0) == 0);
     test::Random random(8);
     int bright = 0; // the others are in halves of cells that reach just beyond the bright texels
     for (int i = 0; i < 1000; ++i)
-        bright += sky.sample({}, {random.uniform(), random.uniform()}, Wavelengths::single(550))->radiance[0] > 1;
+        bright += sky.sample({}, {random.uniform(), random.uniform()}, Wavelengths::single(550), 0)->radiance[0] > 1;
     CHECK(bright > 970);
 }
 
@@ -189,7 +190,7 @@ TEST_CASE("images of one texel, or one row") {
         const EnvironmentLight sky = light(image(width, height, {3, 3, 3}), {}, true);
         test::Random random(9);
         for (int i = 0; i < 1000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w);
+            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
             CHECK(s->radiance[0] == 3);
             CHECK(s->pdfSolidAngle == doctest::Approx(1 / (4 * kPiD)).epsilon(0.3));
         }
@@ -200,10 +201,10 @@ TEST_CASE("a sun of 1e9 in the image leaves the rest its probability") {
     EnvironmentImage im = image(64, 32, {1, 1, 1});
     set(im, 20, 10, {1e9f, 1e9f, 1e9f});
     const EnvironmentLight sky = light(im);
-    const float overhead = sky.pdfEscaped({0, 1, 0}), below = sky.pdfEscaped({0, -1, 0});
+    const float overhead = sky.pdfEscaped({0, 1, 0}, 0), below = sky.pdfEscaped({0, -1, 0}, 0);
     CHECK(overhead > 0);
     CHECK(overhead == doctest::Approx(below).epsilon(1e-6));
-    CHECK(sky.sample({}, {0.5f, 0.5f}, Wavelengths::single(550))->radiance[0] > 1e8f);
+    CHECK(sky.sample({}, {0.5f, 0.5f}, Wavelengths::single(550), 0)->radiance[0] > 1e8f);
 }
 
 TEST_CASE("broken images are reported") {
@@ -233,7 +234,7 @@ TEST_CASE("amounts: luminance of a white texel, and stops") {
     Diagnostics diagnostics;
     const auto sky = makeEnvironmentLight(p, image(2, 1, {1, 1, 1}), std::make_unique<Bands>(), false, {}, diagnostics);
     const SampledCurve radiance([&](double nm) {
-        return sky->escaped({1, 0, 0}, Wavelengths::single(static_cast<float>(nm)))[0];
+        return sky->escaped({1, 0, 0}, Wavelengths::single(static_cast<float>(nm)), 0)[0];
     });
     CHECK(luminousIntegral(radiance) == doctest::Approx(4000).epsilon(1e-4));
 }

@@ -35,6 +35,14 @@ TEST_CASE("fractions") {
     CHECK(!parseFraction("1 / 2"));
     CHECK(!parseFraction("hero/body.obj"));
     CHECK(!parseFraction("12"));
+    const auto measured = parseMeasuredFraction("1/24 s");
+    REQUIRE(measured);
+    CHECK(measured->value == 1. / 24);
+    CHECK(measured->unit == "s");
+    CHECK(!parseMeasuredFraction("1/24"));
+    CHECK(!parseMeasuredFraction("1/24 "));
+    CHECK(!parseMeasuredFraction("2 s"));
+    CHECK(!parseMeasuredFraction("1 / 24 s"));
 }
 
 TEST_CASE("ranges read well") {

@@ -1,0 +1,75 @@
+#include "lights/moving_light.h"
+
+#include "lights/light_context.h"
+
+namespace abbe {
+
+namespace {
+
+// |A| v
+Vec3d absoluteVector(const Transform& m, Vec3d v) {
+    const auto row = [&](int i) {
+        return std::abs(m.a[i][0]) * v.x + std::abs(m.a[i][1]) * v.y + std::abs(m.a[i][2]) * v.z;
+    };
+    return {row(0), row(1), row(2)};
+}
+
+// To render space. The error bound is that of an instance's hit (geometry/instance.cpp), whose map is rounded to float
+// as the one here is not: shadow rays end there.
+ShapeSample toRender(const LightPose& pose, const ShapeSample& s) {
+    constexpr double rounding = 0x1p-22; // four of float
+    const Transform& m = pose.toRender;
+    const Vec3d rest(s.p), p = m.point(rest), t = abs(m.t);
+    const Vec3d map = absoluteVector(m, abs(rest)) + t;
+    const Vec3d ray = absoluteVector(m, absoluteVector(pose.toRest, abs(p) + t));
+    const Vec3d error = absoluteVector(m, Vec3d(s.pError)) + (map + ray) * rounding;
+    return {Vec3(p), Vec3(error), Vec3(normalize(m.normal(Vec3d(s.ng)))), s.pdfSolidAngle};
+}
+
+} // namespace
+
+std::optional<LightSample> MovingLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
+                                               float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    auto s = atRest_->sample(pose->rest(from), u, lambda, time);
+    if (!s) return s;
+    s->wi = Vec3(normalize(pose->toRender.vector(Vec3d(s->wi))));
+    if (!(s->distance < kInfinity)) return s;
+    const float scale = static_cast<float>(pose->scale);
+    s->p = Vec3(pose->toRender.point(Vec3d(s->p)));
+    s->distance *= scale;
+    s->radiance *= 1 / (scale * scale); // intensity / d²
+    return s;
+}
+
+Spectrum MovingLight::escaped(Vec3 w, const Wavelengths& lambda, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    return pose ? atRest_->escaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), lambda, time) : Spectrum(0.f);
+}
+
+float MovingLight::pdfEscaped(Vec3 w, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    return pose ? atRest_->pdfEscaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
+}
+
+std::optional<LightSample> MovingAreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
+                                                   float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    const auto s = shape().sample(pose->rest(from), u);
+    if (!s) return std::nullopt;
+    return arriving(toRender(*pose, *s), from, lambda);
+}
+
+float MovingAreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    return pose ? AreaLight::pdfSolidAngle(pose->rest(from), pose->rest(hit), time) : 0;
+}
+
+std::unique_ptr<Light> inMotion(std::unique_ptr<Light> light, const LightContext& context) {
+    if (!light || !context.motion) return light;
+    return std::make_unique<MovingLight>(std::move(light), *context.motion);
+}
+
+} // namespace abbe

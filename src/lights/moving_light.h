@@ -1,0 +1,46 @@
+// Lights that move: what they are at rest, seen from where the world is then.
+#pragma once
+
+#include "lights/area_light.h"
+#include "lights/light_motion.h"
+
+namespace abbe {
+
+// A light without surface, or infinitely far away: only its rotation matters then.
+class MovingLight final : public Light {
+  public:
+    MovingLight(std::unique_ptr<Light> atRest, LightMotion motion)
+        : atRest_(std::move(atRest)), motion_(std::move(motion)) {}
+
+    void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
+    double power() const override { return atRest_->power(); }
+    bool infinite() const override { return atRest_->infinite(); }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
+    float pdfEscaped(Vec3 w, float time) const noexcept override;
+
+  private:
+    std::unique_ptr<Light> atRest_;
+    LightMotion motion_;
+};
+
+// A shape that emits; rays meet it as an instance with the same motion. Radiance stays when the scale changes.
+class MovingAreaLight final : public AreaLight {
+  public:
+    // `atRest`: as AreaLight has it, at rest.
+    MovingAreaLight(const Shape& atRest, ScaledCurve radiance, bool twoSided, LightMotion motion)
+        : AreaLight(atRest, radiance, twoSided), motion_(std::move(motion)) {}
+
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
+    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept override;
+
+  private:
+    LightMotion motion_;
+};
+
+// As the context says: the light itself, or one that moves. Null stays null.
+std::unique_ptr<Light> inMotion(std::unique_ptr<Light>, const LightContext&);
+
+} // namespace abbe
