@@ -34,6 +34,8 @@ class Dicer {
             std::copy_n(out_.mesh.positions.begin() + seam.original, seam.count,
                         out_.mesh.positions.begin() + seam.copy);
         out_.seams = std::move(layout_.seams);
+        out_.faces.reserve(starts_.size());
+        for (const Start& start : starts_) out_.faces.push_back({start.triangles, start.quads});
         return std::move(out_);
     }
 

@@ -46,6 +46,11 @@ struct DicedSeam {
 struct DicedSurface {
     MeshData mesh; // normals always; uvs if the cage has them; quads, and triangles where rates meet
     std::vector<DicedSeam> seams;
+    // Where the faces of the diced mesh that make up a face of the cage begin; with one entry past the last.
+    struct Face {
+        std::uint64_t firstTriangle = 0, firstQuad = 0;
+    };
+    std::vector<Face> faces;
 };
 
 // Positions lie on the limit surface and normals are perpendicular to its tangents. Where these vanish (poles, sharp

@@ -30,9 +30,15 @@ struct Vertex {
     void AddWithWeight(const Vertex& v, double w) { p += v.p * w; }
 };
 
-inline std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner(const SubdivisionCage& cage, int level) {
+inline OpenSubdiv::Sdc::SchemeType scheme(const SubdivisionCage& cage) {
     using namespace OpenSubdiv;
-    using Options = Sdc::Options;
+    return cage.scheme == SubdivisionCage::Scheme::loop       ? Sdc::SCHEME_LOOP
+           : cage.scheme == SubdivisionCage::Scheme::bilinear ? Sdc::SCHEME_BILINEAR
+                                                              : Sdc::SCHEME_CATMARK;
+}
+
+inline OpenSubdiv::Sdc::Options options(const SubdivisionCage& cage) {
+    using Options = OpenSubdiv::Sdc::Options;
     Options o;
     o.SetVtxBoundaryInterpolation(cage.boundary == SubdivisionCage::Boundary::none ? Options::VTX_BOUNDARY_NONE
                                   : cage.boundary == SubdivisionCage::Boundary::edgeOnly
@@ -40,6 +46,11 @@ inline std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner(const Subdivisi
                                       : Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     if (cage.creasing == SubdivisionCage::Creasing::chaikin) o.SetCreasingMethod(Options::CREASE_CHAIKIN);
     if (cage.smoothTriangles) o.SetTriangleSubdivision(Options::TRI_SUB_SMOOTH);
+    return o;
+}
+
+inline std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner(const SubdivisionCage& cage, int level) {
+    using namespace OpenSubdiv;
     const std::vector<int> sizes(cage.faceSizes.begin(), cage.faceSizes.end());
     const std::vector<int> corners(cage.corners.begin(), cage.corners.end());
     const std::vector<int> holes(cage.holes.begin(), cage.holes.end());
@@ -67,11 +78,8 @@ inline std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner(const Subdivisi
     d.cornerWeights = cornerWeights.data();
     d.numHoles = static_cast<int>(holes.size());
     d.holeIndices = holes.data();
-    const auto scheme = cage.scheme == SubdivisionCage::Scheme::loop       ? Sdc::SCHEME_LOOP
-                        : cage.scheme == SubdivisionCage::Scheme::bilinear ? Sdc::SCHEME_BILINEAR
-                                                                           : Sdc::SCHEME_CATMARK;
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    std::unique_ptr<Far::TopologyRefiner> result(Factory::Create(d, Factory::Options(scheme, o)));
+    std::unique_ptr<Far::TopologyRefiner> result(Factory::Create(d, Factory::Options(scheme(cage), options(cage))));
     Far::TopologyRefiner::UniformOptions uniform(level);
     uniform.fullTopologyInLastLevel = true;
     result->RefineUniform(uniform);
