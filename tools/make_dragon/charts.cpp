@@ -77,10 +77,10 @@ class Charter {
             if (a.u * b.v - a.v * b.u < 0.1 * tilt) return false;
         }
         std::vector<std::array<int, 2>> cells;
-        for (int i = 0; i < 64; ++i) {
-            const double s = (i % 8 + 0.5) / 8, t = (i / 8 + 0.5) / 8;
+        for (int i = 0; i < 400; ++i) {
+            const double s = (i % 20 + 0.5) / 20, t = (i / 20 + 0.5) / 20;
             const Vec2 p = (c[0] * (1 - s) + c[1] * s) * (1 - t) + (c[3] * (1 - s) + c[2] * s) * t;
-            cells.push_back({int(std::floor(p.u * 8)), int(std::floor(p.v * 8))});
+            cells.push_back({int(std::floor(p.u * 20)), int(std::floor(p.v * 20))});
             const auto found = taken.find(cells.back());
             if (found != taken.end() && !touch(found->second, face)) return false;
         }
