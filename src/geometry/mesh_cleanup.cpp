@@ -36,11 +36,29 @@ std::optional<std::string> findError(const MeshData& m) {
     return indexError(m.quads, n, "quad");
 }
 
+// Erases faces together with their entries in `groups`. Returns how many.
+template <typename Face, typename Predicate>
+std::size_t eraseFaces(std::vector<Face>& faces, std::vector<std::uint32_t>* groups, const Predicate& unwanted) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (unwanted(i)) continue;
+        faces[kept] = faces[i];
+        if (groups) (*groups)[kept] = (*groups)[i];
+        ++kept;
+    }
+    const std::size_t erased = faces.size() - kept;
+    faces.resize(kept);
+    if (groups) groups->resize(kept);
+    return erased;
+}
+
 // Quads that name one corner twice in a row become triangles; faces with fewer than three corners go.
-void removeRepeated(MeshData& m, MeshCleanup& report) {
+void removeRepeated(MeshData& m, FaceGroups* groups, MeshCleanup& report) {
     const auto repeated = [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
-    report.repeatedIndices += std::erase_if(m.triangles, repeated);
-    std::erase_if(m.quads, [&](const std::array<std::uint32_t, 4>& q) {
+    report.repeatedIndices += eraseFaces(m.triangles, groups ? &groups->triangles : nullptr,
+                                         [&](std::size_t i) { return repeated(m.triangles[i]); });
+    eraseFaces(m.quads, groups ? &groups->quads : nullptr, [&](std::size_t face) {
+        const auto& q = m.quads[face];
         if (q[0] == q[2] || q[1] == q[3]) {
             ++report.repeatedIndices;
             return true;
@@ -52,6 +70,7 @@ void removeRepeated(MeshData& m, MeshCleanup& report) {
                 ++report.repeatedIndices;
             } else {
                 m.triangles.push_back(t);
+                if (groups) groups->triangles.push_back(groups->quads[face]);
                 ++report.quadsToTriangles;
             }
             return true;
@@ -62,11 +81,11 @@ void removeRepeated(MeshData& m, MeshCleanup& report) {
 
 } // namespace
 
-MeshCleanup cleanMesh(MeshData& m) {
+MeshCleanup cleanMesh(MeshData& m, FaceGroups* groups) {
     MeshCleanup report;
     report.error = findError(m);
     if (report.error) return report;
-    removeRepeated(m, report);
+    removeRepeated(m, groups, report);
 
     Bounds3d box;
     for (Vec3 p : m.positions) box.add(Vec3d(p));
@@ -77,9 +96,14 @@ MeshCleanup cleanMesh(MeshData& m) {
         const double twice = length(triangleCross(p0, p1, p2));
         return !(twice > 1e-6 * longest2) && !(0.5 * twice > 1e-12 * diagonal2);
     };
-    report.zeroArea += std::erase_if(m.triangles, [&](const auto& t) { return sliver(t[0], t[1], t[2]); });
-    report.zeroArea +=
-        std::erase_if(m.quads, [&](const auto& q) { return sliver(q[0], q[1], q[3]) && sliver(q[2], q[3], q[1]); });
+    report.zeroArea += eraseFaces(m.triangles, groups ? &groups->triangles : nullptr, [&](std::size_t i) {
+        const auto& t = m.triangles[i];
+        return sliver(t[0], t[1], t[2]);
+    });
+    report.zeroArea += eraseFaces(m.quads, groups ? &groups->quads : nullptr, [&](std::size_t i) {
+        const auto& q = m.quads[i];
+        return sliver(q[0], q[1], q[3]) && sliver(q[2], q[3], q[1]);
+    });
     return report;
 }
 

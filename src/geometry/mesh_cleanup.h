@@ -22,6 +22,7 @@ struct MeshCleanup {
 // Errors: indices beyond the vertices, positions, normals or uvs that are not finite, normals or uvs that are not one
 // per vertex, more faces than 32 bits count. A face has no area if twice its area is below 1e-6 of the square of its
 // longest edge and its area below 1e-12 of the square of the mesh's diagonal: small but well-shaped faces stay.
-MeshCleanup cleanMesh(MeshData&);
+// Groups stay with their faces. Requires groups, where given, of as many faces as the mesh has.
+MeshCleanup cleanMesh(MeshData&, FaceGroups* = nullptr);
 
 } // namespace abbe

@@ -8,11 +8,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace abbe {
 
 struct CageFile {
     SubdivisionCage cage; // indices of faces in range, numbers finite
+    // The runs of faces under one `g`, or else `o`, in file order: each up to the next one's first face.
+    struct Group {
+        std::string name; // may be empty
+        std::size_t firstFace = 0;
+    };
+    std::vector<Group> groups; // none for PLY
     // Options that the file states itself; the cage has them already.
     bool statesBoundary = false, statesFaceVarying = false, statesCreasing = false;
     std::uint64_t ignoredFaces = 0; // points and lines: fewer than three corners

@@ -368,6 +368,9 @@ CageFile ObjParser::parseCage() {
         for (const Corner& c : corners_)
             cage.uvCorners.push_back(c.vt == kNone ? none : static_cast<std::uint32_t>(c.vt));
     }
+    for (Section& section : sections_)
+        if (section.firstFace < cage.faceSizes.size())
+            file.groups.push_back({std::move(section.name), section.firstFace});
     for (const TagLine& tag : tags_)
         if (const auto fault = applyObjTag(tag.text, file)) fail(tag.line, *fault);
     return file;

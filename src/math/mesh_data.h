@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace abbe {
@@ -17,6 +18,12 @@ struct MeshData {
     std::vector<Vec2> uvs;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::array<std::uint32_t, 4>> quads;
+};
+
+// Which group of a file each face of a mesh belongs to, by its number in `names`.
+struct FaceGroups {
+    std::vector<std::string> names; // may repeat, and be empty
+    std::vector<std::uint32_t> triangles, quads;
 };
 
 } // namespace abbe

@@ -60,6 +60,22 @@ class Binding {
         return true;
     }
 
+    // The same for a reference with a key, `material horn group=horns`: once for each value of the key. Nothing for
+    // other properties.
+    std::optional<bool> giveKeyed(const FieldInfo& field, const Node& node) {
+        if (field.type != FieldType::reference || field.keys.empty()) return std::nullopt;
+        for (const Key& key : node.keys()) {
+            if (key.name != field.keys[0].name) continue;
+            const auto [first, fresh] = keyed_.emplace(std::pair{&field, key.value.text}, node.headSpan());
+            if (fresh) return true;
+            auto& d = report(context_.diagnostics, node.headSpan(), "E0208",
+                             fmt::format("`{}` is given twice for `{}`", field.name, key.value.text), "second");
+            d.related.push_back({first->second, "first"});
+            return false;
+        }
+        return std::nullopt;
+    }
+
     bool isSecondOfGroup(const FieldInfo& field) const {
         const auto found = groups_.find(field.group);
         return found != groups_.end() && found->second.first != &field;
@@ -71,9 +87,6 @@ class Binding {
 
     void arguments() {
         if (definition_.damaged) return;
-        for (const Key& key : definition_.keys)
-            report(context_.diagnostics, key.nameSpan, "E0210",
-                   fmt::format("{} has no key `{}`", title(definition_), key.name), "unknown key");
         const auto fields = argumentFields(type_);
         const auto& values = definition_.arguments;
         // Keys behind the arguments are those of the last one.
@@ -104,7 +117,8 @@ class Binding {
         const FieldInfo* const field = type_.find(node.name());
         if (!field) return unknown(node);
         if (field->type == FieldType::moments) return moment(*field, node);
-        if (!give(*field, node.headSpan()) || node.damaged()) return;
+        const auto keyed = giveKeyed(*field, node);
+        if (!(keyed ? *keyed : give(*field, node.headSpan())) || node.damaged()) return;
         const auto value = bindField(*field, Entry(node), context_);
         if (!isSecondOfGroup(*field)) store(*field, value);
         if (!field->block.empty() && node.hasBlock()) settings(*field, node);
@@ -215,8 +229,9 @@ class Binding {
     void* params_;
     std::map<const FieldInfo*, Span> given_;
     std::map<std::string_view, std::pair<const FieldInfo*, Span>> groups_; // the first given field of each group
-    std::map<const FieldInfo*, double> momentTimes_;                       // of the last moment of each
-    std::vector<const FieldInfo*> meant_;                                  // by misspelt properties
+    std::map<std::pair<const FieldInfo*, std::string_view>, Span> keyed_;
+    std::map<const FieldInfo*, double> momentTimes_; // of the last moment of each
+    std::vector<const FieldInfo*> meant_;            // by misspelt properties
 };
 
 // The type is unknown, but what every type of the kind would refuse is wrong all the same.

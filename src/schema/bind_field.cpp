@@ -1,6 +1,7 @@
 #include "schema/binding.h"
 #include "schema/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -39,6 +40,7 @@ bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& 
     }
     if (readsKeys(field.type)) return true;
     for (const Key& key : entry.keys()) {
+        if (std::ranges::find(field.keys, key.name, &FieldKey::name) != field.keys.end()) continue;
         report(diagnostics, key.nameSpan, "E0210", fmt::format("`{}` has no key `{}`", field.name, key.name),
                "unknown key");
         return false;
@@ -71,6 +73,12 @@ std::optional<BoundValue> bindInteger(const MeasureReader& reader, const Entry& 
     return std::nullopt;
 }
 
+std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
+    std::vector<std::pair<std::string, std::string>> keys;
+    for (const Key& key : entry.keys()) keys.emplace_back(key.name, key.value.text);
+    return keys;
+}
+
 } // namespace
 
 std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry, const BindContext& context) {
@@ -82,7 +90,7 @@ std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry
     const auto& v = row->values;
     switch (field.type) {
     case FieldType::quantity:
-        return Quantity{v[0], row->scale.dimension, entry.span()};
+        return Quantity{v[0], row->scale.dimension, entry.span(), textKeys(entry)};
     case FieldType::vector2:
         return Vec2d{v[0], v[1]};
     case FieldType::vector3:

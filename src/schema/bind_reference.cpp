@@ -2,6 +2,7 @@
 #include "schema/definition_reader.h"
 #include "schema/suggest.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe::schema {
@@ -32,8 +33,17 @@ void unknownName(Kind kind, const Value& word, const BindContext& context) {
         d.help = fmt::format("the types of `{}` are {}", keyword(kind), quotedList(types));
 }
 
-std::optional<BoundValue> valid(Reference reference) {
-    return reference.valid() ? std::optional<BoundValue>(reference) : std::nullopt;
+// The key `group=` of an entry, if its field has one.
+const Key* groupKey(const FieldInfo& field, const Entry& entry) {
+    if (field.keys.empty()) return nullptr;
+    const auto found = std::ranges::find(entry.keys(), field.keys[0].name, &Key::name);
+    return found == entry.keys().end() ? nullptr : &*found;
+}
+
+std::optional<BoundValue> valid(Reference reference, const Key* group) {
+    if (!reference.valid()) return std::nullopt;
+    if (!group) return reference;
+    return GroupReference{reference, std::string(group->value.text), place(group->value)};
 }
 
 } // namespace
@@ -70,7 +80,8 @@ std::optional<BoundValue> bindPlace(const FieldInfo& field, const Entry& entry, 
 // A bare word is first a defined name, then a type; with arguments or a block it is always a type.
 std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     const Kind kind = field.referenceKind;
-    const bool bare = entry.count() == 1 && !entry.hasBlock() && entry.keys().empty();
+    const Key* const group = groupKey(field, entry);
+    const bool bare = entry.count() == 1 && !entry.hasBlock() && entry.keys().size() == (group ? 1 : 0);
     if (entry.count() == 0 && !entry.hasBlock()) {
         report(context.diagnostics, entry.span(), "E0306",
                fmt::format("`{}` needs the name or the type of a {}", field.name, keyword(kind)), "has no value");
@@ -84,13 +95,20 @@ std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& ent
     }
     if (bare) {
         if (const Definition* named = context.tree.find(kind, first.text))
-            return valid(context.resolver.reference(*named, context.diagnostics));
+            return valid(context.resolver.reference(*named, context.diagnostics), group);
         if (!context.table.find(kind, first.text)) {
             unknownName(kind, first, context);
             return std::nullopt;
         }
     }
-    if (entry.count() > 0 && !bare && !context.table.find(kind, first.text) && context.tree.find(kind, first.text)) {
+    const bool isName = entry.count() > 0 && !context.table.find(kind, first.text);
+    if (isName && entry.keys().size() > (group ? 1u : 0u)) {
+        const Key& key = &entry.keys()[0] == group ? entry.keys()[1] : entry.keys()[0];
+        report(context.diagnostics, key.nameSpan, "E0210",
+               fmt::format("`{}` has no key `{}` here", field.name, key.name), "unknown key");
+        return std::nullopt;
+    }
+    if (isName && !bare && context.tree.find(kind, first.text)) {
         reportAt(context.diagnostics, first, "E0214",
                  fmt::format("`{}` is a name: it takes no arguments and no block", first.text),
                  fmt::format("write `{} {}` alone", field.name, first.text));
@@ -98,8 +116,10 @@ std::optional<BoundValue> bindReference(const FieldInfo& field, const Entry& ent
     }
     const DefinitionReader reader(context.table, context.diagnostics);
     if (!entry.node()) return std::nullopt;
-    const auto inlined = reader.readInline(kind, *entry.node());
-    return inlined ? valid(context.resolver.reference(*inlined, context.diagnostics)) : std::nullopt;
+    auto inlined = reader.readInline(kind, *entry.node());
+    if (!inlined) return std::nullopt;
+    if (group) std::erase_if(inlined->keys, [&](const Key& key) { return key.name == group->name; });
+    return valid(context.resolver.reference(*inlined, context.diagnostics), group);
 }
 
 } // namespace abbe::schema

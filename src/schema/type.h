@@ -50,6 +50,7 @@ struct Quantity {
     double value = 0;
     Dimension dimension = Dimension::none;
     Span span;
+    std::vector<std::pair<std::string, std::string>> keys = {}; // those its field allows
 };
 
 // Polygons: counts[i] vertices of face i, all indices concatenated.
@@ -69,6 +70,13 @@ struct SharpRow {
 struct Reference {
     std::uint32_t index = 0xffffffffu;
     bool valid() const { return index != 0xffffffffu; }
+};
+
+// The same for a part of what is defined, by the name of that part: `material horn group=horns`.
+struct GroupReference {
+    Reference reference;
+    std::string group;
+    Span span; // of the key's value
 };
 
 // A word out of a list, with the number that may follow it (`filter gaussian 1.5`).
@@ -115,7 +123,7 @@ struct ComplexIndex {
 
 using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
                                 std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
-                                const Curve*, ComplexIndex, Reference, KeyedTransform>;
+                                const Curve*, ComplexIndex, Reference, GroupReference, KeyedTransform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -133,13 +141,14 @@ enum class FieldType : std::uint8_t {
     sharpRow,     // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
     spectrum,     // any spectrum value -> const Curve*
     complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
-    reference,    // name or inline definition of `referenceKind` -> Reference
+    reference, // name or inline definition of `referenceKind` -> Reference; with a key `group=`, which the field must
+               // list and which may be repeated with other groups -> GroupReference
     transform, // block of translate/rotate/scale/matrix/look-at, top to bottom; with keys `at TIME { … }` where the
                // member is a KeyedTransform -> KeyedTransform (or, without keys, a Transform)
     table,     // `[unit]` and a block of rows of words and numbers -> TableRows
     place,     // a quantity, or `on=NAME` of a shape -> Location
-    moments,   // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time`
-               // and `Span span`, whose other fields stand in the block
+    moments, // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time` and
+             // `Span span`, whose other fields stand in the block
 };
 
 struct FieldKey {
@@ -218,6 +227,14 @@ template <typename Params, typename Member> class Field {
     Field& group(std::string_view g) { return info_.group = g, *this; }
     Field& note(std::string_view n) { return info_.note = n, *this; }
     Field& elsewhere(std::string_view text) { return info_.elsewhere = text, *this; }
+    // Where the values of a repeated `group=` go.
+    Field& groups(std::vector<GroupReference> Params::*member) {
+        info_.store = [plain = info_.store, member](void* params, const BoundValue& value) {
+            assign(static_cast<Params*>(params)->*member, value);
+            plain(params, value);
+        };
+        return *this;
+    }
     Field& required() { return info_.required = true, *this; }
     Field& tiles() { return info_.tiles = true, *this; }
     Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
@@ -235,6 +252,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
             if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
+        } else if constexpr (std::is_same_v<M, std::vector<GroupReference>>) {
+            if (const auto* one = std::get_if<GroupReference>(&value)) member.push_back(*one);
         } else if (const auto* same = std::get_if<M>(&value)) {
             member = *same;
         }
