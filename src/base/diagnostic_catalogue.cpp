@@ -131,6 +131,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0611", "a damaged mesh", "A face names a vertex that is not there, a number is missing, or a coordinate is not finite."},
     {"E0613", "a torus crosses itself, or is a thread", "The radius of a torus's tube is at most that of the ring, else the surface would pass through itself and have no outer side; and at least 1e-5 of it, because thinner tubes drown in rounding. For threads use curves."},
     {"E0614", "a box is stated wrongly", "A box has a `size` about its `center`, or two opposite corners, `min` and `max`, with `min` below `max` on every axis."},
+    {"E0615", "no such group of faces", "`material horn group=horns` is for the faces of one group of an OBJ file (`g`, or else `o`) or of a glTF file (the node, or else the mesh). Other faces have the `material` without a group."},
     {"E0621", "damaged curves or points", "The numbers of points, radii, normals and `counts` must match. A strand needs two points if it is linear, at least four for B-splines and Catmull-Rom, and 4, 7, 10, … for Bézier curves."},
     {"E0622", "curves or points are stretched unevenly", "Their transform, with those of the groups around them, may move, turn, mirror and scale evenly: their radius is one number. An `instance` of an `object` may stretch them; tubes and spheres become elliptical."},
     {"E0623", "curves or points emit", "This version cannot make lights of them. Use shapes that can emit: `mesh`, `quad`, `disk`, `sphere`."},
@@ -144,6 +145,9 @@ constexpr CodeInfo kCodes[] = {
     {"E0670", "no texture coordinates to displace by", "A displacement by an image, or along tangents, follows the texture coordinates of the cage: `vt` in an OBJ file, or `uvs`. Noise needs none."},
     {"E0671", "a vector map with one channel", "A displacement of `kind vector` takes its three parts from three channels. Heights move the surface along its normal: leave `kind` out."},
     {"E0672", "a missing tile", "Faces of the shape have texture coordinates in a UDIM tile that has no file beside the others. Tile 1001 + i + 10 j covers u from i to i + 1 and v from j to j + 1."},
+    {"E0680", "the keys of a shape do not match", "A shape deforms when its points are somewhere else at every time: all keys have the same points, faces, strands and normals. The message counts what differs. Files of a cache must be written by the same program with the same settings; for a shape whose points come and go use one file per frame."},
+    {"E0681", "the keys of a shape are stated wrongly", "Each `at TIME { … }` of a shape states where its points are, by `file` or by `points`, and for curves and points perhaps how thick they are; all keys the same of these, and none of it beside them. What does not change, such as `faces` and `counts`, stands beside the keys."},
+    {"E0682", "a deforming shape emits", "The area of a shape that deforms changes while the shutter is open, and with it the light that it gives. A lamp may move by a `transform` with keys."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
@@ -155,6 +159,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},
     {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
     {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
+    {"W0680", "keys off the grid", "What deforms moves between at most 129 equally spaced times, the first when the shutter opens and the last when it closes. Keys that lie between them are replaced by what the steps say there; the message says how far that moves a point. Keys at simple fractions of the exposure, halves or tenths, are exact."},
 };
 // clang-format on
 

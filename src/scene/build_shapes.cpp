@@ -80,6 +80,11 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
                !checkPlanned(d)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
+    if (shape.sound && !shape.common.groupMaterials.empty())
+        shape.place = [this, &shape, inner = std::move(shape.place)](const Transform& t) {
+            auto placed = inner(t);
+            return placed ? withFaceMaterials(shape, std::move(placed)) : nullptr;
+        };
     if (shape.sound && shape.infinite && shape.common.emission) {
         diagnostics_.error("E0606", d.span, "an infinite plane cannot emit", "give it an end: use a quad or a disk");
         shape.sound = false;
@@ -91,12 +96,16 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
     const auto params = bound<MeshParams>(d);
     if (!params) return;
     shape.common = *params;
+    if (!params->keys.empty()) return deformMesh(d, *params, shape);
+    FaceGroups groups;
+    const bool grouped = !params->groupMaterials.empty();
     auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_,
-                         tree_.header.zUp);
+                         tree_.header.zUp, grouped ? &groups : nullptr);
     if (!mesh) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
     shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
     shape.sound = true;
+    if (grouped) chooseFaceMaterials(shape, groups);
     shape.place = [this, &shape, span = d.span](const Transform& t) {
         return placeMesh(*shape.mesh, t, span, diagnostics_);
     };

@@ -2,6 +2,7 @@
 #include "io/gltf.h"
 #include "scene/shape_types.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -20,12 +21,29 @@ void toScene(MeshFile& file, double unit, bool zUp) {
         for (Vec3& n : file.mesh.normals) n = {n.x, -n.z, n.y};
 }
 
-std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, Span span, Diagnostics& diagnostics) {
+// The number of its group for every face.
+FaceGroups groupsOf(MeshFile& file) {
+    FaceGroups result;
+    result.triangles.resize(file.mesh.triangles.size());
+    result.quads.resize(file.mesh.quads.size());
+    for (MeshGroup& group : file.groups) {
+        const auto number = static_cast<std::uint32_t>(result.names.size());
+        std::fill_n(result.triangles.begin() + static_cast<std::ptrdiff_t>(group.firstTriangle), group.triangleCount,
+                    number);
+        std::fill_n(result.quads.begin() + static_cast<std::ptrdiff_t>(group.firstQuad), group.quadCount, number);
+        result.names.push_back(std::move(group.name));
+    }
+    return result;
+}
+
+std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, FaceGroups* groups, Span span,
+                                 Diagnostics& diagnostics) {
     try {
         GltfSelection selection;
         for (const auto& [key, value] : file.keys) (key == "node" ? selection.node : selection.mesh) = value;
         MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selection);
         toScene(read, unit, zUp);
+        if (groups) *groups = groupsOf(read);
         return std::move(read.mesh);
     } catch (const IoError& e) {
         diagnostics.error("E0402", file.span.valid() ? file.span : span, e.what(), "cannot be read");
@@ -66,12 +84,24 @@ std::optional<MeshData> fromRows(const std::vector<Vec3d>& points, const schema:
 
 } // namespace
 
+std::optional<MeshData> statedMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
+                                   const schema::IndexRows& faces, Span span, Diagnostics& diagnostics, bool zUp,
+                                   FaceGroups* groups) {
+    auto mesh = file.value.empty() ? fromRows(points, faces, span, diagnostics)
+                                   : fromFile(file, unit, zUp, groups, span, diagnostics);
+    if (mesh && groups) { // what is written in place has none
+        groups->triangles.resize(mesh->triangles.size());
+        groups->quads.resize(mesh->quads.size());
+    }
+    return mesh;
+}
+
 std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
-                                 const schema::IndexRows& faces, Span span, Diagnostics& diagnostics, bool zUp) {
-    auto mesh =
-        file.value.empty() ? fromRows(points, faces, span, diagnostics) : fromFile(file, unit, zUp, span, diagnostics);
+                                 const schema::IndexRows& faces, Span span, Diagnostics& diagnostics, bool zUp,
+                                 FaceGroups* groups) {
+    auto mesh = statedMesh(file, unit, points, faces, span, diagnostics, zUp, groups);
     if (!mesh) return std::nullopt;
-    const MeshCleanup cleanup = cleanMesh(*mesh);
+    const MeshCleanup cleanup = cleanMesh(*mesh, groups);
     if (cleanup.error) {
         diagnostics.error("E0611", span, *cleanup.error, "damaged mesh");
         return std::nullopt;

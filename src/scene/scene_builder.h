@@ -1,7 +1,9 @@
 // The work of buildScene(): one pass over the definitions, split by what is built.
 #pragma once
 
+#include "cameras/camera_params.h"
 #include "geometry/embree_scene.h"
+#include "geometry/subdivision_surface.h"
 #include "lights/area_light_types.h"
 #include "lights/environment_light.h"
 #include "lights/light_context.h"
@@ -18,6 +20,10 @@
 #include <unordered_map>
 
 namespace abbe {
+
+struct CurvesParams;
+struct LoadedCage;
+struct PointsParams;
 
 class SceneBuilder final : public schema::Resolver {
   public:
@@ -40,6 +46,7 @@ class SceneBuilder final : public schema::Resolver {
         ShapeParams common;
         std::shared_ptr<const MeshData> mesh; // mesh shapes
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
+        std::vector<std::uint16_t> faceMaterials;          // of the last placement: of its triangles, then of its quads
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
         std::size_t dicedTriangles = 0, dicedQuads = 0;    // of the last placement of a subdivision surface
         bool infinite = false;
@@ -113,6 +120,25 @@ class SceneBuilder final : public schema::Resolver {
     // shape_subdivision.cpp; loadSubdivision is false for other types.
     bool loadSubdivision(const Definition&, LoadedShape&);
     std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
+    // shape_subdivision_camera.cpp
+    struct DicingCamera {
+        const Camera* camera;
+        Vec3d toCamera; // what takes render space to the space of its rays
+    };
+    std::optional<std::vector<std::uint16_t>> cageChoices(const ShapeParams&, const LoadedCage&);
+    bool checkDicingCamera(const schema::Quantity& dicing);
+    std::optional<DicingCamera> dicingCamera(const schema::Quantity& dicing);
+    Dicing dicingFor(Dicing, const schema::Quantity& asked, double offscreen, const SubdivisionCage&,
+                     const Transform& place);
+    // shape_deform_mesh.cpp, shape_deform_points.cpp: shapes with keys
+    void noteFiles(const std::vector<ShapeKey>&);
+    void deformMesh(const Definition&, const MeshParams&, LoadedShape&);
+    void deformCurves(const Definition&, const CurvesParams&, LoadedShape&);
+    void deformPoints(const Definition&, const PointsParams&, LoadedShape&);
+    // shape_groups.cpp
+    std::optional<std::vector<std::uint16_t>> groupChoices(const ShapeParams&, const std::vector<std::string>& names);
+    void chooseFaceMaterials(LoadedShape&, const FaceGroups&);
+    std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
     // textures.cpp
     schema::Reference texture(const Definition&, Diagnostics&);
     const Texture* textureOf(schema::Reference) const; // null for none
@@ -175,13 +201,14 @@ class SceneBuilder final : public schema::Resolver {
     std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
     std::vector<std::unique_ptr<const Texture>> textures_;
     std::unordered_map<const Definition*, schema::Reference> textureIndex_; // of named textures
-    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;             // who made it, for effects
-    std::map<double, std::optional<std::uint32_t>> plainMaterials_;          // by reflectance
-    std::set<std::uint32_t> usedMaterials_;                                  // of shapes that were placed
+    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;            // who made it, for effects
+    std::map<double, std::optional<std::uint32_t>> plainMaterials_;         // by reflectance
+    std::set<std::uint32_t> usedMaterials_;                                 // of shapes that were placed
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
     std::map<const Definition*, LoadedShape> loaded_;
+    std::map<const Definition*, std::unique_ptr<const PlacedCamera>> dicingCameras_; // null: being made, or faulty
     std::map<const Definition*, ObjectGeometry> objects_;
     std::vector<const Definition*> chain_; // objects being built
     std::size_t instanceCount_ = 0, unsharedCount_ = 0;

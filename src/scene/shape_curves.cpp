@@ -75,6 +75,7 @@ schema::TypeInfo curvesType() {
             .example("counts 4 4 6"),
     };
     addSizedPointFields<P>(fields);
+    fields.push_back(keysField<P>(curvesKeyFields()));
     addShapeFields<P>(fields);
     return {Kind::shape,
             "curves",
@@ -113,6 +114,8 @@ std::optional<CurveData> loadCurveData(const CurvesParams& p, double unit, Span 
 
 std::unique_ptr<const Shape> placeCurves(CurveData data, const Transform& place, Span span, Diagnostics& diagnostics) {
     if (!placeSizedPoints(data.points, place, span, diagnostics)) return nullptr;
+    for (auto& step : data.later)
+        if (!placeSizedPoints(step, place, span, diagnostics)) return nullptr;
     auto curves = std::make_unique<const Curves>(std::move(data));
     if (curves->segmentCount() == 0) {
         diagnostics.error("E0604", span, "these curves have no width or no length", "nothing to see here");
@@ -143,6 +146,7 @@ bool SceneBuilder::loadCurves(const Definition& d, LoadedShape& shape) {
     if (!params) return true;
     shape.common = *params;
     if (refuseEmission(d, *params)) return true;
+    if (!params->keys.empty()) return deformCurves(d, *params, shape), true;
     auto data = loadCurveData(*params, tree_.header.length, d.span, diagnostics_);
     if (!data) return true;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);

@@ -23,6 +23,22 @@ template <typename P> void addShapeFields(std::vector<schema::FieldInfo>& fields
                          .example("transform { scale 2; rotate y 45 deg; translate 0 1 0 }"));
 }
 
+// For shapes of polygons: materials of parts.
+template <typename P> void addGroupedShapeFields(std::vector<schema::FieldInfo>& fields) {
+    using namespace schema;
+    fields.push_back(
+        field<P, Reference>(FieldType::reference, "material", &P::material)
+            .groups(&P::groupMaterials)
+            .to(Kind::material)
+            .key({"group", {}, "For the faces of one group of the file alone; may be repeated with other groups."})
+            .synonyms({"bsdf", "shader", "surface"})
+            .doc("Name of a material, or one written in place; grey and matte when absent.")
+            .example("material diffuse { reflectance 0.5 }"));
+    const std::size_t plain = fields.size();
+    addShapeFields<P>(fields);
+    fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(plain)); // its `material`
+}
+
 template <typename P> schema::FieldInfo centerField(std::string_view what) {
     return schema::field<P, Vec3d>(schema::FieldType::vector3, "center", &P::center)
         .unit({schema::Dimension::length})

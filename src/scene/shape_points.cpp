@@ -2,6 +2,7 @@
 #include "scene/shape_curves.h"
 #include "scene/shape_sized_points.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -23,6 +24,7 @@ schema::TypeInfo pointsType() {
             .example("normals { - 0 1 0; - 0 1 0.5 }"),
     };
     addSizedPointFields<P>(fields);
+    fields.push_back(keysField<P>(pointsKeyFields()));
     addShapeFields<P>(fields);
     return {Kind::shape,
             "points",
@@ -71,7 +73,12 @@ std::optional<PointData> loadPointData(const PointsParams& p, double unit, Span 
 
 std::unique_ptr<const Shape> placePoints(PointData data, const Transform& place, Span span, Diagnostics& diagnostics) {
     if (!placeSizedPoints(data.points, place, span, diagnostics)) return nullptr;
-    for (Vec3& n : data.normals) n = Vec3(normalize(place.normal(Vec3d(n))));
+    const auto turn = [&place](Vec3& n) { n = Vec3(normalize(place.normal(Vec3d(n)))); };
+    std::ranges::for_each(data.normals, turn);
+    for (PointData::Step& step : data.later) {
+        if (!placeSizedPoints(step.points, place, span, diagnostics)) return nullptr;
+        std::ranges::for_each(step.normals, turn);
+    }
     auto points = std::make_unique<const Points>(std::move(data));
     if (points->count() == 0) {
         diagnostics.error("E0604", span, "these points have no width", "nothing to see here");
@@ -89,6 +96,7 @@ void SceneBuilder::loadPoints(const Definition& d, LoadedShape& shape) {
     if (!params) return;
     shape.common = *params;
     if (refuseEmission(d, *params)) return;
+    if (!params->keys.empty()) return deformPoints(d, *params, shape);
     auto data = loadPointData(*params, tree_.header.length, d.span, diagnostics_);
     if (!data) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);

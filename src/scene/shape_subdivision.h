@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/subdivision_surface.h"
+#include "io/cage_file.h"
 #include "render/camera.h"
 #include "scene/shape_displacement.h"
 #include "scene/shape_types.h"
@@ -14,25 +15,36 @@ struct SubdivisionParams : ShapeParams, DisplacementParams {
     schema::Text file; // resolved path, or empty: points and faces
     std::vector<Vec3d> points;
     schema::IndexRows faces;
+    std::vector<double> uvs; // pairs
+    schema::IndexRows uvFaces;
     schema::Choice scheme;
     std::optional<schema::Choice> boundary, faceVarying, creasing; // unset: the file's, or the manual's
     std::vector<schema::SharpRow> creases, corners;
     std::vector<double> holes;
     schema::Quantity dicing;
+    double offscreen = 4;
     double memory = 4096; // MiB
+    std::vector<ShapeKey> keys; // instead of file and points: it deforms
 };
 
 schema::TypeInfo subdivisionType();
 
+struct LoadedCage {
+    SubdivisionCage cage;
+    std::vector<CageFile::Group> groups; // of a file
+};
+
 // The cage of a definition in its own space: from a file (OBJ or PLY, its coordinates times `unit`) or from points and
 // faces, with the properties applied. Sound, or nothing after an error.
-std::optional<SubdivisionCage> loadCage(const SubdivisionParams&, double unit, Span, Diagnostics&);
+std::optional<LoadedCage> loadCage(const SubdivisionParams&, double unit, Span, Diagnostics&);
 
 // How to dice: nothing after an error. Pixels still need a Dicing::pixelSize.
 std::optional<Dicing> dicingOf(const schema::Quantity&, Diagnostics&);
 
-// The size of a pixel in the middle of the film, as a function of the distance to the camera, in render space.
-std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize);
+// The size of a pixel in the middle of the film, as a function of the distance to the camera, in the space that the
+// camera's rays are in. Outside of the picture it grows with the angle to it, up to `offscreen` times: what is not seen
+// is still met by reflections and shadows.
+std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize, double offscreen);
 
 // How much a plan makes, in words.
 std::string describe(const DicingPlan&);
@@ -42,10 +54,12 @@ void warnOfBudget(const SubdivisionSurface&, const Dicing&, const DicingPlan&, d
 
 // Dices in the space that `place` leads to, whose outer side stays outside under mirrors. Before anything large is made
 // a warning says if the budget (MiB) lowers the rates. Null after an error located at `span`.
+// `faces` receives where those of the cage begin in the mesh.
 std::unique_ptr<const Shape> placeSubdivision(SubdivisionCage, const Dicing&, double memory, const Transform& place,
-                                              Span, Diagnostics&);
+                                              Span, Diagnostics&, std::vector<DicedSurface::Face>* faces = nullptr);
 // The same displaced in the cage's own space, before `place`.
 std::unique_ptr<const Shape> placeDisplaced(const SubdivisionCage&, const Displacement&, const Dicing&, double memory,
-                                            const Transform& place, Span, Diagnostics&);
+                                            const Transform& place, Span, Diagnostics&,
+                                            std::vector<DicedSurface::Face>* faces = nullptr);
 
 } // namespace abbe

@@ -20,7 +20,7 @@ void choose(Enum& out, const std::string& word, const std::string_view (&list)[n
         if (list[i] == word) out = static_cast<Enum>(i);
 }
 
-std::optional<Cage> cageFromFile(const schema::Text& file, double unit, Span span, Diagnostics& diagnostics) {
+std::optional<LoadedCage> cageFromFile(const schema::Text& file, double unit, Span span, Diagnostics& diagnostics) {
     const Span at = file.span.valid() ? file.span : span;
     try {
         CageFile read = readCage(file.value);
@@ -30,7 +30,7 @@ std::optional<Cage> cageFromFile(const schema::Text& file, double unit, Span spa
                 "W0660", at,
                 fmt::format("{} tags of the file are left out, the first is `{}`", read.ignoredTags, read.ignoredTag),
                 "not known here");
-        return std::move(read.cage);
+        return LoadedCage{std::move(read.cage), std::move(read.groups)};
     } catch (const IoError& e) {
         diagnostics.error("E0402", at, e.what(), "cannot be read");
     } catch (const std::bad_alloc&) {
@@ -41,6 +41,36 @@ std::optional<Cage> cageFromFile(const schema::Text& file, double unit, Span spa
 
 void cageFault(Span span, Diagnostics& diagnostics, std::string what) {
     diagnostics.error("E0660", span, std::move(what), "damaged cage");
+}
+
+// Texture coordinates written in place.
+bool addUvs(const SubdivisionParams& p, Cage& cage, Span span, Diagnostics& diagnostics) {
+    if (p.uvs.empty() && p.uvFaces.counts.empty()) return true;
+    const auto fault = [&](std::string what) {
+        cageFault(span, diagnostics, std::move(what));
+        return false;
+    };
+    if (!p.file.value.empty()) return fault("`uvs` and `uv-faces` belong to `points`: a file has its own");
+    if (p.uvs.size() % 2 != 0 || p.uvs.empty())
+        return fault(fmt::format("`uvs` are pairs of numbers, but there are {}", p.uvs.size()));
+    for (std::size_t i = 0; i < p.uvs.size(); i += 2)
+        cage.uvs.push_back({static_cast<float>(p.uvs[i]), static_cast<float>(p.uvs[i + 1])});
+    if (!p.uvFaces.counts.empty()) {
+        if (p.uvFaces.counts.size() != cage.faceSizes.size())
+            return fault(
+                fmt::format("`uv-faces` has {} rows for {} faces", p.uvFaces.counts.size(), cage.faceSizes.size()));
+        for (std::size_t f = 0; f < cage.faceSizes.size(); ++f)
+            if (p.uvFaces.counts[f] != cage.faceSizes[f])
+                return fault(fmt::format("row {} of `uv-faces` has {} corners, but the face has {}", f,
+                                         p.uvFaces.counts[f], cage.faceSizes[f]));
+        cage.uvCorners = p.uvFaces.indices;
+        return true;
+    }
+    if (cage.uvs.size() != cage.positions.size())
+        return fault(fmt::format("{} `uvs` for {} points: without `uv-faces` there is one for each", cage.uvs.size(),
+                                 cage.positions.size()));
+    cage.uvCorners = cage.corners;
+    return true;
 }
 
 bool addCreases(const std::vector<schema::SharpRow>& rows, Cage& cage, Diagnostics& diagnostics) {
@@ -88,29 +118,31 @@ bool addHoles(const std::vector<double>& holes, Cage& cage, Span span, Diagnosti
 
 } // namespace
 
-std::optional<Cage> loadCage(const SubdivisionParams& p, double unit, Span span, Diagnostics& diagnostics) {
-    std::optional<Cage> cage;
+std::optional<LoadedCage> loadCage(const SubdivisionParams& p, double unit, Span span, Diagnostics& diagnostics) {
+    std::optional<LoadedCage> loaded;
     if (!p.file.value.empty()) {
-        cage = cageFromFile(p.file, unit, span, diagnostics);
-        if (!cage) return std::nullopt;
+        loaded = cageFromFile(p.file, unit, span, diagnostics);
+        if (!loaded) return std::nullopt;
     } else {
-        cage.emplace();
-        for (const Vec3d point : p.points) cage->positions.push_back(Vec3(point));
-        cage->faceSizes = p.faces.counts;
-        cage->corners = p.faces.indices;
+        loaded.emplace();
+        for (const Vec3d point : p.points) loaded->cage.positions.push_back(Vec3(point));
+        loaded->cage.faceSizes = p.faces.counts;
+        loaded->cage.corners = p.faces.indices;
     }
-    choose(cage->scheme, p.scheme.word, kSchemes);
-    if (p.boundary) choose(cage->boundary, p.boundary->word, kBoundaries);
-    if (p.faceVarying) choose(cage->faceVarying, p.faceVarying->word, kFaceVarying);
-    if (p.creasing) choose(cage->creasing, p.creasing->word, kCreasings);
-    if (const auto fault = findFault(*cage)) {
+    Cage& cage = loaded->cage;
+    if (!addUvs(p, cage, span, diagnostics)) return std::nullopt;
+    choose(cage.scheme, p.scheme.word, kSchemes);
+    if (p.boundary) choose(cage.boundary, p.boundary->word, kBoundaries);
+    if (p.faceVarying) choose(cage.faceVarying, p.faceVarying->word, kFaceVarying);
+    if (p.creasing) choose(cage.creasing, p.creasing->word, kCreasings);
+    if (const auto fault = findFault(cage)) {
         cageFault(p.file.span.valid() ? p.file.span : span, diagnostics, *fault);
         return std::nullopt;
     }
-    if (!addCreases(p.creases, *cage, diagnostics) || !addCorners(p.corners, *cage, diagnostics) ||
-        !addHoles(p.holes, *cage, span, diagnostics))
+    if (!addCreases(p.creases, cage, diagnostics) || !addCorners(p.corners, cage, diagnostics) ||
+        !addHoles(p.holes, cage, span, diagnostics))
         return std::nullopt;
-    return cage;
+    return loaded;
 }
 
 } // namespace abbe

@@ -21,6 +21,11 @@ std::optional<Dicing> dicingOf(const schema::Quantity& q, Diagnostics& diagnosti
                   : q.dimension == schema::Dimension::length ? Dicing::Mode::length
                                                              : Dicing::Mode::level;
     const bool level = dicing.mode == Dicing::Mode::level;
+    if (!q.keys.empty() && dicing.mode != Dicing::Mode::pixels) {
+        diagnostics.error("E0210", q.span, "`camera=` belongs to `dicing` in pixels", "no pixels are measured here")
+            .help = "write `dicing 0.5 px camera=main`, or leave it out";
+        return std::nullopt;
+    }
     if (level && (q.value != std::floor(q.value) || q.value > SubdivisionSurface::kMaxLevel)) {
         diagnostics
             .error("E0303", q.span, "without a unit `dicing` is a level, a whole number from 0 to 10",
@@ -33,20 +38,6 @@ std::optional<Dicing> dicingOf(const schema::Quantity& q, Diagnostics& diagnosti
         return std::nullopt;
     }
     return dicing;
-}
-
-std::function<double(Vec3)> pixelSizeOf(const Camera& camera, Vec2d filmSize) {
-    const Vec2 middle{static_cast<float>(filmSize.x / 2), static_cast<float>(filmSize.y / 2)};
-    CameraSample sample;
-    sample.film = middle;
-    sample.lens = {0.5f, 0.5f};
-    const CameraRay a = camera.ray(sample);
-    sample.film.x += 1;
-    const CameraRay b = camera.ray(sample);
-    // From one pixel to the next, origin and direction move by so much.
-    const Vec3d shift = Vec3d(b.ray.origin) - Vec3d(a.ray.origin);
-    const Vec3d turn = Vec3d(b.ray.direction) - Vec3d(a.ray.direction);
-    return [from = Vec3d(a.ray.origin), shift, turn](Vec3 p) { return length(shift + turn * length(Vec3d(p) - from)); };
 }
 
 std::string describe(const DicingPlan& plan) {

@@ -34,6 +34,14 @@ schema::TypeInfo subdivisionType() {
             .synonyms({"indices", "polygons"})
             .doc("Rows of point numbers from 0, counter-clockwise seen from outside; polygons of any size.")
             .example("faces { - 0 1 2 3 }"),
+        field<P, std::vector<double>>(FieldType::numbers, "uvs", &P::uvs)
+            .synonyms({"st", "texture-coordinates", "vt"})
+            .doc("Texture coordinates, rows of two numbers: one per point, or those that `uv-faces` names.")
+            .example("uvs { - 0 0; - 1 0; - 1 1; - 0 1 }"),
+        field<P, IndexRows>(FieldType::indexRows, "uv-faces", &P::uvFaces)
+            .synonyms({"face-varying-indices", "uv-indices"})
+            .doc("The rows of `uvs` that the corners of each face have, like `faces`: seams where neighbours differ.")
+            .example("uv-faces { - 0 1 2 3 }"),
         field<P, Choice>(FieldType::choice, "scheme", &P::scheme)
             .choices(words(kSchemes))
             .byDefault("catmull-clark")
@@ -80,7 +88,14 @@ schema::TypeInfo subdivisionType() {
             .doc("How finely: the length of edges in pixels or as a length, or a level, 0 to 10, that cuts every edge "
                  "into 2^level pieces. Pixels are those in the middle of the picture, at the distance of the edge; in "
                  "an `object` those of the shape filling the height of the picture.")
+            .key({"camera", {}, "The camera whose pixels these are, by its name; the render camera when absent."})
             .example("dicing 0.5 px"),
+        field<P, double>(FieldType::number, "offscreen", &P::offscreen)
+            .range(1, 1e6)
+            .byDefault("4")
+            .doc("How many times longer edges in pixels may be where the camera does not look: 30° outside of the "
+                 "picture and behind it. 1: no longer.")
+            .example("offscreen 16"),
         displacementField<P>(),
         field<P, double>(FieldType::number, "memory", &P::memory)
             .range(1, 1e9)
@@ -88,7 +103,8 @@ schema::TypeInfo subdivisionType() {
             .doc("Most memory for the diced surface, in MiB: a finer `dicing` is made coarser, with a warning.")
             .example("memory 512"),
     };
-    addShapeFields<P>(fields);
+    fields.push_back(keysField<P>(meshKeyFields()));
+    addGroupedShapeFields<P>(fields);
     return {Kind::shape,
             "subdivision",
             "Smooth limit surface of a polygon cage.",

@@ -94,7 +94,8 @@ TypeInfo meshType() {
             .doc("Rows of vertex numbers from 0, counter-clockwise seen from outside; polygons of any size.")
             .example("faces { - 0 1 2 }"),
     };
-    addShapeFields<P>(fields);
+    fields.push_back(keysField<P>(meshKeyFields()));
+    addGroupedShapeFields<P>(fields);
     return {Kind::shape,
             "mesh",
             "Polygon mesh from a file or written in place.",

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/keyed_transform.h"
 #include "math/mesh_data.h"
+#include "math/keyed_transform.h"
 #include "render/shape.h"
+#include "scene/shape_key.h"
 #include "schema/type.h"
 
 #include <memory>
@@ -15,8 +16,9 @@ namespace abbe {
 
 // What every shape has. The transform takes the shape to its parent (object, group or world).
 struct ShapeParams {
-    schema::Reference material;      // unset: grey diffuse
-    const Curve* emission = nullptr; // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
+    schema::Reference material;                         // unset: grey diffuse
+    std::vector<schema::GroupReference> groupMaterials; // of parts; mesh and subdivision only
+    const Curve* emission = nullptr;                    // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
     KeyedTransform transform;
 };
 
@@ -41,6 +43,7 @@ struct MeshParams : ShapeParams {
     schema::Text file; // resolved path, or empty: points and faces
     std::vector<Vec3d> points;
     schema::IndexRows faces;
+    std::vector<ShapeKey> keys; // instead of file and points: it deforms
 };
 
 schema::TypeInfo quadType();
@@ -57,9 +60,13 @@ std::unique_ptr<const Shape> makeDisk(Vec3d center, Vec3d normal, double radius,
                                       Diagnostics&);
 std::unique_ptr<const Shape> makePlane(Vec3d point, Vec3d normal, const Transform& place, Span, Diagnostics&);
 // A mesh in its own space: from a file (OBJ or PLY, with coordinates times `unit`, or glTF, in metres and turned where
-// z is up; told apart by content) or from points and faces. Cleaned and checked.
+// z is up; told apart by content) or from points and faces. Cleaned and checked. `groups` receives those of a file.
 std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
-                                 const schema::IndexRows& faces, Span, Diagnostics&, bool zUp = false);
+                                 const schema::IndexRows& faces, Span, Diagnostics&, bool zUp = false,
+                                 FaceGroups* groups = nullptr);
+// The same, neither cleaned nor checked for more than the indices of faces that are written in place.
+std::optional<MeshData> statedMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
+                                   const schema::IndexRows& faces, Span, Diagnostics&, bool zUp, FaceGroups* groups);
 // Normals stay outward under mirrors.
 std::unique_ptr<const Shape> placeMesh(MeshData, const Transform& place, Span, Diagnostics&);
 

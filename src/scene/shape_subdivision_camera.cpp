@@ -1,0 +1,149 @@
+// How large a pixel is where a surface is diced, as the render camera or a named one sees it.
+#include "cameras/camera_params.h"
+#include "math/bounds.h"
+#include "scene/registry.h"
+#include "scene/scene_builder.h"
+#include "scene/shape_subdivision.h"
+#include "schema/suggest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+// What a camera sees, roughly: all within an angle about its axis, from anywhere within a radius of its place. It
+// encloses the rays through the rim of the picture while the shutter is open.
+class ViewCone {
+  public:
+    ViewCone(const Camera& camera, Vec2d film, const Ray& axis) : from_(axis.origin), axis_(axis.direction) {
+        double cosine = 1;
+        const int steps = 8; // on each side
+        for (const float time : {0.f, 0.5f, 1.f})
+            for (int i = 0; i < 4 * steps; ++i) {
+                const double along = static_cast<double>(i % steps) / steps;
+                const int side = i / steps;
+                const Vec2d at = side == 0   ? Vec2d{along, 0}
+                                 : side == 1 ? Vec2d{1, along}
+                                 : side == 2 ? Vec2d{1 - along, 1}
+                                             : Vec2d{0, 1 - along};
+                CameraSample sample;
+                sample.film = {static_cast<float>(at.x * film.x), static_cast<float>(at.y * film.y)};
+                sample.lens = {0.5f, 0.5f};
+                sample.time = time;
+                const CameraRay r = camera.ray(sample);
+                if (!(r.weight > 0)) continue; // a dark corner of the lens
+                cosine = std::min(cosine, dot(Vec3d(r.ray.direction), axis_));
+                spread_ = std::max(spread_, length(Vec3d(r.ray.origin) - from_));
+            }
+        all_ = !(cosine > 0.1); // a fisheye, a panorama
+        angle_ = kMargin * std::acos(std::clamp(cosine, -1.0, 1.0)) + kPiD / 180;
+    }
+
+    // 0 for what is seen, or nearly; 1 for what is far outside or behind.
+    double outside(Vec3d p) const {
+        if (all_) return 0;
+        const Vec3d v = p - from_;
+        const double along = dot(v, axis_);
+        const double across = std::max(0.0, length(v - axis_ * along) - kMargin * spread_);
+        return std::clamp((std::atan2(across, along) - angle_) / kRamp, 0.0, 1.0);
+    }
+
+  private:
+    static constexpr double kMargin = 1.1;
+    static constexpr double kRamp = kPiD / 6;
+    Vec3d from_, axis_;
+    double spread_ = 0, angle_ = 0;
+    bool all_ = false;
+};
+
+void unknownCamera(const schema::SceneTree& tree, std::string_view name, Span span, Diagnostics& diagnostics) {
+    std::vector<std::string_view> names;
+    for (const schema::Definition& d : tree.definitions)
+        if (d.kind == schema::Kind::camera && !d.name.empty()) names.push_back(d.name);
+    const auto meant = schema::nearest(name, names);
+    diagnostics
+        .error("E0202", span, fmt::format("no camera is named `{}`", name),
+               meant.empty() ? "unknown name" : schema::didYouMean(meant))
+        .help = names.empty() ? "no camera of this scene has a name: `camera main { … }`"
+                              : "the cameras are " + schema::quotedList(names);
+}
+
+} // namespace
+
+std::function<double(Vec3)> pixelSizeOf(const Camera& camera, Vec2d filmSize, double offscreen) {
+    CameraSample sample;
+    sample.film = {static_cast<float>(filmSize.x / 2), static_cast<float>(filmSize.y / 2)};
+    sample.lens = {0.5f, 0.5f};
+    const CameraRay a = camera.ray(sample);
+    sample.film.x += 1;
+    const CameraRay b = camera.ray(sample);
+    // From one pixel to the next, origin and direction move by so much.
+    const Vec3d shift = Vec3d(b.ray.origin) - Vec3d(a.ray.origin);
+    const Vec3d turn = Vec3d(b.ray.direction) - Vec3d(a.ray.direction);
+    const ViewCone cone(camera, filmSize, a.ray);
+    return [from = Vec3d(a.ray.origin), shift, turn, cone, offscreen](Vec3 p) {
+        const double size = length(shift + turn * length(Vec3d(p) - from));
+        return size * (1 + (offscreen - 1) * cone.outside(Vec3d(p)));
+    };
+}
+
+// The definition of the camera that dicing is measured by: null with an error, or for the render camera.
+bool SceneBuilder::checkDicingCamera(const schema::Quantity& dicing) {
+    for (const auto& [key, name] : dicing.keys)
+        if (!tree_.find(schema::Kind::camera, name)) {
+            unknownCamera(tree_, name, dicing.span, diagnostics_);
+            return false;
+        }
+    return true;
+}
+
+// Nothing while the camera itself is being made, because it asks where the shape is, and after an error in it.
+std::optional<SceneBuilder::DicingCamera> SceneBuilder::dicingCamera(const schema::Quantity& dicing) {
+    const auto renderCamera = [&]() -> std::optional<DicingCamera> {
+        if (!built_->scene.camera) return std::nullopt;
+        return DicingCamera{built_->scene.camera.get(), {}};
+    };
+    if (dicing.keys.empty()) return renderCamera();
+    const Definition* d = tree_.find(schema::Kind::camera, dicing.keys[0].second);
+    if (!d || d == only(schema::Kind::camera, options_.camera)) return renderCamera();
+    const auto [found, isNew] = dicingCameras_.try_emplace(d);
+    if (isNew && d->type) {
+        const std::size_t before = diagnostics_.errorCount();
+        const auto bindInto = [&](void* params) {
+            schema::bind(*d, tree_, types_, *this, params, diagnostics_);
+            return diagnostics_.errorCount() == before;
+        };
+        CameraContext context;
+        context.zUp = tree_.header.zUp;
+        context.filmSize = {static_cast<int>(built_->film.size.x), static_cast<int>(built_->film.size.y)};
+        context.span = d->span;
+        context.middleOf = [this](std::string_view name, double time) { return middleOfShape(name, time); };
+        if (auto placed = makeCamera(d->type->name, bindInto, context, diagnostics_))
+            found->second = std::make_unique<const PlacedCamera>(std::move(*placed));
+    }
+    if (!found->second) return std::nullopt;
+    return DicingCamera{found->second->camera.get(), built_->scene.origin - found->second->origin};
+}
+
+Dicing SceneBuilder::dicingFor(Dicing dicing, const schema::Quantity& asked, double offscreen,
+                               const SubdivisionCage& cage, const Transform& place) {
+    if (dicing.mode != Dicing::Mode::pixels) return dicing;
+    const auto camera = dicingCamera(asked);
+    if (!camera) {
+        dicing.mode = Dicing::Mode::level;
+        dicing.rate = 2;
+    } else if (inObject_) {
+        Bounds3d box;
+        for (const Vec3 p : cage.positions) box.add(place.point(Vec3d(p)));
+        dicing.pixelSize = [size = length(box.upper - box.lower) / built_->film.size.y](Vec3) { return size; };
+    } else {
+        dicing.pixelSize = [size = pixelSizeOf(*camera->camera, built_->film.size, offscreen),
+                            shift = camera->toCamera](Vec3 p) { return size(Vec3(Vec3d(p) + shift)); };
+    }
+    return dicing;
+}
+
+} // namespace abbe
