@@ -25,7 +25,7 @@ struct Dicing {
     // pixels: the size of a pixel at a point, in the units of the cage. Called from many threads.
     std::function<double(Vec3)> pixelSize;
     // Takes the cage to the space where lengths and pixels are measured; nothing: they are measured in its own.
-    std::optional<Transform> place;
+    std::optional<Transform> place = {};
 };
 
 // What dicing will make, known before it takes memory.
