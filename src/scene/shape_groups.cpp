@@ -11,21 +11,26 @@ namespace abbe {
 namespace {
 
 // OBJ files may put faces into several groups at once: `g head skin`.
-bool isNamed(std::string_view names, std::string_view wanted) {
-    if (names == wanted) return true;
+std::vector<std::string_view> wordsOf(std::string_view names) {
+    std::vector<std::string_view> words;
     for (std::size_t begin = 0; begin < names.size();) {
         const std::size_t end = std::min(names.find_first_of(" \t", begin), names.size());
-        if (names.substr(begin, end - begin) == wanted) return true;
+        if (end > begin) words.push_back(names.substr(begin, end - begin));
         begin = end + 1;
     }
-    return false;
+    return words;
+}
+
+bool isNamed(std::string_view names, std::string_view wanted) {
+    return names == wanted || std::ranges::count(wordsOf(names), wanted) > 0;
 }
 
 void unknownGroup(const schema::GroupReference& asked, const std::vector<std::string>& names,
                   Diagnostics& diagnostics) {
     std::vector<std::string_view> known;
     for (const std::string& name : names)
-        if (!name.empty() && std::ranges::find(known, name) == known.end()) known.push_back(name);
+        for (const std::string_view word : wordsOf(name))
+            if (std::ranges::find(known, word) == known.end()) known.push_back(word);
     const auto meant = schema::nearest(asked.group, known);
     auto& error = diagnostics.error("E0615", asked.span, fmt::format("no group of faces is named `{}`", asked.group),
                                     meant.empty() ? "unknown group" : schema::didYouMean(meant));

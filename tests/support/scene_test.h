@@ -45,6 +45,12 @@ class TestScene {
     const Diagnostics& diagnostics() const { return parts_->diagnostics; }
     // One line for each diagnostic.
     std::string report() const { return formatShort(parts_->diagnostics, parts_->sources); }
+    // What the diagnostics advise, one line each.
+    std::string advice() const {
+        std::string all;
+        for (const Diagnostic& d : parts_->diagnostics.all()) all += d.help + '\n';
+        return all;
+    }
     const BuiltScene& built() const { return parts_->built; }
     // Throws if the scene has errors: a test that renders rubbish must not pass.
     const Scene& scene() const {

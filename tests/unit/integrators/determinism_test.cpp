@@ -8,17 +8,18 @@
 namespace abbe::test {
 namespace {
 
-// Dome, lamps and shapes of every kind; %s is a material.
+// Dome, lamps and shapes of every kind, one of them moving; %s is a material.
 std::string sceneText(const std::string& material) {
     return R"(scene 1
 film { size 37 21 }
-camera { from 0.4 0.9 4; look-at 0 0.4 0; fov 40 deg }
+camera { from 0.4 0.9 4; look-at 0 0.4 0; fov 40 deg; shutter 1 s { closing 0.5 } }
 shape plane { material diffuse { reflectance rgb 0.7 0.4 0.2 } }
 shape sphere { center 0 0.5 0; radius 0.5; material )" +
            material + R"( }
 shape quad { size 2 1; material conductor { index metal Cu; roughness 0.3 }; transform { translate 0 0.5 -1 } }
 light quad { points -1 2 -1  -1 2 1  1 2 1  1 2 -1; luminance 3000 nits }
-light sphere { center 1.2 0.3 0.5; radius 0.1; power 300 lm }
+light sphere { center 1.2 0.3 0.5; radius 0.1; power 300 lm; transform { at 0 s { scale 1 }
+at 1 s { rotate y 30 deg } } }
 light sky { luminance 100 nits }
 )";
 }

@@ -68,7 +68,7 @@ TEST_CASE("displacement scene: mistakes have a code and a place") {
     CHECK(codes(build("texture t\n")) == "E0211");
     const auto mesh = build("shape mesh { " + kSquare + "displacement 0.1 { map noise }\n}\n");
     CHECK(codes(mesh) == "E0201");
-    CHECK(mesh.report().find("scheme bilinear") != std::string::npos);
+    CHECK(mesh.advice().find("scheme bilinear") != std::string::npos);
 }
 
 TEST_CASE("displacement scene: images are looked up, checked and told apart") {
