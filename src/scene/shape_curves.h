@@ -12,7 +12,7 @@ struct SizedPointsParams : ShapeParams {
     schema::Text file;         // resolved path, or empty
     std::vector<Vec3d> points; // if there is no file
     std::optional<double> radius;
-    std::vector<double> radii; // one per point
+    std::vector<double> radii;  // one per point
     std::vector<ShapeKey> keys; // instead of file and points: it deforms
 };
 struct CurvesParams : SizedPointsParams {

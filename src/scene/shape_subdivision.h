@@ -23,7 +23,7 @@ struct SubdivisionParams : ShapeParams, DisplacementParams {
     std::vector<double> holes;
     schema::Quantity dicing;
     double offscreen = 4;
-    double memory = 4096; // MiB
+    double memory = 4096;       // MiB
     std::vector<ShapeKey> keys; // instead of file and points: it deforms
 };
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/mesh_data.h"
 #include "math/keyed_transform.h"
+#include "math/mesh_data.h"
 #include "render/shape.h"
 #include "scene/shape_key.h"
 #include "schema/type.h"

@@ -175,7 +175,7 @@ struct FieldInfo {
     std::string_view note;                  // shown with a unit or range error
     std::string_view elsewhere;             // shown when another type of the kind is given it
     bool required = false;
-    bool tiles = false; // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
+    bool tiles = false;           // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
     bool canMove = false;         // a transform that may have keys

@@ -67,7 +67,7 @@ TEST_CASE("motion: a moving group with a lamp in it, a lamp that grows, and a la
                             "\nshape box { size 1 0.2 0.2 }\n"
                             "light quad { points -0.3 0.4 -0.3  0.3 0.4 -0.3  0.3 0.4 0.3  -0.3 0.4 0.3; radiance 2; "
                             "two-sided on } }\n",
-                        8192));
+                        32768));
     check(againstStills(kFloor +
                             "light sphere { center 0 0.5 0; radius 0.2; radiance 3; transform { at 0 s { scale 0.5 }\n"
                             "at 1 s { scale 2; translate 0.5 0 0 } } }\n",
