@@ -12,18 +12,20 @@ set(allowed_spectrum base math)
 set(allowed_schema base math spectrum)
 set(allowed_parser base math spectrum schema)
 set(allowed_io base math spectrum)
+set(allowed_volumes base math)
+set(allowed_vdb base math volumes)
 set(allowed_render base math spectrum schema)
-foreach(sibling geometry lights cameras film materials integrators)
+foreach(sibling geometry lights cameras film media materials integrators)
     set(allowed_${sibling} ${below_render})
 endforeach()
-set(allowed_scene ${below_render} geometry lights cameras film materials integrators io)
+set(allowed_scene ${below_render} geometry lights cameras film media materials integrators io)
 set(allowed_app ${allowed_scene} parser scene)
-set(folders base math spectrum schema parser io render geometry lights cameras film materials integrators scene app)
+set(folders base math spectrum schema parser io volumes vdb render geometry lights cameras film media materials integrators scene app)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
-    "CLI/=app" "nlohmann/=app|io")
+    "nanovdb/=volumes|vdb" "openvdb/=vdb" "CLI/=app" "nlohmann/=app|io")
 
 set(faults 0)
 macro(fault text)
