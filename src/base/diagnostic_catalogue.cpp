@@ -138,6 +138,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0634", "a lamp or plane cannot move", "An instance with keys shows an object with a lamp, an emitting shape or an infinite plane in it. Leave these out of the object."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
+    {"E0640", "a medium is described twice", "A medium has `extinction` and `albedo`, or `scattering` and `absorption`; the two pairs say the same and cannot be mixed."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},

@@ -41,9 +41,9 @@ const Material* SceneBuilder::plainMaterial(double reflectance) {
 }
 
 const Material* SceneBuilder::materialOf(const ShapeParams& params) {
-    if (!params.material.valid()) return plainMaterial(0.5);
+    if (!params.material.valid()) return filled(plainMaterial(0.5), params);
     usedMaterials_.insert(params.material.index);
-    return materials_[params.material.index].get();
+    return filled(materials_[params.material.index].get(), params);
 }
 
 SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
@@ -151,6 +151,9 @@ void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Tr
             break;
         case Kind::group:
             placeAll(d.children, ownTransform(d).then(toRender));
+            break;
+        case Kind::volume:
+            placeVolume(d, toRender);
             break;
         case Kind::instance:
         case Kind::instances:

@@ -13,9 +13,13 @@
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
 #include "lights/sun_light.h"
+#include "materials/boundary.h"
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "media/atmosphere.h"
+#include "media/homogeneous.h"
+#include "media/phase_types.h"
 #include "scene/instances_type.h"
 #include "scene/planned_types.h"
 #include "scene/shape_curves.h"
@@ -42,6 +46,7 @@ constexpr MaterialEntry kMaterials[] = {
     {diffuseType, bound<DiffuseParams, makeDiffuse>},
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
+    {boundaryType, bound<BoundaryParams, makeBoundary>},
 };
 
 struct CameraEntry {
@@ -78,6 +83,8 @@ schema::TypeTable makeTypeTable() {
     for (const auto type : kOthers) table.add(type());
     for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
     for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
+    for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
+    for (const auto type : {homogeneousType, atmosphereType}) table.add(type());
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }

@@ -16,6 +16,7 @@ namespace abbe {
 // What every shape has. The transform takes the shape to its parent (object, group or world).
 struct ShapeParams {
     schema::Reference material;      // unset: grey diffuse
+    schema::Reference interior;      // medium; unset: empty
     const Curve* emission = nullptr; // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
     Transform transform;
 };

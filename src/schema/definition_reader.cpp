@@ -12,7 +12,7 @@ namespace abbe::schema {
 namespace {
 
 constexpr auto kPlanned = std::to_array<std::string_view>(
-    {"include", "override", "remove", "variant", "volume", "medium", "texture", "atmosphere"});
+    {"include", "override", "remove", "variant", "texture"});
 
 bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances; }
 

@@ -28,6 +28,9 @@ enum class Kind : std::uint8_t {
     instance,
     instances,
     material,
+    phase,
+    medium,
+    volume,
     spectrum,
     film,
     render
