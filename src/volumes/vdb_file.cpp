@@ -62,9 +62,10 @@ class Conversation {
   private:
     std::nullopt_t died() {
         const auto cause = process_.deathCause();
-        fault_ = VdbFault{VdbFault::Kind::damaged,
-                          fmt::format("{} is damaged: the reader {}", subject_, cause.value_or("stopped in the middle")),
-                          {}};
+        fault_ =
+            VdbFault{VdbFault::Kind::damaged,
+                     fmt::format("{} is damaged: the reader {}", subject_, cause.value_or("stopped in the middle")),
+                     {}};
         return std::nullopt;
     }
 

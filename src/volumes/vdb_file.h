@@ -49,26 +49,26 @@ struct VdbGrid {
     std::vector<std::string> notes; // what was put right on the way, a sentence each: "3 voxels that are not numbers …"
 };
 
-// Reads the grids in the order asked for. Fields are made fit for rendering: values that are not finite or, for amounts,
-// negative become 0 (and are counted in the notes); so do the background and inactive voxels; doubles, halves and
-// integers become float; masks become 0 and 1. Safe to call from several threads. Throws std::bad_alloc only.
+// Reads the grids in the order asked for. Fields are made fit for rendering: values that are not finite or, for
+// amounts, negative become 0 (and are counted in the notes); so do the background and inactive voxels; doubles, halves
+// and integers become float; masks become 0 and 1. Safe to call from several threads. Throws std::bad_alloc only.
 std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, std::span<const VdbRequest> requests);
 
 // What a file says about one of its grids, and what is found in it.
 struct VdbGridInfo {
-    std::string name, type;         // type: "float", "vec3s", "points", …
-    std::string volumeClass;        // "fog volume", "level set", "staggered", "unknown"
-    std::string unit;               // "" if not stated
-    bool half = false;              // stored with 16 bits
-    bool read = false;              // false: the values were not looked at (points and the like)
-    bool affine = true;             // else the transform is left out
-    Transform indexToWorld;         // of affine grids
+    std::string name, type;  // type: "float", "vec3s", "points", …
+    std::string volumeClass; // "fog volume", "level set", "staggered", "unknown"
+    std::string unit;        // "" if not stated
+    bool half = false;       // stored with 16 bits
+    bool read = false;       // false: the values were not looked at (points and the like)
+    bool affine = true;      // else the transform is left out
+    Transform indexToWorld;  // of affine grids
     bool singular = false;
     Vec3i lower, upper;             // corners of the active voxels; lower > upper when there are none
     std::uint64_t activeVoxels = 0; // those in tiles too
     std::uint64_t activeTiles = 0, leaves = 0;
-    std::uint64_t memoryBytes = 0;                                // in OpenVDB's own tree
-    double minimum = 0, maximum = 0, background = 0;              // of vectors: their lengths
+    std::uint64_t memoryBytes = 0;                                 // in OpenVDB's own tree
+    double minimum = 0, maximum = 0, background = 0;               // of vectors: their lengths
     std::uint64_t notFinite = 0, negative = 0, inactiveValues = 0; // inactive voxels that differ from the background
     std::vector<std::pair<std::string, std::string>> metadata;
 };

@@ -99,7 +99,8 @@ bool VdbProcess::read(void* bytes, std::size_t size) {
 }
 
 void VdbProcess::wait() {
-    while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {}
+    while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
+    }
     waited_ = true;
 }
 
