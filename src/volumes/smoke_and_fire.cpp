@@ -39,24 +39,29 @@ class Smoke final : public VolumeRecipe {
         const float y = corner.y + margin;
         if (y < 0) return false;
         const Vec3 axis = axisAt(corner.y);
-        const float reach = 2.2f * radiusAt(y) + margin * 1.8f;
+        const float reach = 3.2f * radiusAt(y) + margin * 1.8f;
         if (std::abs(corner.x - axis.x) > reach || std::abs(corner.z) > reach) return false;
         return eachVoxel(*this, corner, size, out);
     }
 
     bool voxel(Vec3 p, float* values) const {
         if (p.y < 0 || p.y > 6) return false;
-        const Vec3 swirl = fractalVector(Vec3(p.x, p.y * 0.8f, p.z) * 0.9f, 2, seed_ + 1);
+        // Similar at every height: lengths are measured in radii, along the axis too (the integral of dy / radius).
         const float r = radiusAt(p.y);
-        const Vec3 curl = fractalVector(p * (1.1f / r) * 0.5f + swirl, 3, seed_ + 2);
-        const Vec3 q = p + swirl * (0.9f * r) + curl * (0.55f * r);
-        const Vec3 axis = axisAt(q.y);
-        const float distance = std::hypot(q.x - axis.x, q.z) / r;
-        const float wisps = fractalNoise(q * (2.2f / r) * 0.6f, 5, seed_ + 3);
-        const float shape = 1 - distance + 1.1f * wisps;
-        const float ends = smoothStep(0, 0.12f, p.y) * (1 - smoothStep(4.6f, 5.9f, p.y + 0.5f * swirl.x));
-        // The same smoke in an ever wider column.
-        const float density = smoothStep(0.05f, 0.75f, shape) * ends * 0.35f / (r * r + 0.05f) * 0.35f;
+        const Vec3 axis = axisAt(p.y);
+        const Vec3 s((p.x - axis.x) / r, std::log(r) / kWidening, p.z / r);
+        const Vec3 swirl = fractalVector(s * 0.45f, 2, seed_ + 1);
+        const Vec3 curl = fractalVector(s * 1.1f + swirl, 3, seed_ + 2);
+        const Vec3 q = s + swirl * 1.5f + curl * 0.7f;
+        const float distance = std::hypot(q.x, q.z);
+        const float puffs =
+            0.6f - cellularNoise(q * 0.9f, seed_ + 3) + 0.5f * (0.6f - cellularNoise(q * 2.1f, seed_ + 4));
+        const float wisps = fractalNoise(q * 1.7f, 5, seed_ + 5);
+        const float shape = 1 - distance + 0.8f * puffs + 0.7f * wisps;
+        const float ends = smoothStep(0, 0.12f, p.y) * (1 - smoothStep(4.4f, 5.9f, p.y + 0.6f * swirl.x));
+        // The same smoke in an ever wider column: 1 at the mouth.
+        const float thin = radiusAt(0) * radiusAt(0) / (r * r);
+        const float density = smoothStep(0.05f, 0.7f, shape) * ends * std::pow(thin, 0.6f);
         if (!(density > 1e-3f)) return false;
         values[0] = density;
         const float rise = 2.4f / (1 + 0.35f * p.y) * (1.15f - 0.5f * std::min(distance, 1.5f));
@@ -67,7 +72,8 @@ class Smoke final : public VolumeRecipe {
     }
 
   private:
-    static float radiusAt(float y) { return 0.11f + 0.16f * std::max(y, 0.f); }
+    static constexpr float kWidening = 0.15f;
+    static float radiusAt(float y) { return 0.11f + kWidening * std::max(y, 0.f); }
     static Vec3 axisAt(float y) { return {0.045f * y * std::abs(y), y, 0}; }
     std::uint32_t seed_;
 };
@@ -92,19 +98,17 @@ class Fire final : public VolumeRecipe {
     bool voxel(Vec3 p, float* values) const {
         if (p.y < 0 || p.y > 2.2f || std::hypot(p.x, p.z) > 0.75f) return false;
         // Gas is faster higher up: tongues are stretched and flicker more there.
-        const float wild = 0.08f + 0.3f * smoothStep(0, 1.4f, p.y);
-        const Vec3 s(p.x * 2.6f, p.y * 1.1f, p.z * 2.6f);
-        const Vec3 warp = fractalVector(s, 3, seed_ + 1);
-        const Vec3 q = p + Vec3(warp.x * wild, warp.y * 0.25f * wild, warp.z * wild);
-        const float tongues = fractalNoise(Vec3(q.x * 5, q.y * 1.3f, q.z * 5), 4, seed_ + 2);
+        const float wild = 0.06f + 0.4f * smoothStep(0, 1.3f, p.y);
+        const Vec3 warp = fractalVector(Vec3(p.x * 2.2f, p.y * 1.2f, p.z * 2.2f), 3, seed_ + 1);
+        const Vec3 q = p + Vec3(warp.x, 0.4f * warp.y, warp.z) * wild;
+        const float tongues = fractalNoise(Vec3(q.x * 6, q.y * 1.5f, q.z * 6), 4, seed_ + 2);
         const float height = q.y / 1.5f;
-        const float radius =
-            0.42f * (1 - smoothStep(0.1f, 1.05f, height)) * (0.75f + 0.25f * smoothStep(0, 0.15f, q.y));
+        const float radius = 0.4f * (1 - smoothStep(-0.1f, 1.05f, height)) * (0.7f + 0.3f * smoothStep(0, 0.2f, q.y));
         const float distance = std::hypot(q.x, q.z);
-        const float flame = smoothStep(0, 0.16f, radius - distance + 0.28f * tongues * (0.35f + height)) *
+        const float flame = smoothStep(0, 0.13f, radius - distance + (0.12f + 0.55f * height) * tongues) *
                             smoothStep(0, 0.05f, p.y) * (1 - smoothStep(1.5f, 1.9f, p.y));
-        const float column = smoothStep(0, 0.3f, 0.5f - distance * 0.9f + 0.35f * tongues);
-        const float soot = column * smoothStep(0.7f, 1.7f, p.y) * (1 - smoothStep(1.95f, 2.18f, p.y)) * 0.5f;
+        const float column = smoothStep(0, 0.3f, 0.22f - distance + 0.8f * tongues);
+        const float soot = column * smoothStep(0.8f, 1.9f, p.y) * (1 - smoothStep(1.85f, 2.18f, p.y)) * 0.35f;
         if (!(flame > 1e-3f) && !(soot > 1e-3f)) return false;
         // Hottest in the reaction zone, low and towards the rim; cooling as it rises.
         const float hot = flame * (1.f - 0.33f * smoothStep(0.2f, 1.5f, p.y) + 0.1f * tongues);
