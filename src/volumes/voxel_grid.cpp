@@ -2,9 +2,12 @@
 
 #include "base/check.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <nanovdb/util/GridBuilder.h>
 #include <new>
+#include <sys/mman.h>
 
 namespace abbe {
 
@@ -107,10 +110,17 @@ nanovdb::Map nanoMap(const Transform& t, const Transform& inverse) {
 
 } // namespace
 
-void GridBytes::Release::operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t(kAlignment)); }
+void GridBytes::Release::operator()(std::byte* p) const { std::free(p); }
 
-GridBytes::GridBytes(std::size_t size)
-    : data_(static_cast<std::byte*>(::operator new[](size, std::align_val_t(kAlignment)))), size_(size) {}
+// Lookups jump about: with large pages they find their addresses sooner.
+GridBytes::GridBytes(std::size_t size) : size_(size) {
+    constexpr std::size_t kLargePage = std::size_t{1} << 21;
+    const std::size_t alignment = size >= 2 * kLargePage ? kLargePage : kAlignment;
+    const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+    data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, std::max(rounded, alignment))));
+    if (!data_) throw std::bad_alloc();
+    if (alignment == kLargePage) ::madvise(data_.get(), rounded, MADV_HUGEPAGE);
+}
 
 template <typename Value>
 std::optional<BasicVoxelGrid<Value>> BasicVoxelGrid<Value>::adopt(GridBytes bytes, GridFacts facts) {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace abbe {
 
@@ -79,8 +80,24 @@ template <typename Value> class VoxelSampler {
         const Vec3 cell{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
         const Vec3 f = p - cell;
         const nanovdb::Coord c(static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z));
-        const bool oneLeaf = (c[0] & 7) != 7 && (c[1] & 7) != 7 && (c[2] & 7) != 7;
-        return oneLeaf ? inLeaf(c, f) : acrossLeaves(c, f);
+        switch (((c[0] & 7) == 7) << 2 | ((c[1] & 7) == 7) << 1 | ((c[2] & 7) == 7)) {
+        case 0:
+            return inLeaf(c, f);
+        case 1:
+            return acrossLeaves<1>(c, f);
+        case 2:
+            return acrossLeaves<2>(c, f);
+        case 3:
+            return acrossLeaves<3>(c, f);
+        case 4:
+            return acrossLeaves<4>(c, f);
+        case 5:
+            return acrossLeaves<5>(c, f);
+        case 6:
+            return acrossLeaves<6>(c, f);
+        default:
+            return acrossLeaves<7>(c, f);
+        }
     }
 
     // The value of one voxel.
@@ -100,13 +117,31 @@ template <typename Value> class VoxelSampler {
         const Value b = mix(mix(v(64), v(65), f.z), mix(v(72), v(73), f.z), f.y);
         return mix(a, b, f.x);
     }
-    Value acrossLeaves(const nanovdb::Coord& c, Vec3 f) noexcept {
-        const auto v = [&](int x, int y, int z) {
-            return VoxelValue<Value>::read(accessor_.getValue(c.offsetBy(x, y, z)));
-        };
-        const Value a = mix(mix(v(0, 0, 0), v(0, 0, 1), f.z), mix(v(0, 1, 0), v(0, 1, 1), f.z), f.y);
-        const Value b = mix(mix(v(1, 0, 0), v(1, 0, 1), f.z), mix(v(1, 1, 0), v(1, 1, 1), f.z), f.y);
-        return mix(a, b, f.x);
+    // Corners in two, four or eight leaves, each looked up once. Bit 2 of a corner is x, bit 0 z; `Crossed` has the
+    // bits of the axes along which the cell leaves its leaf.
+    template <int Crossed> Value acrossLeaves(const nanovdb::Coord& c, Vec3 f) noexcept {
+        Value v[8];
+        unrolled([&](auto part) {
+            if constexpr ((part() & ~Crossed) == 0) {
+                const nanovdb::Coord first = c.offsetBy(part() >> 2, part() >> 1 & 1, part() & 1);
+                const auto* leaf = accessor_.probeLeaf(first);
+                if (!leaf) v[part()] = VoxelValue<Value>::read(accessor_.getValue(first));
+                unrolled([&](auto corner) {
+                    if constexpr ((corner() & Crossed) == part()) {
+                        const auto at = c.offsetBy(corner() >> 2, corner() >> 1 & 1, corner() & 1);
+                        v[corner()] =
+                            leaf ? VoxelValue<Value>::read(leaf->getValue(leaf->CoordToOffset(at))) : v[part()];
+                    }
+                });
+            }
+        });
+        return mix(mix(mix(v[0], v[1], f.z), mix(v[2], v[3], f.z), f.y),
+                   mix(mix(v[4], v[5], f.z), mix(v[6], v[7], f.z), f.y), f.x);
+    }
+    // body(0) … body(7), as constants.
+    template <typename Body> static void unrolled(const Body& body) noexcept {
+        [&]<int... I>(std::integer_sequence<int, I...>) { (body(std::integral_constant<int, I>()), ...); }
+        (std::make_integer_sequence<int, 8>());
     }
 
     nanovdb::DefaultReadAccessor<typename VoxelValue<Value>::Build> accessor_;
