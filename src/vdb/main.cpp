@@ -4,9 +4,11 @@
 #include "vdb/commands.h"
 #include "vdb/output.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -28,13 +30,17 @@ void limit(int resource, rlim_t value) {
     ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
 }
 
-// A damaged file may ask for any amount of memory or run in circles.
-void setLimits() {
+// A damaged file may ask for any amount of memory or run in circles: a file gets what a sound one of its size could
+// need (data that hardly varies is packed two hundredfold), and no more than the machine has.
+void setLimits(const std::string& file) {
     limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, 3600);
+    struct stat status {};
+    const bool known = ::stat(file.c_str(), &status) == 0;
+    const auto size = static_cast<rlim_t>(known ? status.st_size : 0);
+    limit(RLIMIT_CPU, known ? 8 + size / 250'000 : 7200);
     if (kSanitized) return;
-    const auto pages = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES));
-    limit(RLIMIT_AS, pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)));
+    const auto machine = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+    limit(RLIMIT_DATA, known ? std::min(machine, 2'000'000'000 + 256 * size) : machine);
 }
 
 bool execute(const std::string& command, vdb::Arguments arguments) {
@@ -61,7 +67,9 @@ void guarded(const std::string& command, const std::vector<std::string>& argumen
         vdb::writeFrame(VdbFrame::fault, e.fault());
     } catch (const std::bad_alloc&) {
         vdb::writeFrame(VdbFrame::fault,
-                        VdbFault{VdbFault::Kind::memory, subject + " needs more memory than there is", {}});
+                        VdbFault{VdbFault::Kind::memory,
+                                 subject + " needs more memory than there is, or than a sound file of its size would",
+                                 {}});
     } catch (const std::exception& e) {
         vdb::writeFrame(VdbFrame::fault,
                         VdbFault{VdbFault::Kind::damaged, subject + " cannot be read: " + e.what(), {}});
@@ -75,7 +83,7 @@ int main(int argc, char** argv) {
         std::fputs("abbe-vdb is started by abbe; see `abbe volume --help`\n", stderr);
         return 2;
     }
-    setLimits();
+    setLimits(argv[2]); // a file, or the kind of volume to make
     guarded(argv[1], std::vector<std::string>(argv + 2, argv + argc));
     ::_exit(0); // without the destructors of libraries, which have nothing to save
 }

@@ -109,7 +109,7 @@ std::optional<std::string> VdbProcess::deathCause() {
     if (!waited_) wait();
     if (WIFSIGNALED(status_)) {
         const int signal = WTERMSIG(status_);
-        return signal == SIGXCPU ? std::string("takes too long") : fmt::format("ended by {}", strsignal(signal));
+        return signal == SIGXCPU ? std::string("ran for too long") : fmt::format("ended by {}", strsignal(signal));
     }
     if (WIFEXITED(status_) && WEXITSTATUS(status_) != 0) return fmt::format("ended with {}", WEXITSTATUS(status_));
     return std::nullopt;
