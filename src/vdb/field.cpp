@@ -101,11 +101,24 @@ void checkExtent(const openvdb::GridBase& grid, const std::string& subject) {
                           fmt::format("{} has voxels further than {} from its origin", subject, kFarthestVoxel));
 }
 
-template <typename From, typename To> typename To::Ptr converted(const openvdb::GridBase& grid) {
+template <typename From> openvdb::FloatGrid::Ptr converted(const openvdb::GridBase& grid) {
     const auto& source = static_cast<const From&>(grid);
-    auto result = To::create(typename To::TreeType::Ptr(new typename To::TreeType(source.tree())));
+    auto result = openvdb::FloatGrid::create(openvdb::FloatTree::Ptr(new openvdb::FloatTree(source.tree())));
     result->insertMeta(source);
     result->setTransform(source.transform().copy());
+    return result;
+}
+
+// The library does not convert trees of vectors: the active values are copied one by one.
+template <typename From> openvdb::Vec3SGrid::Ptr convertedVectors(const openvdb::GridBase& grid) {
+    using openvdb::Vec3s;
+    const auto& source = static_cast<const From&>(grid);
+    auto result = openvdb::Vec3SGrid::create(openvdb::Vec3STree::Ptr(
+        new openvdb::Vec3STree(source.tree(), openvdb::zeroVal<Vec3s>(), openvdb::TopologyCopy())));
+    result->insertMeta(source);
+    result->setTransform(source.transform().copy());
+    auto accessor = source.getConstAccessor();
+    for (auto it = result->beginValueOn(); it; ++it) it.setValue(Vec3s(accessor.getValue(it.getCoord())));
     return result;
 }
 
@@ -124,9 +137,9 @@ openvdb::FloatGrid::Ptr maskField(const openvdb::GridBase& grid) {
 openvdb::FloatGrid::Ptr floatField(const openvdb::GridBase::Ptr& grid) {
     using namespace openvdb;
     if (grid->isType<FloatGrid>()) return gridPtrCast<FloatGrid>(grid);
-    if (grid->isType<DoubleGrid>()) return converted<DoubleGrid, FloatGrid>(*grid);
-    if (grid->isType<Int32Grid>()) return converted<Int32Grid, FloatGrid>(*grid);
-    if (grid->isType<Int64Grid>()) return converted<Int64Grid, FloatGrid>(*grid);
+    if (grid->isType<DoubleGrid>()) return converted<DoubleGrid>(*grid);
+    if (grid->isType<Int32Grid>()) return converted<Int32Grid>(*grid);
+    if (grid->isType<Int64Grid>()) return converted<Int64Grid>(*grid);
     if (grid->isType<BoolGrid>() || grid->isType<MaskGrid>()) return maskField(*grid);
     return nullptr;
 }
@@ -185,8 +198,8 @@ Field<openvdb::Vec3SGrid> vectorField(const VdbInput& input, const openvdb::Grid
     const std::string subject = input.subject(grid->getName());
     Vec3SGrid::Ptr field;
     if (grid->isType<Vec3SGrid>()) field = gridPtrCast<Vec3SGrid>(grid);
-    if (grid->isType<Vec3DGrid>()) field = converted<Vec3DGrid, Vec3SGrid>(*grid);
-    if (grid->isType<Vec3IGrid>()) field = converted<Vec3IGrid, Vec3SGrid>(*grid);
+    if (grid->isType<Vec3DGrid>()) field = convertedVectors<Vec3DGrid>(*grid);
+    if (grid->isType<Vec3IGrid>()) field = convertedVectors<Vec3IGrid>(*grid);
     if (!field) throw Failure(Kind::wrongKind, fmt::format("{} holds {}, not vectors", subject, grid->valueType()));
     auto result = repairedField<Vec3SGrid>(field, subject);
     if (grid->getGridClass() == GRID_STAGGERED)

@@ -181,6 +181,56 @@ TEST_CASE("conversion resamples and keeps the amount") {
     CHECK(total(out) == doctest::Approx(total(in)).epsilon(0.01));
 }
 
+TEST_CASE("awkward grids are put right or refused, with words") {
+    const Folder folder;
+    const std::string path = folder.file("cases.vdb");
+    REQUIRE(std::system((std::string(ABBE_VDB_CASES) + " " + path).c_str()) == 0);
+
+    const VdbGrid spoilt = readOne(path, {"spoilt"});
+    CHECK(spoilt.scalar->activeVoxels() == 61);
+    CHECK(spoilt.scalar->minimum() == 1);
+    CHECK(spoilt.scalar->maximum() == 1);
+    CHECK(spoilt.scalar->sampler().at({50, 0, 0}) == 0);
+    REQUIRE(spoilt.notes.size() == 3);
+    CHECK(spoilt.notes[0].find("2 values are not finite") != std::string::npos);
+    CHECK(spoilt.notes[1].find("1 values are negative") != std::string::npos);
+    CHECK(spoilt.notes[2].find("1 inactive") != std::string::npos);
+
+    const VdbGrid background = readOne(path, {"background"});
+    CHECK(background.scalar->sampler().at({30, 0, 0}) == 0);
+    CHECK(background.scalar->sampler().at({2, 2, 2}) == 1);
+    REQUIRE(background.notes.size() == 1);
+
+    const VdbGrid far = readOne(path, {"far"});
+    CHECK(far.scalar->activeVoxels() == 3);
+    CHECK(far.scalar->bytes() + BrickBounds::build(*far.scalar).bytes() < 10'000'000);
+    CHECK(faultOf(path, {"too-far"}).kind == VdbFault::Kind::extent);
+
+    CHECK(readOne(path, {"empty"}).scalar->empty());
+    CHECK(readOne(path, {"double"}).scalar->sampler().at({1.5f, 1, 2}) == 0.25f);
+    CHECK(readOne(path, {"integer"}).scalar->sampler().at({1, 1, 2}) == 3);
+    CHECK(readOne(path, {"mask"}).scalar->sampler().at({1, 1, 2}) == 1);
+    CHECK(readOne(path, {"wind", VdbUse::vector}).vector->sampler().at({1, 1, 2}) == Vec3(1, 2, 3));
+
+    CHECK(faultOf(path, {"wind"}).kind == VdbFault::Kind::wrongKind);
+    CHECK(faultOf(path, {"frustum"}).kind == VdbFault::Kind::transform);
+    CHECK(faultOf(path, {"flat"}).kind == VdbFault::Kind::transform);
+
+    const VdbGrid turned = readOne(path, {"turned"}); // index x is world y
+    const Vec3d p = turned.scalar->indexToWorld().point({2, 0, 0});
+    CHECK(p.x == doctest::Approx(10));
+    CHECK(p.y == doctest::Approx(21));
+    CHECK(p.z == doctest::Approx(30));
+
+    const auto result = inspectVdb(path);
+    REQUIRE(std::holds_alternative<VdbFileInfo>(result));
+    for (const VdbGridInfo& g : std::get<VdbFileInfo>(result).grids) {
+        if (g.name == "spoilt") CHECK(g.notFinite + g.negative + g.inactiveValues == 4);
+        if (g.name == "frustum") CHECK_FALSE(g.affine);
+        if (g.name == "flat") CHECK(g.singular);
+    }
+}
+
 TEST_CASE("files of other programs") {
     if (shared("smoke.vdb").empty()) return;
     const VdbGrid smoke = readOne(shared("smoke.vdb"), {"density"});
