@@ -1,3 +1,4 @@
+#include "app/interrupt.h"
 #include "app/json.h"
 #include "app/options.h"
 #include "io/atomic_file.h"
@@ -157,30 +158,62 @@ ExitCode info(const VolumeOptions& options, const CommonOptions& common) {
 
 // --- make, convert
 
+class Seconds {
+  public:
+    double operator()() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
+struct Interrupted {};
+
+// A line at every tenth, at most one in two seconds.
+class ProgressLines {
+  public:
+    ProgressLines(const Console& console, bool quiet) : console_(console), quiet_(quiet) {}
+    void operator()(double fraction) {
+        const int tenth = static_cast<int>(fraction * 10);
+        if (quiet_ || tenth <= told_ || seconds_() < next_) return;
+        console_.line(fmt::format("{} %", tenth * 10));
+        told_ = tenth;
+        next_ = seconds_() + 2;
+    }
+
+  private:
+    const Console& console_;
+    bool quiet_;
+    Seconds seconds_;
+    double next_ = 2;
+    int told_ = 0;
+};
+
 // Lets the helper write beside the output, which appears only when complete.
 ExitCode write(std::vector<std::string> arguments, std::size_t outputPlace, const VolumeOptions& options,
                const CommonOptions& common) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    const Seconds seconds;
+    const InterruptGuard guard; // the temporary file is removed first
     AtomicFile file(options.output);
     arguments[outputPlace] = file.temporaryPath();
-    int tenth = 0;
-    const auto progress = [&](double fraction) {
-        const int now = static_cast<int>(fraction * 10);
-        if (now > tenth && seconds() > 2 && !options.quiet) common.console.line(fmt::format("{} %", now * 10));
-        tenth = std::max(tenth, now);
-    };
-    const auto result = runVdbHelper(arguments, progress);
+    ProgressLines lines(common.console, options.quiet);
+    std::variant<std::string, VdbFault> result;
+    try {
+        result = runVdbHelper(arguments, [&](double fraction) {
+            if (guard.stop()) throw Interrupted();
+            lines(fraction);
+        });
+    } catch (const Interrupted&) { // the helper ended with the conversation
+    }
+    if (guard.signal() != 0) return static_cast<ExitCode>(128 + guard.signal());
     if (const auto* fault = std::get_if<VdbFault>(&result)) return failed(*fault, common.console);
     file.commit();
     if (options.quiet) return ExitCode::done;
     std::string notes = std::get<std::string>(result);
     while (!notes.empty() && notes.back() == '\n') notes.pop_back();
     if (!notes.empty()) common.console.line(notes);
-    common.console.line(fmt::format("volume {}  ({:.1f} MB, {:.1f} s)", options.output,
-                                    static_cast<double>(std::filesystem::file_size(options.output)) * 1e-6, seconds()));
+    const double megabytes = static_cast<double>(std::filesystem::file_size(options.output)) * 1e-6;
+    common.console.line(fmt::format("volume {}  ({:.1f} MB, {:.1f} s)", options.output, megabytes, seconds()));
     return ExitCode::done;
 }
 

@@ -92,13 +92,20 @@ template <typename GridType> Field<GridType> repairedField(typename GridType::Pt
     return field;
 }
 
-void checkExtent(const openvdb::GridBase& grid, const std::string& subject) {
+// A tile of the root is 4096³ voxels; a constant field of many of them is no volume but a mistake.
+template <typename GridType> void checkExtent(const GridType& grid, const std::string& subject) {
+    constexpr int kMostRootTiles = 8;
+    int tiles = 0;
+    auto tile = grid.tree().cbeginValueOn();
+    tile.setMaxDepth(0);
+    for (; tile; ++tile) ++tiles;
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    if (box.empty()) return;
-    for (int a = 0; a < 3; ++a)
-        if (box.min()[a] < -kFarthestVoxel || box.max()[a] > kFarthestVoxel)
+    for (int a = 0; a < 3 && !box.empty(); ++a)
+        if (tiles > kMostRootTiles || box.min()[a] < -kFarthestVoxel || box.max()[a] > kFarthestVoxel)
             throw Failure(Kind::extent,
-                          fmt::format("{} has voxels further than {} from its origin", subject, kFarthestVoxel));
+                          tiles > kMostRootTiles
+                              ? fmt::format("{} is constant over more than {}·4096³ voxels", subject, kMostRootTiles)
+                              : fmt::format("{} has voxels further than {} from its origin", subject, kFarthestVoxel));
 }
 
 template <typename From> openvdb::FloatGrid::Ptr converted(const openvdb::GridBase& grid) {

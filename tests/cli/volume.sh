@@ -65,4 +65,16 @@ mkdir folder.vdb
 expect 3 volume info folder.vdb
 expect 3 volume make fire folder.vdb
 
+# interrupted: nothing is left behind, and what stood there stays
+cp fire.vdb kept.vdb
+"$program" volume make cumulus kept.vdb --resolution 2000 >out 2>err &
+child=$!
+sleep 1
+kill -INT "$child"
+wait "$child"
+code=$?
+[[ $code -eq 130 ]] || fault "an interrupted make ended with $code"
+cmp -s fire.vdb kept.vdb || fault "an interrupted make replaced its output"
+[[ ! -e kept.vdb.tmp ]] || fault "an interrupted make left a file"
+
 finish

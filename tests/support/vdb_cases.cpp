@@ -47,6 +47,13 @@ FloatGrid::Ptr farApart(const char* name, int distance) {
     return grid;
 }
 
+// Active tiles of the root, each 4096³ voxels.
+FloatGrid::Ptr vast() {
+    auto grid = named<FloatGrid>("vast");
+    for (int i = 0; i < 20; ++i) grid->tree().addTile(3, Coord(4096 * i, 0, 0), 1.f, true);
+    return grid;
+}
+
 FloatGrid::Ptr placed(const char* name, const math::MapBase::Ptr& map) {
     auto grid = block<FloatGrid>(name, 1.f);
     grid->setTransform(std::make_shared<math::Transform>(map));
@@ -72,6 +79,7 @@ int main(int argc, char** argv) {
                      withBackground(),
                      farApart("far", 1'000'000),
                      farApart("too-far", 1 << 27),
+                     vast(),
                      named<FloatGrid>("empty"),
                      block<DoubleGrid>("double", 0.25),
                      block<Int32Grid>("integer", 3),

@@ -205,6 +205,7 @@ TEST_CASE("awkward grids are put right or refused, with words") {
     CHECK(far.scalar->activeVoxels() == 3);
     CHECK(far.scalar->bytes() + BrickBounds::build(*far.scalar).bytes() < 10'000'000);
     CHECK(faultOf(path, {"too-far"}).kind == VdbFault::Kind::extent);
+    CHECK(faultOf(path, {"vast"}).kind == VdbFault::Kind::extent);
 
     CHECK(readOne(path, {"empty"}).scalar->empty());
     CHECK(readOne(path, {"double"}).scalar->sampler().at({1.5f, 1, 2}) == 0.25f);
