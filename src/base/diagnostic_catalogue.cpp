@@ -139,6 +139,9 @@ constexpr CodeInfo kCodes[] = {
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"E0640", "a medium is described twice", "A medium has `extinction` and `albedo`, or `scattering` and `absorption`; the two pairs say the same and cannot be mixed."},
+    {"E0641", "a volume without extent", "The transform of a volume has no inverse: it flattens the volume to a plane, a line or a point."},
+    {"E0642", "an OpenVDB file cannot be used", "The file is damaged or not an OpenVDB file, or the grid is of a kind that cannot be a density: points, vectors, a level set, a transform that is not affine."},
+    {"E0643", "no grid of that name", "The OpenVDB file has no grid of that name. `abbe volume info FILE` lists those that it has."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},
@@ -149,6 +152,8 @@ constexpr CodeInfo kCodes[] = {
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},
     {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
     {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
+    {"W0640", "voxels were put right", "Values that are not numbers or negative count as 0, and so on; the message says what and how many."},
+    {"W0641", "an empty grid", "The grid of this volume has no voxels: nothing of it will be seen."},
 };
 // clang-format on
 

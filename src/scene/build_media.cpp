@@ -1,11 +1,14 @@
 // Phase functions, media that fill shapes, and volumes that stand by themselves.
 #include "media/atmosphere.h"
+#include "media/grid_medium.h"
 #include "media/homogeneous.h"
 #include "media/phase_types.h"
 #include "scene/filled_material.h"
 #include "scene/scene_builder.h"
+#include "volumes/vdb_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace abbe {
 
@@ -50,18 +53,55 @@ std::optional<MediumOptics> SceneBuilder::opticsOf(const MediumParams& params, c
 }
 
 void SceneBuilder::placeVolume(const Definition& d, const Transform& toRender) {
-    if (!d.type) {
+    const std::string_view type = d.type ? d.type->name : "";
+    std::unique_ptr<const Medium> medium;
+    if (type == "atmosphere") {
+        if (const auto p = bound<AtmosphereParams>(d)) medium = makeAtmosphere(*p, d, toRender);
+    } else if (type == "vdb") {
+        if (const auto p = bound<VdbParams>(d)) medium = loadVdb(*p, d, toRender);
+    } else {
         bound<MediumParams>(d);
-        return;
     }
-    const auto params = bound<AtmosphereParams>(d);
-    if (!params) return;
-    const auto optics = opticsOf(*params, d);
-    if (!optics) return;
+    if (!medium) return;
+    mediumSpans_.resize(media_.size() + 1);
+    media_.push_back(std::move(medium));
+    openMedia_.emplace_back(media_.back().get(), d.span);
+}
+
+std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,
+                                                           const Transform& toRender) {
+    const auto optics = opticsOf(params, d);
+    if (!optics) return nullptr;
     const Vec3d up = tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
-    const double ground = dot(toRender.point(up * params->ground), up);
-    media_.push_back(std::make_unique<Atmosphere>(*optics, Vec3(up), ground, params->scaleHeight));
-    openMedia_.push_back({media_.back().get(), d.span});
+    const double ground = dot(toRender.point(up * params.ground), up);
+    return std::make_unique<Atmosphere>(*optics, Vec3(up), ground, params.scaleHeight);
+}
+
+std::unique_ptr<const Medium> SceneBuilder::loadVdb(const VdbParams& params, const Definition& d,
+                                                    const Transform& toRender) {
+    const auto optics = opticsOf(params, d);
+    const Transform place = params.transform.then(toRender);
+    if (!place.inverse())
+        diagnostics_.error("E0641", d.span, "the transform of this volume flattens it", "has no inverse");
+    if (!optics || !place.inverse()) return nullptr;
+    const VdbRequest request{params.grid.value.empty() ? "density" : params.grid.value,
+                             params.levelSet ? VdbUse::amountOrLevelSet : VdbUse::amount, false};
+    auto read = readVdb(params.file.value, {&request, 1});
+    if (const auto* fault = std::get_if<VdbFault>(&read)) {
+        const bool name = fault->kind == VdbFault::Kind::noGrid;
+        auto& e = diagnostics_.error(name ? "E0643" : "E0642",
+                                     name && params.grid.span.valid() ? params.grid.span : params.file.span,
+                                     fault->text, name ? "no such grid" : "cannot be used");
+        if (name && !fault->names.empty()) e.help = fmt::format("the grids are {}", fmt::join(fault->names, ", "));
+        if (fault->kind == VdbFault::Kind::wrongKind) e.help = "a level set becomes fog with `level-set on`";
+        return nullptr;
+    }
+    VdbGrid& grid = std::get<std::vector<VdbGrid>>(read)[0];
+    for (const std::string& note : grid.notes) diagnostics_.warning("W0640", params.file.span, note, "put right");
+    built_->facts.files.push_back(params.file.value);
+    if (grid.scalar->empty())
+        diagnostics_.warning("W0641", params.file.span, "this grid has no voxels", "nothing will be seen of it");
+    return std::make_unique<GridMedium>(*optics, std::move(*grid.scalar), params.scale, place);
 }
 
 // The surface and what it holds, as one material.

@@ -18,6 +18,7 @@
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
 #include "media/atmosphere.h"
+#include "media/grid_medium.h"
 #include "media/homogeneous.h"
 #include "media/phase_types.h"
 #include "scene/instances_type.h"
@@ -84,7 +85,7 @@ schema::TypeTable makeTypeTable() {
     for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
     for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
     for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
-    for (const auto type : {homogeneousType, atmosphereType}) table.add(type());
+    for (const auto type : {homogeneousType, atmosphereType, vdbType}) table.add(type());
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }

@@ -4,7 +4,8 @@
 #include "geometry/embree_scene.h"
 #include "lights/area_light_types.h"
 #include "lights/light_context.h"
-#include "media/medium_optics.h"
+#include "media/atmosphere.h"
+#include "media/grid_medium.h"
 #include "render/medium.h"
 #include "render/shape.h"
 #include "scene/build.h"
@@ -105,6 +106,8 @@ class SceneBuilder final : public schema::Resolver {
     schema::Reference mediumReference(const Definition&);
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
     void placeVolume(const Definition&, const Transform& toRender);
+    std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
+    std::unique_ptr<const Medium> loadVdb(const VdbParams&, const Definition&, const Transform& toRender);
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
