@@ -1,5 +1,6 @@
 # Every dependency is a Debian package (packaging/apt.txt). Where Debian 12's own CMake package is
-# broken (OpenColorIO, OpenImageIO, OpenSubdiv, tinygltf), dep_import makes the target from the header and the library.
+# broken (OpenColorIO, OpenImageIO, OpenSubdiv, OpenVDB, tinygltf), dep_import makes the target from the header and the
+# library.
 function(dep_import name)
     cmake_parse_arguments(A "" "HEADER" "LIBS;LINK;SUFFIXES" ${ARGN})
     find_path(${name}_INC ${A_HEADER} PATH_SUFFIXES ${A_SUFFIXES} REQUIRED)
@@ -29,3 +30,5 @@ dep_import(OpenColorIO HEADER OpenColorIO/OpenColorIO.h LIBS OpenColorIO)
 dep_import(OpenImageIO HEADER OpenImageIO/imageio.h LIBS OpenImageIO OpenImageIO_Util LINK Imath::Imath)
 dep_import(OpenSubdiv HEADER opensubdiv/version.h LIBS osdCPU)
 dep_import(TinyGltf HEADER tiny_gltf.h LIBS tinygltf LINK nlohmann_json::nlohmann_json)
+dep_import(NanoVDB HEADER nanovdb/NanoVDB.h LIBS "")
+dep_import(OpenVDB HEADER openvdb/openvdb.h LIBS openvdb LINK TBB::tbb Imath::Imath)

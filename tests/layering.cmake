@@ -12,19 +12,23 @@ set(allowed_spectrum base math)
 set(allowed_schema base math spectrum)
 set(allowed_parser base math spectrum schema)
 set(allowed_io base math spectrum)
+set(allowed_volumes base math)
+set(allowed_vdb base math volumes)
 set(allowed_render base math spectrum schema)
-foreach(sibling geometry lights cameras film materials textures integrators)
+foreach(sibling geometry lights cameras film media materials textures integrators)
     set(allowed_${sibling} ${below_render})
 endforeach()
+list(APPEND allowed_media volumes)
 set(allowed_modules textures)
-set(allowed_scene ${below_render} geometry lights cameras film materials textures integrators io)
+set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
 set(allowed_app ${allowed_scene} parser scene)
-set(folders base math spectrum schema parser io render geometry lights cameras film materials textures modules integrators scene app)
+set(folders base math spectrum schema parser io volumes vdb render geometry lights cameras film media materials textures
+            modules integrators scene app)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
-    "OpenImageIO/=modules"
+    "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
     "CLI/=app" "nlohmann/=app|io")
 
 set(faults 0)

@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include "app/argument_values.h"
+#include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare"};
+constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare", "volume"};
 
 constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
@@ -72,6 +73,13 @@ Examples:
   abbe compare room.exr a.exr --ref b.exr      a and b from different seeds: their noise cancels
   abbe compare --threshold 0 a.exr b.exr       fails unless all pixels are equal)";
 
+constexpr const char* kVolumeHelp = R"(Inspects, makes and converts OpenVDB volumes.
+
+Examples:
+  abbe volume info cloud.vdb
+  abbe volume make cumulus cloud.vdb --resolution 1000
+  abbe volume convert bunny.vdb fog.vdb --fog)";
+
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {
   public:
@@ -87,6 +95,7 @@ class Reader {
         addInfo();
         addConvert();
         addCompare();
+        addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -105,7 +114,7 @@ class Reader {
 
     std::string helpText() const {
         const CLI::App* chosen = chosenCommand();
-        std::string text = chosen == &app_ ? app_.help() : chosen->help("abbe");
+        std::string text = chosen == &app_ ? app_.help() : chosen->help(fullName(chosen->get_parent()));
         constexpr std::string_view kInternal = "--png{.}      "; // how the library writes an optional value
         if (const auto at = text.find(kInternal); at != std::string::npos)
             text.replace(at, kInternal.size(), "--png[=FILE]  ");
@@ -155,9 +164,17 @@ class Reader {
     void addConvert();
     void addCompare();
 
+    // The command, or the action of a command that has some.
     const CLI::App* chosenCommand() const {
-        const auto chosen = app_.get_subcommands();
-        return chosen.empty() ? &app_ : chosen.front();
+        const CLI::App* command = &app_;
+        for (auto below = command->get_subcommands(); !below.empty(); below = command->get_subcommands())
+            command = below.front();
+        return command;
+    }
+    // "abbe", "abbe render", "abbe volume info".
+    static std::string fullName(const CLI::App* command) {
+        const CLI::App* above = command->get_parent();
+        return above ? fullName(above) + " " + command->get_name() : command->get_name();
     }
     std::string errorText(const CLI::ParseError&) const;
     Command command(const Words& words);
@@ -171,6 +188,7 @@ class Reader {
     InfoOptions info_;
     ConvertOptions convert_;
     CompareOptions compare_;
+    VolumeOptions volume_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -291,7 +309,7 @@ std::string flagSuggestion(const CLI::App& command, const std::string& flag) {
 
 std::string Reader::errorText(const CLI::ParseError& error) const {
     const CLI::App* command = chosenCommand();
-    const std::string where = command == &app_ ? "abbe" : "abbe " + command->get_name();
+    const std::string where = fullName(command);
     for (const std::string& word : command->remaining()) {
         if (word.size() < 2 || word[0] != '-') continue;
         const std::string flag = word.substr(0, word.find('='));
@@ -317,6 +335,7 @@ Command Reader::command(const Words& words) {
     for (const std::string& word : words) common_.commandLine += " " + shellQuoted(word);
     render_.largestKernel = kernel_ == "all";
     if (!png_.empty()) render_.png = png_ == "." ? std::string() : png_;
+    if (app_.got_subcommand("volume")) return {volume_, common_};
     const std::string name = chosenCommand()->get_name();
     if (name == "render") return {render_, common_};
     if (name == "check") return {check_, common_};

@@ -3,6 +3,7 @@
 
 #include "app/console.h"
 #include "app/load.h"
+#include "app/volume_options.h"
 #include "scene/build.h"
 
 #include <optional>
@@ -67,7 +68,8 @@ struct CompareOptions {
     std::optional<double> threshold; // of relMSE
 };
 
-using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions>;
+using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
+                             VolumeOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -77,5 +79,6 @@ ExitCode run(const ExplainOptions&, const CommonOptions&);
 ExitCode run(const InfoOptions&, const CommonOptions&);
 ExitCode run(const ConvertOptions&, const CommonOptions&);
 ExitCode run(const CompareOptions&, const CommonOptions&);
+ExitCode run(const VolumeOptions&, const CommonOptions&);
 
 } // namespace abbe

@@ -140,6 +140,11 @@ constexpr CodeInfo kCodes[] = {
     {"E0632", "nothing to scatter on", "`over` names a shape in the same group or object, or at the top level, where the instances are: a quad, a disk, or one that is made of polygons."},
     {"E0633", "objects nest too deeply", "Objects are placed inside of objects over more than 32 levels."},
     {"E0634", "a light or plane cannot move like this", "A light that moves keeps its shape: it may be moved, turned and scaled evenly while the shutter is open, but not be stretched or mirrored. An infinite plane stands still. This holds for groups and instances with keys, too."},
+    {"E0640", "a medium is described twice", "A medium has `extinction` and `albedo`, or `scattering` and `absorption`; the two pairs say the same and cannot be mixed."},
+    {"E0641", "a volume without extent", "The transform of a volume has no inverse: it flattens the volume to a plane, a line or a point."},
+    {"E0642", "an OpenVDB file cannot be used", "The file is damaged or not an OpenVDB file, or the grid is of a kind that cannot be a density: points, vectors, a level set, a transform that is not affine."},
+    {"E0643", "no grid of that name", "The OpenVDB file has no grid of that name. `abbe volume info FILE` lists those that it has."},
+    {"E0644", "a volume in an object or on its way", "A `volume` stands at the top level or in a group that stands still. A medium that fills a shape (`interior`) goes where the shape goes."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"E0670", "no texture coordinates to displace by", "A displacement by an image, or along tangents, follows the texture coordinates of the cage: `vt` in an OBJ file, or `uvs`. Noise needs none."},
@@ -160,6 +165,8 @@ constexpr CodeInfo kCodes[] = {
     {"W0660", "tags are left out", "An OBJ file has `t` tags that mean nothing here, hierarchical edits for example."},
     {"W0661", "coarser than asked for", "The `dicing` of a subdivision surface would take more than its `memory`. Found out before anything was made; the message says from what to what."},
     {"W0680", "keys off the grid", "What deforms moves between at most 129 equally spaced times, the first when the shutter opens and the last when it closes. Keys that lie between them are replaced by what the steps say there; the message says how far that moves a point. Keys at simple fractions of the exposure, halves or tenths, are exact."},
+    {"W0690", "voxels were put right", "Values that are not numbers or negative count as 0, and so on; the message says what and how many."},
+    {"W0691", "an empty grid", "The grid of this volume has no voxels: nothing of it will be seen."},
 };
 // clang-format on
 

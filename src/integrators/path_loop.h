@@ -4,6 +4,8 @@
 
 #include "base/arena.h"
 #include "integrators/light_sampler.h"
+#include "integrators/medium_around.h"
+#include "integrators/medium_tracker.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
@@ -25,6 +27,14 @@ struct PathCounters {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, capped = 0;
 };
 
+// What paths through media need and keep from one to the next.
+struct MediaState {
+    explicit MediaState(const Scene& scene) : tracker(scene.openMedia) {}
+
+    MediumTracker tracker;
+    MediumStack aroundCamera;
+};
+
 // Radiance along one camera ray at the path's wavelengths.
 template <EffectBits E> class PathLoop {
   public:
@@ -34,8 +44,18 @@ template <EffectBits E> class PathLoop {
     // From here on no path is certain to go on.
     static constexpr std::uint32_t kLongPath = 64;
 
-    PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters)
-        : context_(context), sampler_(sampler), arena_(arena), counters_(counters) {}
+    static constexpr bool kMedia = hasEffect(E, Effect::media);
+    using Media = std::conditional_t<kMedia, MediaState, path_detail::Nothing>;
+
+    static Media makeMedia([[maybe_unused]] const Scene& scene) {
+        if constexpr (kMedia)
+            return Media(scene);
+        else
+            return {};
+    }
+
+    PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
+        : context_(context), sampler_(sampler), arena_(arena), counters_(counters), media_(media) {}
 
     // The camera ray is that of the hero alone; to be called before radiance().
     void startWithHero() { startWithHero_ = true; }
@@ -53,12 +73,27 @@ template <EffectBits E> class PathLoop {
         Vec3 woRender;
     };
 
+    // Where a ray ended.
+    enum class Arrival : std::uint8_t { surface, collision, nowhere };
+
+    Arrival arrive(Ray&, SurfaceHit&, std::uint32_t depth);
+    Arrival arriveThroughMedia(Ray&, SurfaceHit&, std::uint32_t depth);
+    bool scatterInMedium(Ray&, std::uint32_t depth);
+    void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
+    Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, std::uint32_t depth);
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
-    void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&);
+    void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
     bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
     bool survives(std::uint32_t depth, float rouletteScale);
-    void absorb(const SurfaceHit&, Vec3 direction);
+    bool occluded(Vec3 origin, const LightSample& light) const {
+        const Intersector& world = *context_.scene.intersector;
+        return light.distance < kInfinity ? world.occluded(origin, light.p, path_.time)
+                                          : world.occluded({origin, light.wi, kInfinity, path_.time});
+    }
+    void absorb(const SurfaceHit&, Vec3 direction, float distance);
+    // Throughput of the path so far, whatever lane made it.
+    float throughput() const;
     // What a ray that crosses the surface towards `w` runs in; null in air.
     static const Curve* absorptionBeyond(const SurfaceHit& hit, Vec3 w) {
         return dot(w, hit.ng) < 0 ? hit.material->absorption() : nullptr;
@@ -76,8 +111,10 @@ template <EffectBits E> class PathLoop {
     Sampler& sampler_;
     Arena& arena_;
     PathCounters& counters_;
+    Media& media_;
     PathState<E> path_;
     bool startWithHero_ = false;
+    const Medium* collided_ = nullptr; // after Arrival::collision
 };
 
 template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelengths& lambda, float rouletteScale) {
@@ -87,19 +124,26 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         path_.densities.film = lambda;
         if (startWithHero_) endSecondaryWavelengths();
     }
+    if constexpr (kMedia) path_.inside = media_.aroundCamera;
     const std::uint32_t maxDepth = context_.settings.maxDepth ? context_.settings.maxDepth : kMaxVertices;
     SurfaceHit hit;
     for (std::uint32_t depth = 0;; ++depth) {
         ++counters_.vertices;
-        if (!context_.scene.intersector->intersect(ray, hit)) {
+        const Arrival arrival = arrive(ray, hit, depth);
+        if (arrival == Arrival::nowhere) {
             leaveScene(ray.direction);
             break;
         }
-        if constexpr (kAbsorption) absorb(hit, ray.direction);
-        if (hit.light) meetLight(hit, ray.direction);
+        if (arrival == Arrival::surface && hit.light) meetLight(hit, ray.direction);
         if (depth >= maxDepth) {
             counters_.capped += context_.settings.maxDepth == 0;
             break;
+        }
+        if constexpr (kMedia) {
+            if (arrival == Arrival::collision) {
+                if (!scatterInMedium(ray, depth) || !survives(depth, rouletteScale)) break;
+                continue;
+            }
         }
         arena_.reset();
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
@@ -107,10 +151,18 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const VertexSample sample = sampler_.vertex(depth);
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
-        sampleLight(hit, bsdf, eye, sample);
+        sampleLight(hit, bsdf, eye, sample, depth);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
     return path_.radiance;
+}
+
+template <EffectBits E>
+typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
+    if constexpr (kMedia) return arriveThroughMedia(ray, hit, depth);
+    if (!context_.scene.intersector->intersect(ray, hit)) return Arrival::nowhere;
+    if constexpr (kAbsorption) absorb(hit, ray.direction, hit.distance);
+    return Arrival::surface;
 }
 
 template <EffectBits E>
@@ -122,6 +174,13 @@ bool PathLoop<E>::sidesAgree(const SurfaceHit& hit, const Directions& eye, Vec3 
 template <EffectBits E> float PathLoop<E>::scatteringWeight(float lightPdf) const {
     if constexpr (kDispersion) {
         const auto& d = path_.densities;
+        if constexpr (kMedia) {
+            // The two techniques are weighed by their directions alone, so that next-event estimation may estimate
+            // transmittance as it likes; the balance of the wavelengths goes all the way.
+            const float share =
+                mean(d.direction) / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), d.direction));
+            return share / mean(d.unidirectional);
+        }
         return 1 / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), d.unidirectional));
     }
     return 1 / (1 + lightPdf / path_.bsdfPdf);
@@ -161,7 +220,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
 
 template <EffectBits E>
 void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye,
-                              const VertexSample& sample) {
+                              const VertexSample& sample, [[maybe_unused]] std::uint32_t depth) {
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick);
@@ -173,16 +232,22 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     ++counters_.shadowRays;
     // From the moved origin to the light's own moved point: neither surface shadows itself.
     const Vec3 origin = spawnOrigin(hit, light->wi);
-    const Intersector& world = *context_.scene.intersector;
-    if (light->distance < kInfinity ? world.occluded(origin, light->p, path_.time)
-                                    : world.occluded({origin, light->wi, kInfinity, path_.time}))
+    [[maybe_unused]] Spectrum passing;
+    if constexpr (kMedia) {
+        MediumStack beyond = path_.inside;
+        if (eye.wo.z * wi.z < 0) crossBoundary(hit, light->wi, beyond);
+        passing = transmittance(origin, *light, beyond, depth);
+        if (!anyNonZero(passing)) return;
+    } else if (occluded(origin, *light)) {
         return;
+    }
     const float pdf = picked.probability * light->pdfSolidAngle;
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
     if constexpr (kAbsorption) {
         const Curve* medium = eye.wo.z * wi.z < 0 ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
         if (medium && light->distance < kInfinity) contribution *= exp(medium->at(path_.lambda) * -light->distance);
     }
+    if constexpr (kMedia) contribution *= passing;
     path_.radiance += contribution;
 }
 
@@ -198,21 +263,30 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
         if (path_.delta && next.lobe.has(Lobe::dispersive)) endSecondaryWavelengths();
         d.before = d.unidirectional;
         if (!path_.delta) d.unidirectional *= next.pdfRatio;
+        if constexpr (kMedia) d.direction = d.unidirectional;
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
     if (!sidesAgree(hit, eye, next.wi, direction)) return false;
     if constexpr (kAbsorption)
         if (next.lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
+    if constexpr (kMedia)
+        if (next.lobe.has(Lobe::transmission) && !crossBoundary(hit, direction, path_.inside)) ++counters_.capped;
     ray = {spawnOrigin(hit, direction), direction, kInfinity, path_.time};
     return anyNonZero(path_.beta);
 }
 
+template <EffectBits E> float PathLoop<E>::throughput() const {
+    // Tracking scales the densities: only their ratio to beta means anything.
+    if constexpr (kMedia && kDispersion)
+        return mean(path_.beta) / mean(path_.densities.unidirectional) * path_.etaScale;
+    return mean(path_.beta) * path_.etaScale;
+}
+
 template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
-    const float throughput = mean(path_.beta) * path_.etaScale;
     // Mirrors and clear glass show the pixel what it sees: there the expected radiance is the pixel's, not the image's.
     const float scale = path_.delta ? std::max(rouletteScale, 1 / RouletteReference::kThreshold) : rouletteScale;
-    float p = RouletteReference::survival(throughput, scale);
+    float p = RouletteReference::survival(throughput(), scale);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
     if (depth >= kLongPath) p = std::min(p, 0.999f);
@@ -222,12 +296,12 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
     return true;
 }
 
-// Beer–Lambert along the segment that ends at `hit`. A camera inside a dielectric is known by its first hit: a boundary
-// met from behind while no interior was entered.
-template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 direction) {
+// Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a
+// boundary met from behind while no interior was entered.
+template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 direction, float distance) {
     const Curve*& absorption = path_.interior.absorption;
     if (!absorption && dot(direction, hit.ng) > 0) absorption = hit.material->absorption();
-    if (absorption) path_.beta *= exp(absorption->at(path_.lambda) * -hit.distance);
+    if (absorption) path_.beta *= exp(absorption->at(path_.lambda) * -distance);
 }
 
 // The direction just taken belongs to the hero alone: the densities of all other lanes are 0, so that the mean of the
@@ -236,6 +310,10 @@ template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 dir
 template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
     if (path_.densities.heroOnly) return;
     path_.densities.heroOnly = true;
+    if (!(path_.densities.unidirectional[0] > 0)) { // a hero that the media on the way never chose
+        path_.beta = Spectrum(0.f);
+        return;
+    }
     const float hero = path_.beta[0] * (static_cast<float>(kLanes) / path_.densities.unidirectional[0]);
     path_.beta = Spectrum(Float8{hero, 0, 0, 0, 0, 0, 0, 0});
     path_.densities.unidirectional = Spectrum(1.f);
@@ -243,3 +321,5 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 }
 
 } // namespace abbe
+
+#include "integrators/path_loop_media.h"

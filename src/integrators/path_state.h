@@ -1,6 +1,7 @@
 // What a path carries from vertex to vertex. Members of effects that a scene lacks do not exist.
 #pragma once
 
+#include "integrators/medium_stack.h"
 #include "render/effects.h"
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
@@ -22,6 +23,7 @@ struct SpectralDensities {
     Wavelengths film;             // the wavelengths that the film sees: those at the start of the path
     Spectrum unidirectional{1.f}; // all vertices
     Spectrum before{1.f};         // without the last scattering: what next-event estimation shares
+    Spectrum direction{1.f};      // with the last scattering, but without the media on the way from it
     bool heroOnly = false;        // the secondary wavelengths have ended
 };
 // The curve of absorption of the medium around the present segment; null in air.
@@ -45,6 +47,7 @@ template <EffectBits E> struct PathState {
     [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::absorption), path_detail::Interior,
                                              path_detail::Nothing>
         interior;
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::media), MediumStack, path_detail::Nothing> inside;
 };
 
 } // namespace abbe

@@ -22,7 +22,9 @@ struct Kernel {
 constexpr Kernel kKernels[] = {
     {{}, "plain", renderTilePlain},
     {Effect::absorption, "absorption", renderTileAbsorption},
-    {kAllEffects, "absorption+dispersion", renderTileFull},
+    {Effects(Effect::absorption) | Effect::dispersion, "absorption+dispersion", renderTileDispersion},
+    {Effects(Effect::absorption) | Effect::media, "absorption+media", renderTileMedia},
+    {kAllEffects, "absorption+dispersion+media", renderTileFull},
 };
 
 double threadSeconds() {

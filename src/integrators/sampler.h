@@ -2,7 +2,7 @@
 // its own does not move those of another, so images with and without it share their samples.
 #pragma once
 
-#include "math/hash.h"
+#include "math/random_stream.h"
 #include "math/sobol.h"
 #include "math/vec.h"
 
@@ -64,6 +64,11 @@ class Sampler final {
     float roulette(std::uint32_t depth) const {
         const std::uint64_t place = (std::uint64_t{index_} << 32) | depth;
         return unitFloat(static_cast<std::uint32_t>(combine64(stream_ ^ 0x5bd1e995u, place) >> 32));
+    }
+
+    // Numbers for tracking through media from a vertex on, of which any number may be needed: independent ones.
+    RandomStream stream(std::uint32_t depth) const {
+        return RandomStream(combine64(stream_ ^ 0xa54ff53au, (std::uint64_t{index_} << 32) | depth));
     }
 
   private:

@@ -27,7 +27,7 @@ struct TileResult {
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)
-        : context_(context), film_(film), job_(job) {}
+        : context_(context), film_(film), job_(job), media_(PathLoop<E>::makeMedia(context.scene)) {}
 
     TileResult run() {
         for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
@@ -37,6 +37,14 @@ template <EffectBits E> class TileKernel {
     }
 
   private:
+    using Media = typename PathLoop<E>::Media;
+    // Rays of a pinhole share their origin, and what is around it.
+    void findMediaAround(const Ray& ray) {
+        if (!context_.scene.interiors || ray.origin == lastOrigin_) return;
+        lastOrigin_ = ray.origin;
+        media_.aroundCamera = mediaAround(context_.scene, ray.origin, ray.time);
+    }
+
     void replicate(int x, int y, int r) {
         const std::uint64_t place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
@@ -67,7 +75,8 @@ template <EffectBits E> class TileKernel {
         const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
         radiance_ = Spectrum(0.f);
         if (!(camera.weight > 0)) return {};
-        PathLoop<E> loop(context_, sampler_, arena_, result_.counters);
+        if constexpr (PathLoop<E>::kMedia) findMediaAround(camera.ray);
+        PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
@@ -99,6 +108,8 @@ template <EffectBits E> class TileKernel {
     const TileJob& job_;
     Sampler sampler_;
     Arena arena_;
+    [[no_unique_address]] Media media_;
+    Vec3 lastOrigin_{kInfinity, kInfinity, kInfinity};
     TileResult result_;
     Spectrum radiance_; // of the last sample
 };
@@ -108,6 +119,8 @@ using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);
 // A chain of supersets, one translation unit each (path_kernel_*.cpp). All are always built, so that none rots.
 TileResult renderTilePlain(const PathContext&, Film&, const TileJob&);
 TileResult renderTileAbsorption(const PathContext&, Film&, const TileJob&);
+TileResult renderTileDispersion(const PathContext&, Film&, const TileJob&);
+TileResult renderTileMedia(const PathContext&, Film&, const TileJob&);
 TileResult renderTileFull(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

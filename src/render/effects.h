@@ -14,10 +14,11 @@ namespace abbe {
 enum class Effect : std::uint8_t {
     absorption = 1, // light is absorbed along segments inside a dielectric
     dispersion = 2, // sampling densities depend on wavelength: spectral MIS and the end of secondary wavelengths
+    media = 4,      // light is scattered between surfaces
 };
 using Effects = Flags<Effect>;
 
-inline constexpr Effects kAllEffects = Effects(Effect::absorption) | Effect::dispersion;
+inline constexpr Effects kAllEffects = Effects(Effect::absorption) | Effect::dispersion | Effect::media;
 
 // Who asked for an effect, for `abbe explain` and the image header.
 struct EffectReason {

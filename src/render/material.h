@@ -9,6 +9,8 @@
 
 namespace abbe {
 
+class Medium;
+
 // Immutable after construction, thread-safe.
 class Material {
   public:
@@ -21,6 +23,10 @@ class Material {
     virtual bool choosesLobe() const { return true; }
     // Absorption coefficient inside closed shapes of this material, 1/m; null when clear.
     virtual const Curve* absorption() const { return nullptr; }
+    // What fills closed shapes of this material; null for nothing.
+    virtual const Medium* interior() const { return nullptr; }
+    // True if there is no surface, only the boundary of an interior: light goes straight on.
+    virtual bool isBoundary() const { return false; }
 };
 
 } // namespace abbe

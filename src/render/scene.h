@@ -6,6 +6,7 @@
 #include "render/intersector.h"
 #include "render/light.h"
 #include "render/material.h"
+#include "render/medium.h"
 #include "render/shape.h"
 
 #include <memory>
@@ -18,7 +19,11 @@ struct Scene {
     std::vector<std::unique_ptr<const Material>> materials;
     std::vector<std::unique_ptr<const Shape>> shapes;
     std::vector<std::unique_ptr<const Light>> lights; // committed
-    std::unique_ptr<const Intersector> intersector;   // refers to shapes, materials and lights
+    std::vector<std::unique_ptr<const Medium>> media;
+    std::vector<const Medium*> openMedia; // those that no shape bounds
+    bool interiors = false;               // whether any shape bounds one
+    bool boundaries = false;              // whether any shape is nothing but such a boundary: light passes through
+    std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
     Effects effects;
     std::vector<EffectReason> reasons;

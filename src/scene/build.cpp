@@ -27,8 +27,15 @@ schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagn
 
 schema::Reference SceneBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
     if (definition.kind == Kind::texture) return texture(definition, diagnostics);
-    if (definition.kind != Kind::material) return {};
     const bool named = !definition.name.empty();
+    if (definition.kind == Kind::phase || definition.kind == Kind::medium) {
+        if (const auto found = mediumIndex_.find(&definition); named && found != mediumIndex_.end())
+            return found->second;
+        const auto made = definition.kind == Kind::phase ? phaseReference(definition) : mediumReference(definition);
+        if (named) mediumIndex_[&definition] = made;
+        return made;
+    }
+    if (definition.kind != Kind::material) return {};
     if (named)
         if (const auto found = materialIndex_.find(&definition); found != materialIndex_.end()) return found->second;
     const std::size_t before = diagnostics.errorCount();
@@ -131,6 +138,7 @@ void SceneBuilder::finish(BuiltScene& built) {
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";
     noteEffects(built);
+    noteMedia(built.scene);
     if (options_.geometry && !diagnostics_.hasErrors()) {
         const auto start = std::chrono::steady_clock::now();
         built.scene.intersector = embree_.build();
@@ -151,7 +159,8 @@ void SceneBuilder::build(BuiltScene& built) {
     placeAll(tree_.definitions, scene);
     // What nothing refers to is checked all the same.
     for (const Definition& d : tree_.definitions) {
-        if (d.kind == Kind::material || d.kind == Kind::texture) reference(d, diagnostics_);
+        if (d.kind == Kind::material || d.kind == Kind::texture || d.kind == Kind::phase || d.kind == Kind::medium)
+            reference(d, diagnostics_);
         if (d.kind == Kind::object) objectGeometry(d);
     }
     reportPlanned();

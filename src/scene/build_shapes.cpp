@@ -34,9 +34,9 @@ const Material* SceneBuilder::plainMaterial(double reflectance) {
 }
 
 const Material* SceneBuilder::materialOf(const ShapeParams& params) {
-    if (!params.material.valid()) return plainMaterial(0.5);
+    if (!params.material.valid()) return filled(plainMaterial(0.5), params);
     usedMaterials_.insert(params.material.index);
-    return materials_[params.material.index].get();
+    return filled(materials_[params.material.index].get(), params);
 }
 
 SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
@@ -181,6 +181,9 @@ void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Pl
             break;
         case Kind::group:
             carry(ownTransform(d), place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
+            break;
+        case Kind::volume:
+            placeVolume(d, place);
             break;
         case Kind::instance:
         case Kind::instances:

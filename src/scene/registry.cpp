@@ -13,9 +13,14 @@
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
 #include "lights/sun_light.h"
+#include "materials/boundary.h"
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "media/atmosphere.h"
+#include "media/grid_medium.h"
+#include "media/homogeneous.h"
+#include "media/phase_types.h"
 #include "scene/camera_gltf.h"
 #include "scene/instances_type.h"
 #include "scene/planned_types.h"
@@ -45,6 +50,7 @@ constexpr MaterialEntry kMaterials[] = {
     {diffuseType, bound<DiffuseParams, makeDiffuse>},
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
+    {boundaryType, bound<BoundaryParams, makeBoundary>},
 };
 
 struct TextureEntry {
@@ -100,6 +106,8 @@ schema::TypeTable makeTypeTable() {
     for (const auto type : kOthers) table.add(type());
     for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
     for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
+    for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
+    for (const auto type : {homogeneousType, atmosphereType, vdbType}) table.add(type());
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }

@@ -8,6 +8,9 @@
 #include "lights/environment_light.h"
 #include "lights/light_context.h"
 #include "lights/light_motion.h"
+#include "media/atmosphere.h"
+#include "media/grid_medium.h"
+#include "render/medium.h"
 #include "render/shape.h"
 #include "render/texture.h"
 #include "scene/build.h"
@@ -150,6 +153,15 @@ class SceneBuilder final : public schema::Resolver {
     KeyedTransform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
+    // build_media.cpp
+    schema::Reference phaseReference(const Definition&);
+    schema::Reference mediumReference(const Definition&);
+    std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
+    void placeVolume(const Definition&, const Place&);
+    std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
+    std::unique_ptr<const Medium> loadVdb(const VdbParams&, const Definition&, const Transform& toRender);
+    const Material* filled(const Material* surface, const ShapeParams&);
+    void noteMedia(Scene&);
     void countShape(const LoadedShape&);
 
     // build_motion.cpp
@@ -204,6 +216,12 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;            // who made it, for effects
     std::map<double, std::optional<std::uint32_t>> plainMaterials_;         // by reflectance
     std::set<std::uint32_t> usedMaterials_;                                 // of shapes that were placed
+    std::vector<std::shared_ptr<const PhaseFunction>> phases_;
+    std::vector<std::unique_ptr<const Medium>> media_;
+    std::vector<Span> mediumSpans_; // where media that fill shapes are defined, like media_
+    std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
+    std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
+    std::unordered_map<const Definition*, schema::Reference> mediumIndex_; // of named phases and media
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_

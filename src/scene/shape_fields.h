@@ -12,6 +12,11 @@ template <typename P> void addShapeFields(std::vector<schema::FieldInfo>& fields
                          .synonyms({"bsdf", "shader", "surface"})
                          .doc("Name of a material, or one written in place; grey and matte when absent.")
                          .example("material diffuse { reflectance 0.5 }"));
+    fields.push_back(field<P, Reference>(FieldType::reference, "interior", &P::interior)
+                         .to(Kind::medium)
+                         .synonyms({"medium", "interior_medium", "inside", "volume"})
+                         .doc("Medium that fills the closed shape: its name, or one written in place.")
+                         .example("interior homogeneous { extinction 20 per-m }"));
     fields.push_back(field<P, const Curve*>(FieldType::spectrum, "emission", &P::emission)
                          .role(SpectrumRole::emission)
                          .synonyms({"emitter", "glow", "Le"})

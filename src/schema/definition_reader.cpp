@@ -11,8 +11,7 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr auto kPlanned =
-    std::to_array<std::string_view>({"include", "override", "remove", "variant", "volume", "medium", "atmosphere"});
+constexpr auto kPlanned = std::to_array<std::string_view>({"include", "override", "remove", "variant"});
 
 bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances; }
 

@@ -38,6 +38,7 @@ template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const P
         Sampler sampler;
         Arena arena;
         PathCounters counters;
+        auto media = PathLoop<E>::makeMedia(scene);
         for (int r = 0; r < s.replicates; ++r) {
             const std::uint64_t seed = combine64(combine64(s.seed, pixel), static_cast<std::uint64_t>(r) + 1000);
             Xyz sum;
@@ -51,7 +52,7 @@ template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const P
                      sampler.lens(),
                      sampler.time()});
                 const Wavelengths lambda = s.wavelengths(sampler.wavelength());
-                PathLoop<E> loop(context, sampler, arena, counters);
+                PathLoop<E> loop(context, sampler, arena, counters, media);
                 sum += toXyz(loop.radiance(eye.ray, lambda, s.rouletteScale), lambda) *
                        static_cast<double>(eye.weight * filter.weight);
             }

@@ -1,0 +1,38 @@
+#include "materials/boundary.h"
+
+namespace abbe {
+
+namespace {
+
+// Paths go through before they ask for it.
+class NothingBsdf final : public Bsdf {
+  public:
+    Lobes lobes() const noexcept override { return {}; }
+    BsdfEval eval(Vec3, Vec3, Transport) const noexcept override { return {}; }
+    std::optional<BsdfSample> sample(Vec3, float, Vec2, Transport) const noexcept override { return std::nullopt; }
+};
+
+class Boundary final : public Material {
+  public:
+    // Only the path loop of media looks through.
+    Effects needs() const override { return Effect::media; }
+    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena& arena) const noexcept override {
+        return arena.make<NothingBsdf>();
+    }
+    bool choosesLobe() const override { return false; }
+    bool isBoundary() const override { return true; }
+};
+
+} // namespace
+
+schema::TypeInfo boundaryType() {
+    return {.kind = schema::Kind::material,
+            .name = "boundary",
+            .doc = "No surface, only the limit of the shape's interior: light goes straight on.",
+            .example = "shape fog box { material boundary; interior homogeneous { extinction 0.5 per-m } }",
+            .fields = {}};
+}
+
+std::unique_ptr<const Material> makeBoundary(const BoundaryParams&) { return std::make_unique<Boundary>(); }
+
+} // namespace abbe

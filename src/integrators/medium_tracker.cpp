@@ -1,0 +1,181 @@
+#include "integrators/medium_tracker.h"
+
+namespace abbe {
+
+namespace {
+
+// After so many lookups a transmittance below kSmall goes on in one case of two, at twice the weight.
+constexpr int kRouletteEvery = 16;
+constexpr float kSmall = 0.02f;
+
+// Optical lengths of rays without an end: large, but 0 times it is 0.
+float finite(double length) { return static_cast<float>(std::min(length, 1e30)); }
+
+} // namespace
+
+MediumTracker::MediumTracker(std::span<const Medium* const> open)
+    : open_(open), spaces_(open.size() + MediumStack::kMax) {
+    active_.reserve(spaces_.size());
+}
+
+void MediumTracker::add(const Medium* medium, const Ray& ray, float tMax, const Wavelengths& lambda) {
+    MediumWalk* walk = medium->walk(ray, tMax, spaces_[active_.size()]);
+    MediumSegment segment;
+    if (!walk || !walk->next(segment)) return;
+    const Spectrum extinction = medium->extinction().at(lambda);
+    active_.push_back({medium, walk, segment, extinction, medium->albedo().at(lambda), extinction[0], 0, 0, 0, false});
+}
+
+void MediumTracker::start(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda) {
+    active_.clear();
+    for (const Medium* medium : open_) add(medium, ray, tMax, lambda);
+    for (int i = 0; i < inside.size(); ++i) add(inside[i], ray, tMax, lambda);
+}
+
+// Where the optical length that is left runs out, if it does so within the segment.
+void MediumTracker::schedule(Active& a, float from) {
+    const float rate = a.segment.maximum * a.hero;
+    const float length = a.segment.tFar - from;
+    // Written so that an infinite segment at rate 0 makes no NaN.
+    a.collides = rate > 0 && a.optical < rate * length;
+    if (a.collides) {
+        a.next = std::min(from + a.optical / rate, a.segment.tFar);
+    } else {
+        if (rate > 0) a.optical -= rate * length;
+        a.next = a.segment.tFar;
+    }
+}
+
+bool MediumTracker::advance(Active& a) {
+    a.passed += static_cast<double>(a.segment.maximum) * static_cast<double>(a.segment.tFar - a.segment.tNear);
+    if (!a.walk->next(a.segment)) return false;
+    schedule(a, a.segment.tNear);
+    return true;
+}
+
+MediumTracker::Active* MediumTracker::nextEvent() {
+    Active* first = nullptr;
+    for (Active& a : active_)
+        if (a.walk && (!first || a.next < first->next)) first = &a;
+    return first;
+}
+
+MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
+                                      RandomStream& random, TrackedWeights weights) {
+    start(ray, tMax, inside, lambda);
+    for (Active& a : active_) {
+        a.optical = random.exponential();
+        schedule(a, a.segment.tNear);
+    }
+    while (Active* a = nextEvent()) {
+        const float t = a->next;
+        if (!a->collides) {
+            if (!advance(*a)) a->walk = nullptr;
+            continue;
+        }
+        if (collide(*a, random, weights)) {
+            shareDistance(t, weights);
+            return {a->medium, t};
+        }
+        if (!anyNonZero(*weights.beta)) return {};
+        a->optical = random.exponential();
+        schedule(*a, t);
+    }
+    shareDistance(tMax, weights);
+    return {};
+}
+
+// A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that
+// leaves their densities alone. True if it scatters.
+bool MediumTracker::collide(Active& a, RandomStream& random, TrackedWeights weights) {
+    ++counters.collisions;
+    const float bound = a.segment.maximum;
+    float density = a.walk->density(a.next);
+    if (density > bound) [[unlikely]] {
+        counters.exceeded += density > bound * 1.001f;
+        density = bound;
+    }
+    const float nothing = bound - density;
+    const Spectrum scattering = a.albedo * density;
+    const Spectrum kept = scattering + Spectrum(nothing);
+    const float scatters = mean(select(kept.v > 0, scattering / kept, Spectrum(0.f)));
+    const bool real = random.uniform() < scatters;
+    Spectrum factor = real ? scattering * (1 / (bound * scatters))
+                           : Spectrum(scatters < 1 ? nothing / (bound * (1 - scatters)) : 0.f);
+    if (weights.density) {
+        const Spectrum rates = a.extinction * (1 / a.hero);
+        factor *= rates;
+        *weights.density *= rates;
+    }
+    *weights.beta *= factor;
+    return real;
+}
+
+// What surviving the way to `t` weighs at the other wavelengths, all media and exponents together: e^-a / e^-b has no
+// digits left where e^-b underflows, e^(b-a) has. Scaled so that no lane overflows.
+void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
+    if (!weights.density) return;
+    Spectrum exponent(0.f);
+    for (const Active& a : active_) {
+        double passed = a.passed;
+        if (a.walk && t > a.segment.tNear)
+            passed += static_cast<double>(a.segment.maximum) *
+                      static_cast<double>(std::min(t, a.segment.tFar) - a.segment.tNear);
+        exponent = exponent - (a.extinction - Spectrum(a.hero)) * finite(passed);
+    }
+    const Spectrum common = exp(exponent - Spectrum(maxLane(exponent)));
+    *weights.beta *= common;
+    *weights.density *= common;
+    const float largest = maxLane(*weights.density);
+    if (largest > 0) {
+        *weights.beta *= 1 / largest;
+        *weights.density *= 1 / largest;
+    }
+}
+
+Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
+                                      RandomStream& random) {
+    start(ray, tMax, inside, lambda);
+    Spectrum result(1.f);
+    for (Active& a : active_) {
+        result *= ratioTracking(a, random);
+        if (!anyNonZero(result)) break;
+    }
+    return result;
+}
+
+Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random) {
+    Spectrum result(1.f);
+    double control = 0; // of the mean density
+    do {
+        if (!ratioTracking(a, control, random, result)) return Spectrum(0.f);
+        control += static_cast<double>(a.segment.mean) * static_cast<double>(a.segment.tFar - a.segment.tNear);
+    } while (a.walk->next(a.segment));
+    return result * exp(a.extinction * -finite(control));
+}
+
+// The residual of one segment. False if roulette ended a transmittance too small to pay for its lookups.
+bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& random, Spectrum& result) {
+    const MediumSegment& s = a.segment;
+    const float largest = maxLane(a.extinction);
+    const float residual = std::max(s.maximum - s.mean, s.mean - s.minimum);
+    const double rate = static_cast<double>(residual * largest);
+    if (!(rate > 0)) return true;
+    const Spectrum share = a.extinction * (1 / (largest * residual));
+    const double length = static_cast<double>(s.tFar - s.tNear);
+    int count = 0;
+    // In double: steps of a dense medium far from the origin would vanish in float.
+    for (double t = static_cast<double>(random.exponential()) / rate; t < length;
+         t += static_cast<double>(random.exponential()) / rate) {
+        ++counters.lookups;
+        result *= Spectrum(1.f) - share * (a.walk->density(s.tNear + static_cast<float>(t)) - s.mean);
+        if (++count % kRouletteEvery != 0) continue;
+        const float soFar = maxLane(result * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
+        if (soFar > kSmall) continue;
+        if (random.uniform() < 0.5f) return false;
+        result *= 2.f;
+    }
+    return true;
+}
+
+} // namespace abbe

@@ -1,0 +1,76 @@
+// Collisions of one ray with all media along it, by tracking against bounds on their density [Miller2019; Novak2018].
+#pragma once
+
+#include "integrators/medium_stack.h"
+#include "math/random_stream.h"
+
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+// Weights of a path along a ray, per lane. Both share the factors by which densities at other wavelengths differ from
+// the hero's, so they may be scaled together at will.
+struct TrackedWeights {
+    Spectrum* beta;    // throughput over the hero's density
+    Spectrum* density; // density over the hero's [Wilkie2014, eq. 5]; null while no extinction varies with wavelength
+};
+
+struct MediumCollision {
+    const Medium* medium = nullptr; // null: the ray came through
+    float t = 0;
+};
+
+// What a ray has met so far.
+struct MediumCounters {
+    std::uint64_t collisions = 0; // tentative ones
+    std::uint64_t lookups = 0;    // of density, for transmittance
+    std::uint64_t exceeded = 0;   // densities above their bound
+};
+
+// One per thread; keeps its memory. Media collide independently of each other, which adds them up.
+class MediumTracker {
+  public:
+    // `open`: the media that no shape bounds.
+    explicit MediumTracker(std::span<const Medium* const> open);
+
+    // Follows a ray to tMax or to where it is scattered, whichever comes first. Absorption is never an event: it is a
+    // weight, so that a path that loses a tenth of its light does not end in one of ten cases.
+    MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
+                           TrackedWeights);
+    // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
+    // [Novak2014] with the mean density of each segment as control.
+    Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);
+
+    MediumCounters counters;
+
+  private:
+    struct Active {
+        const Medium* medium;
+        MediumWalk* walk;
+        MediumSegment segment;
+        Spectrum extinction; // at density 1
+        Spectrum albedo;
+        float hero;    // of it
+        float next;    // where something happens: a tentative collision or the end of the segment
+        float optical; // hero's optical length still to go after `next` when that is the segment's end
+        double passed; // integral of the bounding density over the segments before this one
+        bool collides; // at `next`
+    };
+
+    void start(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&);
+    void add(const Medium*, const Ray&, float tMax, const Wavelengths&);
+    static void schedule(Active&, float from);
+    static bool advance(Active&);
+    Active* nextEvent();
+    bool collide(Active&, RandomStream&, TrackedWeights);
+    void shareDistance(float t, TrackedWeights) const;
+    Spectrum ratioTracking(Active&, RandomStream&);
+    bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
+
+    std::span<const Medium* const> open_;
+    std::vector<WalkSpace> spaces_;
+    std::vector<Active> active_;
+};
+
+} // namespace abbe

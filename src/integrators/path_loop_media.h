@@ -1,0 +1,106 @@
+// The part of the path loop that exists only in scenes with media. Included by path_loop.h.
+#pragma once
+
+namespace abbe {
+
+// Goes on to the next surface or collision, straight through shapes that are only the boundary of a medium.
+template <EffectBits E>
+typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
+    RandomStream random = sampler_.stream(2 * depth);
+    TrackedWeights weights{&path_.beta, nullptr};
+    if constexpr (kDispersion) weights.density = &path_.densities.unidirectional;
+    for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
+        const bool met = context_.scene.intersector->intersect(ray, hit);
+        const float tMax = met ? hit.distance : kInfinity;
+        const MediumCollision collision = media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights);
+        if constexpr (kAbsorption)
+            if (met) absorb(hit, ray.direction, collision.medium ? collision.t : tMax);
+        if (collision.medium) {
+            ray.origin = ray.origin + ray.direction * collision.t;
+            collided_ = collision.medium;
+            return Arrival::collision;
+        }
+        if (!met) return Arrival::nowhere;
+        if (!hit.material->isBoundary()) return Arrival::surface;
+        if (!crossBoundary(hit, ray.direction, path_.inside)) ++counters_.capped;
+        ray.origin = spawnOrigin(hit, ray.direction);
+    }
+    ++counters_.capped;
+    path_.beta = Spectrum(0.f);
+    return Arrival::nowhere;
+}
+
+// The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1.
+template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_t depth) {
+    if (!anyNonZero(path_.beta)) return false;
+    const PhaseFunction& phase = collided_->phase();
+    const VertexSample sample = sampler_.vertex(depth);
+    sampleLightInMedium(ray.origin, ray.direction, sample, depth);
+    const float cosine = phase.sampleCosine(sample.bsdf.x);
+    const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
+    const Frame frame = Frame::fromNormal(ray.direction);
+    path_.from = ray.origin;
+    path_.bsdfPdf = phase.value(cosine);
+    path_.delta = false;
+    if constexpr (kDispersion) {
+        path_.densities.before = path_.densities.unidirectional;
+        path_.densities.direction = path_.densities.unidirectional;
+    }
+    ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+    return true;
+}
+
+template <EffectBits E>
+void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
+    if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
+    const PickedLight picked = context_.lights.pick(sample.pick);
+    const auto light = picked.light->sample(p, sample.light, path_.lambda, path_.time);
+    if (!light) return;
+    const float value = collided_->phase().value(dot(direction, light->wi));
+    if (!(value > 0)) return;
+    ++counters_.shadowRays;
+    const Spectrum passing = transmittance(p, *light, path_.inside, depth);
+    if (!anyNonZero(passing)) return;
+    const float pdf = picked.probability * light->pdfSolidAngle;
+    BsdfEval eval;
+    eval.pdfSolidAngle = value;
+    Spectrum contribution =
+        path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
+    if constexpr (kAbsorption)
+        if (const Curve* clear = path_.interior.absorption; clear && light->distance < kInfinity)
+            contribution *= exp(clear->at(path_.lambda) * -light->distance);
+    path_.radiance += contribution;
+}
+
+// Of everything between a vertex and a light: nothing behind a surface, the media's else.
+template <EffectBits E>
+Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, MediumStack inside, std::uint32_t depth) {
+    RandomStream random = sampler_.stream(2 * depth + 1);
+    const bool infinite = !(light.distance < kInfinity);
+    Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path_.time};
+    if (!context_.scene.boundaries) {
+        if (occluded(origin, light)) return Spectrum(0.f);
+        return media_.tracker.transmittance(ray, ray.tMax, inside, path_.lambda, random);
+    }
+    Spectrum result(1.f);
+    SurfaceHit hit;
+    for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
+        // The direction is made anew: rounding would let long chains of boundaries miss the light's own point.
+        if (!infinite) {
+            const Vec3 way = light.p - ray.origin;
+            ray.tMax = length(way);
+            if (!(ray.tMax > 0)) return result;
+            ray.direction = way / ray.tMax;
+        }
+        const bool met = context_.scene.intersector->intersect(ray, hit) && hit.distance < ray.tMax;
+        if (met && !hit.material->isBoundary()) return Spectrum(0.f);
+        result *= media_.tracker.transmittance(ray, met ? hit.distance : ray.tMax, inside, path_.lambda, random);
+        if (!met || !anyNonZero(result)) return result;
+        crossBoundary(hit, ray.direction, inside);
+        ray.origin = spawnOrigin(hit, ray.direction);
+    }
+    ++counters_.capped;
+    return Spectrum(0.f);
+}
+
+} // namespace abbe

@@ -1,0 +1,103 @@
+#include "media/atmosphere.h"
+
+namespace abbe {
+
+namespace {
+
+// From where density has fallen to 1e-20 on there is nothing.
+constexpr double kTopInScaleHeights = 46;
+// Pieces in which density changes by a factor of e^(1/2) at most.
+constexpr double kStep = 0.5;
+
+// Heights along the ray are linear in t: h(t) = height + slope t, in scale heights above the ground.
+class AtmosphereWalk final : public MediumWalk {
+  public:
+    AtmosphereWalk(double height, double slope, float tMax)
+        : height_(height), slope_(slope), end_(static_cast<double>(tMax)) {}
+
+    bool next(MediumSegment& s) noexcept override {
+        while (t_ < end_) {
+            const double here = height_ + slope_ * t_;
+            const double stop = std::min(end_, boundaryAfter(here));
+            const double there = std::isinf(stop) ? (slope_ > 0 ? kTopInScaleHeights : here) : height_ + slope_ * stop;
+            const double from = t_;
+            t_ = stop;
+            const double a = value(here), b = value(there);
+            if (!(std::max(a, b) > 0) || !(stop > from)) continue;
+            s = {static_cast<float>(from), static_cast<float>(stop), static_cast<float>(std::min(a, b)),
+                 static_cast<float>(average(here, there)), static_cast<float>(std::max(a, b))};
+            return s.tFar > s.tNear;
+        }
+        return false;
+    }
+    float density(float t) noexcept override {
+        return static_cast<float>(value(height_ + slope_ * static_cast<double>(t)));
+    }
+
+  private:
+    static double value(double h) { return h <= 0 ? 1 : h < kTopInScaleHeights ? std::exp(-h) : 0; }
+    // Of the density between two heights that are both above the ground or both below it.
+    static double average(double a, double b) {
+        if (a <= 0 && b <= 0) return 1;
+        const double d = b - a;
+        return std::abs(d) < 1e-9 ? value(a) : std::exp(-a) * -std::expm1(-d) / d;
+    }
+    // Distance at which the piece that begins at height `here` ends.
+    double boundaryAfter(double here) const {
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        const auto at = [&](double h) { return std::max((h - height_) / slope_, t_ + kSmallest * std::abs(t_)); };
+        if (slope_ > 0) {
+            if (here < 0) return at(0);
+            return here >= kTopInScaleHeights ? kNever : at(kStep * (std::floor(here / kStep * (1 + kSmallest)) + 1));
+        }
+        if (slope_ < 0) {
+            if (here <= 0) return kNever;
+            if (here > kTopInScaleHeights) return at(kTopInScaleHeights);
+            return at(kStep * (std::ceil(here / kStep * (1 - kSmallest)) - 1));
+        }
+        return kNever;
+    }
+    static constexpr double kSmallest = 1e-14;
+
+    double height_, slope_, end_;
+    double t_ = 0;
+};
+
+} // namespace
+
+Atmosphere::Atmosphere(MediumOptics optics, Vec3 up, double ground, double scaleHeight)
+    : optics_(std::move(optics)), up_(up), ground_(ground), scaleHeight_(scaleHeight) {}
+
+Bounds3 Atmosphere::bounds() const { return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}}; }
+
+MediumWalk* Atmosphere::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
+    const Vec3d up(up_);
+    const double height = (dot(Vec3d(ray.origin), up) - ground_) / scaleHeight_;
+    return space.make<AtmosphereWalk>(height, dot(Vec3d(ray.direction), up) / scaleHeight_, tMax);
+}
+
+schema::TypeInfo atmosphereType() {
+    using namespace schema;
+    std::vector<FieldInfo> fields = {
+        field(FieldType::quantity, "scale-height", &AtmosphereParams::scaleHeight)
+            .unit({Dimension::length})
+            .range(1e-6, 1e9)
+            .synonyms({"falloff", "height_falloff"})
+            .doc("Height over which density falls to 1/e; the same at any height when absent.")
+            .example("scale-height 8 km"),
+        field(FieldType::quantity, "ground", &AtmosphereParams::ground)
+            .unit({Dimension::length})
+            .byDefault("0")
+            .doc("Height up to which density is 1.")
+            .example("ground 2 m"),
+    };
+    addOpticsFields<AtmosphereParams>(fields);
+    return {Kind::volume,
+            "atmosphere",
+            "Air, haze or fog everywhere, thinner with height if asked.",
+            "volume haze atmosphere { extinction 0.02 per-km; phase rayleigh }",
+            false,
+            std::move(fields)};
+}
+
+} // namespace abbe

@@ -1,0 +1,70 @@
+// What collisions do in any medium, whatever its density, and how the language says it.
+#pragma once
+
+#include "render/phase_function.h"
+#include "schema/type.h"
+
+#include <memory>
+#include <vector>
+
+namespace abbe {
+
+// Extinction and albedo, or scattering and absorption; neither: extinction 1/m and albedo 1.
+struct MediumParams {
+    const Curve* extinction = nullptr; // 1/m at density 1
+    const Curve* albedo = nullptr;
+    const Curve* scattering = nullptr; // 1/m at density 1
+    const Curve* absorption = nullptr; // 1/m at density 1
+    schema::Reference phase;
+};
+
+// The curves must outlive it.
+struct MediumOptics {
+    const Curve* extinction = nullptr; // 1/m at density 1, >= 0
+    const Curve* albedo = nullptr;     // 0 … 1
+    std::shared_ptr<const PhaseFunction> phase;
+    std::vector<std::shared_ptr<const Curve>> own; // those made for it
+};
+
+// `zero` and `one`: curves of these values. `phase`: null for isotropic. Requires no second way of saying the same.
+MediumOptics makeOptics(const MediumParams&, std::shared_ptr<const PhaseFunction> phase, const Curve* zero,
+                        const Curve* one);
+// What was said twice, or an empty text.
+std::string_view findContradiction(const MediumParams&);
+
+template <typename P> void addOpticsFields(std::vector<schema::FieldInfo>& fields) {
+    using namespace schema;
+    const auto coefficient = [](std::string_view name, const Curve* P::*member) {
+        return field<P, const Curve*>(FieldType::spectrum, name, member)
+            .role(SpectrumRole::unbounded)
+            .unit({Dimension::inverseLength, Dimension::none})
+            .range(0, 1e12);
+    };
+    fields.push_back(coefficient("extinction", &P::extinction)
+                         .group("extinction")
+                         .synonyms({"sigma_t", "density_scale"})
+                         .doc("Share of the light that meets a particle per metre, at density 1; 1 when absent.")
+                         .example("extinction 0.08 per-m"));
+    fields.push_back(field<P, const Curve*>(FieldType::spectrum, "albedo", &P::albedo)
+                         .role(SpectrumRole::albedo)
+                         .range(0, 1)
+                         .synonyms({"single_scattering_albedo", "color", "scattering_color"})
+                         .doc("Share of the light met that is scattered and not absorbed; 1 when absent.")
+                         .example("albedo 0.99"));
+    fields.push_back(coefficient("scattering", &P::scattering)
+                         .group("extinction")
+                         .synonyms({"sigma_s"})
+                         .doc("With absorption instead of extinction and albedo: what is scattered per metre.")
+                         .example("scattering rgb 2.5 3.2 3.8 per-mm"));
+    fields.push_back(coefficient("absorption", &P::absorption)
+                         .synonyms({"sigma_a"})
+                         .doc("With scattering, or alone: what is absorbed per metre.")
+                         .example("absorption 0.002 per-mm"));
+    fields.push_back(field<P, Reference>(FieldType::reference, "phase", &P::phase)
+                         .to(Kind::phase)
+                         .synonyms({"phase_function"})
+                         .doc("Where scattered light goes; evenly when absent.")
+                         .example("phase henyey-greenstein 0.85"));
+}
+
+} // namespace abbe

@@ -1,0 +1,146 @@
+// Phase functions, media that fill shapes, and volumes that stand by themselves.
+#include "media/atmosphere.h"
+#include "media/grid_medium.h"
+#include "media/homogeneous.h"
+#include "media/phase_types.h"
+#include "scene/filled_material.h"
+#include "scene/scene_builder.h"
+#include "volumes/vdb_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace abbe {
+
+using schema::Kind;
+
+// Both are made once if they have a name.
+schema::Reference SceneBuilder::phaseReference(const Definition& d) {
+    const auto bindInto = [&](void* params) {
+        const std::size_t before = diagnostics_.errorCount();
+        schema::bind(d, tree_, types_, *this, params, diagnostics_);
+        return diagnostics_.errorCount() == before;
+    };
+    if (!d.type) {
+        bindInto(nullptr);
+        return {};
+    }
+    auto phase = makePhase(d.type->name, bindInto);
+    if (!phase) return {};
+    phases_.push_back(std::move(phase));
+    return {static_cast<std::uint32_t>(phases_.size() - 1)};
+}
+
+schema::Reference SceneBuilder::mediumReference(const Definition& d) {
+    const auto params = bound<HomogeneousParams>(d);
+    if (!params) return {};
+    const auto optics = opticsOf(*params, d);
+    if (!optics) return {};
+    mediumSpans_.resize(media_.size());
+    media_.push_back(std::make_unique<HomogeneousMedium>(*optics));
+    mediumSpans_.push_back(d.span);
+    return {static_cast<std::uint32_t>(media_.size() - 1)};
+}
+
+std::optional<MediumOptics> SceneBuilder::opticsOf(const MediumParams& params, const Definition& d) {
+    if (const auto fault = findContradiction(params); !fault.empty()) {
+        diagnostics_.error("E0640", d.span, "a medium has extinction and albedo, or scattering and absorption",
+                           std::string(fault));
+        return std::nullopt;
+    }
+    return makeOptics(params, params.phase.valid() ? phases_[params.phase.index] : nullptr, curves_.constant(0),
+                      curves_.constant(1));
+}
+
+void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
+    const std::string_view type = d.type ? d.type->name : "";
+    if (place.object || place.motion.moves()) {
+        diagnostics_
+            .error("E0644", d.span, "a volume stands still, at the top level or in a group",
+                   place.object ? "in an object" : "what holds it moves")
+            .help = "media that fill shapes (`interior`) may move and be instanced";
+        return;
+    }
+    const Transform toRender = atOpening(place.motion);
+    std::unique_ptr<const Medium> medium;
+    if (type == "atmosphere") {
+        if (const auto p = bound<AtmosphereParams>(d)) medium = makeAtmosphere(*p, d, toRender);
+    } else if (type == "vdb") {
+        if (const auto p = bound<VdbParams>(d)) medium = loadVdb(*p, d, toRender);
+    } else {
+        bound<MediumParams>(d);
+    }
+    if (!medium) return;
+    mediumSpans_.resize(media_.size() + 1);
+    media_.push_back(std::move(medium));
+    openMedia_.emplace_back(media_.back().get(), d.span);
+}
+
+std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,
+                                                           const Transform& toRender) {
+    const auto optics = opticsOf(params, d);
+    if (!optics) return nullptr;
+    const Vec3d up = tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
+    const double ground = dot(toRender.point(up * params.ground), up);
+    return std::make_unique<Atmosphere>(*optics, Vec3(up), ground, params.scaleHeight);
+}
+
+std::unique_ptr<const Medium> SceneBuilder::loadVdb(const VdbParams& params, const Definition& d,
+                                                    const Transform& toRender) {
+    const auto optics = opticsOf(params, d);
+    const Transform place = params.transform.then(toRender);
+    if (!place.inverse())
+        diagnostics_.error("E0641", d.span, "the transform of this volume flattens it", "has no inverse");
+    if (!optics || !place.inverse()) return nullptr;
+    const VdbRequest request{params.grid.value.empty() ? "density" : params.grid.value,
+                             params.levelSet ? VdbUse::amountOrLevelSet : VdbUse::amount, false};
+    auto read = readVdb(params.file.value, {&request, 1});
+    if (const auto* fault = std::get_if<VdbFault>(&read)) {
+        const bool name = fault->kind == VdbFault::Kind::noGrid;
+        auto& e = diagnostics_.error(name ? "E0643" : "E0642",
+                                     name && params.grid.span.valid() ? params.grid.span : params.file.span,
+                                     fault->text, name ? "no such grid" : "cannot be used");
+        if (name && !fault->names.empty()) e.help = fmt::format("the grids are {}", fmt::join(fault->names, ", "));
+        if (fault->kind == VdbFault::Kind::wrongKind) e.help = "a level set becomes fog with `level-set on`";
+        return nullptr;
+    }
+    VdbGrid& grid = std::get<std::vector<VdbGrid>>(read)[0];
+    for (const std::string& note : grid.notes) diagnostics_.warning("W0690", params.file.span, note, "put right");
+    built_->facts.files.push_back(params.file.value);
+    if (grid.scalar->empty())
+        diagnostics_.warning("W0691", params.file.span, "this grid has no voxels", "nothing will be seen of it");
+    return std::make_unique<GridMedium>(*optics, std::move(*grid.scalar), params.scale, place);
+}
+
+// The surface and what it holds, as one material.
+const Material* SceneBuilder::filled(const Material* surface, const ShapeParams& params) {
+    if (!params.interior.valid()) return surface;
+    const Medium& medium = *media_[params.interior.index];
+    auto& index = filled_[{surface, &medium}];
+    if (!index) {
+        index = static_cast<std::uint32_t>(materials_.size());
+        materials_.push_back(std::make_unique<FilledMaterial>(*surface, medium));
+        usedMaterials_.insert(*index);
+        interiorAskers_.emplace_back(&medium, mediumSpans_[params.interior.index]);
+    }
+    return materials_[*index].get();
+}
+
+void SceneBuilder::noteMedia(Scene& scene) {
+    const auto note = [&](const Medium& medium, Span span, std::string_view what) {
+        scene.effects |= medium.needs();
+        scene.reasons.push_back({Effect::media, span, fmt::format("light is scattered in {}", what)});
+        if (medium.needs().has(Effect::dispersion))
+            scene.reasons.push_back({Effect::dispersion, span, "its extinction varies with wavelength"});
+    };
+    for (const auto& [medium, span] : interiorAskers_) note(*medium, span, "the shapes that this medium fills");
+    for (const auto& [medium, span] : openMedia_) {
+        note(*medium, span, "this volume");
+        scene.openMedia.push_back(medium);
+    }
+    scene.interiors = !interiorAskers_.empty();
+    for (const std::uint32_t index : usedMaterials_) scene.boundaries |= materials_[index]->isBoundary();
+    scene.media = std::move(media_);
+}
+
+} // namespace abbe

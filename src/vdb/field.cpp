@@ -1,0 +1,248 @@
+#include "vdb/field.h"
+
+#include "vdb/output.h"
+
+#include <atomic>
+#include <cmath>
+#include <fmt/format.h>
+#include <openvdb/tools/LevelSetUtil.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+
+namespace abbe::vdb {
+
+namespace {
+
+using Kind = VdbFault::Kind;
+
+bool finite(float v) { return std::isfinite(v); }
+bool finite(const openvdb::Vec3s& v) { return finite(v[0]) && finite(v[1]) && finite(v[2]); }
+bool negative(float v) { return v < 0; }
+bool negative(const openvdb::Vec3s&) { return false; }
+
+struct Repairs {
+    std::atomic<std::uint64_t> notFinite{0}, negative{0}, inactive{0};
+
+    std::vector<std::string> notes(const std::string& subject) const {
+        std::vector<std::string> notes;
+        const auto note = [&](std::uint64_t count, const char* what) {
+            if (count > 0) notes.push_back(fmt::format("{}: {} {}", subject, count, what));
+        };
+        note(notFinite, "values are not finite and count as 0");
+        note(negative, "values are negative and count as 0");
+        note(inactive, "inactive values differ from the background and count as 0");
+        return notes;
+    }
+};
+
+// What a voxel or tile becomes; counts why.
+template <typename Value> Value repaired(const Value& v, bool active, const Value& background, Repairs& repairs) {
+    if (!active) {
+        if (v != background && v != openvdb::zeroVal<Value>()) ++repairs.inactive;
+        return openvdb::zeroVal<Value>();
+    }
+    if (!finite(v)) {
+        ++repairs.notFinite;
+        return openvdb::zeroVal<Value>();
+    }
+    if (negative(v)) {
+        ++repairs.negative;
+        return openvdb::zeroVal<Value>();
+    }
+    return v;
+}
+
+template <typename Tree> void repairLeaves(Tree& tree, Repairs& repairs) {
+    using Value = typename Tree::ValueType;
+    const Value background = tree.background(), zero = openvdb::zeroVal<Value>();
+    openvdb::tree::LeafManager<Tree> leaves(tree);
+    leaves.foreach ([&](typename Tree::LeafNodeType& leaf, std::size_t) {
+        Value* values = leaf.buffer().data();
+        for (openvdb::Index i = 0; i < Tree::LeafNodeType::SIZE; ++i) {
+            const Value v = repaired(values[i], leaf.isValueOn(i), background, repairs);
+            values[i] = v;
+            if (v == zero) leaf.setValueOff(i); // so that what is empty can be pruned
+        }
+    });
+}
+
+template <typename Tree> void repairTiles(Tree& tree, Repairs& repairs) {
+    using Value = typename Tree::ValueType;
+    const Value background = tree.background();
+    auto it = tree.beginValueAll();
+    it.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
+    for (; it; ++it) {
+        const Value v = repaired(*it, it.isValueOn(), background, repairs);
+        it.setValue(v);
+        if (v == openvdb::zeroVal<Value>()) it.setValueOff();
+    }
+}
+
+template <typename GridType> Field<GridType> repairedField(typename GridType::Ptr grid, const std::string& subject) {
+    Repairs repairs;
+    auto& tree = grid->tree();
+    const auto background = tree.background();
+    repairTiles(tree, repairs);
+    repairLeaves(tree, repairs);
+    tree.root().setBackground(openvdb::zeroVal<typename GridType::ValueType>(), false);
+    openvdb::tools::pruneInactive(tree);
+    Field<GridType> field{grid, repairs.notes(subject)};
+    if (background != openvdb::zeroVal<typename GridType::ValueType>())
+        field.notes.push_back(fmt::format("{}: the background is not 0 but counts as 0", subject));
+    return field;
+}
+
+// A tile of the root is 4096³ voxels; a constant field of many of them is no volume but a mistake.
+template <typename GridType> void checkExtent(const GridType& grid, const std::string& subject) {
+    constexpr int kMostRootTiles = 8;
+    int tiles = 0;
+    auto tile = grid.tree().cbeginValueOn();
+    tile.setMaxDepth(0);
+    for (; tile; ++tile) ++tiles;
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    for (int a = 0; a < 3 && !box.empty(); ++a)
+        if (tiles > kMostRootTiles || box.min()[a] < -kFarthestVoxel || box.max()[a] > kFarthestVoxel)
+            throw Failure(Kind::extent,
+                          tiles > kMostRootTiles
+                              ? fmt::format("{} is constant over more than {}·4096³ voxels", subject, kMostRootTiles)
+                              : fmt::format("{} has voxels further than {} from its origin", subject, kFarthestVoxel));
+}
+
+template <typename From> openvdb::FloatGrid::Ptr converted(const openvdb::GridBase& grid) {
+    const auto& source = static_cast<const From&>(grid);
+    auto result = openvdb::FloatGrid::create(openvdb::FloatTree::Ptr(new openvdb::FloatTree(source.tree())));
+    result->insertMeta(source);
+    result->setTransform(source.transform().copy());
+    return result;
+}
+
+// The library does not convert trees of vectors: the active values are copied one by one.
+template <typename From> openvdb::Vec3SGrid::Ptr convertedVectors(const openvdb::GridBase& grid) {
+    using openvdb::Vec3s;
+    const auto& source = static_cast<const From&>(grid);
+    auto result = openvdb::Vec3SGrid::create(openvdb::Vec3STree::Ptr(
+        new openvdb::Vec3STree(source.tree(), openvdb::zeroVal<Vec3s>(), openvdb::TopologyCopy())));
+    result->insertMeta(source);
+    result->setTransform(source.transform().copy());
+    auto accessor = source.getConstAccessor();
+    for (auto it = result->beginValueOn(); it; ++it) it.setValue(Vec3s(accessor.getValue(it.getCoord())));
+    return result;
+}
+
+openvdb::FloatGrid::Ptr maskField(const openvdb::GridBase& grid) {
+    const auto fill = [&](const auto& source) {
+        auto result = openvdb::FloatGrid::create(
+            openvdb::FloatTree::Ptr(new openvdb::FloatTree(source.tree(), 0.f, 1.f, openvdb::TopologyCopy())));
+        result->insertMeta(source);
+        result->setTransform(source.transform().copy());
+        return result;
+    };
+    if (grid.isType<openvdb::BoolGrid>()) return fill(static_cast<const openvdb::BoolGrid&>(grid));
+    return fill(static_cast<const openvdb::MaskGrid&>(grid));
+}
+
+openvdb::FloatGrid::Ptr floatField(const openvdb::GridBase::Ptr& grid) {
+    using namespace openvdb;
+    if (grid->isType<FloatGrid>()) return gridPtrCast<FloatGrid>(grid);
+    if (grid->isType<DoubleGrid>()) return converted<DoubleGrid>(*grid);
+    if (grid->isType<Int32Grid>()) return converted<Int32Grid>(*grid);
+    if (grid->isType<Int64Grid>()) return converted<Int64Grid>(*grid);
+    if (grid->isType<BoolGrid>() || grid->isType<MaskGrid>()) return maskField(*grid);
+    return nullptr;
+}
+
+} // namespace
+
+VdbInput::VdbInput(const std::string& path) : path_(path) {
+    openvdb::initialize();
+    file_ = std::make_unique<openvdb::io::File>(path);
+    file_->open(false); // delayed loading would read later, from another place
+    if (file_->beginName() == file_->endName())
+        throw Failure(Kind::damaged, fmt::format("`{}` holds no grids: it is empty or cut off", path));
+}
+
+std::vector<std::string> VdbInput::names() const {
+    std::vector<std::string> names;
+    for (auto name = file_->beginName(); name != file_->endName(); ++name) names.push_back(name.gridName());
+    return names;
+}
+
+openvdb::GridBase::Ptr VdbInput::grid(const std::string& name) {
+    if (!file_->hasGrid(name)) return nullptr;
+    try {
+        return file_->readGrid(name);
+    } catch (const openvdb::ArithmeticError&) {
+        throw Failure(Kind::transform, subject(name) + " has a transform without an inverse");
+    }
+}
+
+std::string VdbInput::subject(const std::string& name) const { return fmt::format("grid `{}` of `{}`", name, path_); }
+
+Field<openvdb::FloatGrid> amountField(const VdbInput& input, const openvdb::GridBase::Ptr& grid, VdbUse use) {
+    const std::string subject = input.subject(grid->getName());
+    auto field = floatField(grid);
+    if (!field)
+        throw Failure(Kind::wrongKind,
+                      fmt::format("{} holds {}, not numbers", subject,
+                                  grid->type().find("Points") == 0 || grid->valueType() == "ptdataidx32"
+                                      ? "points"
+                                      : grid->valueType()));
+    if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
+        if (use != VdbUse::amountOrLevelSet)
+            throw Failure(Kind::wrongKind,
+                          fmt::format("{} is a level set (distances from a surface), not an amount; `abbe volume "
+                                      "convert --fog` makes fog of it",
+                                      subject));
+        openvdb::tools::sdfToFogVolume(*field);
+    }
+    auto result = repairedField<openvdb::FloatGrid>(field, subject);
+    checkExtent(*result.grid, subject);
+    return result;
+}
+
+Field<openvdb::Vec3SGrid> vectorField(const VdbInput& input, const openvdb::GridBase::Ptr& grid) {
+    using namespace openvdb;
+    const std::string subject = input.subject(grid->getName());
+    Vec3SGrid::Ptr field;
+    if (grid->isType<Vec3SGrid>()) field = gridPtrCast<Vec3SGrid>(grid);
+    if (grid->isType<Vec3DGrid>()) field = convertedVectors<Vec3DGrid>(*grid);
+    if (grid->isType<Vec3IGrid>()) field = convertedVectors<Vec3IGrid>(*grid);
+    if (!field) throw Failure(Kind::wrongKind, fmt::format("{} holds {}, not vectors", subject, grid->valueType()));
+    auto result = repairedField<Vec3SGrid>(field, subject);
+    if (grid->getGridClass() == GRID_STAGGERED)
+        result.notes.push_back(fmt::format("{}: staggered; its vectors are taken to be at voxel centres", subject));
+    checkExtent(*result.grid, subject);
+    return result;
+}
+
+std::optional<Transform> affineTransform(const openvdb::GridBase& grid) {
+    if (!grid.transform().isLinear()) return std::nullopt;
+    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+    Transform t; // OpenVDB's vectors are rows: p' = p M
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) t.a[row][column] = m(column, row);
+    t.t = {m(3, 0), m(3, 1), m(3, 2)};
+    if (!t.isFinite() || !t.inverse()) return std::nullopt;
+    return t;
+}
+
+VolumeClass volumeClassOf(const openvdb::GridBase& grid) {
+    switch (grid.getGridClass()) {
+    case openvdb::GRID_FOG_VOLUME:
+        return VolumeClass::fog;
+    case openvdb::GRID_LEVEL_SET:
+        return VolumeClass::levelSet;
+    case openvdb::GRID_STAGGERED:
+        return VolumeClass::staggered;
+    default:
+        return VolumeClass::unknown;
+    }
+}
+
+std::string unitOf(const openvdb::GridBase& grid) {
+    for (const char* key : {"unit", "units"})
+        if (const auto meta = grid.getMetadata<openvdb::StringMetadata>(key)) return meta->value();
+    return {};
+}
+
+} // namespace abbe::vdb

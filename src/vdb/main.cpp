@@ -1,0 +1,89 @@
+// The helper abbe-vdb: everything that is done with OpenVDB, in a process of its own, so that a damaged file can at
+// worst end this one. It is started by src/volumes/vdb_process.cpp and answers with the frames of
+// volumes/vdb_message.h.
+#include "vdb/commands.h"
+#include "vdb/output.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <new>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+using namespace abbe;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true; // reserves terabytes of addresses
+#else
+constexpr bool kSanitized = false;
+#endif
+
+void limit(int resource, rlim_t value) {
+    rlimit now{};
+    if (::getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) return;
+    if (now.rlim_max != RLIM_INFINITY && value > now.rlim_max) value = now.rlim_max;
+    now.rlim_cur = value;
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
+}
+
+// A damaged file may ask for any amount of memory or run in circles: a file gets what a sound one of its size could
+// need (data that hardly varies is packed two hundredfold), and no more than the machine has.
+void setLimits(const std::string& file) {
+    limit(RLIMIT_CORE, 0);
+    struct stat status {};
+    const bool known = ::stat(file.c_str(), &status) == 0;
+    const auto size = static_cast<rlim_t>(known ? status.st_size : 0);
+    limit(RLIMIT_CPU, known ? 8 + size / 250'000 : 7200);
+    if (kSanitized) return;
+    const auto machine = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+    limit(RLIMIT_DATA, known ? std::min(machine, 2'000'000'000 + 256 * size) : machine);
+}
+
+bool execute(const std::string& command, vdb::Arguments arguments) {
+    if (command == "info")
+        vdb::info(arguments);
+    else if (command == "read")
+        vdb::read(arguments);
+    else if (command == "make")
+        vdb::make(arguments);
+    else if (command == "convert")
+        vdb::convert(arguments);
+    else
+        return false;
+    return true;
+}
+
+void guarded(const std::string& command, const std::vector<std::string>& arguments) {
+    const std::string subject = arguments.empty() ? std::string() : "`" + arguments[0] + "`";
+    try {
+        if (!execute(command, arguments))
+            throw vdb::Failure(VdbFault::Kind::helper, "the helper `abbe-vdb` is not of this version");
+        vdb::writeFrame(VdbFrame::end);
+    } catch (const vdb::Failure& e) {
+        vdb::writeFrame(VdbFrame::fault, e.fault());
+    } catch (const std::bad_alloc&) {
+        vdb::writeFrame(VdbFrame::fault,
+                        VdbFault{VdbFault::Kind::memory,
+                                 subject + " needs more memory than there is, or than a sound file of its size would",
+                                 {}});
+    } catch (const std::exception& e) {
+        vdb::writeFrame(VdbFrame::fault,
+                        VdbFault{VdbFault::Kind::damaged, subject + " cannot be read: " + e.what(), {}});
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3 || ::isatty(STDOUT_FILENO)) {
+        std::fputs("abbe-vdb is started by abbe; see `abbe volume --help`\n", stderr);
+        return 2;
+    }
+    setLimits(argv[2]); // a file, or the kind of volume to make
+    guarded(argv[1], std::vector<std::string>(argv + 2, argv + argc));
+    ::_exit(0); // without the destructors of libraries, which have nothing to save
+}

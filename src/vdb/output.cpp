@@ -1,0 +1,25 @@
+#include "vdb/output.h"
+
+#include <cerrno>
+#include <unistd.h>
+
+namespace abbe::vdb {
+
+void writeBytes(const void* bytes, std::size_t size) {
+    const auto* next = static_cast<const char*>(bytes);
+    while (size > 0) {
+        const ssize_t written = ::write(STDOUT_FILENO, next, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) ::_exit(1);
+        next += written;
+        size -= static_cast<std::size_t>(written);
+    }
+}
+
+void writeFrame(VdbFrame kind, const std::string& content) {
+    const VdbFrameHead head{kind, 0, content.size()};
+    writeBytes(&head, sizeof head);
+    writeBytes(content.data(), content.size());
+}
+
+} // namespace abbe::vdb

@@ -1,0 +1,158 @@
+#include "volumes/vdb_file.h"
+
+#include "volumes/vdb_message.h"
+#include "volumes/vdb_process.h"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::uint64_t kMostContent = std::uint64_t{1} << 30; // of a frame that is not a grid
+
+// One run of the helper, frame by frame. The first fault is kept and ends it.
+class Conversation {
+  public:
+    Conversation(const std::vector<std::string>& arguments, std::string subject)
+        : process_(arguments), subject_(std::move(subject)) {
+        if (!process_.started()) fault_ = VdbFault{VdbFault::Kind::helper, process_.error(), {}};
+    }
+
+    // The next frame that is neither end nor fault.
+    std::optional<VdbFrame> next() {
+        if (fault_ || ended_) return std::nullopt;
+        VdbFrameHead head;
+        if (!process_.read(&head, sizeof head)) return died();
+        if (head.size > kMostContent) return damaged();
+        content_.resize(head.size);
+        if (!process_.read(content_.data(), content_.size())) return died();
+        if (head.kind == VdbFrame::fault) {
+            fault_.emplace();
+            if (!unpack(*fault_)) return damaged();
+            return std::nullopt;
+        }
+        ended_ = head.kind == VdbFrame::end;
+        return ended_ ? std::nullopt : std::optional(head.kind);
+    }
+    // Reads the content of the frame just given; false when it is not that.
+    template <typename T> bool unpack(T& value) const {
+        VdbUnpacker unpacker(content_);
+        unpacker(value);
+        return unpacker.ok();
+    }
+    bool read(GridBytes& bytes) {
+        if (process_.read(bytes.data(), bytes.size())) return true;
+        died();
+        return false;
+    }
+    std::nullopt_t damaged() {
+        fault_ = VdbFault{VdbFault::Kind::damaged, fmt::format("{} is damaged", subject_), {}};
+        return std::nullopt;
+    }
+    std::optional<VdbFault> takeFault() {
+        if (!fault_ && !ended_) damaged();
+        return std::move(fault_);
+    }
+
+  private:
+    std::nullopt_t died() {
+        const auto cause = process_.deathCause();
+        fault_ =
+            VdbFault{VdbFault::Kind::damaged,
+                     fmt::format("{} is damaged: the reader {}", subject_, cause.value_or("stopped in the middle")),
+                     {}};
+        return std::nullopt;
+    }
+
+    VdbProcess process_;
+    std::string subject_;
+    std::string content_;
+    std::optional<VdbFault> fault_;
+    bool ended_ = false;
+};
+
+std::optional<VdbFault> checkReadable(const std::string& path) {
+    const auto fault = [&](const char* why) {
+        return VdbFault{VdbFault::Kind::file, fmt::format("cannot read `{}`: {}", path, why), {}};
+    };
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) return fault(std::strerror(errno));
+    if (!S_ISREG(status.st_mode)) return fault("it is not a regular file");
+    return std::nullopt;
+}
+
+// Reads the grid behind a frame that announced it.
+bool receive(Conversation& talk, VdbGrid& grid) {
+    VdbGridHead head;
+    if (!talk.unpack(head) || !head.facts.indexToWorld.inverse()) {
+        talk.damaged();
+        return false;
+    }
+    GridBytes bytes(head.bytes);
+    if (!talk.read(bytes)) return false;
+    grid.notes = std::move(head.notes);
+    if (head.vector)
+        grid.vector = VectorGrid::adopt(std::move(bytes), std::move(head.facts));
+    else
+        grid.scalar = VoxelGrid::adopt(std::move(bytes), std::move(head.facts));
+    if (grid.vector || grid.scalar) return true;
+    talk.damaged();
+    return false;
+}
+
+std::string subjectOf(const std::string& path) { return fmt::format("`{}`", path); }
+
+} // namespace
+
+std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, std::span<const VdbRequest> requests) {
+    if (auto fault = checkReadable(path)) return *fault;
+    std::vector<std::string> arguments{"read", path};
+    for (const VdbRequest& r : requests) {
+        arguments.push_back(r.grid);
+        arguments.push_back(fmt::format("{}{}", static_cast<int>(r.use), r.optional ? "?" : ""));
+    }
+    Conversation talk(arguments, subjectOf(path));
+    std::vector<VdbGrid> grids;
+    while (const auto frame = talk.next()) {
+        if (*frame == VdbFrame::noGrid) {
+            grids.emplace_back();
+        } else if (*frame == VdbFrame::grid) {
+            grids.emplace_back();
+            if (!receive(talk, grids.back())) break;
+        }
+    }
+    if (auto fault = talk.takeFault()) return *fault;
+    if (grids.size() != requests.size())
+        return VdbFault{VdbFault::Kind::helper, "the helper `abbe-vdb` is not of this version", {}};
+    return grids;
+}
+
+std::variant<VdbFileInfo, VdbFault> inspectVdb(const std::string& path) {
+    if (auto fault = checkReadable(path)) return *fault;
+    Conversation talk({"info", path}, subjectOf(path));
+    VdbFileInfo info;
+    while (const auto frame = talk.next())
+        if (*frame == VdbFrame::fileInfo && !talk.unpack(info)) talk.damaged();
+    if (auto fault = talk.takeFault()) return *fault;
+    return info;
+}
+
+std::variant<std::string, VdbFault> runVdbHelper(const std::vector<std::string>& arguments,
+                                                 const std::function<void(double)>& progress) {
+    Conversation talk(arguments, "the volume");
+    std::string text;
+    while (const auto frame = talk.next()) {
+        double fraction = 0;
+        if (*frame == VdbFrame::text) talk.unpack(text);
+        if (*frame == VdbFrame::progress && progress && talk.unpack(fraction)) progress(fraction);
+    }
+    if (auto fault = talk.takeFault()) return *fault;
+    return text;
+}
+
+} // namespace abbe

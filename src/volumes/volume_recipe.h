@@ -1,0 +1,49 @@
+// Procedural volumes as functions of place: what `abbe volume make` writes.
+#pragma once
+
+#include "math/bounds.h"
+#include "math/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+struct RecipeField {
+    std::string_view name, unit;
+    int components = 1; // or 3
+};
+
+// The values of 8³ voxels, z fastest, one array per component of all fields in order.
+struct RecipeLeaf {
+    static constexpr int kVoxels = 512;
+    using Values = std::array<float, kVoxels>;
+    std::vector<Values> components;
+};
+
+// Immutable; any number of threads may evaluate leaves. The same seed gives the same volume at any resolution, with
+// more or fewer details.
+class VolumeRecipe {
+  public:
+    virtual ~VolumeRecipe() = default;
+    // Metres, y up. Outside everything is 0.
+    virtual Bounds3 bounds() const = 0;
+    virtual std::span<const RecipeField> fields() const = 0;
+    // Evaluates the voxels with centres corner + (i, j, k)·size. False if all are 0; the values are then not set.
+    virtual bool leaf(Vec3 corner, float size, RecipeLeaf& leaf) const = 0;
+};
+
+// "cumulus" (1 km wide: density), "smoke" (a plume of 6 m: density, velocity) or "fire" (2 m high: density,
+// temperature, flame). nullptr for other names.
+std::unique_ptr<VolumeRecipe> makeVolumeRecipe(std::string_view kind, std::uint32_t seed);
+
+std::unique_ptr<VolumeRecipe> makeCumulus(std::uint32_t seed);
+std::unique_ptr<VolumeRecipe> makeSmoke(std::uint32_t seed);
+std::unique_ptr<VolumeRecipe> makeFire(std::uint32_t seed);
+
+} // namespace abbe

@@ -1,0 +1,93 @@
+// Writes an OpenVDB file of awkward grids for the tests of volumes:  vdb_cases OUT.vdb
+#include <cmath>
+#include <limits>
+#include <openvdb/openvdb.h>
+
+namespace {
+
+using namespace openvdb;
+
+template <typename GridType> typename GridType::Ptr named(const char* name, GridClass c = GRID_FOG_VOLUME) {
+    auto grid = GridType::create();
+    grid->setName(name);
+    grid->setGridClass(c);
+    return grid;
+}
+
+// 4³ active voxels of the given value.
+template <typename GridType> typename GridType::Ptr block(const char* name, typename GridType::ValueType value) {
+    auto grid = named<GridType>(name);
+    grid->fill(CoordBBox(Coord(0), Coord(3)), value);
+    return grid;
+}
+
+FloatGrid::Ptr spoilt() {
+    auto grid = block<FloatGrid>("spoilt", 1.f);
+    auto a = grid->getAccessor();
+    a.setValue(Coord(0, 0, 0), std::numeric_limits<float>::quiet_NaN());
+    a.setValue(Coord(1, 0, 0), std::numeric_limits<float>::infinity());
+    a.setValue(Coord(2, 0, 0), -2.f);
+    a.setValueOff(Coord(50, 0, 0), 7.f);
+    return grid;
+}
+
+FloatGrid::Ptr withBackground() {
+    auto grid = FloatGrid::create(0.5f);
+    grid->setName("background");
+    grid->fill(CoordBBox(Coord(0), Coord(3)), 1.f);
+    return grid;
+}
+
+FloatGrid::Ptr farApart(const char* name, int distance) {
+    auto grid = named<FloatGrid>(name);
+    auto a = grid->getAccessor();
+    a.setValue(Coord(0, 0, 0), 1.f);
+    a.setValue(Coord(distance, 0, 0), 2.f);
+    a.setValue(Coord(-5, distance, -distance), 3.f);
+    return grid;
+}
+
+// Active tiles of the root, each 4096³ voxels.
+FloatGrid::Ptr vast() {
+    auto grid = named<FloatGrid>("vast");
+    for (int i = 0; i < 20; ++i) grid->tree().addTile(3, Coord(4096 * i, 0, 0), 1.f, true);
+    return grid;
+}
+
+FloatGrid::Ptr placed(const char* name, const math::MapBase::Ptr& map) {
+    auto grid = block<FloatGrid>(name, 1.f);
+    grid->setTransform(std::make_shared<math::Transform>(map));
+    return grid;
+}
+
+GridBase::Ptr turned() {
+    auto grid = block<FloatGrid>("turned", 1.f);
+    auto transform = math::Transform::createLinearTransform(0.5);
+    transform->postRotate(M_PI / 2, math::Z_AXIS);
+    transform->postTranslate(Vec3d(10, 20, 30));
+    grid->setTransform(transform);
+    return grid;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    initialize();
+    auto frustum = std::make_shared<math::NonlinearFrustumMap>(BBoxd(Vec3d(0), Vec3d(10)), 0.5, 10.0);
+    GridPtrVec grids{spoilt(),
+                     withBackground(),
+                     farApart("far", 1'000'000),
+                     farApart("too-far", 1 << 27),
+                     vast(),
+                     named<FloatGrid>("empty"),
+                     block<DoubleGrid>("double", 0.25),
+                     block<Int32Grid>("integer", 3),
+                     block<BoolGrid>("mask", true),
+                     block<Vec3DGrid>("wind", Vec3d(1, 2, 3)),
+                     placed("frustum", frustum),
+                     placed("flat", std::make_shared<math::ScaleMap>(Vec3d(1e-14, 1e17, 1e17))),
+                     turned()};
+    io::File(argv[1]).write(grids);
+    return 0;
+}
