@@ -80,7 +80,7 @@ std::unique_ptr<const Shape> SceneBuilder::withFaceMaterials(const LoadedShape& 
     std::vector<const Material*> materials{nullptr};
     for (const schema::GroupReference& group : loaded.common.groupMaterials) {
         usedMaterials_.insert(group.reference.index);
-        materials.push_back(materials_[group.reference.index].get());
+        materials.push_back(filled(materials_[group.reference.index].get(), loaded.common));
     }
     return std::make_unique<const FaceMaterials>(std::move(shape), std::move(materials), loaded.faceMaterials);
 }
