@@ -151,10 +151,11 @@ shape sphere { center 0 0 -3; radius 1; material dielectric { ior 1; absorption 
             sampler.start(0);
             Arena arena;
             PathCounters counters;
+            auto media = PathLoop<E>::makeMedia(scene.scene());
             // The eye is the origin of render space.
             const Ray ray{origin - Vec3{0, 0, 5}, normalize(direction)};
             const Spectrum seen =
-                PathLoop<E>(context, sampler, arena, counters).radiance(ray, lambda, 1e9f); // no roulette
+                PathLoop<E>(context, sampler, arena, counters, media).radiance(ray, lambda, 1e9f); // no roulette
             for (int lane = 0; lane < kLanes; ++lane) {
                 const double sigma = ink->at(static_cast<double>(lambda.nm[lane]));
                 CHECK(seen[lane] == doctest::Approx(2 * std::exp(-sigma * inInk - 0.25 * inSphere)).epsilon(1e-5));
