@@ -61,7 +61,8 @@ int main() {
             const Vec shown = p + (side * std::cos(angle) + other * std::sin(angle)) * (curl * s);
             for (double c : shown) put(body, static_cast<std::int16_t>(std::lround(c * kUnitsPerMetre)));
             body.push_back(static_cast<char>(std::lround(kRadius * (1 - 0.85 * s * s) * kUnitsPerMetre)));
-            d = unit(d + pull + Vec{0.15 * s, -0.9 * s, 0} + Vec{uniform(engine), uniform(engine), uniform(engine)} * 0.08);
+            d = unit(d + pull + Vec{0.15 * s, -0.9 * s, 0} +
+                     Vec{uniform(engine), uniform(engine), uniform(engine)} * 0.08);
             p = p + d * (length / (kPoints - 1));
         }
     }

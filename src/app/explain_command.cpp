@@ -18,7 +18,8 @@ struct EffectText {
 };
 constexpr EffectText kEffects[] = {
     {Effect::absorption, "absorption inside media", "no dielectric has an absorption"},
-    {Effect::dispersion, "dispersion", "no refractive index varies with wavelength"},
+    {Effect::media, "scattering in media", "no volume and no interior of a shape"},
+    {Effect::dispersion, "dispersion", "no refractive index and no extinction varies with wavelength"},
 };
 
 // Physics that this version does not have, whatever the scene says.
@@ -27,11 +28,9 @@ struct Limit {
     const char* why;
 };
 constexpr Limit kLimits[] = {
-    {"participating media", "light travels straight between surfaces; smoke and milk are not scattered in"},
     {"fluorescence", "light leaves a surface at the wavelength at which it arrived"},
     {"polarisation", "all light counts as unpolarised, also after reflection"},
     {"diffraction and interference", "geometrical optics; no thin films, no gratings"},
-    {"motion", "everything stands still while the shutter is open"},
 };
 
 // "room.scene:12:3  `material prism dielectric`"

@@ -26,6 +26,7 @@ std::string effectNames(Effects effects) {
     };
     add(Effect::absorption, "absorption");
     add(Effect::dispersion, "dispersion");
+    add(Effect::media, "media");
     return names.empty() ? "none" : names;
 }
 

@@ -1,0 +1,144 @@
+// What comes through media without scattering, against integrals; and both ways of finding it against each other.
+#include "integrators/medium_tracker.h"
+#include "media/atmosphere.h"
+#include "media/grid_medium.h"
+#include "media/henyey_greenstein.h"
+#include "media/homogeneous.h"
+#include "spectrum/sampled_curve.h"
+#include "support/statistics.h"
+
+#include <doctest/doctest.h>
+
+namespace abbe::test {
+namespace {
+
+class Slope final : public Curve { // from `low` at 360 nm to `high` at 830 nm
+  public:
+    Slope(double low, double high) : low_(low), high_(high) {}
+    Spectrum at(const Wavelengths& w) const override {
+        Spectrum s;
+        for (int i = 0; i < kLanes; ++i) s.v[i] = static_cast<float>(at(static_cast<double>(w.nm[i])));
+        return s;
+    }
+    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
+    bool isConstant() const override { return low_ == high_; }
+    double minimum() const override { return std::min(low_, high_); }
+    double maximum() const override { return std::max(low_, high_); }
+
+  private:
+    double low_, high_;
+};
+
+const Slope kBlack(0, 0);
+
+MediumOptics optics(const Curve& extinction, const Curve& albedo = kBlack) {
+    MediumOptics o;
+    o.extinction = &extinction;
+    o.albedo = &albedo;
+    o.phase = std::make_shared<HenyeyGreenstein>(0);
+    return o;
+}
+
+// Mean of both estimators over many rays of the same way, lane by lane, against e^(-extinction · integral).
+void check(const Medium& medium, const Ray& ray, float tMax, double integral) {
+    const Medium* const list[] = {&medium};
+    MediumTracker tracker(list);
+    const Wavelengths lambda = Wavelengths::sample(0.37f);
+    Moments direct[kLanes], tracked[kLanes];
+    for (std::uint64_t i = 0; i < 40'000; ++i) {
+        RandomStream random(mix64(i + 1));
+        const Spectrum t = tracker.transmittance(ray, tMax, {}, lambda, random);
+        Spectrum beta(1.f), density(1.f);
+        tracker.follow(ray, tMax, {}, lambda, random, {&beta, &density});
+        const float sum = mean(density);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            direct[lane].add(static_cast<double>(t[lane]));
+            // Black: what does not come through has no weight left. The balance over rotations of one set of
+            // wavelengths is not a lane's own mean, so only grey media are compared here.
+            tracked[lane].add(static_cast<double>(beta[lane] / sum));
+        }
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const double expected = std::exp(-medium.extinction().at(static_cast<double>(lambda.nm[lane])) * integral);
+        const auto error = [](const Moments& m) { return std::sqrt(m.variance() / m.count()) + 1e-6; };
+        CHECK(std::abs(direct[lane].mean() - expected) < 4.5 * error(direct[lane]));
+        if (medium.extinction().isConstant())
+            CHECK(std::abs(tracked[lane].mean() - expected) < 4.5 * error(tracked[lane]));
+    }
+    CHECK(tracker.counters.exceeded == 0);
+}
+
+// A bumpy ball of voxels of 0.1 m.
+VoxelGrid makeGrid() {
+    std::vector<Voxel> voxels;
+    for (int z = -12; z <= 12; ++z)
+        for (int y = -12; y <= 12; ++y)
+            for (int x = -12; x <= 12; ++x)
+                if (x * x + y * y + z * z <= 144)
+                    voxels.push_back(
+                        {{x, y, z},
+                         static_cast<float>((mix32(static_cast<std::uint32_t>(x * 961 + y * 31 + z + 100000)) & 1023) /
+                                            512.0)});
+    GridFacts facts;
+    facts.name = "density";
+    facts.indexToWorld = Transform::scale({0.1, 0.1, 0.1});
+    return makeVoxelGrid(voxels, facts);
+}
+
+} // namespace
+
+TEST_CASE("homogeneous: exact, without a lookup") {
+    const Slope extinction(0.2, 3.2);
+    const HomogeneousMedium medium(optics(extinction));
+    const Medium* const list[] = {&medium};
+    MediumTracker tracker(list);
+    const Wavelengths lambda = Wavelengths::sample(0.1f);
+    RandomStream random(1);
+    const Spectrum t = tracker.transmittance({{}, {0, 0, 1}}, 1.5f, {}, lambda, random);
+    for (int lane = 0; lane < kLanes; ++lane)
+        CHECK(t[lane] ==
+              doctest::Approx(std::exp(-1.5 * extinction.at(static_cast<double>(lambda.nm[lane])))).epsilon(1e-6));
+    CHECK(tracker.counters.lookups == 0);
+    const Spectrum dense = tracker.transmittance({{}, {0, 0, 1}}, kInfinity, {}, lambda, random);
+    CHECK_FALSE(anyNonZero(dense));
+}
+
+TEST_CASE("atmosphere: up, down, level and without an end") {
+    const Slope grey(0.7, 0.7), slope(0.1, 1.6);
+    for (const Curve* extinction : {static_cast<const Curve*>(&grey), static_cast<const Curve*>(&slope)}) {
+        const Atmosphere medium(optics(*extinction), {0, 1, 0}, -1, 2);      // ground 1 m below, e-folding in 2 m
+        const auto up = [](double h) { return 2 * (1 - std::exp(-h / 2)); }; // from the ground to height h
+        check(medium, {{}, {0, 1, 0}}, 3, up(4) - up(1));
+        check(medium, {{}, {0, 1, 0}}, kInfinity, 2 - up(1));
+        check(medium, {{}, {0, -1, 0}}, 2, up(1) + 1);
+        check(medium, {{}, {1, 0, 0}}, 2, 2 * std::exp(-0.5));
+        check(medium, {{}, {0.6f, 0.8f, 0}}, 5, (up(5) - up(1)) / 0.8);
+    }
+}
+
+TEST_CASE("voxels: both estimators against quadrature, whichever way the grid is turned") {
+    const Slope grey(0.9, 0.9), slope(0.2, 1.7);
+    const Transform places[] = {{}, Transform::rotate({1, 2, 3}, 0.7).then(Transform::translate({0.2, -0.1, 0.3}))};
+    for (const Curve* extinction : {static_cast<const Curve*>(&grey), static_cast<const Curve*>(&slope)})
+        for (const Transform& place : places) {
+            const GridMedium medium(optics(*extinction), makeGrid(), 1.5, place);
+            const VoxelGrid grid = makeGrid();
+            auto sampler = grid.sampler();
+            const Transform toIndex = *grid.indexToWorld().then(place).inverse();
+            for (const Vec3 direction : {Vec3{0, 0, 1}, normalize(Vec3{0.3f, 0.2f, 1})}) {
+                const Ray ray{{0.05f, 0.03f, -2}, direction};
+                constexpr int steps = 200'000;
+                double integral = 0;
+                for (int i = 0; i < steps; ++i) {
+                    const double t = 4.0 * (i + 0.5) / steps;
+                    integral += 4.0 / steps * 1.5 *
+                                static_cast<double>(
+                                    sampler.at(Vec3(toIndex.point(Vec3d(ray.origin) + Vec3d(ray.direction) * t))));
+                }
+                REQUIRE(integral > 0.5);
+                check(medium, ray, 4, integral);
+            }
+        }
+}
+
+} // namespace abbe::test
