@@ -32,7 +32,7 @@ says out "dispersion: on"
 says out "glass.scene:12"
 says out "polarisation"
 expect 0 explain "$scenes/room.scene"
-says out "no refractive index varies with wavelength"
+says out "no refractive index and no extinction varies with wavelength"
 expect 0 explain camera.lens
 says out "Focal length"
 expect 0 explain E0310
