@@ -1,6 +1,7 @@
 // What deformation costs: one mesh standing still and in several time steps. One thread, incoherent rays.
 //   deformation [levels of an icosphere, 20 · 4^levels triangles]
 //   deformation still: only rays against a room of quads and a still mesh, for counting instructions
+#include "bench/measure.h"
 #include "geometry/deforming_mesh.h"
 #include "geometry/embree_scene.h"
 #include "geometry/mesh.h"
@@ -10,35 +11,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <random>
-#include <time.h>
-#include <unistd.h>
 
 using namespace abbe;
 
 namespace {
-
-std::mt19937 engine(1);
-
-float uniform() { return std::uniform_real_distribution<float>(0, 1)(engine); }
-
-Vec3 inBall() {
-    for (;;)
-        if (const Vec3 v = Vec3(uniform(), uniform(), uniform()) * 2 - Vec3(1, 1, 1); lengthSquared(v) < 1) return v;
-}
-
-double seconds(clockid_t clock) {
-    timespec t;
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double residentBytes() {
-    std::size_t total = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> total >> resident;
-    return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 void measure(const char* name, const Shape& shape, std::size_t triangles, std::size_t own) {
     constexpr int rays = 1'000'000;

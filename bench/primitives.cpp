@@ -1,15 +1,13 @@
 // Bytes per primitive and rays per second of curves and points, one thread, incoherent rays.
 //   primitives [points, in thousands] [hairs, in thousands]
+#include "bench/measure.h"
 #include "geometry/curves.h"
 #include "geometry/embree_scene.h"
 #include "geometry/points.h"
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <random>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 using namespace abbe;
@@ -18,28 +16,6 @@ namespace {
 
 constexpr int kRays = 200'000;
 constexpr int kSegments = 10;
-
-std::mt19937 engine(1);
-
-float uniform() { return std::uniform_real_distribution<float>(0, 1)(engine); }
-
-Vec3 inBall() {
-    for (;;)
-        if (const Vec3 v = Vec3(uniform(), uniform(), uniform()) * 2 - Vec3(1, 1, 1); lengthSquared(v) < 1) return v;
-}
-
-// Of this thread, or of all of them: the machine may have other things to do.
-double seconds(clockid_t clock) {
-    timespec t;
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double residentBytes() {
-    std::size_t total = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> total >> resident;
-    return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 void measure(const char* name, const Shape& shape, std::size_t primitives, std::size_t own) {
     const double before = residentBytes(), start = seconds(CLOCK_PROCESS_CPUTIME_ID);

@@ -25,36 +25,51 @@ schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagn
     return curves_.metal(name, span, d);
 }
 
+// What has a name is made once, whatever its kind.
 schema::Reference SceneBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
-    if (definition.kind == Kind::texture) return texture(definition, diagnostics);
-    const bool named = !definition.name.empty();
-    if (definition.kind == Kind::phase || definition.kind == Kind::medium) {
-        if (const auto found = mediumIndex_.find(&definition); named && found != mediumIndex_.end())
-            return found->second;
-        const auto made = definition.kind == Kind::phase ? phaseReference(definition) : mediumReference(definition);
-        if (named) mediumIndex_[&definition] = made;
-        return made;
+    if (definition.name.empty()) return makeReference(definition, diagnostics);
+    if (const auto found = references_.find(&definition); found != references_.end()) return found->second;
+    const schema::Reference made = makeReference(definition, diagnostics);
+    references_[&definition] = made;
+    return made;
+}
+
+schema::Reference SceneBuilder::makeReference(const Definition& definition, Diagnostics& diagnostics) {
+    switch (definition.kind) {
+    case Kind::material:
+        return materialReference(definition, diagnostics);
+    case Kind::texture:
+        return textureReference(definition, diagnostics);
+    case Kind::phase:
+        return phaseReference(definition);
+    case Kind::medium:
+        return mediumReference(definition);
+    default:
+        return {};
     }
-    if (definition.kind != Kind::material) return {};
-    if (named)
-        if (const auto found = materialIndex_.find(&definition); found != materialIndex_.end()) return found->second;
-    const std::size_t before = diagnostics.errorCount();
-    const auto bindInto = [&](void* params) {
+}
+
+std::function<bool(void*)> SceneBuilder::binder(const Definition& definition, Diagnostics& diagnostics) {
+    return [this, &definition, &diagnostics](void* params) {
+        const std::size_t before = diagnostics.errorCount();
         schema::bind(definition, tree_, types_, *this, params, diagnostics);
         return diagnostics.errorCount() == before;
     };
-    schema::Reference result;
+}
+
+schema::Reference SceneBuilder::materialReference(const Definition& definition, Diagnostics& diagnostics) {
+    const auto bindInto = binder(definition, diagnostics);
     if (!definition.type) {
         bindInto(nullptr);
-    } else if (!checkPlanned(definition)) {
-        if (auto material = makeMaterial(definition.type->name, bindInto)) {
-            result.index = static_cast<std::uint32_t>(materials_.size());
-            materials_.push_back(std::move(material));
-            materialAskers_.emplace_back(result.index, definition.span);
-        }
+        return {};
     }
-    if (named) materialIndex_[&definition] = result;
-    return result;
+    if (checkPlanned(definition)) return {};
+    auto material = makeMaterial(definition.type->name, bindInto);
+    if (!material) return {};
+    materials_.push_back(std::move(material));
+    const auto index = static_cast<std::uint32_t>(materials_.size() - 1);
+    materialAskers_.emplace_back(index, definition.span);
+    return {index};
 }
 
 // True for a type of a later version, whose properties have then been checked.

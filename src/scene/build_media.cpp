@@ -14,13 +14,8 @@ namespace abbe {
 
 using schema::Kind;
 
-// Both are made once if they have a name.
 schema::Reference SceneBuilder::phaseReference(const Definition& d) {
-    const auto bindInto = [&](void* params) {
-        const std::size_t before = diagnostics_.errorCount();
-        schema::bind(d, tree_, types_, *this, params, diagnostics_);
-        return diagnostics_.errorCount() == before;
-    };
+    const auto bindInto = binder(d, diagnostics_);
     if (!d.type) {
         bindInto(nullptr);
         return {};
@@ -36,10 +31,13 @@ schema::Reference SceneBuilder::mediumReference(const Definition& d) {
     if (!params) return {};
     const auto optics = opticsOf(*params, d);
     if (!optics) return {};
-    mediumSpans_.resize(media_.size());
-    media_.push_back(std::make_unique<HomogeneousMedium>(*optics));
-    mediumSpans_.push_back(d.span);
-    return {static_cast<std::uint32_t>(media_.size() - 1)};
+    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics), d.span)};
+}
+
+std::uint32_t SceneBuilder::keepMedium(std::unique_ptr<const Medium> medium, Span definedAt) {
+    media_.push_back(std::move(medium));
+    mediumSpans_.push_back(definedAt);
+    return static_cast<std::uint32_t>(media_.size() - 1);
 }
 
 std::optional<MediumOptics> SceneBuilder::opticsOf(const MediumParams& params, const Definition& d) {
@@ -71,9 +69,7 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
         bound<MediumParams>(d);
     }
     if (!medium) return;
-    mediumSpans_.resize(media_.size() + 1);
-    media_.push_back(std::move(medium));
-    openMedia_.emplace_back(media_.back().get(), d.span);
+    openMedia_.emplace_back(media_[keepMedium(std::move(medium), d.span)].get(), d.span);
 }
 
 std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,

@@ -96,6 +96,10 @@ class SceneBuilder final : public schema::Resolver {
     template <typename P> std::optional<P> bound(const Definition&);
 
     // build.cpp
+    schema::Reference makeReference(const Definition&, Diagnostics&);
+    schema::Reference materialReference(const Definition&, Diagnostics&);
+    // Binds to the parameters that it is given; false after a diagnostic. Both arguments must outlive it.
+    std::function<bool(void*)> binder(const Definition&, Diagnostics&);
     void buildSettings(BuiltScene&);
     void finish(BuiltScene&);
     void noteEffects(BuiltScene&);
@@ -143,7 +147,7 @@ class SceneBuilder final : public schema::Resolver {
     void chooseFaceMaterials(LoadedShape&, const FaceGroups&);
     std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
     // textures.cpp
-    schema::Reference texture(const Definition&, Diagnostics&);
+    schema::Reference textureReference(const Definition&, Diagnostics&);
     const Texture* textureOf(schema::Reference) const; // null for none
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
@@ -156,6 +160,7 @@ class SceneBuilder final : public schema::Resolver {
     // build_media.cpp
     schema::Reference phaseReference(const Definition&);
     schema::Reference mediumReference(const Definition&);
+    std::uint32_t keepMedium(std::unique_ptr<const Medium>, Span definedAt);
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
     void placeVolume(const Definition&, const Place&);
     std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
@@ -210,18 +215,16 @@ class SceneBuilder final : public schema::Resolver {
     BuiltScene* built_ = nullptr;
 
     std::vector<std::unique_ptr<const Material>> materials_;
-    std::unordered_map<const Definition*, schema::Reference> materialIndex_; // of named materials
+    std::unordered_map<const Definition*, schema::Reference> references_; // of what has a name
     std::vector<std::unique_ptr<const Texture>> textures_;
-    std::unordered_map<const Definition*, schema::Reference> textureIndex_; // of named textures
-    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;            // who made it, for effects
-    std::map<double, std::optional<std::uint32_t>> plainMaterials_;         // by reflectance
-    std::set<std::uint32_t> usedMaterials_;                                 // of shapes that were placed
+    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;    // who made it, for effects
+    std::map<double, std::optional<std::uint32_t>> plainMaterials_; // by reflectance
+    std::set<std::uint32_t> usedMaterials_;                         // of shapes that were placed
     std::vector<std::shared_ptr<const PhaseFunction>> phases_;
     std::vector<std::unique_ptr<const Medium>> media_;
-    std::vector<Span> mediumSpans_; // where media that fill shapes are defined, like media_
+    std::vector<Span> mediumSpans_; // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
-    std::unordered_map<const Definition*, schema::Reference> mediumIndex_; // of named phases and media
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_

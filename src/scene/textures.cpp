@@ -7,25 +7,16 @@ const Texture* SceneBuilder::textureOf(schema::Reference reference) const {
     return reference.valid() ? textures_[reference.index].get() : nullptr;
 }
 
-// Like reference() of a material: a named texture is made once.
-schema::Reference SceneBuilder::texture(const Definition& definition, Diagnostics& diagnostics) {
-    const bool named = !definition.name.empty();
-    if (named)
-        if (const auto found = textureIndex_.find(&definition); found != textureIndex_.end()) return found->second;
-    const std::size_t before = diagnostics.errorCount();
-    const auto bindInto = [&](void* params) {
-        schema::bind(definition, tree_, types_, *this, params, diagnostics);
-        return diagnostics.errorCount() == before;
-    };
-    schema::Reference result;
+schema::Reference SceneBuilder::textureReference(const Definition& definition, Diagnostics& diagnostics) {
+    const auto bindInto = binder(definition, diagnostics);
     if (!definition.type) {
         bindInto(nullptr);
-    } else if (auto made = makeTexture(definition.type->name, bindInto, diagnostics)) {
-        result.index = static_cast<std::uint32_t>(textures_.size());
-        textures_.push_back(std::move(made));
+        return {};
     }
-    if (named) textureIndex_[&definition] = result;
-    return result;
+    auto made = makeTexture(definition.type->name, bindInto, diagnostics);
+    if (!made) return {};
+    textures_.push_back(std::move(made));
+    return {static_cast<std::uint32_t>(textures_.size() - 1)};
 }
 
 } // namespace abbe

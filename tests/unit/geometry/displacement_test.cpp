@@ -3,6 +3,7 @@
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
 #include "support/analytic_textures.h"
+#include "support/escapes.h"
 #include "support/statistics.h"
 #include "support/subdivision_cages.h"
 #include "support/subdivision_reference.h"
@@ -57,26 +58,6 @@ SubdivisionCage seamed(SubdivisionCage c) {
         first += c.faceSizes[f];
     }
     return c;
-}
-
-std::size_t escapes(MeshData diced, std::size_t rays, std::uint64_t seed) {
-    Vec3d sum;
-    for (const Vec3 p : diced.positions) sum += Vec3d(p);
-    const Vec3 inside(sum / static_cast<double>(diced.positions.size()));
-    const Mesh mesh(std::move(diced));
-    EmbreeSceneBuilder builder;
-    builder.addShape(mesh, {});
-    const auto scene = builder.build();
-    Random random(seed);
-    std::size_t escaped = 0;
-    for (std::size_t i = 0; i < rays; ++i) {
-        Vec3 d;
-        do d = {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1};
-        while (lengthSquared(d) > 1 || lengthSquared(d) < 1e-4f);
-        SurfaceHit hit;
-        escaped += !scene->intersect({inside, normalize(d)}, hit);
-    }
-    return escaped;
 }
 
 } // namespace
