@@ -20,6 +20,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
         cumulative_.push_back(sum);
         probability_.push_back(static_cast<float>(p));
         byLight_[light] = static_cast<float>(p);
+        if (light->emission()) byEmission_[light->emission()] = static_cast<float>(p);
     }
 }
 
@@ -35,6 +36,11 @@ float LightSampler::probability(const Light* light) const noexcept {
     if (lights_.size() == 1) return 1;
     const auto found = byLight_.find(light);
     return found != byLight_.end() ? found->second : 0;
+}
+
+float LightSampler::probability(const MediumEmission* emission) const noexcept {
+    const auto found = byEmission_.find(emission);
+    return found != byEmission_.end() ? found->second : 0;
 }
 
 } // namespace abbe

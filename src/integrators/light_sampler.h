@@ -27,6 +27,8 @@ class LightSampler {
     PickedLight pick(float u) const noexcept;
     // Probability with which `light`, one of the scene's, is picked.
     float probability(const Light* light) const noexcept;
+    // That of the light which samples this emission; 0 if none does.
+    float probability(const MediumEmission* emission) const noexcept;
     // Lights that rays which leave the scene meet.
     const std::vector<const Light*>& infinite() const { return infinite_; }
 
@@ -36,6 +38,7 @@ class LightSampler {
     std::vector<float> probability_;
     std::vector<const Light*> infinite_;
     std::unordered_map<const Light*, float> byLight_;
+    std::unordered_map<const MediumEmission*, float> byEmission_;
 };
 
 } // namespace abbe

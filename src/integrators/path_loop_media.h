@@ -30,7 +30,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceH
     return Arrival::nowhere;
 }
 
-// The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1.
+// The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1 but for wavelengths.
 template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_t depth) {
     if (!anyNonZero(path_.beta)) return false;
     const PhaseFunction& phase = collided_->phase();
@@ -42,6 +42,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     path_.from = ray.origin;
     path_.bsdfPdf = phase.value(cosine);
     path_.delta = false;
+    if (phase.spectral()) path_.beta *= phase.ratio(cosine, path_.lambda);
     if constexpr (kDispersion) {
         path_.densities.before = path_.densities.unidirectional;
         path_.densities.direction = path_.densities.unidirectional;
@@ -56,7 +57,8 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     const PickedLight picked = context_.lights.pick(sample.pick);
     const auto light = picked.light->sample(p, sample.light, path_.lambda, path_.time);
     if (!light) return;
-    const float value = collided_->phase().value(dot(direction, light->wi));
+    const PhaseFunction& phase = collided_->phase();
+    const float cosine = dot(direction, light->wi), value = phase.value(cosine);
     if (!(value > 0)) return;
     ++counters_.shadowRays;
     const Spectrum passing = transmittance(p, *light, path_.inside, depth);
@@ -66,6 +68,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     eval.pdfSolidAngle = value;
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
+    if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);
     if constexpr (kAbsorption)
         if (const Curve* clear = path_.interior.absorption; clear && light->distance < kInfinity)
             contribution *= exp(clear->at(path_.lambda) * -light->distance);

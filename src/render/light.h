@@ -10,6 +10,8 @@
 
 namespace abbe {
 
+class MediumEmission;
+
 // Light arriving from one direction. Delta lights carry in `radiance` what a density of 1 makes right: intensity / d².
 struct LightSample {
     LightSample(Vec3 direction, Vec3 point, float toPoint, const Spectrum& arriving, float pdf, bool isDelta = false)
@@ -33,6 +35,11 @@ class Light {
     virtual double power() const = 0;
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
+    // A point near which all of it is, so that distances along rays can be drawn by how near they come; nothing for
+    // lights without a place.
+    virtual std::optional<Vec3> centre(float) const noexcept { return std::nullopt; }
+    // What this light samples, if it is a medium that shines: found along rays, never as a surface.
+    virtual const MediumEmission* emission() const { return nullptr; }
     // Light that can arrive at `from`; nothing if none can. u in [0, 1)². Here and below `time` is Ray::time, which
     // only lights that move look at.
     virtual std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept = 0;

@@ -3,19 +3,13 @@
 
 #include "math/bounds.h"
 #include "render/effects.h"
+#include "render/medium_emission.h"
 #include "render/phase_function.h"
 #include "render/ray.h"
+#include "render/walk_space.h"
 #include "spectrum/curve.h"
 
-#include <cstddef>
-
 namespace abbe {
-
-// A stretch of a ray along which a medium's density is known to stay within bounds. Distances along the ray.
-struct MediumSegment {
-    float tNear = 0, tFar = 0;
-    float minimum = 0, mean = 0, maximum = 0; // of the density; `mean` is any value between, the nearer the better
-};
 
 // One ray through one medium: its segments in order, between which there is nothing, and the density on them.
 class MediumWalk {
@@ -25,19 +19,11 @@ class MediumWalk {
     virtual bool next(MediumSegment&) noexcept = 0;
     // Density at a distance along the ray, within the last segment; finite, >= 0.
     virtual float density(float t) noexcept = 0;
+    // In place of Medium::albedo(), at such a distance; called only where Medium::albedoVaries().
+    virtual Spectrum albedo(float, const Wavelengths&) noexcept { return Spectrum(1.f); }
 
   protected:
     ~MediumWalk() = default; // never deleted: walks are trivially destructible and live in a WalkSpace
-};
-
-// Where one walk lives; reused from ray to ray.
-struct WalkSpace {
-    alignas(32) std::byte bytes[768];
-
-    template <typename T, typename... Args> T* make(Args&&... args) {
-        static_assert(sizeof(T) <= sizeof(bytes) && alignof(T) <= 32 && std::is_trivially_destructible_v<T>);
-        return new (bytes) T(std::forward<Args>(args)...);
-    }
 };
 
 // Extinction is density(x) · extinction(λ): absorption and scattering vary in space together. Immutable, thread-safe,
@@ -52,6 +38,10 @@ class Medium {
     virtual const Curve& extinction() const = 0; // 1/m at density 1
     virtual const Curve& albedo() const = 0;     // share of the extinction that is scattering, in [0, 1]
     virtual const PhaseFunction& phase() const = 0;
+    // True where the walk's albedo() tells more than albedo(), which then bounds it.
+    virtual bool albedoVaries() const { return false; }
+    // Null for media that do not shine.
+    virtual const MediumEmission* emission() const { return nullptr; }
 
     Effects needs() const {
         Effects effects = Effect::media;
