@@ -14,8 +14,9 @@ float finite(double length) { return static_cast<float>(std::min(length, 1e30));
 } // namespace
 
 MediumTracker::MediumTracker(std::span<const Medium* const> open)
-    : open_(open), spaces_(open.size() + MediumStack::kMax) {
+    : open_(open), spaces_(open.size() + MediumStack::kMax), glowSpaces_(spaces_.size()) {
     active_.reserve(spaces_.size());
+    glows_.reserve(spaces_.size());
 }
 
 void MediumTracker::add(const Medium* medium, const Ray& ray, float tMax, const Wavelengths& lambda) {
@@ -61,13 +62,22 @@ MediumTracker::Active* MediumTracker::nextEvent() {
 }
 
 MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
-                                      RandomStream& random, TrackedWeights weights) {
+                                      RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
     start(ray, tMax, inside, lambda);
+    glows_.clear();
+    if (listener) startGlows(ray, tMax, inside, random);
     for (Active& a : active_) {
         a.optical = random.exponential();
         schedule(a, a.segment.tNear);
     }
-    while (Active* a = nextEvent()) {
+    for (;;) {
+        Active* a = nextEvent();
+        if (Glow* glow = nextGlow(); glow && (!a || glow->next < a->next)) {
+            shine(*glow, lambda, weights, *listener);
+            if (!advance(*glow, random)) glow->walk = nullptr;
+            continue;
+        }
+        if (!a) break;
         const float t = a->next;
         if (!a->collides) {
             if (!advance(*a)) a->walk = nullptr;
@@ -83,6 +93,44 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
     }
     shareDistance(tMax, weights);
     return {};
+}
+
+void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& inside, RandomStream& random) {
+    const auto add = [&](const Medium* medium) {
+        const MediumEmission* emission = medium->emission();
+        if (!emission) return;
+        EmissionWalk* walk = emission->walk(ray, tMax, glowSpaces_[glows_.size()]);
+        if (!walk) return;
+        Glow& glow = glows_.emplace_back();
+        glow.emission = emission;
+        glow.walk = walk;
+        if (!advance(glow, random)) glows_.pop_back();
+    };
+    for (const Medium* medium : open_) add(medium);
+    for (int i = 0; i < inside.size(); ++i) add(inside[i]);
+}
+
+bool MediumTracker::advance(Glow& glow, RandomStream& random) {
+    if (!glow.walk->next(glow.segment)) return false;
+    glow.next = glow.segment.tNear + random.uniform() * (glow.segment.tFar - glow.segment.tNear);
+    return true;
+}
+
+MediumTracker::Glow* MediumTracker::nextGlow() {
+    Glow* first = nullptr;
+    for (Glow& glow : glows_)
+        if (glow.walk && (!first || glow.next < first->next)) first = &glow;
+    return first;
+}
+
+// One place drawn evenly stands for its segment. Whether the path gets there is what its collisions decided.
+void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWeights weights,
+                          EmissionListener& listener) const {
+    const Spectrum amount = glow.walk->emitted(glow.next, lambda) * (glow.segment.tFar - glow.segment.tNear);
+    if (!anyNonZero(amount)) return;
+    Spectrum beta = *weights.beta, density = weights.density ? *weights.density : Spectrum(1.f);
+    shareDistance(glow.next, {&beta, weights.density ? &density : nullptr});
+    listener.shines(*glow.emission, glow.next, amount, beta, density);
 }
 
 // A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that

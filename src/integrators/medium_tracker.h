@@ -21,6 +21,17 @@ struct MediumCollision {
     float t = 0;
 };
 
+// Is told what shines along a ray: estimates whose sum over the ray is the light that its media add to it.
+class EmissionListener {
+  public:
+    // `amount`: radiance given off around the distance `t`, not yet weighed; the weights are those of the path at `t`.
+    virtual void shines(const MediumEmission&, float t, const Spectrum& amount, const Spectrum& beta,
+                        const Spectrum& density) = 0;
+
+  protected:
+    ~EmissionListener() = default;
+};
+
 // What a ray has met so far.
 struct MediumCounters {
     std::uint64_t collisions = 0; // tentative ones
@@ -35,9 +46,10 @@ class MediumTracker {
     explicit MediumTracker(std::span<const Medium* const> open);
 
     // Follows a ray to tMax or to where it is scattered, whichever comes first. Absorption is never an event: it is a
-    // weight, so that a path that loses a tenth of its light does not end in one of ten cases.
+    // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
+    // the way, at one place in every segment that shines.
     MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
-                           TrackedWeights);
+                           TrackedWeights, EmissionListener* = nullptr);
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
     // [Novak2014] with the mean density of each segment as control.
     Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);
@@ -58,7 +70,18 @@ class MediumTracker {
         bool collides; // at `next`
     };
 
+    struct Glow {
+        const MediumEmission* emission;
+        EmissionWalk* walk;
+        MediumSegment segment;
+        float next; // where it is asked
+    };
+
     void start(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&);
+    void startGlows(const Ray&, float tMax, const MediumStack& inside, RandomStream&);
+    bool advance(Glow&, RandomStream&);
+    Glow* nextGlow();
+    void shine(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
     void add(const Medium*, const Ray&, float tMax, const Wavelengths&);
     static void schedule(Active&, float from);
     static bool advance(Active&);
@@ -69,8 +92,9 @@ class MediumTracker {
     bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
 
     std::span<const Medium* const> open_;
-    std::vector<WalkSpace> spaces_;
+    std::vector<WalkSpace> spaces_, glowSpaces_;
     std::vector<Active> active_;
+    std::vector<Glow> glows_;
 };
 
 } // namespace abbe

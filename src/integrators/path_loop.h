@@ -79,6 +79,7 @@ template <EffectBits E> class PathLoop {
     Arrival arrive(Ray&, SurfaceHit&, std::uint32_t depth);
     Arrival arriveThroughMedia(Ray&, SurfaceHit&, std::uint32_t depth);
     bool scatterInMedium(Ray&, std::uint32_t depth);
+    class GlowCollector;
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
     Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, std::uint32_t depth);
     void meetLight(const SurfaceHit&, Vec3 direction);
@@ -103,7 +104,12 @@ template <EffectBits E> class PathLoop {
     static bool sidesAgree(const SurfaceHit&, const Directions&, Vec3 wi, Vec3 wiRender);
     // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation
     // would have found it with density `lightPdf` (0: could not).
-    float scatteringWeight(float lightPdf) const;
+    float scatteringWeight(float lightPdf) const {
+        if constexpr (kDispersion) return scatteringWeight(lightPdf, path_.densities.unidirectional);
+        return scatteringWeight(lightPdf, Spectrum(1.f));
+    }
+    // The same where the path's densities have come to be `unidirectional`.
+    float scatteringWeight(float lightPdf, const Spectrum& unidirectional) const;
     // The same for a contribution found on a light with density `lightPdf`, when the BSDF's is `eval`.
     float lightWeight(float lightPdf, const BsdfEval& eval, bool delta) const;
 
@@ -171,7 +177,8 @@ bool PathLoop<E>::sidesAgree(const SurfaceHit& hit, const Directions& eye, Vec3 
     return (eye.wo.z * wi.z > 0) == reflectsGeometrically;
 }
 
-template <EffectBits E> float PathLoop<E>::scatteringWeight(float lightPdf) const {
+template <EffectBits E>
+float PathLoop<E>::scatteringWeight(float lightPdf, [[maybe_unused]] const Spectrum& unidirectional) const {
     if constexpr (kDispersion) {
         const auto& d = path_.densities;
         if constexpr (kMedia) {
@@ -179,9 +186,9 @@ template <EffectBits E> float PathLoop<E>::scatteringWeight(float lightPdf) cons
             // transmittance as it likes; the balance of the wavelengths goes all the way.
             const float share =
                 mean(d.direction) / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), d.direction));
-            return share / mean(d.unidirectional);
+            return share / mean(unidirectional);
         }
-        return 1 / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), d.unidirectional));
+        return 1 / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), unidirectional));
     }
     return 1 / (1 + lightPdf / path_.bsdfPdf);
 }

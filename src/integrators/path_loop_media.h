@@ -3,16 +3,43 @@
 
 namespace abbe {
 
+// Adds up what media give off along a ray, weighed against sampling them as lights.
+template <EffectBits E> class PathLoop<E>::GlowCollector final : public EmissionListener {
+  public:
+    GlowCollector(PathLoop& loop, const Ray& ray) : loop_(loop), ray_(ray) {}
+
+    void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
+                const Spectrum& density) override {
+        PathState<E>& path = loop_.path_;
+        const Strategy strategy = loop_.context_.settings.strategy;
+        float lightPdf = 0;
+        if (!path.delta && strategy != Strategy::bsdfOnly)
+            lightPdf = loop_.context_.lights.probability(&emission) *
+                       emission.pdfSolidAngle(path.from, ray_.origin + ray_.direction * t);
+        if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
+        Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
+        if constexpr (kAbsorption)
+            if (const Curve* clear = path.interior.absorption) arriving *= exp(clear->at(path.lambda) * -t);
+        path.radiance += arriving;
+    }
+
+  private:
+    PathLoop& loop_;
+    const Ray& ray_;
+};
+
 // Goes on to the next surface or collision, straight through shapes that are only the boundary of a medium.
 template <EffectBits E>
 typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
     RandomStream random = sampler_.stream(2 * depth);
     TrackedWeights weights{&path_.beta, nullptr};
     if constexpr (kDispersion) weights.density = &path_.densities.unidirectional;
+    GlowCollector glow(*this, ray);
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
         const bool met = context_.scene.intersector->intersect(ray, hit);
         const float tMax = met ? hit.distance : kInfinity;
-        const MediumCollision collision = media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights);
+        const MediumCollision collision =
+            media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights, &glow);
         if constexpr (kAbsorption)
             if (met) absorb(hit, ray.direction, collision.medium ? collision.t : tMax);
         if (collision.medium) {
