@@ -18,6 +18,7 @@ constexpr const char* kMakeHelp = R"(Makes a procedural volume and writes it as 
   cumulus   1 km wide: density
   smoke     a plume of 6 m: density, velocity
   fire      2 m high: density, temperature, flame
+  candle    a flame of 3 cm: density, temperature, flame
 
 Examples:
   abbe volume make cumulus cloud.vdb --resolution 1000
@@ -67,9 +68,9 @@ void addVolumeActions(CLI::App& command, VolumeOptions& v, bool& json) {
     info->add_option("file", v.input, "OpenVDB file")->required()->type_name("");
     info->add_flag("--json", json, "JSON on stdout");
     CLI::App* make = addAction(command, "make", kMakeHelp, v, VolumeOptions::Action::make);
-    make->add_option("kind", v.input, "cumulus, smoke or fire")
+    make->add_option("kind", v.input, "cumulus, smoke, fire or candle")
         ->required()
-        ->check(CLI::IsMember({"cumulus", "smoke", "fire"}).description(""))
+        ->check(CLI::IsMember({"cumulus", "smoke", "fire", "candle"}).description(""))
         ->type_name("");
     make->add_option("output", v.output, "OpenVDB file to write")->required()->type_name("");
     make->add_option("--resolution", v.resolution, "Voxels along the longest side")

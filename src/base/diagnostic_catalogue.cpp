@@ -145,6 +145,8 @@ constexpr CodeInfo kCodes[] = {
     {"E0642", "an OpenVDB file cannot be used", "The file is damaged or not an OpenVDB file, or the grid is of a kind that cannot be a density: points, vectors, a level set, a transform that is not affine."},
     {"E0643", "no grid of that name", "The OpenVDB file has no grid of that name. `abbe volume info FILE` lists those that it has."},
     {"E0644", "a volume in an object or on its way", "A `volume` stands at the top level or in a group that stands still. A medium that fills a shape (`interior`) goes where the shape goes."},
+    {"E0646", "a volume drifts too far", "What `velocity` moves while the shutter is open goes beyond 256 voxels. The velocity is in units of the file's world per second; `time` is the moment of the file's fields."},
+    {"E0647", "a medium cannot shine so", "A medium shines by `emission`, or by `temperature` times what it absorbs or an `emissivity`; one of them is said twice or lacks its other half."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},
     {"E0660", "a damaged cage", "A face, crease, corner or hole of a subdivision surface names what is not there, a face has fewer than three or repeated corners, `scheme loop` meets more than triangles, or a crease is no edge of a face. Everything is counted from 0."},
     {"E0670", "no texture coordinates to displace by", "A displacement by an image, or along tangents, follows the texture coordinates of the cage: `vt` in an OBJ file, or `uvs`. Noise needs none."},
@@ -167,6 +169,8 @@ constexpr CodeInfo kCodes[] = {
     {"W0680", "keys off the grid", "What deforms moves between at most 129 equally spaced times, the first when the shutter opens and the last when it closes. Keys that lie between them are replaced by what the steps say there; the message says how far that moves a point. Keys at simple fractions of the exposure, halves or tenths, are exact."},
     {"W0690", "voxels were put right", "Values that are not numbers or negative count as 0, and so on; the message says what and how many."},
     {"W0691", "an empty grid", "The grid of this volume has no voxels: nothing of it will be seen."},
+    {"W0692", "colours that are no share", "Components of a `color` grid are shares of the light that is scattered, within 0 and 1; those outside count as the nearest within."},
+    {"W0693", "nothing glows", "The volume has a temperature but is nowhere above 400 K where there is anything to glow. Files often hold temperatures from 0 to 1: `temperature scale=1500` makes kelvin of them."},
 };
 // clang-format on
 

@@ -1,18 +1,29 @@
 #include "media/grid_medium.h"
 
-#include "base/check.h"
 #include "volumes/brick_walk.h"
 
 namespace abbe {
 
 namespace {
 
+// Along a line; what the medium has besides its density is there if it is given.
+struct GridParts {
+    const GridField<float>& density;
+    const BrickBounds& bricks;
+    const GridColor* color;
+    const GridMotion* motion;
+    const Curve& albedo;
+    float factor, thickest;
+};
+
 class GridWalk final : public MediumWalk {
   public:
-    GridWalk(const VoxelGrid& grid, const BrickBounds& bricks, Vec3d origin, Vec3d direction, float tMax, float factor,
-             float thickest)
-        : walk_(bricks, origin, direction, 0, tMax, thickest), sampler_(grid.sampler()), origin_(origin),
-          direction_(direction), factor_(factor) {}
+    GridWalk(const GridParts& parts, const Ray& ray, float tMax)
+        : density_(parts.density, Vec3d(ray.origin), Vec3d(ray.direction)),
+          walk_(parts.bricks, density_.origin(), density_.direction(), 0, tMax, parts.thickest),
+          color_(parts.color, Vec3d(ray.origin), Vec3d(ray.direction)),
+          motion_(parts.motion, Vec3d(ray.origin), Vec3d(ray.direction), ray.time), albedo_(&parts.albedo),
+          factor_(parts.factor) {}
 
     bool next(MediumSegment& s) noexcept override {
         BrickSegment brick;
@@ -21,76 +32,69 @@ class GridWalk final : public MediumWalk {
         return true;
     }
     float density(float t) noexcept override {
-        // In double: far from the grid's origin a place in float would miss its brick's bounds.
-        return sampler_.at(Vec3(origin_ + direction_ * static_cast<double>(t))) * factor_;
+        return (motion_.moves() ? density_.at(t, motion_.shift(t)) : density_.at(t)) * factor_;
+    }
+    Spectrum albedo(float t, const Wavelengths& lambda) noexcept override {
+        return albedo_->at(lambda) * (motion_.moves() ? color_.at(t, motion_.shift(t), lambda) : color_.at(t, lambda));
     }
 
   private:
+    FieldAlong<float> density_;
     BrickWalk walk_;
-    VoxelGrid::Sampler sampler_;
-    Vec3d origin_, direction_; // index space
+    ColorAlong color_;
+    MotionAlong motion_;
+    const Curve* albedo_;
     float factor_;
 };
 
+template <typename T> const T* pointer(const std::optional<T>& o) { return o ? &*o : nullptr; }
+
 } // namespace
 
-GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const Transform& worldToRender)
-    : optics_(std::move(optics)), grid_(std::move(grid)), bricks_(BrickBounds::build(grid_)),
-      factor_(static_cast<float>(factor)) {
-    const Transform toRender = grid_.indexToWorld().then(worldToRender);
-    const auto inverse = toRender.inverse();
-    ABBE_CHECK(inverse.has_value());
-    toIndex_ = *inverse;
+GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const Transform& worldToRender,
+                       GridExtras extras)
+    : optics_(std::move(optics)), density_(std::move(grid), worldToRender), factor_(static_cast<float>(factor)) {
+    if (extras.color)
+        color_ =
+            GridColor{GridField<Vec3>(std::move(extras.color->grid), worldToRender), std::move(extras.color->table)};
+    if (extras.velocity) {
+        motion_.emplace(std::move(*extras.velocity), worldToRender);
+        if (!motion_->moves()) motion_.reset();
+    }
+    bricks_ = BrickBounds::build(density_.grid(), static_cast<float>(drift()));
     thickest_ = factor_ * static_cast<float>(optics_.extinction->maximum());
-    const Bounds3 box = grid_.support();
-    if (grid_.empty()) return;
+    if (extras.flame) flame_.emplace(std::move(extras.flame->grid), worldToRender);
+    if (extras.temperature) temperature_.emplace(std::move(extras.temperature->grid), worldToRender);
+    if (extras.glow) makeEmission(*extras.glow, extras);
+    if (density_.grid().empty()) return;
+    const Bounds3 box = density_.grid().support();
+    const double more = drift();
     for (int corner = 0; corner < 8; ++corner)
-        bounds_.add(Vec3(toRender.point({static_cast<double>(corner & 1 ? box.upper.x : box.lower.x),
-                                         static_cast<double>(corner & 2 ? box.upper.y : box.lower.y),
-                                         static_cast<double>(corner & 4 ? box.upper.z : box.lower.z)})));
+        bounds_.add(Vec3(density_.toRender().point(
+            {corner & 1 ? static_cast<double>(box.upper.x) + more : static_cast<double>(box.lower.x) - more,
+             corner & 2 ? static_cast<double>(box.upper.y) + more : static_cast<double>(box.lower.y) - more,
+             corner & 4 ? static_cast<double>(box.upper.z) + more : static_cast<double>(box.lower.z) - more})));
+}
+
+void GridMedium::makeEmission(const Glow& glow, const GridExtras& extras) {
+    EmissionFields fields{.amount = {&density_, factor_, 0},
+                          .temperature = {},
+                          .glow = glow,
+                          .color = glow.byAlbedo() ? pointer(color_) : nullptr,
+                          .motion = pointer(motion_)};
+    if (flame_) fields.amount = {&*flame_, static_cast<float>(extras.flame->scale), 0};
+    if (glow.thermal()) {
+        ABBE_CHECK(temperature_.has_value());
+        fields.temperature = {&*temperature_, static_cast<float>(extras.temperature->scale),
+                              static_cast<float>(extras.temperature->offset)};
+    }
+    auto emission = std::make_unique<GridEmission>(fields);
+    if (!emission->dark()) emission_ = std::move(emission);
 }
 
 MediumWalk* GridMedium::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
-    return space.make<GridWalk>(grid_, bricks_, toIndex_.point(Vec3d(ray.origin)),
-                                toIndex_.vector(Vec3d(ray.direction)), tMax, factor_, thickest_);
-}
-
-schema::TypeInfo vdbType() {
-    using namespace schema;
-    using P = VdbParams;
-    std::vector<FieldInfo> fields = {
-        field<P, Text>(FieldType::file, "file", &P::file)
-            .argument(0)
-            .required()
-            .synonyms({"filename", "path"})
-            .doc("OpenVDB file.")
-            .example("file \"cloud.vdb\""),
-        field<P, Text>(FieldType::text, "grid", &P::grid)
-            .synonyms({"density", "grid_name", "field"})
-            .doc("Name of the grid that is the density; \"density\" when absent.")
-            .example("grid \"smoke\""),
-        field<P, double>(FieldType::number, "scale", &P::scale)
-            .range(0, 1e12)
-            .byDefault("1")
-            .synonyms({"density_scale", "multiplier"})
-            .doc("Factor of the density.")
-            .example("scale 2.5"),
-        field<P, bool>(FieldType::toggle, "level-set", &P::levelSet)
-            .byDefault("off")
-            .doc("Whether a level set may be used: it becomes fog of density 1 with a soft edge.")
-            .example("level-set on"),
-    };
-    addOpticsFields<P>(fields);
-    fields.push_back(field<P, Transform>(FieldType::transform, "transform", &P::transform)
-                         .synonyms({"to_world", "toWorld", "xform"})
-                         .doc("Places the volume: steps from top to bottom, as applied to the object.")
-                         .example("transform { scale 2; translate 0 1 0 }"));
-    return {Kind::volume,
-            "vdb",
-            "Density from an OpenVDB grid: cloud, smoke.",
-            "volume cloud vdb \"cloud.vdb\" { extinction 0.08 per-m; phase henyey-greenstein 0.85 }",
-            false,
-            std::move(fields)};
+    const GridParts parts{density_, bricks_, pointer(color_), pointer(motion_), *optics_.albedo, factor_, thickest_};
+    return space.make<GridWalk>(parts, ray, tMax);
 }
 
 } // namespace abbe

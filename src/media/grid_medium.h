@@ -1,42 +1,63 @@
-// Clouds and smoke from voxels.
+// Clouds, smoke and fire from voxels.
 #pragma once
 
-#include "math/transform.h"
+#include "media/grid_emission.h"
 #include "media/medium_optics.h"
 #include "render/medium.h"
-#include "volumes/brick_bounds.h"
 
 namespace abbe {
 
-// Density is that of the grid times a factor, trilinear between voxels. Owns grid and bounds.
+// value = offset + scale · grid.
+struct ScaledGrid {
+    VoxelGrid grid;
+    double scale = 1, offset = 0;
+};
+
+// What a volume may have besides its density. Grids are in the world of the density's.
+struct GridExtras {
+    struct Color {
+        VectorGrid grid;
+        std::unique_ptr<const UpsamplingTable> table;
+    };
+    std::optional<Color> color;                   // factor of the albedo
+    std::optional<GridVelocity> velocity;         // carries all other grids along
+    std::optional<Glow> glow;                     // shines, by ...
+    std::optional<ScaledGrid> flame, temperature; // ... the first as its amount, else the density; 1/m or so and K
+};
+
+// Density is that of the grid times a factor, trilinear between voxels. Owns its grids and their bounds.
 class GridMedium final : public Medium {
   public:
-    // `worldToRender` places the grid's own world. Requires an invertible transform and factor >= 0.
-    GridMedium(MediumOptics, VoxelGrid, double factor, const Transform& worldToRender);
+    // `worldToRender` places the grids' own world. Requires an invertible transform, factor >= 0, and a temperature
+    // if the glow is thermal.
+    GridMedium(MediumOptics, VoxelGrid, double factor, const Transform& worldToRender, GridExtras extras = {});
+    GridMedium(const GridMedium&) = delete;
+    GridMedium& operator=(const GridMedium&) = delete;
 
     Bounds3 bounds() const override { return bounds_; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     const Curve& extinction() const override { return *optics_.extinction; }
     const Curve& albedo() const override { return *optics_.albedo; }
     const PhaseFunction& phase() const override { return *optics_.phase; }
+    bool albedoVaries() const override { return color_.has_value(); }
+    const MediumEmission* emission() const override { return emission_.get(); }
+    const GridEmission* gridEmission() const { return emission_.get(); } // null: nothing shines
+
+    // How far in voxels of the density anything moves while the shutter is open, along any axis.
+    double drift() const { return motion_ ? driftInVoxels(*motion_, density_) : 0; }
 
   private:
+    void makeEmission(const Glow&, const GridExtras&);
+
     MediumOptics optics_;
-    VoxelGrid grid_;
-    BrickBounds bricks_;
-    Transform toIndex_; // render space to index space
+    GridField<float> density_;
+    std::optional<GridColor> color_;
+    std::optional<GridMotion> motion_; // only if something moves
+    std::optional<GridField<float>> flame_, temperature_;
+    BrickBounds bricks_; // wherever things are while the shutter is open
     Bounds3 bounds_;
     float factor_, thickest_; // `thickest_`: greatest extinction at density 1 of the grid, 1/m
+    std::unique_ptr<const GridEmission> emission_;
 };
-
-// `volume vdb`: grids from a file.
-struct VdbParams : MediumParams {
-    schema::Text file; // resolved path
-    schema::Text grid; // "density" when empty
-    double scale = 1;
-    bool levelSet = false; // a level set is made into fog
-    Transform transform;
-};
-schema::TypeInfo vdbType();
 
 } // namespace abbe

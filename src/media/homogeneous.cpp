@@ -20,7 +20,33 @@ class WholeRay final : public MediumWalk {
     bool done_ = false;
 };
 
+class EvenGlow final : public EmissionWalk {
+  public:
+    EvenGlow(const Glow& glow, float kelvin, float tMax) : glow_(&glow), kelvin_(kelvin), tMax_(tMax) {}
+    bool next(MediumSegment& segment) noexcept override {
+        if (done_) return false;
+        done_ = true;
+        segment = {0, tMax_, 1, 1, 1};
+        return true;
+    }
+    Spectrum emitted(float, const Wavelengths& lambda) noexcept override { return glow_->at(kelvin_, lambda); }
+
+  private:
+    const Glow* glow_;
+    float kelvin_, tMax_;
+    bool done_ = false;
+};
+
 } // namespace
+
+HomogeneousMedium::HomogeneousMedium(MediumOptics optics, std::optional<Glow> glow, double kelvin)
+    : optics_(std::move(optics)) {
+    if (glow) emission_.emplace(*glow, static_cast<float>(kelvin));
+}
+
+EmissionWalk* HomogeneousMedium::Emission::walk(const Ray&, float tMax, WalkSpace& space) const noexcept {
+    return tMax < kInfinity ? space.make<EvenGlow>(glow_, kelvin_, tMax) : nullptr;
+}
 
 Bounds3 HomogeneousMedium::bounds() const {
     return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
@@ -31,8 +57,17 @@ MediumWalk* HomogeneousMedium::walk(const Ray&, float tMax, WalkSpace& space) co
 }
 
 schema::TypeInfo homogeneousType() {
-    std::vector<schema::FieldInfo> fields;
+    using namespace schema;
+    std::vector<FieldInfo> fields;
     addOpticsFields<HomogeneousParams>(fields);
+    addGlowFields<HomogeneousParams>(fields);
+    fields.push_back(
+        field<HomogeneousParams, double>(FieldType::quantity, "temperature", &HomogeneousParams::temperature)
+            .unit({Dimension::temperature})
+            .range(0, 1e9)
+            .synonyms({"blackbody", "kelvin"})
+            .doc("It glows as a black body of this temperature would that absorbs as much.")
+            .example("temperature 1900 K"));
     return {schema::Kind::medium,
             "homogeneous",
             "The same everywhere inside the shape that it fills.",

@@ -1,27 +1,46 @@
 // A medium that is the same everywhere inside its boundary.
 #pragma once
 
-#include "media/medium_optics.h"
+#include "media/glow_type.h"
 #include "render/medium.h"
+#include "render/medium_emission.h"
 
 namespace abbe {
 
-// Density 1 everywhere: where it ends is the matter of the shape that it fills.
+// Density 1 everywhere: where it ends is the matter of the shape that it fills. What it gives off is found along rays
+// only: no light samples it.
 class HomogeneousMedium final : public Medium {
   public:
-    explicit HomogeneousMedium(MediumOptics optics) : optics_(std::move(optics)) {}
+    // Shines with a glow; `kelvin` is its temperature, if the glow asks for one. Its curves must outlive the medium.
+    explicit HomogeneousMedium(MediumOptics, std::optional<Glow> = {}, double kelvin = 0);
 
     Bounds3 bounds() const override;
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     const Curve& extinction() const override { return *optics_.extinction; }
     const Curve& albedo() const override { return *optics_.albedo; }
     const PhaseFunction& phase() const override { return *optics_.phase; }
+    const MediumEmission* emission() const override { return emission_ ? &*emission_ : nullptr; }
 
   private:
+    class Emission final : public MediumEmission {
+      public:
+        Emission(const Glow& glow, float kelvin) : glow_(glow), kelvin_(kelvin) {}
+        // Null for rays that nothing ends: no sum of light along them is finite.
+        EmissionWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
+        float pdfSolidAngle(Vec3, Vec3) const noexcept override { return 0; }
+
+      private:
+        Glow glow_;
+        float kelvin_;
+    };
+
     MediumOptics optics_;
+    std::optional<Emission> emission_;
 };
 
-struct HomogeneousParams : MediumParams {};
+struct HomogeneousParams : MediumParams, GlowParams {
+    double temperature = 0; // K; 0: does not shine by it
+};
 schema::TypeInfo homogeneousType();
 
 } // namespace abbe

@@ -17,7 +17,7 @@ struct MediumSegment {
 
 // Where one walk lives; reused from ray to ray.
 struct WalkSpace {
-    alignas(32) std::byte bytes[768];
+    alignas(32) std::byte bytes[1024];
 
     template <typename T, typename... Args> T* make(Args&&... args) {
         static_assert(sizeof(T) <= sizeof(bytes) && alignof(T) <= 32 && std::is_trivially_destructible_v<T>);

@@ -1,14 +1,11 @@
 // Phase functions, media that fill shapes, and volumes that stand by themselves.
 #include "media/atmosphere.h"
-#include "media/grid_medium.h"
 #include "media/homogeneous.h"
 #include "media/phase_types.h"
 #include "scene/filled_material.h"
 #include "scene/scene_builder.h"
-#include "volumes/vdb_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace abbe {
 
@@ -31,7 +28,12 @@ schema::Reference SceneBuilder::mediumReference(const Definition& d) {
     if (!params) return {};
     const auto optics = opticsOf(*params, d);
     if (!optics) return {};
-    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics), d.span)};
+    if (const auto fault = findContradiction(*params, *optics, params->temperature > 0); !fault.empty()) {
+        diagnostics_.error("E0647", d.span, "this medium cannot shine so", std::string(fault));
+        return {};
+    }
+    const auto glow = makeGlow(*params, *optics, params->temperature > 0);
+    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics, glow, params->temperature), d.span)};
 }
 
 std::uint32_t SceneBuilder::keepMedium(std::unique_ptr<const Medium> medium, Span definedAt) {
@@ -64,7 +66,7 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
     if (type == "atmosphere") {
         if (const auto p = bound<AtmosphereParams>(d)) medium = makeAtmosphere(*p, d, toRender);
     } else if (type == "vdb") {
-        if (const auto p = bound<VdbParams>(d)) medium = loadVdb(*p, d, toRender);
+        medium = loadVdb(d, toRender);
     } else {
         bound<MediumParams>(d);
     }
@@ -79,33 +81,6 @@ std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParam
     const Vec3d up = tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
     const double ground = dot(toRender.point(up * params.ground), up);
     return std::make_unique<Atmosphere>(*optics, Vec3(up), ground, params.scaleHeight);
-}
-
-std::unique_ptr<const Medium> SceneBuilder::loadVdb(const VdbParams& params, const Definition& d,
-                                                    const Transform& toRender) {
-    const auto optics = opticsOf(params, d);
-    const Transform place = params.transform.then(toRender);
-    if (!place.inverse())
-        diagnostics_.error("E0641", d.span, "the transform of this volume flattens it", "has no inverse");
-    if (!optics || !place.inverse()) return nullptr;
-    const VdbRequest request{params.grid.value.empty() ? "density" : params.grid.value,
-                             params.levelSet ? VdbUse::amountOrLevelSet : VdbUse::amount, false};
-    auto read = readVdb(params.file.value, {&request, 1});
-    if (const auto* fault = std::get_if<VdbFault>(&read)) {
-        const bool name = fault->kind == VdbFault::Kind::noGrid;
-        auto& e = diagnostics_.error(name ? "E0643" : "E0642",
-                                     name && params.grid.span.valid() ? params.grid.span : params.file.span,
-                                     fault->text, name ? "no such grid" : "cannot be used");
-        if (name && !fault->names.empty()) e.help = fmt::format("the grids are {}", fmt::join(fault->names, ", "));
-        if (fault->kind == VdbFault::Kind::wrongKind) e.help = "a level set becomes fog with `level-set on`";
-        return nullptr;
-    }
-    VdbGrid& grid = std::get<std::vector<VdbGrid>>(read)[0];
-    for (const std::string& note : grid.notes) diagnostics_.warning("W0690", params.file.span, note, "put right");
-    built_->facts.files.push_back(params.file.value);
-    if (grid.scalar->empty())
-        diagnostics_.warning("W0691", params.file.span, "this grid has no voxels", "nothing will be seen of it");
-    return std::make_unique<GridMedium>(*optics, std::move(*grid.scalar), params.scale, place);
 }
 
 // The surface and what it holds, as one material.

@@ -9,7 +9,7 @@
 #include "lights/light_context.h"
 #include "lights/light_motion.h"
 #include "media/atmosphere.h"
-#include "media/grid_medium.h"
+#include "media/medium_optics.h"
 #include "render/medium.h"
 #include "render/shape.h"
 #include "render/texture.h"
@@ -17,6 +17,7 @@
 #include "scene/curve_library.h"
 #include "scene/instances_type.h"
 #include "scene/shape_types.h"
+#include "volumes/voxel_grid.h"
 
 #include <map>
 #include <set>
@@ -25,8 +26,11 @@
 namespace abbe {
 
 struct CurvesParams;
+struct GridExtras;
 struct LoadedCage;
 struct PointsParams;
+struct VdbGrid;
+struct VdbParams;
 
 class SceneBuilder final : public schema::Resolver {
   public:
@@ -164,7 +168,13 @@ class SceneBuilder final : public schema::Resolver {
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
     void placeVolume(const Definition&, const Place&);
     std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
-    std::unique_ptr<const Medium> loadVdb(const VdbParams&, const Definition&, const Transform& toRender);
+    // build_vdb.cpp
+    std::unique_ptr<const Medium> loadVdb(const Definition&, const Transform& toRender);
+    GridExtras vdbExtras(const VdbParams&, const MediumOptics&, std::span<VdbGrid>);
+    bool checkGlow(const VdbParams&, const MediumOptics&, const Definition&);
+    bool checkDrift(const VdbParams&, const VoxelGrid& density, const GridExtras&, const Transform& place);
+    std::unique_ptr<const Medium> makeVolume(const VdbParams&, const MediumOptics&, VoxelGrid density, GridExtras,
+                                             const Transform& place, const Definition&);
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);

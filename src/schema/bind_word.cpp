@@ -61,8 +61,10 @@ class WordBinder {
 
     std::optional<BoundValue> text() {
         const bool isFile = field_.type == FieldType::file;
-        if (entry_.count() == 0)
+        if (entry_.count() == 0) {
+            if (std::ranges::any_of(field_.keys, &FieldKey::value)) return textByKey();
             return fault(entry_.span(), "E0306", isFile ? "needs the name of a file" : "needs a text", "has no value");
+        }
         if (!single()) return std::nullopt;
         const Value value = entry_.value(0);
         if (!value.isText()) {
@@ -99,12 +101,23 @@ class WordBinder {
         return false;
     }
 
+    // `density grid=smoke`, or nothing at all: an empty text.
+    std::optional<BoundValue> textByKey() {
+        Text result{{}, {}, entry_.span()};
+        if (!keys(result)) return std::nullopt;
+        return result;
+    }
+
     bool keys(Text& result) {
         bool good = true;
         for (const Key& key : entry_.keys()) {
             const auto known = std::ranges::find(field_.keys, key.name, &FieldKey::name);
             if (known == field_.keys.end())
                 good = unknownKey(key);
+            else if (known->value)
+                good = valueKey(key, result) && good;
+            else if (known->number)
+                good = numberKey(key, *known, result) && good;
             else if (!known->choices.empty() &&
                      std::ranges::find(known->choices, key.value.text) == known->choices.end())
                 good = unknownKeyChoice(key, known->choices);
@@ -112,6 +125,31 @@ class WordBinder {
                 result.keys.emplace_back(key.name, key.value.text);
         }
         return good;
+    }
+
+    bool valueKey(const Key& key, Text& result) {
+        if (entry_.count() > 0) {
+            report(diagnostics_, key.nameSpan, "E0306", fmt::format("`{}` takes one value", field_.name),
+                   fmt::format("`{}=` says it again", key.name));
+            return false;
+        }
+        if (!key.value.isText()) {
+            reportAt(diagnostics_, key.value, "E0314", fmt::format("`{}=` needs a text", key.name),
+                     "write it in quotes");
+            return false;
+        }
+        result.value = key.value.text;
+        result.span = place(key.value);
+        return true;
+    }
+
+    bool numberKey(const Key& key, const FieldKey& known, Text& result) {
+        const Measure measure{known.name, field_.dimensions, known.lower, known.upper, {}, field_.example};
+        const MeasureReader reader(measure, tree_.header, diagnostics_);
+        const auto value = reader.number(key.value);
+        if (!value || !reader.inRange(*value, {}, key.value)) return false;
+        result.keys.emplace_back(key.name, fmt::format("{}", *value));
+        return true;
     }
 
     bool unknownKey(const Key& key) {

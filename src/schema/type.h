@@ -158,6 +158,10 @@ struct FieldKey {
     std::string_view name;
     std::vector<std::string_view> choices;
     std::string_view doc;
+    bool number = false; // of a text: a plain number, stored as std::from_chars reads it,
+    double lower = -std::numeric_limits<double>::infinity(); // in a range
+    double upper = std::numeric_limits<double>::infinity();
+    bool value = false; // of a text: stands for the text itself, which may then be left out altogether
 };
 
 struct FieldInfo {

@@ -290,6 +290,33 @@ FieldBounds BrickBounds::at(Vec3 p) const {
     return brick(local(p.x, origin_.x), local(p.y, origin_.y), local(p.z, origin_.z));
 }
 
+FieldBounds BrickBounds::over(const Bounds3d& box) const {
+    constexpr double kMostBricks = 4096; // a larger box is rather compared with everything
+    const auto brickOf = [](double x) { return std::floor(x / 8); };
+    const Vec3d a(brickOf(box.lower.x), brickOf(box.lower.y), brickOf(box.lower.z));
+    const Vec3d b(brickOf(box.upper.x), brickOf(box.upper.y), brickOf(box.upper.z));
+    const Vec3d count = b - a + Vec3d(1, 1, 1);
+    const double limit = kFarthestVoxel;
+    const bool near =
+        std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x), std::abs(b.y), std::abs(b.z)}) < limit;
+    if (empty()) return {};
+    if (!near || !(count.x * count.y * count.z <= kMostBricks)) return {0, 0, maximum()};
+    FieldBounds all{kInfinity, 0, 0};
+    double sum = 0;
+    for (int x = static_cast<int>(a.x); x <= static_cast<int>(b.x); ++x)
+        for (int y = static_cast<int>(a.y); y <= static_cast<int>(b.y); ++y)
+            for (int z = static_cast<int>(a.z); z <= static_cast<int>(b.z); ++z) {
+                const Vec3i c = Vec3i(x, y, z) - origin_;
+                const FieldBounds one = brick(static_cast<std::uint32_t>(c.x), static_cast<std::uint32_t>(c.y),
+                                              static_cast<std::uint32_t>(c.z));
+                all.minimum = std::min(all.minimum, one.minimum);
+                all.maximum = std::max(all.maximum, one.maximum);
+                sum += static_cast<double>(one.mean);
+            }
+    all.mean = static_cast<float>(sum / (count.x * count.y * count.z));
+    return all;
+}
+
 FieldBounds BrickBounds::brick(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     if (empty() || ((x | y | z) >> (3 * levels_)) != 0) return {};
     std::uint32_t index = root_;

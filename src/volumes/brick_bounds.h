@@ -34,6 +34,8 @@ class BrickBounds {
     float maximum() const { return empty() ? 0 : nodes_[root_].bounds.maximum; }
     // Of the brick around a point in index space; zeros outside. For single lookups; rays use BrickWalk.
     FieldBounds at(Vec3 p) const;
+    // Over a box of index space that is not empty: extremes that hold everywhere in it, and any mean between.
+    FieldBounds over(const Bounds3d& box) const;
 
   private:
     friend class BrickWalk;

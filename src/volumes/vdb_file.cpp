@@ -122,11 +122,16 @@ std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, st
         if (*frame == VdbFrame::noGrid) {
             grids.emplace_back();
         } else if (*frame == VdbFrame::grid) {
-            grids.emplace_back();
-            if (!receive(talk, grids.back())) break;
+            if (!receive(talk, grids.emplace_back())) {
+                grids.pop_back();
+                break;
+            }
         }
     }
-    if (auto fault = talk.takeFault()) return *fault;
+    if (auto fault = talk.takeFault()) {
+        fault->request = std::min(grids.size(), requests.size() - 1);
+        return *fault;
+    }
     if (grids.size() != requests.size())
         return VdbFault{VdbFault::Kind::helper, "the helper `abbe-vdb` is not of this version", {}};
     return grids;

@@ -27,6 +27,7 @@ struct VdbFault {
     Kind kind = Kind::damaged;
     std::string text;               // one sentence without a full stop, naming the file and the grid
     std::vector<std::string> names; // noGrid: those that there are
+    std::size_t request = 0;        // readVdb: the first grid asked for that could not be read
 };
 
 // What a grid is wanted for.

@@ -164,23 +164,66 @@ template <typename Value> Bounds3d BasicVoxelGrid<Value>::worldBounds() const {
 template class BasicVoxelGrid<float>;
 template class BasicVoxelGrid<Vec3>;
 
-VoxelGrid makeVoxelGrid(std::span<const Voxel> voxels, GridFacts facts) {
+namespace {
+
+template <typename Value>
+BasicVoxelGrid<Value> finished(nanovdb::GridBuilder<typename VoxelValue<Value>::Build>& builder, GridFacts facts) {
     const auto inverse = facts.indexToWorld.inverse();
     ABBE_CHECK(inverse);
-    nanovdb::GridBuilder<float> builder(0.f);
     builder.setStats(nanovdb::StatsMode::MinMax);
     builder.setChecksum(nanovdb::ChecksumMode::Disable);
+    const auto handle = builder.getHandle(nanoMap(facts.indexToWorld, *inverse), facts.name);
+    GridBytes bytes(handle.size());
+    std::memcpy(bytes.data(), handle.data(), handle.size());
+    auto grid = BasicVoxelGrid<Value>::adopt(std::move(bytes), std::move(facts));
+    ABBE_CHECK(grid);
+    return std::move(*grid);
+}
+
+} // namespace
+
+VoxelGrid makeVoxelGrid(std::span<const Voxel> voxels, GridFacts facts) {
+    nanovdb::GridBuilder<float> builder(0.f);
     auto accessor = builder.getAccessor();
     for (const Voxel& v : voxels) {
         ABBE_CHECK(v.value >= 0 && isFinite(v.value));
         accessor.setValue({v.place.x, v.place.y, v.place.z}, v.value);
     }
-    const auto handle = builder.getHandle(nanoMap(facts.indexToWorld, *inverse), facts.name);
-    GridBytes bytes(handle.size());
-    std::memcpy(bytes.data(), handle.data(), handle.size());
-    auto grid = VoxelGrid::adopt(std::move(bytes), std::move(facts));
-    ABBE_CHECK(grid);
-    return std::move(*grid);
+    return finished<float>(builder, std::move(facts));
+}
+
+VectorGrid makeVectorGrid(std::span<const VectorVoxel> voxels, GridFacts facts) {
+    nanovdb::GridBuilder<nanovdb::Vec3f> builder(nanovdb::Vec3f(0.f));
+    auto accessor = builder.getAccessor();
+    for (const VectorVoxel& v : voxels) {
+        ABBE_CHECK(isFinite(v.value));
+        accessor.setValue({v.place.x, v.place.y, v.place.z}, nanovdb::Vec3f(v.value.x, v.value.y, v.value.z));
+    }
+    return finished<Vec3>(builder, std::move(facts));
+}
+
+std::uint64_t countOutside(const VectorGrid& grid, float lower, float upper) {
+    const auto outside = [=](const nanovdb::Vec3f& v) {
+        const float low = std::min({v[0], v[1], v[2]}), high = std::max({v[0], v[1], v[2]});
+        return !(low >= lower && high <= upper);
+    };
+    const auto& tree = grid.nano().tree();
+    std::uint64_t count = 0;
+    const auto* leaf = tree.getFirstNode<0>();
+    for (std::uint32_t i = 0; i < tree.nodeCount(0); ++i)
+        for (std::uint32_t n = 0; n < 512; ++n) count += leaf[i].isActive(n) && outside(leaf[i].getValue(n));
+    const auto tiles = [&](const auto* nodes, std::uint32_t nodeCount, std::uint64_t voxels) {
+        for (std::uint32_t i = 0; i < nodeCount; ++i) {
+            using Node = std::remove_cvref_t<decltype(nodes[i])>;
+            const auto& data = *reinterpret_cast<const typename Node::DataType*>(nodes + i);
+            for (std::uint32_t n = 0; n < Node::SIZE; ++n)
+                if (!data.mChildMask.isOn(n) && data.mValueMask.isOn(n) && outside(data.mTable[n].value))
+                    count += voxels;
+        }
+    };
+    tiles(tree.getFirstNode<1>(), tree.nodeCount(1), 512);
+    tiles(tree.getFirstNode<2>(), tree.nodeCount(2), std::uint64_t{128} * 128 * 128);
+    return count;
 }
 
 } // namespace abbe

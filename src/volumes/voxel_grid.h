@@ -199,14 +199,23 @@ using VectorGrid = BasicVoxelGrid<Vec3>;
 extern template class BasicVoxelGrid<float>;
 extern template class BasicVoxelGrid<Vec3>;
 
+// How many active voxels have a component that is not within [lower, upper].
+std::uint64_t countOutside(const VectorGrid&, float lower, float upper);
+
 // One voxel of a grid that is made in memory.
 struct Voxel {
     Vec3i place;
     float value = 0;
 };
+struct VectorVoxel {
+    Vec3i place;
+    Vec3 value;
+};
 
 // A grid of the given voxels, all active, 0 elsewhere. For procedural fields and tests.
 // Requires: values finite and not negative, facts.indexToWorld invertible.
 VoxelGrid makeVoxelGrid(std::span<const Voxel> voxels, GridFacts facts);
+// The same of vectors, whose components may be negative.
+VectorGrid makeVectorGrid(std::span<const VectorVoxel> voxels, GridFacts facts);
 
 } // namespace abbe

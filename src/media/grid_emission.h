@@ -1,0 +1,38 @@
+// Flames: what a volume gives off, found along rays and sampled as a light.
+#pragma once
+
+#include "media/emission_bricks.h"
+#include "render/medium_emission.h"
+#include "volumes/brick_walk.h"
+
+namespace abbe {
+
+class GridEmission final : public MediumEmission {
+  public:
+    // The fields must outlive it.
+    explicit GridEmission(const EmissionFields&);
+
+    bool dark() const { return !sampler_; } // nothing shines; it must not be asked for anything else
+    EmissionWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
+    float pdfSolidAngle(Vec3 from, Vec3 p) const noexcept override;
+
+    // For its light. A point, render space; u in [0, 1)².
+    Vec3 samplePoint(Vec2 u) const noexcept;
+    float edge() const { return edge_; } // ℓ of MediumEmission, the mean edge of a brick in render space
+    Spectrum emitted(Vec3 p, float time, const Wavelengths&) const noexcept; // W·m⁻³·sr⁻¹·nm⁻¹
+    double power() const { return power_; } // W, of which it may absorb some itself; about right
+    Vec3 centre() const { return centre_; }
+
+  private:
+    double estimatePower(const GlowTable&) const;
+
+    EmissionFields fields_;
+    BrickBounds bricks_;
+    std::optional<BrickSampler> sampler_;
+    double perVoxel_ = 0; // voxels in a unit of volume of render space
+    float edge_ = 0;
+    double power_ = 0;
+    Vec3 centre_;
+};
+
+} // namespace abbe

@@ -1,0 +1,18 @@
+#include "media/volume_light.h"
+
+namespace abbe {
+
+std::optional<LightSample> VolumeLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
+                                               float time) const noexcept {
+    const Vec3 p = emission_.samplePoint(u), way = p - from;
+    const float distance = length(way);
+    // As found along a ray: a point that rounding has put into the next brick has that brick's density.
+    const float pdf = emission_.pdfSolidAngle(from, p);
+    if (!(distance > 0) || !(pdf > 0) || !(pdf < kInfinity)) return std::nullopt;
+    const Spectrum emitted = emission_.emitted(p, time, lambda);
+    if (!anyNonZero(emitted)) return std::nullopt;
+    return std::optional<LightSample>(std::in_place, way * (1 / distance), p, distance, emitted * emission_.edge(),
+                                      pdf);
+}
+
+} // namespace abbe

@@ -1,0 +1,27 @@
+// A volume that shines, as one of the scene's lights.
+#pragma once
+
+#include "media/grid_emission.h"
+#include "render/light.h"
+
+namespace abbe {
+
+class VolumeLight final : public Light {
+  public:
+    // Must outlive it. Requires that it is not dark.
+    explicit VolumeLight(const GridEmission& emission) : emission_(emission) {}
+
+    double power() const override { return emission_.power(); }
+    const MediumEmission* emission() const override { return &emission_; }
+    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
+    // No surface, and nothing at infinity.
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
+
+  private:
+    const GridEmission& emission_;
+};
+
+} // namespace abbe
