@@ -1,7 +1,6 @@
-// Phase functions, media that fill shapes, and volumes that stand by themselves.
+// Media that fill shapes, and volumes that stand by themselves.
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
-#include "media/phase_types.h"
 #include "scene/filled_material.h"
 #include "scene/scene_builder.h"
 
@@ -10,18 +9,6 @@
 namespace abbe {
 
 using schema::Kind;
-
-schema::Reference SceneBuilder::phaseReference(const Definition& d) {
-    const auto bindInto = binder(d, diagnostics_);
-    if (!d.type) {
-        bindInto(nullptr);
-        return {};
-    }
-    auto phase = makePhase(d.type->name, bindInto);
-    if (!phase) return {};
-    phases_.push_back(std::move(phase));
-    return {static_cast<std::uint32_t>(phases_.size() - 1)};
-}
 
 schema::Reference SceneBuilder::mediumReference(const Definition& d) {
     const auto params = bound<HomogeneousParams>(d);

@@ -161,8 +161,11 @@ class SceneBuilder final : public schema::Resolver {
     KeyedTransform ownTransform(const Definition&);
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
-    // build_media.cpp
+    // build_phases.cpp
     schema::Reference phaseReference(const Definition&);
+    std::shared_ptr<const PhaseFunction> makeTablePhase(const Definition&);
+    std::shared_ptr<const PhaseFunction> makeMixPhase(const Definition&);
+    // build_media.cpp
     schema::Reference mediumReference(const Definition&);
     std::uint32_t keepMedium(std::unique_ptr<const Medium>, Span definedAt);
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
@@ -231,6 +234,7 @@ class SceneBuilder final : public schema::Resolver {
     std::map<double, std::optional<std::uint32_t>> plainMaterials_; // by reflectance
     std::set<std::uint32_t> usedMaterials_;                         // of shapes that were placed
     std::vector<std::shared_ptr<const PhaseFunction>> phases_;
+    std::vector<const Definition*> openMixes_; // being made
     std::vector<std::unique_ptr<const Medium>> media_;
     std::vector<Span> mediumSpans_; // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;

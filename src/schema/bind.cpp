@@ -23,6 +23,10 @@ std::vector<const FieldInfo*> argumentFields(const TypeInfo& type) {
     return fields;
 }
 
+bool isReference(const FieldInfo& field) {
+    return field.type == FieldType::reference || field.type == FieldType::weighted;
+}
+
 Span spanOf(const std::vector<Value>& values) { return join(place(values.front()), place(values.back())); }
 
 class Binding {
@@ -41,7 +45,7 @@ class Binding {
     // Notes that a field is given, and reports a second time. False if it must not be bound.
     bool give(const FieldInfo& field, Span span) {
         const auto [first, fresh] = given_.emplace(&field, span);
-        if (!fresh && field.type == FieldType::sharpRow) return true; // one row each time
+        if (!fresh && (field.type == FieldType::sharpRow || field.type == FieldType::weighted)) return true; // one each
         if (!fresh) {
             auto& d =
                 report(context_.diagnostics, span, "E0208", fmt::format("`{}` is given twice", field.name), "second");
@@ -85,13 +89,33 @@ class Binding {
         if (value && params_ && field.store) field.store(params_, *value);
     }
 
+    // Binds the properties that stand on the line as `g=0.85`, one value each, and returns the other keys.
+    std::vector<Key> keyProperties() {
+        std::vector<Key> others;
+        const auto fields = argumentFields(type_);
+        for (const Key& key : definition_.keys) {
+            const FieldInfo* const field = type_.find(key.name);
+            const bool argumentKey = !fields.empty() && std::ranges::find(fields.back()->keys, key.name,
+                                                                          &FieldKey::name) != fields.back()->keys.end();
+            if (!field || argumentKey || field->type == FieldType::moments) {
+                others.push_back(key);
+                continue;
+            }
+            const Entry entry(field->name, join(key.nameSpan, place(key.value)), {key.value});
+            if (give(*field, entry.span()) && !isSecondOfGroup(*field))
+                store(*field, bindField(*field, entry, context_));
+        }
+        return others;
+    }
+
     void arguments() {
         if (definition_.damaged) return;
         const auto fields = argumentFields(type_);
         const auto& values = definition_.arguments;
-        // Keys behind the arguments are those of the last one.
+        const auto own = keyProperties();
+        // Keys behind the arguments are those of the last one, but for properties on the line.
         const bool keyed = !values.empty() && !fields.empty() && !fields.back()->keys.empty();
-        for (const Key& key : keyed ? std::span<const Key>() : std::span(definition_.keys))
+        for (const Key& key : keyed ? std::span<const Key>() : std::span(own))
             report(context_.diagnostics, key.nameSpan, "E0210",
                    fmt::format("{} has no key `{}`", title(definition_), key.name), "unknown key");
         std::size_t next = 0;
@@ -102,7 +126,7 @@ class Binding {
                                           values.begin() + static_cast<std::ptrdiff_t>(end));
             const bool last = i + 1 == fields.size() || end == values.size();
             const Entry entry(fields[i]->name, spanOf(part), part,
-                              keyed && last ? std::span<const Key>(definition_.keys) : std::span<const Key>());
+                              keyed && last ? std::span<const Key>(own) : std::span<const Key>());
             if (give(*fields[i], entry.span())) store(*fields[i], bindField(*fields[i], entry, context_));
             next = end;
         }
@@ -258,7 +282,7 @@ class UntypedBinding {
         for (const TypeInfo* type : context_.table.of(definition_.kind))
             for (const FieldInfo& field : type->fields) {
                 if (!matches(field)) continue;
-                if (field.type == FieldType::reference) { // alike in every type, and built only once
+                if (isReference(field)) { // alike in every type, and built only once
                     bindField(field, entry, context_);
                     return;
                 }

@@ -18,6 +18,7 @@ bool takesBlock(const FieldInfo& field) {
     case FieldType::spectrum: // rows of a table
     case FieldType::complexIndex:
     case FieldType::reference:
+    case FieldType::weighted:
     case FieldType::transform:
     case FieldType::table:
     case FieldType::moments:
@@ -30,7 +31,8 @@ bool takesBlock(const FieldInfo& field) {
 // Keys are read by those who know them: texts, spectra (`space=`) and inline definitions.
 bool readsKeys(FieldType type) {
     return type == FieldType::text || type == FieldType::file || type == FieldType::spectrum ||
-           type == FieldType::sharpRow || type == FieldType::reference || type == FieldType::place;
+           type == FieldType::sharpRow || type == FieldType::reference || type == FieldType::weighted ||
+           type == FieldType::place;
 }
 
 bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
@@ -127,6 +129,8 @@ std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, 
         return bindPlace(field, entry, context);
     case FieldType::reference:
         return bindReference(field, entry, context);
+    case FieldType::weighted:
+        return bindWeighted(field, entry, context);
     case FieldType::transform:
         return bindTransformField(field, entry, context);
     case FieldType::moments:

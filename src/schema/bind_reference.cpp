@@ -3,6 +3,7 @@
 #include "schema/suggest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe::schema {
@@ -47,6 +48,22 @@ std::optional<BoundValue> valid(Reference reference, const Key* group) {
 }
 
 } // namespace
+
+std::optional<BoundValue> bindWeighted(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    const Key* const key = groupKey(field, entry);
+    const bool sound =
+        !key || (key->value.kind == ValueKind::number && key->value.number >= 0 && std::isfinite(key->value.number));
+    if (!sound)
+        reportAt(context.diagnostics, key->value, "E0303", "a weight is a number of at least 0", "not such a number");
+    const auto bound = bindReference(field, entry, context);
+    if (!bound || !sound) return std::nullopt;
+    WeightedReference result{{}, key ? key->value.number : 1, entry.span()};
+    if (const auto* one = std::get_if<GroupReference>(&*bound))
+        result.reference = one->reference;
+    else
+        result.reference = std::get<Reference>(*bound);
+    return result;
+}
 
 std::optional<BoundValue> bindPlace(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     if (entry.keys().empty()) {

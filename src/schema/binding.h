@@ -24,6 +24,7 @@ std::optional<BoundValue> bindWord(const FieldInfo&, const Entry&, const BindCon
 std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindContext&);    // points, numbers, rows
 std::optional<BoundValue> bindOptical(const FieldInfo&, const Entry&, const BindContext&); // spectrum, complexIndex
 std::optional<BoundValue> bindReference(const FieldInfo&, const Entry&, const BindContext&); // reference
+std::optional<BoundValue> bindWeighted(const FieldInfo&, const Entry&, const BindContext&);  // weighted
 std::optional<BoundValue> bindPlace(const FieldInfo&, const Entry&, const BindContext&);     // place
 
 // The time of `at TIME { … }`, in s, which has to come after that field's last one and then becomes it; nothing after a

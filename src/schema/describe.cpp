@@ -252,6 +252,9 @@ std::string describeField(const FieldInfo& field) {
         return "`metal NAME`, or a block with the spectra `n` and `k`";
     case FieldType::reference:
         return fmt::format("the name of a {0}, or an inline {0}", keyword(field.referenceKind));
+    case FieldType::weighted:
+        return fmt::format("the name of a {0}, or an inline {0}, perhaps `weight=`; may be repeated",
+                           keyword(field.referenceKind));
     case FieldType::transform:
         return field.canMove
                    ? "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`, or keys `at TIME { … }`"

@@ -11,10 +11,10 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr std::array kFieldTypes = {"integer",   "number",    "quantity", "vector2",  "vector3",
-                                    "toggle",    "choice",    "text",     "file",     "points",
-                                    "numbers",   "indexRows", "sharpRow", "spectrum", "complexIndex",
-                                    "reference", "transform", "table",    "place",    "moments"};
+constexpr std::array kFieldTypes = {"integer",  "number",   "quantity",     "vector2",   "vector3",   "toggle",
+                                    "choice",   "text",     "file",         "points",    "numbers",   "indexRows",
+                                    "sharpRow", "spectrum", "complexIndex", "reference", "transform", "table",
+                                    "place",    "moments",  "weighted"};
 constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
 constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
                                       "temperature", "power",      "luminousFlux", "luminousIntensity",
@@ -83,7 +83,8 @@ std::string jsonField(const FieldInfo& field) {
     if (std::isfinite(field.lower)) out += fmt::format(R"(,"minimum":{})", field.lower);
     if (std::isfinite(field.upper)) out += fmt::format(R"(,"maximum":{})", field.upper);
     if (field.type == FieldType::spectrum) out += fmt::format(R"(,"role":"{}")", id(field.role));
-    if (field.type == FieldType::reference) out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
+    if (field.type == FieldType::reference || field.type == FieldType::weighted)
+        out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
     if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", array(field.choices, jsonView));
     if (!field.synonyms.empty()) out += fmt::format(R"(,"synonyms":{})", array(field.synonyms, jsonView));
     if (!field.keys.empty())

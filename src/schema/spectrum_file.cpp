@@ -41,14 +41,14 @@ bool fail(SpectrumFile& file, int line, std::string message) {
     return false;
 }
 
-bool readLine(std::string_view text, int line, SpectrumFile& file) {
+bool readLine(std::string_view text, int line, std::string_view what, SpectrumFile& file) {
     std::vector<double> row;
     const bool good = readNumbers(withoutComment(text), row);
     if (good && row.empty()) return true;
     if (!good && file.numbers.empty() && row.empty()) return true; // a heading such as "wavelength,value"
     if (!good) return fail(file, line, "a line without two numbers");
     if (row.size() != 2)
-        return fail(file, line, fmt::format("a line has a wavelength and one value; this has {} numbers", row.size()));
+        return fail(file, line, fmt::format("a line has one {} and one value; this has {} numbers", what, row.size()));
     file.numbers.insert(file.numbers.end(), row.begin(), row.end());
     file.lines.push_back(line);
     return true;
@@ -56,7 +56,7 @@ bool readLine(std::string_view text, int line, SpectrumFile& file) {
 
 } // namespace
 
-SpectrumFile readSpectrumFile(const std::filesystem::path& path) {
+SpectrumFile readSpectrumFile(const std::filesystem::path& path, std::string_view what) {
     SpectrumFile file;
     std::ifstream stream(path, std::ios::binary);
     std::error_code error;
@@ -74,10 +74,10 @@ SpectrumFile readSpectrumFile(const std::filesystem::path& path) {
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     for (int line = 1; !rest.empty(); ++line) {
         const auto end = rest.find('\n');
-        if (!readLine(rest.substr(0, end), line, file)) return file;
+        if (!readLine(rest.substr(0, end), line, what, file)) return file;
         rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     }
-    if (file.numbers.empty()) fail(file, 0, "it holds no lines of \"wavelength value\"");
+    if (file.numbers.empty()) fail(file, 0, fmt::format("it holds no lines of \"{} value\"", what));
     return file;
 }
 

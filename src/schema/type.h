@@ -82,6 +82,13 @@ struct GroupReference {
     Span span; // of the key's value
 };
 
+// One of several, with its share: `part haze weight=0.3`.
+struct WeightedReference {
+    Reference reference;
+    double weight = 1; // >= 0
+    Span span;
+};
+
 // A word out of a list, with the number that may follow it (`filter gaussian 1.5`).
 struct Choice {
     std::string word;
@@ -124,9 +131,10 @@ struct ComplexIndex {
     const Curve* k = nullptr;
 };
 
-using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
-                                std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
-                                const Curve*, ComplexIndex, Reference, GroupReference, KeyedTransform>;
+using BoundValue =
+    std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
+                 std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location, const Curve*, ComplexIndex, Reference,
+                 GroupReference, WeightedReference, KeyedTransform>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -152,6 +160,8 @@ enum class FieldType : std::uint8_t {
     place,     // a quantity, or `on=NAME` of a shape -> Location
     moments, // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time` and
              // `Span span`, whose other fields stand in the block
+    weighted, // a reference with a key `weight=`, 1 when absent; may be repeated -> WeightedReference, into a
+              // std::vector
 };
 
 struct FieldKey {
@@ -259,6 +269,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
             if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
+        } else if constexpr (std::is_same_v<M, std::vector<WeightedReference>>) {
+            if (const auto* one = std::get_if<WeightedReference>(&value)) member.push_back(*one);
         } else if constexpr (std::is_same_v<M, std::vector<GroupReference>>) {
             if (const auto* one = std::get_if<GroupReference>(&value)) member.push_back(*one);
         } else if (const auto* same = std::get_if<M>(&value)) {
