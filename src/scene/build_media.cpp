@@ -11,6 +11,10 @@ namespace abbe {
 using schema::Kind;
 
 schema::Reference SceneBuilder::mediumReference(const Definition& d) {
+    if (d.type && d.type->name == "noise") {
+        auto medium = makeNoiseMedium(d);
+        return medium ? schema::Reference{keepMedium(std::move(medium), d.span)} : schema::Reference{};
+    }
     const auto params = bound<HomogeneousParams>(d);
     if (!params) return {};
     const auto optics = opticsOf(*params, d);
@@ -54,11 +58,21 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
         if (const auto p = bound<AtmosphereParams>(d)) medium = makeAtmosphere(*p, d, toRender);
     } else if (type == "vdb") {
         medium = loadVdb(d, toRender);
+    } else if (type == "noise") {
+        medium = makeNoiseVolume(d, toRender);
     } else {
         bound<MediumParams>(d);
     }
     if (!medium) return;
     openMedia_.emplace_back(media_[keepMedium(std::move(medium), d.span)].get(), d.span);
+}
+
+// An unknown name has been reported.
+void SceneBuilder::placeAtmosphere(const Definition& d) {
+    const Definition* const named = tree_.find(Kind::medium, d.target);
+    if (!named) return;
+    if (const schema::Reference medium = reference(*named, diagnostics_); medium.valid())
+        openMedia_.emplace_back(media_[medium.index].get(), d.span);
 }
 
 std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,
@@ -85,6 +99,7 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
 }
 
 void SceneBuilder::noteMedia(Scene& scene) {
+    placeNoise(scene.origin);
     const auto note = [&](const Medium& medium, Span span, std::string_view what) {
         scene.effects |= medium.needs();
         scene.reasons.push_back({Effect::media, span, fmt::format("light is scattered in {}", what)});

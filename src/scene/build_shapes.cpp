@@ -182,6 +182,9 @@ void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Pl
         case Kind::group:
             carry(ownTransform(d), place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
             break;
+        case Kind::atmosphere:
+            placeAtmosphere(d);
+            break;
         case Kind::volume:
             placeVolume(d, place);
             break;

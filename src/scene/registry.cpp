@@ -19,6 +19,7 @@
 #include "materials/diffuse.h"
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
+#include "media/noise_types.h"
 #include "media/phase_types.h"
 #include "media/vdb_type.h"
 #include "scene/camera_gltf.h"
@@ -107,7 +108,8 @@ schema::TypeTable makeTypeTable() {
     for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
     for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
     for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
-    for (const auto type : {homogeneousType, atmosphereType, vdbType}) table.add(type());
+    for (const auto type : {homogeneousType, atmosphereType, vdbType, noiseMediumType, noiseVolumeType})
+        table.add(type());
     for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }

@@ -28,6 +28,7 @@ namespace abbe {
 struct CurvesParams;
 struct GridExtras;
 struct LoadedCage;
+class NoiseMedium;
 struct PointsParams;
 struct VdbGrid;
 struct VdbParams;
@@ -170,6 +171,7 @@ class SceneBuilder final : public schema::Resolver {
     std::uint32_t keepMedium(std::unique_ptr<const Medium>, Span definedAt);
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
     void placeVolume(const Definition&, const Place&);
+    void placeAtmosphere(const Definition&);
     std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
     // build_vdb.cpp
     std::unique_ptr<const Medium> loadVdb(const Definition&, const Transform& toRender);
@@ -178,6 +180,10 @@ class SceneBuilder final : public schema::Resolver {
     bool checkDrift(const VdbParams&, const VoxelGrid& density, const GridExtras&, const Transform& place);
     std::unique_ptr<const Medium> makeVolume(const VdbParams&, const MediumOptics&, VoxelGrid density, GridExtras,
                                              const Transform& place, const Definition&);
+    // build_noise.cpp
+    std::unique_ptr<const Medium> makeNoiseVolume(const Definition&, const Transform& toRender);
+    std::unique_ptr<const Medium> makeNoiseMedium(const Definition&);
+    void placeNoise(Vec3d origin);
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
@@ -236,6 +242,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::shared_ptr<const PhaseFunction>> phases_;
     std::vector<const Definition*> openMixes_; // being made
     std::vector<std::unique_ptr<const Medium>> media_;
+    std::vector<NoiseMedium*> noiseMedia_; // those of media_
     std::vector<Span> mediumSpans_; // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto kPlanned = std::to_array<std::string_view>({"include", "override", "remove", "variant"});
 
-bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances; }
+bool isPlacement(Kind kind) { return kind == Kind::instance || kind == Kind::instances || kind == Kind::atmosphere; }
 
 bool isTyped(Kind kind) {
     return kind != Kind::group && kind != Kind::object && !isPlacement(kind) && kind != Kind::spectrum;
@@ -161,7 +161,7 @@ void DefinitionReader::spectrumHead(const Node& node, Definition& definition) co
     definition.arguments = valuesFrom(node, 1);
 }
 
-// `group [name]`, `object name`, `instance object-name`, `instances object-name`.
+// `group [name]`, `object name`, `instance object-name`, `instances object-name`, `atmosphere medium-name`.
 void DefinitionReader::containerHead(const Node& node, Definition& definition) const {
     const std::string_view kind = keyword(definition.kind);
     const std::size_t count = node.valueCount();
@@ -173,7 +173,9 @@ void DefinitionReader::containerHead(const Node& node, Definition& definition) c
         setName(definition, node.value(0));
     } else if (definition.kind != Kind::group) {
         report(diagnostics_, node.nameSpan(), "E0209", fmt::format("`{}` needs a name", kind),
-               definition.kind == Kind::object ? "write `object name { … }`" : "the name of the object it places");
+               definition.kind == Kind::object       ? "write `object name { … }`"
+               : definition.kind == Kind::atmosphere ? "the name of the medium that it places everywhere"
+                                                     : "the name of the object it places");
     }
     if (count > (named ? 1u : 0u))
         reportAt(diagnostics_, node.value(named ? 1 : 0), "E0306", fmt::format("`{}` takes one name", kind),
@@ -185,7 +187,12 @@ void DefinitionReader::containerHead(const Node& node, Definition& definition) c
 void DefinitionReader::containerBlock(const Node& node, Definition& definition) const {
     Span transform;
     for (const Node child : node.children()) {
-        if (child.name() == "transform") {
+        if (definition.kind == Kind::atmosphere) {
+            if (!child.name().starts_with("x-"))
+                report(diagnostics_, child.nameSpan(), "E0201",
+                       fmt::format("`atmosphere` has no property `{}`", child.name()), "unknown property")
+                    .help = "what it is made of is said by its medium; `volume … atmosphere` is thinner with height";
+        } else if (child.name() == "transform") {
             if (transform.valid()) {
                 auto& d = report(diagnostics_, child.headSpan(), "E0208", "`transform` is given twice", "second");
                 d.related.push_back({transform, "first"});
@@ -215,7 +222,8 @@ void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Plac
     if (word == "at") return reportPlanned("at (motion)", node.nameSpan(), diagnostics_);
     const auto kind = findKind(word);
     if (!kind) return unknownKind(node);
-    if (where == Place::group && (*kind == Kind::camera || *kind == Kind::film || *kind == Kind::render)) {
+    const bool single = *kind == Kind::camera || *kind == Kind::film || *kind == Kind::render;
+    if (where == Place::group && (single || *kind == Kind::atmosphere)) {
         report(diagnostics_, node.headSpan(), "E0212", fmt::format("`{}` belongs at the top level", word),
                "not in a group");
         return;

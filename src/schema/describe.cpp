@@ -121,6 +121,9 @@ std::string explainKind(const TypeTable& table, Kind kind) {
     if (kind == Kind::object)
         text += "  Definitions that are shown only where an `instance` places them: `object name { … }`.\n";
     if (kind == Kind::instance) text += "  Places an object: `instance name { transform { … } }`.\n";
+    if (kind == Kind::atmosphere)
+        text +=
+            "  Places a medium everywhere: `medium haze homogeneous { extinction 0.02 per-km }`, `atmosphere haze`.\n";
     if (kind == Kind::instances) text += "  Places an object many times: `instances name { points \"file.ply\" }`.\n";
     return text;
 }

@@ -33,13 +33,13 @@ struct Definition {
     std::string name;                 // empty: unnamed
     Span nameSpan;                    // of the name, else of the keyword
     Span span;                        // of the head
-    const TypeInfo* type = nullptr;   // null for group, object, instance, spectrum, and after an unknown type
+    const TypeInfo* type = nullptr;   // null for containers, placements, spectra, and after an unknown type
     std::vector<Value> arguments;     // after the type word; spectrum: everything after the name
     std::vector<Key> keys;            // key=value after the arguments
     bool damaged = false;             // a syntax error took something out of the head
     std::vector<Node> properties;     // everything in the block that is not a nested definition
     std::vector<Definition> children; // nested definitions of group and object
-    std::string target;               // instance, instances: the object that they place
+    std::string target;               // what instance, instances (an object) and atmosphere (a medium) place
     Span targetSpan;
 };
 

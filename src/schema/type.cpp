@@ -19,6 +19,7 @@ constexpr auto kKinds = std::to_array<std::pair<Kind, std::string_view>>({
     {Kind::phase, "phase"},
     {Kind::medium, "medium"},
     {Kind::volume, "volume"},
+    {Kind::atmosphere, "atmosphere"},
     {Kind::spectrum, "spectrum"},
     {Kind::texture, "texture"},
     {Kind::film, "film"},

@@ -31,6 +31,7 @@ enum class Kind : std::uint8_t {
     phase,
     medium,
     volume,
+    atmosphere,
     spectrum,
     texture,
     film,

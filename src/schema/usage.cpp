@@ -63,6 +63,24 @@ void checkTargets(const SceneTree& tree, const std::vector<const Definition*>& i
     }
 }
 
+void checkAtmospheres(const SceneTree& tree, Diagnostics& diagnostics) {
+    for (const Definition& atmosphere : tree.definitions) {
+        if (atmosphere.kind != Kind::atmosphere || atmosphere.target.empty()) continue;
+        if (tree.find(Kind::medium, atmosphere.target)) continue;
+        std::vector<std::string_view> media;
+        for (const Definition* d : tree.index.sorted)
+            if (d->kind == Kind::medium) media.push_back(d->name);
+        const auto meant = nearest(atmosphere.target, media);
+        auto& d = report(diagnostics, atmosphere.targetSpan, "E0202",
+                         fmt::format("no medium is named `{}`", atmosphere.target),
+                         meant.empty() ? "unknown name" : didYouMean(meant));
+        if (!meant.empty())
+            d.related.push_back({tree.find(Kind::medium, meant)->nameSpan, "defined here"});
+        else
+            d.help = fmt::format("define it: `medium {} homogeneous {{ extinction 0.02 per-km }}`", atmosphere.target);
+    }
+}
+
 // Depth-first search with its own stack: a long chain of objects must not exhaust the program's.
 class CycleCheck {
   public:
@@ -165,6 +183,7 @@ void checkUsage(const SceneTree& tree, Diagnostics& diagnostics) {
     std::vector<const Definition*> instances;
     collectInstances(tree.definitions, instances);
     checkTargets(tree, instances, diagnostics);
+    checkAtmospheres(tree, diagnostics);
     CycleCheck cycles(tree, diagnostics);
     for (const Definition* d : tree.index.sorted)
         if (d->kind == Kind::object) cycles.from(d);

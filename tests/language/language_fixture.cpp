@@ -172,7 +172,7 @@ void bindAll(Loaded& loaded, const std::vector<Definition>& definitions) {
     for (const Definition& d : definitions) {
         bindAll(loaded, d.children);
         if (d.kind == Kind::group || d.kind == Kind::object || d.kind == Kind::instance || d.kind == Kind::instances ||
-            d.kind == Kind::spectrum)
+            d.kind == Kind::atmosphere || d.kind == Kind::spectrum)
             continue;
         const std::string key = std::string(keyword(d.kind)) + (d.name.empty() ? "" : " " + d.name);
         Params params;
