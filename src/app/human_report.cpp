@@ -93,6 +93,10 @@ void HumanReport::done(const RenderSummary& s) {
     const std::string noise = s.noise > 0 ? fmt::format("noise {:.3g} %   ", 100 * s.noise) : std::string();
     console_.line(fmt::format("  {}memory {} MB   {} warning{}", noise, s.memoryBytes / 1000000, s.warnings,
                               s.warnings == 1 ? "" : "s"));
+    if (r.excess.above > 0)
+        console_.line(fmt::format("  {} of {} densities of media above their bound, at most {:.3g} times",
+                                  countText(static_cast<double>(r.excess.above)),
+                                  countText(static_cast<double>(r.excess.lookups)), r.excess.most));
     console_.line(
         fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
     if (!s.png.empty()) console_.line(fmt::format("image {}", s.png));

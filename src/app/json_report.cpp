@@ -65,6 +65,7 @@ class JsonReport final : public RenderReport {
                            {"kernel", r.kernel},
                            {"memory_bytes", s.memoryBytes},
                            {"dropped", dropped},
+                           {"densities_above_bound", r.excess.above},
                            {"warnings", static_cast<std::uint64_t>(s.warnings)}}));
     }
 

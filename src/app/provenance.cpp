@@ -65,6 +65,10 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     whole("abbe.droppedNan", statistics.dropped[static_cast<std::size_t>(DropCause::nan)]);
     whole("abbe.droppedInfinite", statistics.dropped[static_cast<std::size_t>(DropCause::infinite)]);
     whole("abbe.droppedNegative", statistics.dropped[static_cast<std::size_t>(DropCause::negative)]);
+    if (statistics.excess.above > 0) {
+        whole("abbe.densitiesAboveBound", statistics.excess.above);
+        real("abbe.mostAboveBound", static_cast<double>(statistics.excess.most));
+    }
     whole("abbe.partial", statistics.stopped ? 1 : 0);
     text("abbe.space", p.space);
     text("abbe.sceneRgb", std::string(schema::rgbSpaceId(p.loaded->tree.header.rgb)));

@@ -192,6 +192,7 @@ void RenderRun::write(const PixelFilm& film) {
     }
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, warnings);
+    warnOfDensities(summary_.statistics.excess, warnings);
     warnOfBlackImage(image, warnings);
     report_->diagnostics(warnings, loaded_->sources);
     summary_.warnings += warnings.warningCount();

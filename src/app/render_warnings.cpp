@@ -5,6 +5,13 @@
 
 namespace abbe {
 
+namespace {
+
+// Share of the densities above their bounds from which on it shows.
+constexpr double kNotableExcess = 0.01;
+
+} // namespace
+
 void warnOfDroppedSamples(const RenderStatistics& statistics, Diagnostics& diagnostics) {
     const auto& [nan, infinite, negative] = statistics.dropped;
     if (nan + infinite + negative > 0) {
@@ -23,6 +30,16 @@ void warnOfDroppedSamples(const RenderStatistics& statistics, Diagnostics& diagn
                             fmt::format("{} paths were cut at the safety cap of 100000 vertices; the image is a "
                                         "little too dark there",
                                         statistics.cappedPaths));
+}
+
+void warnOfDensities(const DensityExcess& excess, Diagnostics& diagnostics) {
+    const double share =
+        static_cast<double>(excess.above) / static_cast<double>(std::max<std::uint64_t>(1, excess.lookups));
+    if (share < kNotableExcess) return;
+    diagnostics.warning("W0643", {},
+                        fmt::format("{} of {} densities of media were above their bound, at most {:.3g} times; the "
+                                    "image is right but noisy there",
+                                    excess.above, excess.lookups, excess.most));
 }
 
 void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {

@@ -9,6 +9,8 @@ namespace abbe {
 
 // Samples left out because they were not finite or negative, and paths that met the safety cap.
 void warnOfDroppedSamples(const RenderStatistics&, Diagnostics&);
+// That bounds of procedural density are too low to be of use.
+void warnOfDensities(const DensityExcess&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
 
 } // namespace abbe

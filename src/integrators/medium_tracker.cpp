@@ -138,14 +138,13 @@ void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWe
 bool MediumTracker::collide(Active& a, RandomStream& random, TrackedWeights weights) {
     ++counters.collisions;
     const float bound = a.segment.maximum;
-    float density = a.walk->density(a.next);
-    if (density > bound) [[unlikely]] {
-        counters.exceeded += density > bound * 1.001f;
-        density = bound;
-    }
+    const float density = a.walk->density(a.next);
+    note(density, bound);
+    // Below 0 where the bound is none. The weight then has a sign and the estimate is unbiased all the same, as long as
+    // both events are possible: their probabilities are in proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
     const float nothing = bound - density;
     const Spectrum scattering = a.albedo * density;
-    const Spectrum kept = scattering + Spectrum(nothing);
+    const Spectrum kept = scattering + Spectrum(std::abs(nothing));
     const float scatters = mean(select(kept.v > 0, scattering / kept, Spectrum(0.f)));
     const bool real = random.uniform() < scatters;
     Spectrum factor = real ? scattering * (1 / (bound * scatters))
@@ -157,6 +156,15 @@ bool MediumTracker::collide(Active& a, RandomStream& random, TrackedWeights weig
     }
     *weights.beta *= factor;
     return real;
+}
+
+void MediumTracker::note(float density, float bound) {
+    if (!(density > bound)) [[likely]]
+        return;
+    ++counters.signedWeights;
+    if (!(density > bound * 1.001f)) return;
+    ++counters.exceeded;
+    counters.mostExceeded = std::max(counters.mostExceeded, density / bound);
 }
 
 // What surviving the way to `t` weighs at the other wavelengths, all media and exponents together: e^-a / e^-b has no
@@ -216,9 +224,12 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
     for (double t = static_cast<double>(random.exponential()) / rate; t < length;
          t += static_cast<double>(random.exponential()) / rate) {
         ++counters.lookups;
-        result *= Spectrum(1.f) - share * (a.walk->density(s.tNear + static_cast<float>(t)) - s.mean);
+        const float density = a.walk->density(s.tNear + static_cast<float>(t));
+        note(density, s.maximum);
+        result *= Spectrum(1.f) - share * (density - s.mean);
         if (++count % kRouletteEvery != 0) continue;
-        const float soFar = maxLane(result * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
+        const float soFar =
+            maxLane(abs(result) * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
         if (soFar > kSmall) continue;
         if (random.uniform() < 0.5f) return false;
         result *= 2.f;

@@ -34,9 +34,11 @@ class EmissionListener {
 
 // What a ray has met so far.
 struct MediumCounters {
-    std::uint64_t collisions = 0; // tentative ones
-    std::uint64_t lookups = 0;    // of density, for transmittance
-    std::uint64_t exceeded = 0;   // densities above their bound
+    std::uint64_t collisions = 0;    // tentative ones
+    std::uint64_t lookups = 0;       // of density, for transmittance
+    std::uint64_t exceeded = 0;      // densities above their bound, by more than rounding
+    std::uint64_t signedWeights = 0; // all densities above their bound: weights there may be below 0
+    float mostExceeded = 0;          // the greatest of them over its bound
 };
 
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.
@@ -88,6 +90,7 @@ class MediumTracker {
     Active* nextEvent();
     bool collide(Active&, RandomStream&, TrackedWeights);
     void shareDistance(float t, TrackedWeights) const;
+    void note(float density, float bound);
     Spectrum ratioTracking(Active&, RandomStream&);
     bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
 

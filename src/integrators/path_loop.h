@@ -283,9 +283,10 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
 }
 
 template <EffectBits E> float PathLoop<E>::throughput() const {
-    // Tracking scales the densities: only their ratio to beta means anything.
+    // Tracking scales the densities: only their ratio to beta means anything. Beyond a bound beta may have a sign.
     if constexpr (kMedia && kDispersion)
-        return mean(path_.beta) / mean(path_.densities.unidirectional) * path_.etaScale;
+        return mean(abs(path_.beta)) / mean(path_.densities.unidirectional) * path_.etaScale;
+    if constexpr (kMedia) return mean(abs(path_.beta)) * path_.etaScale;
     return mean(path_.beta) * path_.etaScale;
 }
 

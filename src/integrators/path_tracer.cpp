@@ -112,6 +112,7 @@ class RenderJob {
         statistics_.vertices += r.counters.vertices;
         statistics_.shadowRays += r.counters.shadowRays;
         statistics_.cappedPaths += r.counters.capped;
+        statistics_.excess.add(r.excess);
         statistics_.coreSeconds += seconds;
         for (std::size_t i = 0; i < r.dropped.size(); ++i) statistics_.dropped[i] += r.dropped[i];
         for (const DroppedSample& s : r.examples)

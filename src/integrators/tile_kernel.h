@@ -20,10 +20,12 @@ struct TileResult {
     PathCounters counters;
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // at most a few
+    DensityExcess excess;
 };
 
 // Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite
-// and non-negative is counted by cause and left out of the pixel's mean.
+// and non-negative is counted by cause and left out of the pixel's mean. A path on which a density exceeded its bound
+// has the right to be negative: the mean is right with it.
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)
@@ -33,6 +35,10 @@ template <EffectBits E> class TileKernel {
         for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
             for (int x = job_.pixels.x0; x < job_.pixels.x1; ++x)
                 for (int r = 0; r < film_.replicates(); ++r) replicate(x, y, r);
+        if constexpr (PathLoop<E>::kMedia) {
+            const MediumCounters& media = media_.tracker.counters;
+            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
+        }
         return std::move(result_);
     }
 
@@ -74,13 +80,21 @@ template <EffectBits E> class TileKernel {
         const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
         const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
         radiance_ = Spectrum(0.f);
+        maySubtract_ = false;
         if (!(camera.weight > 0)) return {};
         if constexpr (PathLoop<E>::kMedia) findMediaAround(camera.ray);
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
+        const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
+        maySubtract_ = signedWeights() != before;
         return toXyz(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
+    }
+
+    std::uint64_t signedWeights() const {
+        if constexpr (PathLoop<E>::kMedia) return media_.tracker.counters.signedWeights;
+        return 0;
     }
 
     static float minLane(Spectrum s) { return -maxLane(-s); }
@@ -88,7 +102,7 @@ template <EffectBits E> class TileKernel {
     // Index of the DropCause, or 3 for a sound sample. The cause is looked for in the lanes: in XYZ an infinite one
     // times a matching function of 0 would be NaN.
     unsigned fault(Xyz v) const {
-        const bool negative = minLane(radiance_) < 0;
+        const bool negative = minLane(radiance_) < 0 && !maySubtract_;
         if (std::isfinite(v.x + v.y + v.z) && !negative) [[likely]]
             return 3;
         const bool nan = _mm256_movemask_ps(_mm256_cmp_ps(radiance_.v, radiance_.v, _CMP_UNORD_Q)) != 0;
@@ -112,6 +126,7 @@ template <EffectBits E> class TileKernel {
     Vec3 lastOrigin_{kInfinity, kInfinity, kInfinity};
     TileResult result_;
     Spectrum radiance_; // of the last sample
+    bool maySubtract_ = false;
 };
 
 using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);

@@ -36,6 +36,20 @@ struct DroppedSample {
     DropCause cause = DropCause::nan;
 };
 
+// Densities of media that were found above the bound that tracking took for them. The image stays right, but is
+// noisier if there are many.
+struct DensityExcess {
+    std::uint64_t lookups = 0; // all densities
+    std::uint64_t above = 0;
+    float most = 0; // density over bound
+
+    void add(const DensityExcess& e) {
+        lookups += e.lookups;
+        above += e.above;
+        most = most > e.most ? most : e.most;
+    }
+};
+
 struct RenderStatistics {
     std::uint64_t paths = 0;
     std::uint64_t vertices = 0;
@@ -45,11 +59,12 @@ struct RenderStatistics {
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
     std::uint64_t cappedPaths = 0;          // reached the safety cap of 100 000 vertices
-    double seconds = 0;                     // wall clock
-    double coreSeconds = 0;                 // summed over threads
-    double noise = 0;                       // estimated relative error of the image
-    bool stopped = false;                   // by the caller
-    std::string kernel;                     // the instantiation that ran, e.g. "dispersion+absorption"
+    DensityExcess excess;
+    double seconds = 0;     // wall clock
+    double coreSeconds = 0; // summed over threads
+    double noise = 0;       // estimated relative error of the image
+    bool stopped = false;   // by the caller
+    std::string kernel;     // the instantiation that ran, e.g. "dispersion+absorption"
 };
 
 struct Progress {

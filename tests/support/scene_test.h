@@ -57,6 +57,11 @@ class TestScene {
         if (diagnostics().hasErrors()) throw std::runtime_error(report());
         return parts_->built.scene;
     }
+    // Puts another medium in place of the first volume of the scene.
+    void standIn(std::unique_ptr<const Medium> medium) {
+        parts_->built.scene.openMedia.at(0) = medium.get();
+        parts_->built.scene.media.push_back(std::move(medium));
+    }
     RenderSettings settings() const { return renderSettings(parts_->built.render); }
 
   private:
