@@ -10,6 +10,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
         lights_.push_back(light.get());
         total += light->power();
         if (light->infinite()) infinite_.push_back(light.get());
+        placed_ |= !light->infinite();
     }
     const double count = static_cast<double>(lights_.size());
     double sum = 0;

@@ -23,6 +23,8 @@ class LightSampler {
 
     bool empty() const { return lights_.empty(); }
     bool needsChoice() const { return lights_.size() > 1; }
+    // Whether any light may have a reach.
+    bool placed() const { return placed_; }
     // Requires !empty(); u in [0, 1).
     PickedLight pick(float u) const noexcept;
     // Probability with which `light`, one of the scene's, is picked.
@@ -39,6 +41,7 @@ class LightSampler {
     std::vector<const Light*> infinite_;
     std::unordered_map<const Light*, float> byLight_;
     std::unordered_map<const MediumEmission*, float> byEmission_;
+    bool placed_ = false;
 };
 
 } // namespace abbe

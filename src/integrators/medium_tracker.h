@@ -32,6 +32,18 @@ class EmissionListener {
     ~EmissionListener() = default;
 };
 
+// What scatters at a place on a ray.
+struct InScattering {
+    const Medium* medium = nullptr;
+    Spectrum coefficient; // 1/m
+};
+
+// A part of a ray.
+struct RayExtent {
+    float tNear = 0, tFar = 0;
+    bool empty() const { return !(tNear < tFar); }
+};
+
 // What a ray has met so far.
 struct MediumCounters {
     std::uint64_t collisions = 0;    // tentative ones
@@ -55,6 +67,13 @@ class MediumTracker {
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
     // [Novak2014] with the mean density of each segment as control.
     Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);
+
+    // About the density of the distances that follow() finds: that of collisions if every segment had its mean density
+    // throughout, 1/m. A pure function of the ray and t. If asked, also all that scatters at t.
+    float expected(const Ray&, float t, const MediumStack& inside, const Wavelengths&,
+                   std::vector<InScattering>* there = nullptr);
+    // The part of the ray up to tMax outside of which there are no media.
+    RayExtent extent(const Ray&, float tMax, const MediumStack& inside) const;
 
     MediumCounters counters;
 
@@ -88,7 +107,7 @@ class MediumTracker {
     static void schedule(Active&, float from);
     static bool advance(Active&);
     Active* nextEvent();
-    bool collide(Active&, RandomStream&, TrackedWeights);
+    bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights);
     void shareDistance(float t, TrackedWeights) const;
     void note(float density, float bound);
     Spectrum ratioTracking(Active&, RandomStream&);

@@ -31,8 +31,17 @@ struct PathCounters {
 struct MediaState {
     explicit MediaState(const Scene& scene) : tracker(scene.openMedia) {}
 
+    // The way that the path is on, from a vertex or a boundary; `media` is empty where near lights are not looked for.
+    struct Leg {
+        Ray ray;
+        RayExtent media;
+        float collision = 0; // where it ended
+    };
+
     MediumTracker tracker;
     MediumStack aroundCamera;
+    Leg leg;
+    std::vector<InScattering> inScattering;
 };
 
 // Radiance along one camera ray at the path's wavelengths.
@@ -80,8 +89,10 @@ template <EffectBits E> class PathLoop {
     Arrival arriveThroughMedia(Ray&, SurfaceHit&, std::uint32_t depth);
     bool scatterInMedium(Ray&, std::uint32_t depth);
     class GlowCollector;
+    void sampleNearLight(const Ray&, std::uint32_t depth, std::uint32_t crossings);
+    float trackingShare(const Light&);
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
-    Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, std::uint32_t depth);
+    Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, RandomStream);
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
@@ -243,7 +254,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if constexpr (kMedia) {
         MediumStack beyond = path_.inside;
         if (eye.wo.z * wi.z < 0) crossBoundary(hit, light->wi, beyond);
-        passing = transmittance(origin, *light, beyond, depth);
+        passing = transmittance(origin, *light, beyond, sampler_.stream(2 * depth + 1));
         if (!anyNonZero(passing)) return;
     } else if (occluded(origin, *light)) {
         return;
@@ -331,3 +342,4 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 } // namespace abbe
 
 #include "integrators/path_loop_media.h"
+#include "integrators/path_loop_near_light.h"

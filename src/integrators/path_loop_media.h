@@ -38,11 +38,16 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceH
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
         const bool met = context_.scene.intersector->intersect(ray, hit);
         const float tMax = met ? hit.distance : kInfinity;
+        if (context_.lights.placed()) {
+            media_.leg = {ray, media_.tracker.extent(ray, tMax, path_.inside)};
+            sampleNearLight(ray, depth, crossings);
+        }
         const MediumCollision collision =
             media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights, &glow);
         if constexpr (kAbsorption)
             if (met) absorb(hit, ray.direction, collision.medium ? collision.t : tMax);
         if (collision.medium) {
+            media_.leg.collision = collision.t;
             ray.origin = ray.origin + ray.direction * collision.t;
             collided_ = collision.medium;
             return Arrival::collision;
@@ -88,7 +93,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     const float cosine = dot(direction, light->wi), value = phase.value(cosine);
     if (!(value > 0)) return;
     ++counters_.shadowRays;
-    const Spectrum passing = transmittance(p, *light, path_.inside, depth);
+    const Spectrum passing = transmittance(p, *light, path_.inside, sampler_.stream(2 * depth + 1));
     if (!anyNonZero(passing)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     BsdfEval eval;
@@ -99,13 +104,12 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     if constexpr (kAbsorption)
         if (const Curve* clear = path_.interior.absorption; clear && light->distance < kInfinity)
             contribution *= exp(clear->at(path_.lambda) * -light->distance);
-    path_.radiance += contribution;
+    path_.radiance += contribution * trackingShare(*picked.light);
 }
 
 // Of everything between a vertex and a light: nothing behind a surface, the media's else.
 template <EffectBits E>
-Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, MediumStack inside, std::uint32_t depth) {
-    RandomStream random = sampler_.stream(2 * depth + 1);
+Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, MediumStack inside, RandomStream random) {
     const bool infinite = !(light.distance < kInfinity);
     Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path_.time};
     if (!context_.scene.boundaries) {

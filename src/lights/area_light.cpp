@@ -7,7 +7,7 @@
 namespace abbe {
 
 AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
-    : shape_(shape), radiance_(radiance), twoSided_(twoSided) {
+    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), twoSided_(twoSided) {
     const double area = shape.area();
     power_ =
         std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiantIntegral(*radiance.curve) * radiance.scale : 0;
@@ -17,6 +17,11 @@ std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelength
     const std::optional<ShapeSample> s = shape_.sample(from, u);
     if (!s) return std::nullopt;
     return arriving(*s, from, lambda);
+}
+
+std::optional<LightReach> AreaLight::reach(const Ray&, float tMax) const noexcept {
+    if (!(power_ > 0) || !isFinite(centre_)) return std::nullopt;
+    return LightReach{centre_, 0, tMax};
 }
 
 std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from,

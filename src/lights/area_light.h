@@ -17,6 +17,8 @@ class AreaLight : public Light {
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
     std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    // Nothing for shapes without an end.
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
@@ -24,12 +26,14 @@ class AreaLight : public Light {
 
   protected:
     const Shape& shape() const { return shape_; }
+    Vec3 centre() const { return centre_; } // of its bounds
     // The light from a point of the shape; nothing if none arrives.
     std::optional<LightSample> arriving(const ShapeSample&, Vec3 from, const Wavelengths&) const noexcept;
 
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
     const Shape& shape_;
+    Vec3 centre_;
     ScaledCurve radiance_;
     double power_;
     bool twoSided_;

@@ -53,6 +53,26 @@ float MovingLight::pdfEscaped(Vec3 w, float time) const noexcept {
     return pose ? atRest_->pdfEscaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
 }
 
+std::optional<LightReach> MovingLight::reach(const Ray& ray, float tMax) const noexcept {
+    const auto pose = motion_.at(ray.time);
+    if (!pose) return std::nullopt;
+    const float scale = static_cast<float>(pose->scale);
+    Ray rest = ray;
+    rest.origin = pose->rest(ray.origin);
+    rest.direction = Vec3(normalize(pose->toRest.vector(Vec3d(ray.direction))));
+    auto r = atRest_->reach(rest, tMax / scale);
+    if (!r) return r;
+    return LightReach{Vec3(pose->toRender.point(Vec3d(r->centre))), r->tNear * scale, std::min(r->tFar * scale, tMax)};
+}
+
+std::optional<LightReach> MovingAreaLight::reach(const Ray& ray, float tMax) const noexcept {
+    const auto pose = motion_.at(ray.time);
+    auto r = AreaLight::reach(ray, tMax);
+    if (!pose || !r) return std::nullopt;
+    r->centre = Vec3(pose->toRender.point(Vec3d(r->centre)));
+    return r;
+}
+
 std::optional<LightSample> MovingAreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
                                                    float time) const noexcept {
     const auto pose = motion_.at(time);

@@ -20,6 +20,7 @@ class MovingLight final : public Light {
     float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
     float pdfEscaped(Vec3 w, float time) const noexcept override;
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:
     std::unique_ptr<Light> atRest_;
@@ -35,6 +36,7 @@ class MovingAreaLight final : public AreaLight {
 
     std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
     float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept override;
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:
     LightMotion motion_;

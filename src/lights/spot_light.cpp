@@ -97,6 +97,37 @@ std::optional<LightSample> SpotLight::sample(Vec3 from, Vec2, const Wavelengths&
                                       true);
 }
 
+// With the axis a and v = origin - apex + t d: inside the cone where |v × a|² <= tan² (v · a)² and v · a > 0.
+std::optional<LightReach> SpotLight::reach(const Ray& ray, float tMax) const noexcept {
+    const LightReach whole{position_, 0, tMax};
+    const double cosine = 1 - static_cast<double>(outerOneMinusCos_);
+    if (cosine < 0.1) return whole; // not convex, or so wide that it cuts little off
+    const double tangent2 = 1.001 * (1 / (cosine * cosine) - 1);
+    const Vec3d a(axis_), d(ray.direction), o = Vec3d(ray.origin) - Vec3d(position_);
+    const Vec3d da = cross(d, a), oa = cross(o, a);
+    const double along = dot(d, a), height = dot(o, a);
+    const double qa = dot(da, da) - tangent2 * along * along, qb = dot(da, oa) - tangent2 * along * height;
+    const double qc = dot(oa, oa) - tangent2 * height * height, discriminant = qb * qb - qa * qc;
+    if (std::abs(qa) < 1e-12) return whole;
+    if (discriminant < 0) return std::nullopt; // of a ray that passes both halves of the double cone by
+    const double q = -(qb + std::copysign(std::sqrt(discriminant), qb));
+    const double r1 = q / qa, r2 = q != 0 ? qc / q : r1;
+    double from = std::min(r1, r2), to = std::max(r1, r2);
+    if (qa > 0) {
+        if (height + 0.5 * (from + to) * along <= 0) return std::nullopt; // through the other half
+    } else if (along > 0) {
+        from = to;
+        to = static_cast<double>(tMax);
+    } else {
+        to = from;
+        from = 0;
+    }
+    from = std::max(from, 0.0);
+    to = std::min(to, static_cast<double>(tMax));
+    if (!(from < to)) return std::nullopt;
+    return LightReach{position_, static_cast<float>(from), static_cast<float>(to)};
+}
+
 std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightContext& context,
                                      Diagnostics& diagnostics) {
     if (!params.stated()) {

@@ -25,6 +25,13 @@ struct LightSample {
     bool delta;          // cannot be met by chance: MIS weight 1
 };
 
+// Where a light shines along a ray, and what point it shines from, more or less: distances drawn around it find more of
+// the light. Depends on nothing but the light and the ray.
+struct LightReach {
+    Vec3 centre;
+    float tNear = 0, tFar = 0; // light arrives nowhere else; tFar may be infinite
+};
+
 // Immutable once the scene is committed, thread-safe, render space.
 class Light {
   public:
@@ -35,9 +42,8 @@ class Light {
     virtual double power() const = 0;
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
-    // A point near which all of it is, so that distances along rays can be drawn by how near they come; nothing for
-    // lights without a place.
-    virtual std::optional<Vec3> centre(float) const noexcept { return std::nullopt; }
+    // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
+    virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // What this light samples, if it is a medium that shines: found along rays, never as a surface.
     virtual const MediumEmission* emission() const { return nullptr; }
     // Light that can arrive at `from`; nothing if none can. u in [0, 1)². Here and below `time` is Ray::time, which

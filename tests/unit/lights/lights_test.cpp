@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <doctest/doctest.h>
+#include <random>
 
 namespace abbe {
 namespace {
@@ -55,6 +56,35 @@ TEST_CASE("a point light follows the inverse square, and its transform") {
               return light->sample({2, -2, 0}, {}, w, 0)->radiance;
           }) == doctest::Approx(10).epsilon(1e-5));
     CHECK_FALSE(sample({2, 1, 0}).has_value()); // at the light
+}
+
+TEST_CASE("a spot arrives nowhere on a ray outside of its reach, which is not much too long") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto vector = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
+    for (const double angle : {0.01, 1.0, 20.0, 70.0, 120.0}) {
+        const SpotLight light({0.2f, 0.1f, 0}, normalize(Vec3{1, 2, 3}), 0, angle * kDegree, {&kLamp, 1});
+        int lit = 0, within = 0;
+        for (int i = 0; i < 2000; ++i) {
+            // Rays that come by near the cone, and some of its own directions.
+            const Vec3 target = Vec3{0.2f, 0.1f, 0} + normalize(Vec3{1, 2, 3}) * (2 * unit(random));
+            const Vec3 origin = vector() * 3.f;
+            const Vec3 nudge = vector() * static_cast<float>(angle * kDegree);
+            const Ray ray{origin, i % 2 ? normalize(target - origin + nudge) : normalize(Vec3{1, 2, 3} + nudge)};
+            const auto reach = light.reach(ray, 10);
+            for (int k = 0; k < 200; ++k) {
+                const float t = 10 * (static_cast<float>(k) + 0.5f) / 200;
+                const bool arrives =
+                    light.sample(origin + ray.direction * t, {}, Wavelengths::single(500), 0).has_value();
+                const bool inside = reach && t >= reach->tNear && t <= reach->tFar;
+                lit += arrives;
+                within += inside;
+                REQUIRE((!arrives || inside));
+            }
+        }
+        CHECK(lit > 0);
+        if (angle > 0.5 && angle < 80) CHECK(within < 1.1 * lit);
+    }
 }
 
 TEST_CASE("the power of a point light is what was asked for") {

@@ -1,0 +1,77 @@
+// Scattering towards lights near the path: distances drawn by how near they come to a light [Kulla2012], beside those
+// that tracking finds. In thin fog around a lamp tracking rarely stops where the light is. Included by path_loop.h.
+#pragma once
+
+#include "math/equiangular.h"
+
+namespace abbe {
+
+// The light at one place of the ray, before it is followed. Next-event estimation from there and from where tracking
+// scatters share their light's choice and place, which leaves the distances to be weighed: those drawn here against
+// those that tracking finds on average, a function of the place alone. So both may estimate what lies between as they
+// like. Only for rays that the eye sees, directly or in mirrors and clear glass: further on it costs as much as before
+// and is blurred (docs/performance.md).
+template <EffectBits E>
+void PathLoop<E>::sampleNearLight(const Ray& ray, std::uint32_t depth, std::uint32_t crossings) {
+    const auto& settings = context_.settings;
+    RayExtent& media = media_.leg.media;
+    if (!path_.delta || settings.strategy == Strategy::bsdfOnly || (settings.maxDepth && depth >= settings.maxDepth))
+        media = {};
+    if (media.empty()) return;
+    // Numbers of no vertex.
+    const std::uint32_t set = (crossings + 1) << 20 | depth;
+    const VertexSample sample = sampler_.vertex(set);
+    const PickedLight picked = context_.lights.pick(sample.pick);
+    const auto reach = picked.light->reach(ray, media.tFar);
+    if (!reach) return;
+    const EquiangularDistances distances(ray.origin, ray.direction, reach->centre, std::max(media.tNear, reach->tNear),
+                                         std::min(media.tFar, reach->tFar));
+    if (!distances.valid()) return;
+    const float t = distances.sample(sample.bsdf.x), pdf = distances.pdf(t);
+    const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda, &media_.inScattering);
+    const float share = pdf / (pdf + tracked);
+    // Where tracking is as good there is no need to pay for both.
+    const float kept = std::min(1.f, 4 * share);
+    if (media_.inScattering.empty() || !(sample.bsdf.y < kept)) return;
+    const Vec3 p = ray.origin + ray.direction * t;
+    const auto light = picked.light->sample(p, sample.light, path_.lambda, path_.time);
+    if (!light) return;
+
+    const float cosine = dot(ray.direction, light->wi), lightPdf = picked.probability * light->pdfSolidAngle;
+    Spectrum scattered(0.f);
+    for (const InScattering& at : media_.inScattering) {
+        const PhaseFunction& phase = at.medium->phase();
+        BsdfEval eval;
+        eval.pdfSolidAngle = phase.value(cosine);
+        Spectrum value = at.coefficient * (eval.pdfSolidAngle * lightWeight(lightPdf, eval, light->delta));
+        if (phase.spectral()) value *= phase.ratio(cosine, path_.lambda);
+        scattered += value;
+    }
+    if (!anyNonZero(scattered)) return;
+    ++counters_.shadowRays;
+    Spectrum passing = transmittance(p, *light, path_.inside, sampler_.stream(2 * set + 1));
+    if (!anyNonZero(passing)) return;
+    RandomStream random = sampler_.stream(2 * set);
+    passing *= media_.tracker.transmittance(ray, t, path_.inside, path_.lambda, random);
+    if constexpr (kAbsorption)
+        if (const Curve* clear = path_.interior.absorption)
+            passing *= exp(clear->at(path_.lambda) * -(t + light->distance));
+    path_.radiance += path_.beta * light->radiance * scattered * passing * (share / (kept * pdf * lightPdf));
+}
+
+// The weight of a light sampled where tracking collided: 1 but for lights that sampleNearLight() samples too.
+template <EffectBits E> float PathLoop<E>::trackingShare(const Light& light) {
+    const auto& [ray, media, t] = media_.leg;
+    if (!context_.lights.placed() || media.empty()) return 1;
+    const auto reach = light.reach(ray, media.tFar);
+    if (!reach) return 1;
+    const EquiangularDistances distances(ray.origin, ray.direction, reach->centre, std::max(media.tNear, reach->tNear),
+                                         std::min(media.tFar, reach->tFar));
+    if (!distances.valid()) return 1;
+    const float pdf = distances.pdf(t);
+    if (!(pdf > 0)) return 1;
+    const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda);
+    return tracked / (pdf + tracked);
+}
+
+} // namespace abbe
