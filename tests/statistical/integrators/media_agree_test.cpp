@@ -87,9 +87,28 @@ class Waves final : public Medium {
     Vec3 origin_; // of render space
 };
 
-TestImage renderWaves(const std::string& lights, const Level& extinction, const Level& albedo, float factor,
+class Slope final : public Curve { // from `low` at 360 nm to `high` at 830 nm
+  public:
+    Slope(double low, double high) : low_(low), high_(high) {}
+    Spectrum at(const Wavelengths& w) const override {
+        Spectrum s;
+        for (int i = 0; i < kLanes; ++i) s.v[i] = static_cast<float>(at(static_cast<double>(w.nm[i])));
+        return s;
+    }
+    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
+    bool isConstant() const override { return false; }
+    double minimum() const override { return std::min(low_, high_); }
+    double maximum() const override { return std::max(low_, high_); }
+
+  private:
+    double low_, high_;
+};
+
+TestImage renderWaves(const std::string& lights, const Curve& extinction, const Curve& albedo, float factor,
                       std::uint32_t samples, std::uint64_t seed) {
-    TestScene scene = TestScene::parse(kCamera + lights + "volume atmosphere { extinction 1 per-m }\n");
+    // Collisions of what stands there first depend on wavelength or do not, as those of its stand-in.
+    TestScene scene = TestScene::parse(kCamera + lights + "volume atmosphere { extinction " +
+                                       (extinction.isConstant() ? "1" : "table 400 1 700 2") + " per-m }\n");
     scene.standIn(std::make_unique<Waves>(optics(extinction, albedo, 0.5), factor, scene.scene().origin));
     return render(scene, samples, seed);
 }
@@ -148,6 +167,12 @@ TEST_CASE("bounds that are too low bias nothing, and are counted; nor do bounds 
     const TestImage right = renderWaves(kLit, extinction, grey, 1, 4096, 6);
     for (const float factor : {0.5f, 2.f, 8.f})
         checkSame(compareImages(renderWaves(kLit, extinction, grey, factor, 4096, 7).film, right.film), 0.006);
+    // Where it depends on wavelength, and one that is hardly scattered in part of the spectrum.
+    const Slope chromatic(0.9, 0.2), coloured(0.05, 0.95);
+    const TestImage even = renderWaves(kLit, chromatic, coloured, 1, 4096, 8);
+    const TestImage low = renderWaves(kLit, chromatic, coloured, 0.5f, 4096, 9);
+    for (const Channel channel : {Channel::x, Channel::y, Channel::z})
+        checkSame(compareImages(low.film, even.film, channel), 0.01);
 }
 
 TEST_CASE("white fog by noise in white surroundings cannot be seen") {
