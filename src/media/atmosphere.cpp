@@ -20,7 +20,7 @@ class AtmosphereWalk final : public MediumWalk {
             const double here = height_ + slope_ * t_;
             const double stop = std::min(end_, boundaryAfter(here));
             const double there = std::isinf(stop) ? (slope_ > 0 ? kTopInScaleHeights : here) : height_ + slope_ * stop;
-            const double from = t_;
+            const double from = from_ = t_;
             t_ = stop;
             const double a = value(here), b = value(there);
             if (!(std::max(a, b) > 0) || !(stop > from)) continue;
@@ -30,8 +30,9 @@ class AtmosphereWalk final : public MediumWalk {
         }
         return false;
     }
+    // Within the piece: its ends, rounded to float, may lie a little outside of it, where the bounds do not hold.
     float density(float t) noexcept override {
-        return static_cast<float>(value(height_ + slope_ * static_cast<double>(t)));
+        return static_cast<float>(value(height_ + slope_ * std::clamp(static_cast<double>(t), from_, t_)));
     }
 
   private:
@@ -60,7 +61,7 @@ class AtmosphereWalk final : public MediumWalk {
     static constexpr double kSmallest = 1e-14;
 
     double height_, slope_, end_;
-    double t_ = 0;
+    double from_ = 0, t_ = 0; // of the piece that was given last
 };
 
 } // namespace
