@@ -12,6 +12,9 @@ class VolumeLight final : public Light {
     explicit VolumeLight(const GridEmission& emission) : emission_(emission) {}
 
     double power() const override { return emission_.power(); }
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
+        return LightReach{emission_.centre(), 0, tMax};
+    }
     const MediumEmission* emission() const override { return &emission_; }
     std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
     // No surface, and nothing at infinity.
