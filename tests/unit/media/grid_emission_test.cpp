@@ -133,7 +133,7 @@ TEST_CASE("the light's points follow the density that the emission states") {
     const int samples = chiSquareSamples();
     int missing = 0;
     for (int i = 0; i < samples; ++i) {
-        const Vec2 u(random.uniform(), random.uniform());
+        const Vec2 u{random.uniform(), random.uniform()};
         const Vec3d p = toIndex.point(Vec3d(medium.gridEmission()->samplePoint(u)));
         const Vec3i bin(static_cast<int>(std::floor((p.x - kLow) / 4)), static_cast<int>(std::floor((p.y - kLow) / 4)),
                         static_cast<int>(std::floor((p.z - kLow) / 4)));
