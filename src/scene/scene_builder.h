@@ -243,7 +243,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<const Definition*> openMixes_; // being made
     std::vector<std::unique_ptr<const Medium>> media_;
     std::vector<NoiseMedium*> noiseMedia_; // those of media_
-    std::vector<Span> mediumSpans_; // where each of media_ is defined
+    std::vector<Span> mediumSpans_;        // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::vector<std::unique_ptr<const Shape>> shapes_;
