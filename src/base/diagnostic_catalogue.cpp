@@ -146,7 +146,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0643", "no grid of that name", "The OpenVDB file has no grid of that name. `abbe volume info FILE` lists those that it has."},
     {"E0644", "a volume in an object or on its way", "A `volume` stands at the top level or in a group that stands still. A medium that fills a shape (`interior`) goes where the shape goes."},
     {"E0646", "a volume drifts too far", "What `velocity` moves while the shutter is open goes beyond 256 voxels. The velocity is in units of the file's world per second; `time` is the moment of the file's fields."},
-    {"E0647", "a medium cannot shine so", "A medium shines by `emission`, or by `temperature` times what it absorbs or an `emissivity`; one of them is said twice or lacks its other half."},
+    {"E0647", "a medium cannot shine so", "A medium shines by `emission`, or by `temperature` times what it absorbs or an `emissivity`; one of them is said twice or lacks its other half, or the temperature is beyond 10⁹ K."},
     {"E0648", "a table of a phase function is wrong", "A table of scattering holds rows of an angle in degrees and a value. The angles increase from 0 (straight on) to 180 (straight back); values are finite, at least 0 and not all 0. Their scale does not matter."},
     {"E0649", "a mix is wrong", "A part of a `phase … mix` is that mix again, directly or through others; or no part has a weight above 0."},
     {"E0650", "the image does not fit into memory", "The sums of a pixel take 28 bytes per replicate, and writing needs some more. `crop` in the film renders a part."},

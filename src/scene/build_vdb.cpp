@@ -15,6 +15,7 @@ namespace {
 
 using schema::Text;
 
+constexpr double kHottest = 1e9;       // K
 constexpr double kFurthestDrift = 256; // voxels; bounds that hold so far away take a while to make
 
 double keyOf(const std::optional<Text>& text, std::string_view name, double value) {
@@ -151,6 +152,11 @@ std::unique_ptr<const Medium> SceneBuilder::makeVolume(const VdbParams& params, 
     const double hottest = hot ? extras.temperature->offset +
                                      extras.temperature->scale * static_cast<double>(extras.temperature->grid.maximum())
                                : 0;
+    if (!(hottest < kHottest)) {
+        diagnostics_.error("E0647", params.temperature->span,
+                           fmt::format("the hottest of this volume is {:.4g} K", hottest), "nothing is as hot");
+        return nullptr;
+    }
     auto medium = std::make_unique<GridMedium>(optics, std::move(density), keyOf(params.density, "scale", 1), place,
                                                std::move(extras));
     if (medium->gridEmission())

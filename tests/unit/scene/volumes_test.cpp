@@ -96,6 +96,7 @@ TEST_CASE("volumes: wrong names, kinds and combinations are located and explaine
     says(files.fire, "emission 1; temperature", "E0647", "stands alone");
     says(files.fire, "flame", "E0647", "`flame`");
     says(files.fire, "temperature scale=0.001; albedo 0", "W0693", "kelvin");
+    says(files.fire, "temperature scale=1e9; albedo 0", "E0647", "hottest");
     says(files.smoke, "velocity scale=1e6; time 1 s", "E0646", "256");
     says(files.fire, "density scale=-1", "E0303", "between 0");
     says(files.fire, "density factor=1", "E0210", "`grid`");
