@@ -145,6 +145,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0642", "an OpenVDB file cannot be used", "The file is damaged or not an OpenVDB file, or the grid is of a kind that cannot be a density: points, vectors, a level set, a transform that is not affine."},
     {"E0643", "no grid of that name", "The OpenVDB file has no grid of that name. `abbe volume info FILE` lists those that it has."},
     {"E0644", "a volume in an object or on its way", "A `volume` stands at the top level or in a group that stands still. A medium that fills a shape (`interior`) goes where the shape goes."},
+    {"E0645", "a shape without an inside holds a medium", "`interior` fills closed shapes. Quads, disks, curves, and cylinders and cones without caps have no inside. A plane has one: everything below it."},
     {"E0646", "a volume drifts too far", "What `velocity` moves while the shutter is open goes beyond 256 voxels. The velocity is in units of the file's world per second; `time` is the moment of the file's fields."},
     {"E0647", "a medium cannot shine so", "A medium shines by `emission`, or by `temperature` times what it absorbs or an `emissivity`; one of them is said twice or lacks its other half, or the temperature is beyond 10⁹ K."},
     {"E0648", "a table of a phase function is wrong", "A table of scattering holds rows of an angle in degrees and a value. The angles increase from 0 (straight on) to 180 (straight back); values are finite, at least 0 and not all 0. Their scale does not matter."},
@@ -174,6 +175,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0691", "an empty grid", "The grid of this volume has no voxels: nothing of it will be seen."},
     {"W0692", "colours that are no share", "Components of a `color` grid are shares of the light that is scattered, within 0 and 1; those outside count as the nearest within."},
     {"W0693", "nothing glows", "The volume has a temperature but is nowhere above 400 K where there is anything to glow. Files often hold temperatures from 0 to 1: `temperature scale=1500` makes kelvin of them."},
+    {"W0694", "a surface with holes holds a medium", "A mesh or cage with an `interior` has edges of a single face, or faces that are turned against each other. A ray that leaves through a hole takes the medium along to infinity, and one that enters through a hole does not find it. Vertices in the same place count as one."},
 };
 // clang-format on
 

@@ -54,6 +54,12 @@ template <EffectBits E> class PathLoop {
     static constexpr std::uint32_t kLongPath = 64;
 
     static constexpr bool kMedia = hasEffect(E, Effect::media);
+    // In a dense white medium more than n collisions have a probability of about n^(-1/2). Against a constant 0.999 a
+    // hundredth of the light, that of the longest paths, would hardly ever be seen; against 1 - 1/n the variance is
+    // finite, and a path that can never leave still has only some 2300 vertices.
+    static float longPathSurvival(std::uint32_t depth) {
+        return kMedia ? std::max(0.999f, 1 - 1 / static_cast<float>(depth)) : 0.999f;
+    }
     using Media = std::conditional_t<kMedia, MediaState, path_detail::Nothing>;
 
     static Media makeMedia([[maybe_unused]] const Scene& scene) {
@@ -308,7 +314,7 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
     float p = RouletteReference::survival(throughput(), scale);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
-    if (depth >= kLongPath) p = std::min(p, 0.999f);
+    if (depth >= kLongPath) p = std::min(p, longPathSurvival(depth));
     if (p >= 1) return true;
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;

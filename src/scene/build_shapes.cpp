@@ -89,6 +89,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
         diagnostics_.error("E0606", d.span, "an infinite plane cannot emit", "give it an end: use a quad or a disk");
         shape.sound = false;
     }
+    checkInterior(shape);
     return shape;
 }
 

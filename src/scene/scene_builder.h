@@ -14,6 +14,7 @@
 #include "render/shape.h"
 #include "render/texture.h"
 #include "scene/build.h"
+#include "scene/closed_surface.h"
 #include "scene/curve_library.h"
 #include "scene/instances_type.h"
 #include "scene/shape_types.h"
@@ -57,6 +58,8 @@ class SceneBuilder final : public schema::Resolver {
         std::vector<std::uint16_t> faceMaterials;          // of the last placement: of its triangles, then of its quads
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points
         std::size_t dicedTriangles = 0, dicedQuads = 0;    // of the last placement of a subdivision surface
+        std::string_view openBecause;                      // why no medium can fill it, if so
+        OpenEdges cageEdges;                               // of a cage that a medium fills
         bool infinite = false;
         bool sound = false;
     };
@@ -124,6 +127,7 @@ class SceneBuilder final : public schema::Resolver {
     void addPlaced(const Shape&, EmbreeSceneBuilder::Binding, const Place&);
     LoadedShape& loadedShape(const Definition&);
     void loadMeshShape(const Definition&, LoadedShape&);
+    void checkInterior(LoadedShape&); // closed_surface.cpp
     // shape_parametric.cpp; false for other types.
     bool loadParametric(const Definition&, LoadedShape&, Vec3d up);
     void loadBox(const Definition&, LoadedShape&);

@@ -145,6 +145,7 @@ bool SceneBuilder::loadCurves(const Definition& d, LoadedShape& shape) {
     const auto params = bound<CurvesParams>(d);
     if (!params) return true;
     shape.common = *params;
+    shape.openBecause = "curves are open at their ends";
     if (refuseEmission(d, *params)) return true;
     if (!params->keys.empty()) return deformCurves(d, *params, shape), true;
     auto data = loadCurveData(*params, tree_.header.length, d.span, diagnostics_);

@@ -201,6 +201,7 @@ void SceneBuilder::loadFrustum(const Definition& d, LoadedShape& shape, Vec3d up
         return;
     }
     shape.common = p;
+    if (!p.caps) shape.openBecause = "without its caps it has no inside";
     shape.sound = true;
     const Transform upright = uprightAt(p.center, p.axis.value_or(up));
     shape.place = [this, p, upright, span = d.span](const Transform& t) {

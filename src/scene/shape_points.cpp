@@ -95,6 +95,7 @@ void SceneBuilder::loadPoints(const Definition& d, LoadedShape& shape) {
     const auto params = bound<PointsParams>(d);
     if (!params) return;
     shape.common = *params;
+    if (params->form.word != "sphere") shape.openBecause = "disks have no inside";
     if (refuseEmission(d, *params)) return;
     if (!params->keys.empty()) return deformPoints(d, *params, shape);
     auto data = loadPointData(*params, tree_.header.length, d.span, diagnostics_);
