@@ -6,14 +6,17 @@ namespace {
 
 // From where density has fallen to 1e-20 on there is nothing.
 constexpr double kTopInScaleHeights = 46;
-// Pieces in which density changes by a factor of e^(1/2) at most.
+// Pieces in which density changes by a factor of e^(1/2) at most, or of so small an optical depth that next to no ray
+// collides in them, real or not: in clear air steps would cost more than collisions.
 constexpr double kStep = 0.5;
+constexpr double kThin = 0.25;
 
 // Heights along the ray are linear in t: h(t) = height + slope t, in scale heights above the ground.
 class AtmosphereWalk final : public MediumWalk {
   public:
-    AtmosphereWalk(double height, double slope, float tMax)
-        : height_(height), slope_(slope), end_(static_cast<double>(tMax)) {}
+    // `extinction`: greatest, at density 1 and per unit of t.
+    AtmosphereWalk(double height, double slope, double extinction, float tMax)
+        : height_(height), slope_(slope), perHeight_(extinction / std::abs(slope)), end_(static_cast<double>(tMax)) {}
 
     bool next(MediumSegment& s) noexcept override {
         while (t_ < end_) {
@@ -49,18 +52,26 @@ class AtmosphereWalk final : public MediumWalk {
         const auto at = [&](double h) { return std::max((h - height_) / slope_, t_ + kSmallest * std::abs(t_)); };
         if (slope_ > 0) {
             if (here < 0) return at(0);
-            return here >= kTopInScaleHeights ? kNever : at(kStep * (std::floor(here / kStep * (1 + kSmallest)) + 1));
+            if (here >= kTopInScaleHeights) return kNever;
+            const double step = kStep * (std::floor(here / kStep * (1 + kSmallest)) + 1);
+            return at(std::min(std::max(step, here + kThin * std::exp(here) / perHeight_), kTopInScaleHeights));
         }
         if (slope_ < 0) {
             if (here <= 0) return kNever;
             if (here > kTopInScaleHeights) return at(kTopInScaleHeights);
-            return at(kStep * (std::ceil(here / kStep * (1 - kSmallest)) - 1));
+            double low = kStep * (std::ceil(here / kStep * (1 - kSmallest)) - 1);
+            for (double deep = 2 * kStep; low > 0; deep *= 2) {
+                const double lower = std::max(here - deep, 0.0);
+                if (perHeight_ * std::exp(-lower) * (here - lower) > kThin) break;
+                low = std::min(low, lower);
+            }
+            return at(low);
         }
         return kNever;
     }
     static constexpr double kSmallest = 1e-14;
 
-    double height_, slope_, end_;
+    double height_, slope_, perHeight_, end_;
     double from_ = 0, t_ = 0; // of the piece that was given last
 };
 
@@ -74,7 +85,8 @@ Bounds3 Atmosphere::bounds() const { return {{-kInfinity, -kInfinity, -kInfinity
 MediumWalk* Atmosphere::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
     const Vec3d up(up_);
     const double height = (dot(Vec3d(ray.origin), up) - ground_) / scaleHeight_;
-    return space.make<AtmosphereWalk>(height, dot(Vec3d(ray.direction), up) / scaleHeight_, tMax);
+    return space.make<AtmosphereWalk>(height, dot(Vec3d(ray.direction), up) / scaleHeight_,
+                                      optics_.extinction->maximum(), tMax);
 }
 
 schema::TypeInfo atmosphereType() {
