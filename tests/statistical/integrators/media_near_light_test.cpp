@@ -33,9 +33,8 @@ double single(double x, double y, double s) {
 
 TEST_CASE("a lamp in thin fog: single scattering along every ray, and little noise") {
     constexpr double s = 2e-4;
-    const auto scene =
-        TestScene::parse(std::string(kView) + "light point { position 0.4 1.6 0; intensity 100 cd }\n" +
-                         fmt::format("volume air atmosphere {{ extinction {} per-m; albedo 1 }}\n", s));
+    const auto scene = TestScene::parse(std::string(kView) + "light point { position 0.4 1.6 0; intensity 100 cd }\n" +
+                                        fmt::format("volume air atmosphere {{ extinction {} per-m; albedo 1 }}\n", s));
     RenderSettings settings = scene.settings();
     settings.samples = 512;
     settings.maxDepth = 1;
