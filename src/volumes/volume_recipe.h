@@ -38,8 +38,8 @@ class VolumeRecipe {
     virtual bool leaf(Vec3 corner, float size, RecipeLeaf& leaf) const = 0;
 };
 
-// "cumulus" (1 km wide: density), "smoke" (a plume of 6 m: density, velocity), "fire" (2 m high) or "candle" (3 cm high;
-// both: density, temperature, flame). nullptr for other names.
+// "cumulus" (1 km wide: density), "smoke" (a plume of 6 m: density, velocity), "fire" (2 m high) or "candle" (3 cm
+// high; both: density, temperature, flame). nullptr for other names.
 std::unique_ptr<VolumeRecipe> makeVolumeRecipe(std::string_view kind, std::uint32_t seed);
 
 std::unique_ptr<VolumeRecipe> makeCumulus(std::uint32_t seed);
