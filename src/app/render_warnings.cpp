@@ -27,7 +27,7 @@ void warnOfDroppedSamples(const RenderStatistics& statistics, Diagnostics& diagn
     }
     if (statistics.cappedPaths > 0)
         diagnostics.warning("W0642", {},
-                            fmt::format("{} paths were cut at the safety cap of 100000 vertices; the image is a "
+                            fmt::format("{} paths were cut at the safety cap on vertices; the image is a "
                                         "little too dark there",
                                         statistics.cappedPaths));
 }

@@ -47,18 +47,20 @@ struct MediaState {
 // Radiance along one camera ray at the path's wavelengths.
 template <EffectBits E> class PathLoop {
   public:
-    // No path is longer: with a survival floor of 0.05 a path of this length has a probability below any machine's
-    // patience only if every surface reflects everything; such paths are counted, never silent.
-    static constexpr std::uint32_t kMaxVertices = 100'000;
     // From here on no path is certain to go on.
     static constexpr std::uint32_t kLongPath = 64;
 
     static constexpr bool kMedia = hasEffect(E, Effect::media);
-    // In a dense white medium more than n collisions have a probability of about n^(-1/2). Against a constant 0.999 a
-    // hundredth of the light, that of the longest paths, would hardly ever be seen; against 1 - 1/n the variance is
-    // finite, and a path that can never leave still has only some 2300 vertices.
+    // No path is longer: with these probabilities of survival a path of this length has a probability below any
+    // machine's patience only if everything reflects everything; such paths are counted, never silent. In a white
+    // medium paths of several times the square of its optical radius still carry light.
+    static constexpr std::uint32_t kMaxVertices = kMedia ? 1'000'000 : 100'000;
+    // In a dense white medium more than n collisions have a probability of about n^(-1/2) up to the square of its
+    // optical radius. Against a constant 0.999 a hundredth of the light, that of the longest paths, would hardly ever
+    // be seen; survival to n in proportion to n^(-3/4) leaves the variance finite, and a path that can never leave
+    // still has only some 9000 vertices.
     static float longPathSurvival(std::uint32_t depth) {
-        return kMedia ? std::max(0.999f, 1 - 1 / static_cast<float>(depth)) : 0.999f;
+        return kMedia ? std::max(0.999f, 1 - 0.75f / static_cast<float>(depth)) : 0.999f;
     }
     using Media = std::conditional_t<kMedia, MediaState, path_detail::Nothing>;
 

@@ -28,6 +28,18 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
     const Ray& ray_;
 };
 
+// Where a ray collides. So near to the surface in front that rounding might put it beyond, it is where rays spawn
+// before that surface: outside of the shape whose interior it is in, a path would not find back.
+inline Vec3 placeOfCollision(const Ray& ray, float t, const SurfaceHit* ahead) {
+    const Vec3 p = ray.origin + ray.direction * t;
+    if (!ahead) return p;
+    constexpr float kRounding = 0x1p-22f;
+    const Vec3 far = max(abs(ray.origin), abs(p)), error = ahead->pError + far * kRounding;
+    const float depth = (ahead->distance - t) * std::abs(dot(ray.direction, ahead->ng));
+    if (depth > error.x + error.y + error.z) return p;
+    return spawnOrigin(*ahead, -ray.direction);
+}
+
 // Goes on to the next surface or collision, straight through shapes that are only the boundary of a medium.
 template <EffectBits E>
 typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
@@ -48,7 +60,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceH
             if (met) absorb(hit, ray.direction, collision.medium ? collision.t : tMax);
         if (collision.medium) {
             media_.leg.collision = collision.t;
-            ray.origin = ray.origin + ray.direction * collision.t;
+            ray.origin = placeOfCollision(ray, collision.t, met ? &hit : nullptr);
             collided_ = collision.medium;
             return Arrival::collision;
         }

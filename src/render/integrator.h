@@ -58,7 +58,7 @@ struct RenderStatistics {
     std::uint32_t samplesPerPixel = 0;      // finished
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
-    std::uint64_t cappedPaths = 0;          // reached the safety cap of 100 000 vertices
+    std::uint64_t cappedPaths = 0;          // reached the safety cap on vertices (PathLoop::kMaxVertices)
     DensityExcess excess;
     double seconds = 0;     // wall clock
     double coreSeconds = 0; // summed over threads

@@ -35,6 +35,12 @@ TEST_CASE("a white ball of fog in a white surrounding cannot be seen, however de
     if (nightly()) checkFurnace(std::string(kHeader) + kOutside + ball("extinction 500 per-m; albedo 1"), 0.02, 512);
 }
 
+TEST_CASE("nor can one far from the camera, where a collision's place is rounded to a good part of a mean free path") {
+    checkFurnace(std::string(kHeader) + "camera { from 0 0 2000; look-at 0 0 0; fov 0.03 deg }\n" +
+                     ball("extinction 100 per-m; albedo 1"),
+                 0.005, 384);
+}
+
 TEST_CASE("nor can one whose extinction varies sixteenfold over the wavelengths") {
     checkFurnace(std::string(kHeader) + kOutside + ball("extinction table 400 0.25 700 4 per-m; albedo 1"), 0.004,
                  1024);
