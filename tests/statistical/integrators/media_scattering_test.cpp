@@ -144,7 +144,8 @@ TEST_CASE("a dense ball of albedo 0.99995 loses what its mean chord says, withou
     CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
     const double meanPath =
         static_cast<double>(image.statistics.vertices) / static_cast<double>(image.statistics.paths);
-    CHECK(meanPath > 0.8 * radius);
+    // Without roulette, which ends one path in a thousand at every vertex from the 64th on, it would be π/3 σ R.
+    CHECK(meanPath > 0.5 * radius);
     const double lost = 5e-5 * 4 / 3 * radius * kPiD / 4;
     const Estimate found = image.film.image();
     const double error = std::sqrt(found.variance);
