@@ -7,6 +7,7 @@
 #include "measure.h"
 #include "media/grid_medium.h"
 #include "media/henyey_greenstein.h"
+#include "spectrum/sampled_curve.h"
 #include "volumes/brick_walk.h"
 #include "volumes/noise.h"
 
@@ -16,19 +17,6 @@
 using namespace abbe;
 
 namespace {
-
-class Grey final : public Curve {
-  public:
-    explicit Grey(double value) : value_(value) {}
-    Spectrum at(const Wavelengths&) const override { return Spectrum(static_cast<float>(value_)); }
-    double at(double) const override { return value_; }
-    bool isConstant() const override { return true; }
-    double minimum() const override { return value_; }
-    double maximum() const override { return value_; }
-
-  private:
-    double value_;
-};
 
 constexpr int kSide = 128; // voxels: 16 bricks
 
@@ -216,12 +204,12 @@ void shadowRays(const Fractal& fractal, int rays) {
     std::vector<Line> lines;
     for (int i = 0; i < rays; ++i) lines.push_back(makeLine(grid, bounds));
     describe(fractal, lines, grid);
-    const Grey black(0);
+    const ConstantCurve black(0);
     std::printf("tau   estimator                          relvar×lookups  lookups  relvar×µs     µs    mean off\n");
     for (const double tau : {0.3, 1.0, 3.0, 8.0}) {
         std::vector<Quality> all(5);
         for (const Line& line : lines) {
-            const Grey extinction(tau / line.integral);
+            const ConstantCurve extinction(tau / line.integral);
             const GridMedium inner(optics(extinction, black), fractalGrid(fractal), 1, {});
             const CountingMedium medium(inner);
             for (int e = 0; e < 5; ++e) {
@@ -245,7 +233,7 @@ void shadowRays(const Fractal& fractal, int rays) {
 
 // Rays from anywhere in the box to anywhere, so that they meet `mean` tentative collisions or scatter.
 void collisions(double tau) {
-    const Grey extinction(tau / kSide), white(1);
+    const ConstantCurve extinction(tau / kSide), white(1);
     const GridMedium medium(optics(extinction, white), fractalGrid(kFractals[0]), 1, {});
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);

@@ -19,18 +19,16 @@ MediumTracker::MediumTracker(std::span<const Medium* const> open)
     glows_.reserve(spaces_.size());
 }
 
-void MediumTracker::add(const Medium* medium, const Ray& ray, float tMax, const Wavelengths& lambda) {
-    MediumWalk* walk = medium->walk(ray, tMax, spaces_[active_.size()]);
-    MediumSegment segment;
-    if (!walk || !walk->next(segment)) return;
-    const Spectrum extinction = medium->extinction().at(lambda);
-    active_.push_back({medium, walk, segment, extinction, medium->albedo().at(lambda), extinction[0], 0, 0, 0, false});
-}
-
 void MediumTracker::start(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda) {
     active_.clear();
-    for (const Medium* medium : open_) add(medium, ray, tMax, lambda);
-    for (int i = 0; i < inside.size(); ++i) add(inside[i], ray, tMax, lambda);
+    forEach(inside, [&](const Medium& medium) {
+        MediumWalk* walk = medium.walk(ray, tMax, spaces_[active_.size()]);
+        MediumSegment segment;
+        if (!walk || !walk->next(segment)) return;
+        const Spectrum extinction = medium.extinction().at(lambda);
+        active_.push_back(
+            {&medium, walk, segment, extinction, medium.albedo().at(lambda), extinction[0], 0, 0, 0, false});
+    });
 }
 
 // Where the optical length that is left runs out, if it does so within the segment.
@@ -54,13 +52,6 @@ bool MediumTracker::advance(Active& a) {
     return true;
 }
 
-MediumTracker::Active* MediumTracker::nextEvent() {
-    Active* first = nullptr;
-    for (Active& a : active_)
-        if (a.walk && (!first || a.next < first->next)) first = &a;
-    return first;
-}
-
 MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
                                       RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
     start(ray, tMax, inside, lambda);
@@ -71,8 +62,8 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
         schedule(a, a.segment.tNear);
     }
     for (;;) {
-        Active* a = nextEvent();
-        if (Glow* glow = nextGlow(); glow && (!a || glow->next < a->next)) {
+        Active* a = earliest(active_);
+        if (Glow* glow = earliest(glows_); glow && (!a || glow->next < a->next)) {
             shine(*glow, lambda, weights, *listener);
             if (!advance(*glow, random)) glow->walk = nullptr;
             continue;
@@ -96,8 +87,8 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
 }
 
 void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& inside, RandomStream& random) {
-    const auto add = [&](const Medium* medium) {
-        const MediumEmission* emission = medium->emission();
+    forEach(inside, [&](const Medium& medium) {
+        const MediumEmission* emission = medium.emission();
         if (!emission) return;
         EmissionWalk* walk = emission->walk(ray, tMax, glowSpaces_[glows_.size()]);
         if (!walk) return;
@@ -105,22 +96,13 @@ void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& in
         glow.emission = emission;
         glow.walk = walk;
         if (!advance(glow, random)) glows_.pop_back();
-    };
-    for (const Medium* medium : open_) add(medium);
-    for (int i = 0; i < inside.size(); ++i) add(inside[i]);
+    });
 }
 
 bool MediumTracker::advance(Glow& glow, RandomStream& random) {
     if (!glow.walk->next(glow.segment)) return false;
     glow.next = glow.segment.tNear + random.uniform() * (glow.segment.tFar - glow.segment.tNear);
     return true;
-}
-
-MediumTracker::Glow* MediumTracker::nextGlow() {
-    Glow* first = nullptr;
-    for (Glow& glow : glows_)
-        if (glow.walk && (!first || glow.next < first->next)) first = &glow;
-    return first;
 }
 
 // One place drawn evenly stands for its segment. Whether the path gets there is what its collisions decided.

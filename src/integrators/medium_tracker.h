@@ -98,15 +98,24 @@ class MediumTracker {
         float next; // where it is asked
     };
 
+    // Calls `each` for the media that no shape bounds and for those around the path.
+    template <typename F> void forEach(const MediumStack& inside, F each) const {
+        for (const Medium* medium : open_) each(*medium);
+        for (int i = 0; i < inside.size(); ++i) each(*inside[i]);
+    }
+    // The one whose walk goes on and whose `next` comes first; null after the last.
+    template <typename T> static T* earliest(std::vector<T>& all) {
+        T* first = nullptr;
+        for (T& one : all)
+            if (one.walk && (!first || one.next < first->next)) first = &one;
+        return first;
+    }
     void start(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&);
     void startGlows(const Ray&, float tMax, const MediumStack& inside, RandomStream&);
     bool advance(Glow&, RandomStream&);
-    Glow* nextGlow();
     void shine(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
-    void add(const Medium*, const Ray&, float tMax, const Wavelengths&);
     static void schedule(Active&, float from);
     static bool advance(Active&);
-    Active* nextEvent();
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights);
     void shareDistance(float t, TrackedWeights) const;
     void note(float density, float bound);

@@ -9,6 +9,7 @@
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
+#include "math/equiangular.h"
 #include "render/integrator.h"
 #include "render/scene.h"
 
@@ -97,7 +98,8 @@ template <EffectBits E> class PathLoop {
     Arrival arriveThroughMedia(Ray&, SurfaceHit&, std::uint32_t depth);
     bool scatterInMedium(Ray&, std::uint32_t depth);
     class GlowCollector;
-    void sampleNearLight(const Ray&, std::uint32_t depth, std::uint32_t crossings);
+    void sampleNearLight(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings);
+    std::optional<EquiangularDistances> distancesTowards(const Light&) const;
     float trackingShare(const Light&);
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
     Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, RandomStream);

@@ -50,10 +50,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceH
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
         const bool met = context_.scene.intersector->intersect(ray, hit);
         const float tMax = met ? hit.distance : kInfinity;
-        if (context_.lights.placed()) {
-            media_.leg = {ray, media_.tracker.extent(ray, tMax, path_.inside)};
-            sampleNearLight(ray, depth, crossings);
-        }
+        sampleNearLight(ray, tMax, depth, crossings);
         const MediumCollision collision =
             media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights, &glow);
         if constexpr (kAbsorption)

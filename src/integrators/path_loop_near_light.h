@@ -2,8 +2,6 @@
 // that tracking finds. In thin fog around a lamp tracking rarely stops where the light is. Included by path_loop.h.
 #pragma once
 
-#include "math/equiangular.h"
-
 namespace abbe {
 
 // The light at one place of the ray, before it is followed. Next-event estimation from there and from where tracking
@@ -12,22 +10,23 @@ namespace abbe {
 // like. Only for rays that the eye sees, directly or in mirrors and clear glass: further on it costs as much as before
 // and is blurred (docs/performance.md).
 template <EffectBits E>
-void PathLoop<E>::sampleNearLight(const Ray& ray, std::uint32_t depth, std::uint32_t crossings) {
+void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t depth, std::uint32_t crossings) {
+    auto& leg = media_.leg;
     const auto& settings = context_.settings;
-    RayExtent& media = media_.leg.media;
-    if (!path_.delta || settings.strategy == Strategy::bsdfOnly || (settings.maxDepth && depth >= settings.maxDepth))
-        media = {};
-    if (media.empty()) return;
+    leg.media = {};
+    if (!context_.lights.placed() || !path_.delta || settings.strategy == Strategy::bsdfOnly ||
+        (settings.maxDepth && depth >= settings.maxDepth))
+        return;
+    leg.ray = ray;
+    leg.media = media_.tracker.extent(ray, tMax, path_.inside);
+    if (leg.media.empty()) return;
     // Numbers of no vertex.
     const std::uint32_t set = (crossings + 1) << 20 | depth;
     const VertexSample sample = sampler_.vertex(set);
     const PickedLight picked = context_.lights.pick(sample.pick);
-    const auto reach = picked.light->reach(ray, media.tFar);
-    if (!reach) return;
-    const EquiangularDistances distances(ray.origin, ray.direction, reach->centre, std::max(media.tNear, reach->tNear),
-                                         std::min(media.tFar, reach->tFar));
-    if (!distances.valid()) return;
-    const float t = distances.sample(sample.bsdf.x), pdf = distances.pdf(t);
+    const auto distances = distancesTowards(*picked.light);
+    if (!distances) return;
+    const float t = distances->sample(sample.bsdf.x), pdf = distances->pdf(t);
     const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda, &media_.inScattering);
     const float share = pdf / (pdf + tracked);
     // Where tracking is as good there is no need to pay for both.
@@ -59,18 +58,26 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, std::uint32_t depth, std::uint
     path_.radiance += path_.beta * light->radiance * scattered * passing * (share / (kept * pdf * lightPdf));
 }
 
+// Of the leg, around where the light is; nothing where it is not looked for or does not arrive.
+template <EffectBits E> std::optional<EquiangularDistances> PathLoop<E>::distancesTowards(const Light& light) const {
+    const auto& leg = media_.leg;
+    if (leg.media.empty()) return std::nullopt;
+    const auto reach = light.reach(leg.ray, leg.media.tFar);
+    if (!reach) return std::nullopt;
+    const EquiangularDistances distances(leg.ray.origin, leg.ray.direction, reach->centre,
+                                         std::max(leg.media.tNear, reach->tNear),
+                                         std::min(leg.media.tFar, reach->tFar));
+    return distances.valid() ? std::optional(distances) : std::nullopt;
+}
+
 // The weight of a light sampled where tracking collided: 1 but for lights that sampleNearLight() samples too.
 template <EffectBits E> float PathLoop<E>::trackingShare(const Light& light) {
-    const auto& [ray, media, t] = media_.leg;
-    if (!context_.lights.placed() || media.empty()) return 1;
-    const auto reach = light.reach(ray, media.tFar);
-    if (!reach) return 1;
-    const EquiangularDistances distances(ray.origin, ray.direction, reach->centre, std::max(media.tNear, reach->tNear),
-                                         std::min(media.tFar, reach->tFar));
-    if (!distances.valid()) return 1;
-    const float pdf = distances.pdf(t);
+    const auto distances = distancesTowards(light);
+    if (!distances) return 1;
+    const auto& leg = media_.leg;
+    const float pdf = distances->pdf(leg.collision);
     if (!(pdf > 0)) return 1;
-    const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda);
+    const float tracked = media_.tracker.expected(leg.ray, leg.collision, path_.inside, path_.lambda);
     return tracked / (pdf + tracked);
 }
 

@@ -78,15 +78,15 @@ class AtmosphereWalk final : public MediumWalk {
 } // namespace
 
 Atmosphere::Atmosphere(MediumOptics optics, Vec3 up, double ground, double scaleHeight)
-    : optics_(std::move(optics)), up_(up), ground_(ground), scaleHeight_(scaleHeight) {}
+    : OpticalMedium(std::move(optics)), up_(up), ground_(ground), scaleHeight_(scaleHeight) {}
 
 Bounds3 Atmosphere::bounds() const { return {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}}; }
 
 MediumWalk* Atmosphere::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
     const Vec3d up(up_);
     const double height = (dot(Vec3d(ray.origin), up) - ground_) / scaleHeight_;
-    return space.make<AtmosphereWalk>(height, dot(Vec3d(ray.direction), up) / scaleHeight_,
-                                      optics_.extinction->maximum(), tMax);
+    return space.make<AtmosphereWalk>(height, dot(Vec3d(ray.direction), up) / scaleHeight_, extinction().maximum(),
+                                      tMax);
 }
 
 schema::TypeInfo atmosphereType() {

@@ -1,8 +1,7 @@
 // Air and fog: everywhere, thinner with height.
 #pragma once
 
-#include "media/medium_optics.h"
-#include "render/medium.h"
+#include "media/optical_medium.h"
 
 namespace abbe {
 
@@ -12,19 +11,15 @@ struct AtmosphereParams : MediumParams {
 };
 
 // Density 1 up to the ground, then e^(-height / scaleHeight). An infinite scale height is the same fog everywhere.
-class Atmosphere final : public Medium {
+class Atmosphere final : public OpticalMedium {
   public:
     // `ground`: height of the ground above the origin of render space along the unit vector `up`.
     Atmosphere(MediumOptics, Vec3 up, double ground, double scaleHeight);
 
     Bounds3 bounds() const override;
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
 
   private:
-    MediumOptics optics_;
     Vec3 up_;
     double ground_, scaleHeight_;
 };

@@ -53,7 +53,7 @@ template <typename T> const T* pointer(const std::optional<T>& o) { return o ? &
 
 GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const Transform& worldToRender,
                        GridExtras extras)
-    : optics_(std::move(optics)), density_(std::move(grid), worldToRender), factor_(static_cast<float>(factor)) {
+    : OpticalMedium(std::move(optics)), density_(std::move(grid), worldToRender), factor_(static_cast<float>(factor)) {
     if (extras.color)
         color_ =
             GridColor{GridField<Vec3>(std::move(extras.color->grid), worldToRender), std::move(extras.color->table)};
@@ -62,7 +62,7 @@ GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const
         if (!motion_->moves()) motion_.reset();
     }
     bricks_ = BrickBounds::build(density_.grid(), static_cast<float>(drift()));
-    thickest_ = factor_ * static_cast<float>(optics_.extinction->maximum());
+    thickest_ = factor_ * static_cast<float>(extinction().maximum());
     if (extras.flame) flame_.emplace(std::move(extras.flame->grid), worldToRender);
     if (extras.temperature) temperature_.emplace(std::move(extras.temperature->grid), worldToRender);
     if (extras.glow) makeEmission(*extras.glow, extras);
@@ -93,7 +93,7 @@ void GridMedium::makeEmission(const Glow& glow, const GridExtras& extras) {
 }
 
 MediumWalk* GridMedium::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
-    const GridParts parts{density_, bricks_, pointer(color_), pointer(motion_), *optics_.albedo, factor_, thickest_};
+    const GridParts parts{density_, bricks_, pointer(color_), pointer(motion_), albedo(), factor_, thickest_};
     return space.make<GridWalk>(parts, ray, tMax);
 }
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "media/grid_emission.h"
-#include "media/medium_optics.h"
-#include "render/medium.h"
+#include "media/optical_medium.h"
 
 namespace abbe {
 
@@ -26,7 +25,7 @@ struct GridExtras {
 };
 
 // Density is that of the grid times a factor, trilinear between voxels. Owns its grids and their bounds.
-class GridMedium final : public Medium {
+class GridMedium final : public OpticalMedium {
   public:
     // `worldToRender` places the grids' own world. Requires an invertible transform, factor >= 0, and a temperature
     // if the glow is thermal.
@@ -36,9 +35,6 @@ class GridMedium final : public Medium {
 
     Bounds3 bounds() const override { return bounds_; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
     bool albedoVaries() const override { return color_.has_value(); }
     const MediumEmission* emission() const override { return emission_.get(); }
     const GridEmission* gridEmission() const { return emission_.get(); } // null: nothing shines
@@ -49,7 +45,6 @@ class GridMedium final : public Medium {
   private:
     void makeEmission(const Glow&, const GridExtras&);
 
-    MediumOptics optics_;
     GridField<float> density_;
     std::optional<GridColor> color_;
     std::optional<GridMotion> motion_; // only if something moves

@@ -4,43 +4,48 @@ namespace abbe {
 
 namespace {
 
-class WholeRay final : public MediumWalk {
+// A ray in one segment.
+class WholeRay {
   public:
     explicit WholeRay(float tMax) : tMax_(tMax) {}
-    bool next(MediumSegment& segment) noexcept override {
+    bool next(MediumSegment& segment) noexcept {
         if (done_) return false;
         done_ = true;
         segment = {0, tMax_, 1, 1, 1};
         return true;
     }
-    float density(float) noexcept override { return 1; }
 
   private:
     float tMax_;
     bool done_ = false;
 };
 
+class EvenDensity final : public MediumWalk {
+  public:
+    explicit EvenDensity(float tMax) : ray_(tMax) {}
+    bool next(MediumSegment& segment) noexcept override { return ray_.next(segment); }
+    float density(float) noexcept override { return 1; }
+
+  private:
+    WholeRay ray_;
+};
+
 class EvenGlow final : public EmissionWalk {
   public:
-    EvenGlow(const Glow& glow, float kelvin, float tMax) : glow_(&glow), kelvin_(kelvin), tMax_(tMax) {}
-    bool next(MediumSegment& segment) noexcept override {
-        if (done_) return false;
-        done_ = true;
-        segment = {0, tMax_, 1, 1, 1};
-        return true;
-    }
+    EvenGlow(const Glow& glow, float kelvin, float tMax) : ray_(tMax), glow_(&glow), kelvin_(kelvin) {}
+    bool next(MediumSegment& segment) noexcept override { return ray_.next(segment); }
     Spectrum emitted(float, const Wavelengths& lambda) noexcept override { return glow_->at(kelvin_, lambda); }
 
   private:
+    WholeRay ray_;
     const Glow* glow_;
-    float kelvin_, tMax_;
-    bool done_ = false;
+    float kelvin_;
 };
 
 } // namespace
 
 HomogeneousMedium::HomogeneousMedium(MediumOptics optics, std::optional<Glow> glow, double kelvin)
-    : optics_(std::move(optics)) {
+    : OpticalMedium(std::move(optics)) {
     if (glow) emission_.emplace(*glow, static_cast<float>(kelvin));
 }
 
@@ -53,7 +58,7 @@ Bounds3 HomogeneousMedium::bounds() const {
 }
 
 MediumWalk* HomogeneousMedium::walk(const Ray&, float tMax, WalkSpace& space) const noexcept {
-    return space.make<WholeRay>(tMax);
+    return space.make<EvenDensity>(tMax);
 }
 
 schema::TypeInfo homogeneousType() {

@@ -2,23 +2,20 @@
 #pragma once
 
 #include "media/glow_type.h"
-#include "render/medium.h"
+#include "media/optical_medium.h"
 #include "render/medium_emission.h"
 
 namespace abbe {
 
 // Density 1 everywhere: where it ends is the matter of the shape that it fills. What it gives off is found along rays
 // only: no light samples it.
-class HomogeneousMedium final : public Medium {
+class HomogeneousMedium final : public OpticalMedium {
   public:
     // Shines with a glow; `kelvin` is its temperature, if the glow asks for one. Its curves must outlive the medium.
     explicit HomogeneousMedium(MediumOptics, std::optional<Glow> = {}, double kelvin = 0);
 
     Bounds3 bounds() const override;
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
     const MediumEmission* emission() const override { return emission_ ? &*emission_ : nullptr; }
 
   private:
@@ -34,7 +31,6 @@ class HomogeneousMedium final : public Medium {
         float kelvin_;
     };
 
-    MediumOptics optics_;
     std::optional<Emission> emission_;
 };
 

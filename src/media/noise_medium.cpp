@@ -28,7 +28,7 @@ class UnboundedNoiseWalk final : public MediumWalk {
 } // namespace
 
 NoiseMedium::NoiseMedium(MediumOptics optics, const NoisePattern& pattern, const Transform& toWorld)
-    : optics_(std::move(optics)), field_(pattern) {
+    : OpticalMedium(std::move(optics)), field_(pattern) {
     const auto inverse = toWorld.inverse();
     ABBE_CHECK(inverse.has_value());
     toPattern_ = *inverse;

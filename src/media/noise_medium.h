@@ -2,14 +2,13 @@
 #pragma once
 
 #include "math/transform.h"
-#include "media/medium_optics.h"
-#include "render/medium.h"
+#include "media/optical_medium.h"
 #include "volumes/noise_field.h"
 
 namespace abbe {
 
 // Density is the field's, everywhere. The only bounds are those of the pattern, so that thin patterns cost lookups.
-class NoiseMedium final : public Medium {
+class NoiseMedium final : public OpticalMedium {
   public:
     // Requires an invertible transform, from the pattern's space to the world.
     NoiseMedium(MediumOptics, const NoisePattern&, const Transform& toWorld);
@@ -18,12 +17,8 @@ class NoiseMedium final : public Medium {
 
     Bounds3 bounds() const override;
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
 
   private:
-    MediumOptics optics_;
     NoiseField field_;
     Transform toPattern_; // from the world
     Vec3d origin_;

@@ -90,8 +90,8 @@ class NoiseVolume::Sampled final : public PointField {
 
 NoiseVolume::NoiseVolume(MediumOptics optics, const NoisePattern& pattern, const NoiseBox& box,
                          const Transform& toRender)
-    : optics_(std::move(optics)), field_(pattern), box_(box), brickCount_(bricksFor(field_, box)),
-      thickest_(static_cast<float>(optics_.extinction->maximum())) {
+    : OpticalMedium(std::move(optics)), field_(pattern), box_(box), brickCount_(bricksFor(field_, box)),
+      thickest_(static_cast<float>(extinction().maximum())) {
     const auto inverse = toRender.inverse();
     ABBE_CHECK(inverse.has_value());
     toBox_ = *inverse;

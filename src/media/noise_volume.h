@@ -2,8 +2,7 @@
 #pragma once
 
 #include "math/transform.h"
-#include "media/medium_optics.h"
-#include "render/medium.h"
+#include "media/optical_medium.h"
 #include "volumes/brick_bounds.h"
 #include "volumes/noise_field.h"
 
@@ -18,16 +17,13 @@ struct NoiseBox {
 };
 
 // Density is the field's, thinned by the box, and 0 outside. Bounds are sampled when it is made; they may be exceeded.
-class NoiseVolume final : public Medium {
+class NoiseVolume final : public OpticalMedium {
   public:
     // Requires an invertible transform and upper > lower.
     NoiseVolume(MediumOptics, const NoisePattern&, const NoiseBox&, const Transform& toRender);
 
     Bounds3 bounds() const override { return bounds_; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
 
     // In the box's space; what is outside the box is taken as on its faces.
     float density(Vec3d p) const noexcept;
@@ -39,7 +35,6 @@ class NoiseVolume final : public Medium {
     class Sampled;
     Vec3d cellsPerMetre() const;
 
-    MediumOptics optics_;
     NoiseField field_;
     NoiseBox box_;
     Vec3i brickCount_;

@@ -46,38 +46,38 @@ void collectPlaced(const Definition& owner, std::vector<const Definition*>& out)
     }
 }
 
-void checkTargets(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
-    std::vector<std::string_view> objects;
+// Reports that nothing of this kind has the name that `asker` asks for, with the nearest one. `help` if there is none.
+void reportTarget(const SceneTree& tree, const Definition& asker, Kind kind, const std::string& help,
+                  Diagnostics& diagnostics) {
+    std::vector<std::string_view> names;
     for (const Definition* d : tree.index.sorted)
-        if (d->kind == Kind::object) objects.push_back(d->name);
+        if (d->kind == kind) names.push_back(d->name);
+    const auto meant = nearest(asker.target, names);
+    auto& d =
+        report(diagnostics, asker.targetSpan, "E0202", fmt::format("no {} is named `{}`", keyword(kind), asker.target),
+               meant.empty() ? "unknown name" : didYouMean(meant));
+    if (meant.empty())
+        d.help = help;
+    else
+        d.related.push_back({tree.find(kind, meant)->nameSpan, "defined here"});
+}
+
+void checkTargets(const SceneTree& tree, const std::vector<const Definition*>& instances, Diagnostics& diagnostics) {
     for (const Definition* instance : instances) {
         if (instance->target.empty() || tree.find(Kind::object, instance->target)) continue;
-        const auto meant = nearest(instance->target, objects);
-        auto& d =
-            report(diagnostics, instance->targetSpan, "E0202", fmt::format("no object is named `{}`", instance->target),
-                   meant.empty() ? "unknown name" : didYouMean(meant));
-        if (!meant.empty())
-            d.related.push_back({tree.find(Kind::object, meant)->nameSpan, "defined here"});
-        else if (tree.find(Kind::shape, instance->target))
-            d.help = fmt::format("`{0}` is a shape; wrap it: `object {0} {{ … }}`", instance->target);
+        const bool shape = tree.find(Kind::shape, instance->target) != nullptr;
+        reportTarget(tree, *instance, Kind::object,
+                     shape ? fmt::format("`{0}` is a shape; wrap it: `object {0} {{ … }}`", instance->target) : "",
+                     diagnostics);
     }
 }
 
 void checkAtmospheres(const SceneTree& tree, Diagnostics& diagnostics) {
-    for (const Definition& atmosphere : tree.definitions) {
-        if (atmosphere.kind != Kind::atmosphere || atmosphere.target.empty()) continue;
-        if (tree.find(Kind::medium, atmosphere.target)) continue;
-        std::vector<std::string_view> media;
-        for (const Definition* d : tree.index.sorted)
-            if (d->kind == Kind::medium) media.push_back(d->name);
-        const auto meant = nearest(atmosphere.target, media);
-        auto& d = report(diagnostics, atmosphere.targetSpan, "E0202",
-                         fmt::format("no medium is named `{}`", atmosphere.target),
-                         meant.empty() ? "unknown name" : didYouMean(meant));
-        if (!meant.empty())
-            d.related.push_back({tree.find(Kind::medium, meant)->nameSpan, "defined here"});
-        else
-            d.help = fmt::format("define it: `medium {} homogeneous {{ extinction 0.02 per-km }}`", atmosphere.target);
+    for (const Definition& d : tree.definitions) {
+        if (d.kind != Kind::atmosphere || d.target.empty() || tree.find(Kind::medium, d.target)) continue;
+        reportTarget(tree, d, Kind::medium,
+                     fmt::format("define it: `medium {} homogeneous {{ extinction 0.02 per-km }}`", d.target),
+                     diagnostics);
     }
 }
 

@@ -13,12 +13,7 @@ class Fire final : public VolumeRecipe {
   public:
     explicit Fire(std::uint32_t seed) : seed_(mix32(seed ^ 0xf17eu)) {}
 
-    Bounds3 bounds() const override {
-        Bounds3 b;
-        b.add({-0.75f, 0, -0.75f});
-        b.add({0.75f, 2.2f, 0.75f});
-        return b;
-    }
+    Bounds3 bounds() const override { return {{-0.75f, 0, -0.75f}, {0.75f, 2.2f, 0.75f}}; }
     std::span<const RecipeField> fields() const override { return kFields; }
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override { return eachVoxel(*this, corner, size, out); }
 
@@ -63,12 +58,7 @@ class Candle final : public VolumeRecipe {
   public:
     explicit Candle(std::uint32_t seed) : seed_(mix32(seed ^ 0xca17u)) {}
 
-    Bounds3 bounds() const override {
-        Bounds3 b;
-        b.add({-0.008f, -0.003f, -0.008f});
-        b.add({0.008f, 0.034f, 0.008f});
-        return b;
-    }
+    Bounds3 bounds() const override { return {{-0.008f, -0.003f, -0.008f}, {0.008f, 0.034f, 0.008f}}; }
     std::span<const RecipeField> fields() const override { return kFields; }
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override { return eachVoxel(*this, corner, size, out); }
 

@@ -11,12 +11,7 @@ class Smoke final : public VolumeRecipe {
   public:
     explicit Smoke(std::uint32_t seed) : seed_(mix32(seed ^ 0x50a0eu)) {}
 
-    Bounds3 bounds() const override {
-        Bounds3 b;
-        b.add({-1.7f, 0, -1.7f});
-        b.add({2.9f, 6, 1.7f});
-        return b;
-    }
+    Bounds3 bounds() const override { return {{-1.7f, 0, -1.7f}, {2.9f, 6, 1.7f}}; }
     std::span<const RecipeField> fields() const override {
         static constexpr RecipeField kFields[] = {{"density", "", 1}, {"velocity", "m/s", 3}};
         return kFields;

@@ -98,6 +98,20 @@ inline TestImage render(const TestScene& scene, const RenderSettings& settings, 
     return image;
 }
 
+// By both strategies, by light samples alone and by scattering alone, in this order; each with a seed of its own.
+inline std::vector<TestImage> renderByEachStrategy(const TestScene& scene, std::uint32_t samples) {
+    using Strategy = RenderSettings::Strategy;
+    RenderSettings settings = scene.settings();
+    settings.samples = samples;
+    std::vector<TestImage> images;
+    for (const auto strategy : {Strategy::mis, Strategy::lightsOnly, Strategy::bsdfOnly}) {
+        settings.strategy = strategy;
+        ++settings.seed;
+        images.push_back(render(scene, settings));
+    }
+    return images;
+}
+
 // With the scene's own settings but for samples (per pixel, all replicates together) and seed.
 inline TestImage render(const TestScene& scene, std::uint32_t samples, std::uint64_t seed = 1) {
     RenderSettings settings = scene.settings();

@@ -60,15 +60,7 @@ TEST_CASE("the light of a fire is the same along the way and from its points") {
         "volume atmosphere {{ extinction 0.1 per-m; scale-height 1 m; ground -1 m }}\n",
         files.make("fire", 32)));
     REQUIRE(scene.report() == "");
-    RenderSettings settings = scene.settings();
-    settings.samples = 1024;
-    std::vector<TestImage> images;
-    for (const auto strategy :
-         {RenderSettings::Strategy::mis, RenderSettings::Strategy::lightsOnly, RenderSettings::Strategy::bsdfOnly}) {
-        settings.strategy = strategy;
-        ++settings.seed;
-        images.push_back(render(scene, settings));
-    }
+    const std::vector<TestImage> images = renderByEachStrategy(scene, 1024);
     checkSame(compareImages(images[0].film, images[1].film), 0.04);
     checkSame(compareImages(images[0].film, images[2].film), 0.04);
 }

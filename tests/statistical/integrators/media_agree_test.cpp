@@ -1,6 +1,6 @@
 // One medium as a homogeneous one, as voxels and by noise; and one whose bounds are wrong on purpose.
 #include "media/grid_medium.h"
-#include "media/henyey_greenstein.h"
+#include "support/media.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -17,32 +17,11 @@ constexpr const char* kLit =
     "light sky { radiance 0.3 }\n"
     "shape sphere { center -0.6 2.2 0.8; radius 0.5; emission 6; material diffuse { reflectance 0 } }\n";
 
-class Level final : public Curve {
-  public:
-    explicit Level(double value) : value_(value) {}
-    Spectrum at(const Wavelengths&) const override { return Spectrum(static_cast<float>(value_)); }
-    double at(double) const override { return value_; }
-    bool isConstant() const override { return true; }
-    double minimum() const override { return value_; }
-    double maximum() const override { return value_; }
-
-  private:
-    double value_;
-};
-
-MediumOptics optics(const Curve& extinction, const Curve& albedo, double g) {
-    MediumOptics o;
-    o.extinction = &extinction;
-    o.albedo = &albedo;
-    o.phase = std::make_shared<HenyeyGreenstein>(g);
-    return o;
-}
-
 // Density 1 + 0.8 sin 4x in the world's cube from -1 to 1, whose bound is said to be `factor` times what it is.
-class Waves final : public Medium {
+class Waves final : public OpticalMedium {
   public:
     Waves(MediumOptics optics, float factor, Vec3d origin)
-        : optics_(std::move(optics)), factor_(factor), origin_(origin) {}
+        : OpticalMedium(std::move(optics)), factor_(factor), origin_(origin) {}
 
     Bounds3 bounds() const override { return {Vec3{-1, -1, -1} - origin_, Vec3{1, 1, 1} - origin_}; }
     MediumWalk* walk(const Ray& render, float tMax, WalkSpace& space) const noexcept override {
@@ -57,9 +36,6 @@ class Waves final : public Medium {
         }
         return near < far ? space.make<Walk>(ray, near, far, factor_) : nullptr;
     }
-    const Curve& extinction() const override { return *optics_.extinction; }
-    const Curve& albedo() const override { return *optics_.albedo; }
-    const PhaseFunction& phase() const override { return *optics_.phase; }
 
   private:
     class Walk final : public MediumWalk {
@@ -82,26 +58,8 @@ class Waves final : public Medium {
         bool done_ = false;
     };
 
-    MediumOptics optics_;
     float factor_;
     Vec3 origin_; // of render space
-};
-
-class Slope final : public Curve { // from `low` at 360 nm to `high` at 830 nm
-  public:
-    Slope(double low, double high) : low_(low), high_(high) {}
-    Spectrum at(const Wavelengths& w) const override {
-        Spectrum s;
-        for (int i = 0; i < kLanes; ++i) s.v[i] = static_cast<float>(at(static_cast<double>(w.nm[i])));
-        return s;
-    }
-    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
-    bool isConstant() const override { return false; }
-    double minimum() const override { return std::min(low_, high_); }
-    double maximum() const override { return std::max(low_, high_); }
-
-  private:
-    double low_, high_;
 };
 
 TestImage renderWaves(const std::string& lights, const Curve& extinction, const Curve& albedo, float factor,
@@ -109,7 +67,7 @@ TestImage renderWaves(const std::string& lights, const Curve& extinction, const 
     // Collisions of what stands there first depend on wavelength or do not, as those of its stand-in.
     TestScene scene = TestScene::parse(kCamera + lights + "volume atmosphere { extinction " +
                                        (extinction.isConstant() ? "1" : "table 400 1 700 2") + " per-m }\n");
-    scene.standIn(std::make_unique<Waves>(optics(extinction, albedo, 0.5), factor, scene.scene().origin));
+    scene.standIn(std::make_unique<Waves>(opticsOf(extinction, albedo, 0.5), factor, scene.scene().origin));
     return render(scene, samples, seed);
 }
 
@@ -141,8 +99,8 @@ TEST_CASE("the same box of fog as a homogeneous medium, by noise without contras
     facts.indexToWorld = Transform::scale({1 / 32.0, 1 / 32.0, 1 / 32.0})
                              .then(Transform::translate({0.5 / 32 - 1, 0.5 / 32 - 1, 0.5 / 32 - 1}));
     TestScene scene = TestScene::parse(noise);
-    const Level extinction(1.5), albedo(0.9);
-    scene.standIn(std::make_unique<GridMedium>(optics(extinction, albedo, 0.5), makeVoxelGrid(voxels, facts), 1.0,
+    const ConstantCurve extinction(1.5), albedo(0.9);
+    scene.standIn(std::make_unique<GridMedium>(opticsOf(extinction, albedo, 0.5), makeVoxelGrid(voxels, facts), 1.0,
                                                Transform::translate(-scene.scene().origin)));
     const TestImage grid = render(scene, 2048, 3);
     checkSame(compareImages(filled.film, grid.film), 0.004);
@@ -150,7 +108,7 @@ TEST_CASE("the same box of fog as a homogeneous medium, by noise without contras
 }
 
 TEST_CASE("bounds that are too low bias nothing, and are counted; nor do bounds that are too high") {
-    const Level extinction(0.5), white(1), grey(0.7);
+    const ConstantCurve extinction(0.5), white(1), grey(0.7);
     for (const float factor : {0.5f, 1.f, 2.f, 8.f}) {
         INFO(factor);
         const TestImage furnace = renderWaves(kSky, extinction, white, factor, factor < 1 ? 8192 : 2048, 5);
@@ -168,7 +126,7 @@ TEST_CASE("bounds that are too low bias nothing, and are counted; nor do bounds 
     for (const float factor : {0.5f, 2.f, 8.f})
         checkSame(compareImages(renderWaves(kLit, extinction, grey, factor, 4096, 7).film, right.film), 0.006);
     // Where it depends on wavelength, and one that is hardly scattered in part of the spectrum.
-    const Slope chromatic(0.9, 0.2), coloured(0.05, 0.95);
+    const SlopeCurve chromatic(0.9, 0.2), coloured(0.05, 0.95);
     const TestImage even = renderWaves(kLit, chromatic, coloured, 1, 4096, 8);
     const TestImage low = renderWaves(kLit, chromatic, coloured, 0.5f, 4096, 9);
     for (const Channel channel : {Channel::x, Channel::y, Channel::z})

@@ -88,16 +88,8 @@ TEST_CASE("the two strategies and both together agree in fog with a lamp") {
         "shape plane { center 0 -1.2 0; material diffuse }\n" +
         ball("extinction table 400 1 700 3 per-m; albedo 0.8; phase henyey-greenstein 0.4") +
         "volume atmosphere { extinction 0.05 per-m; scale-height 1 m; ground -1.2 m; phase rayleigh }\n";
-    TestScene scene = TestScene::parse(text);
-    RenderSettings settings = scene.settings();
-    settings.samples = 2048;
-    std::vector<TestImage> images;
-    for (const auto strategy :
-         {RenderSettings::Strategy::mis, RenderSettings::Strategy::lightsOnly, RenderSettings::Strategy::bsdfOnly}) {
-        settings.strategy = strategy;
-        ++settings.seed;
-        images.push_back(render(scene, settings));
-    }
+    const TestScene scene = TestScene::parse(text);
+    const std::vector<TestImage> images = renderByEachStrategy(scene, 2048);
     checkSame(compareImages(images[0].film, images[1].film), 0.02);
     checkSame(compareImages(images[0].film, images[2].film), 0.06);
 }

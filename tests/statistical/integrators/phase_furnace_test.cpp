@@ -46,15 +46,7 @@ TEST_CASE("strategies agree where light is scattered at every wavelength in its 
     for (const char* phase : {kDrops, kMix}) {
         INFO(std::string(phase));
         const TestScene built = TestScene::parse(scene(phase, lamp));
-        RenderSettings settings = built.settings();
-        settings.samples = 2048;
-        std::vector<TestImage> images;
-        for (const auto strategy : {RenderSettings::Strategy::mis, RenderSettings::Strategy::lightsOnly,
-                                    RenderSettings::Strategy::bsdfOnly}) {
-            settings.strategy = strategy;
-            ++settings.seed;
-            images.push_back(render(built, settings));
-        }
+        const std::vector<TestImage> images = renderByEachStrategy(built, 2048);
         for (const Channel channel : {Channel::x, Channel::y, Channel::z}) {
             checkSame(compareImages(images[0].film, images[1].film, channel), 0.02);
             checkSame(compareImages(images[0].film, images[2].film, channel), 0.02);

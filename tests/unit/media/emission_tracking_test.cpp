@@ -1,28 +1,13 @@
 // Light that media give off, collected along a ray through what absorbs and scatters it.
 #include "integrators/medium_tracker.h"
-#include "media/henyey_greenstein.h"
+#include "media/optical_medium.h"
+#include "support/media.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
 
 namespace abbe::test {
 namespace {
-
-class Slope final : public Curve { // from `low` at 360 nm to `high` at 830 nm
-  public:
-    Slope(double low, double high) : low_(low), high_(high) {}
-    Spectrum at(const Wavelengths& w) const override {
-        const Spectrum u = (w.nm - Spectrum(360.f)) * (1 / 470.f);
-        return Spectrum(static_cast<float>(low_)) + u * static_cast<float>(high_ - low_);
-    }
-    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
-    bool isConstant() const override { return low_ == high_; }
-    double minimum() const override { return std::min(low_, high_); }
-    double maximum() const override { return std::max(low_, high_); }
-
-  private:
-    double low_, high_;
-};
 
 // Pieces of one metre up to `end`.
 struct Pieces {
@@ -58,21 +43,16 @@ struct RampEmission final : MediumEmission {
     float pdfSolidAngle(Vec3, Vec3) const noexcept override { return 0; }
 };
 
-class Glowing final : public Medium {
+class Glowing final : public OpticalMedium {
   public:
-    Glowing(const Curve& extinction, const Curve& albedo) : extinction_(extinction), albedo_(albedo) {}
+    Glowing(const Curve& extinction, const Curve& albedo) : OpticalMedium(opticsOf(extinction, albedo)) {}
     Bounds3 bounds() const override { return {}; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace& space) const noexcept override {
         return space.make<DensityWalk>(std::min(tMax, static_cast<float>(kThick)));
     }
-    const Curve& extinction() const override { return extinction_; }
-    const Curve& albedo() const override { return albedo_; }
-    const PhaseFunction& phase() const override { return even_; }
     const MediumEmission* emission() const override { return &emission_; }
 
   private:
-    const Curve &extinction_, &albedo_;
-    HenyeyGreenstein even_{0};
     RampEmission emission_;
 };
 
@@ -127,15 +107,15 @@ void check(const Curve& extinction, const Curve& albedo) {
 } // namespace
 
 TEST_CASE("emission along a ray is dimmed by all extinction on the way, whatever the albedo") {
-    check(Slope(0, 0), Slope(0, 0));
-    check(Slope(0.6, 0.6), Slope(0, 0));
-    check(Slope(0.6, 0.6), Slope(0.9, 0.9));
-    check(Slope(0.6, 0.6), Slope(0.2, 1));
+    check(SlopeCurve(0, 0), SlopeCurve(0, 0));
+    check(SlopeCurve(0.6, 0.6), SlopeCurve(0, 0));
+    check(SlopeCurve(0.6, 0.6), SlopeCurve(0.9, 0.9));
+    check(SlopeCurve(0.6, 0.6), SlopeCurve(0.2, 1));
 }
 
 TEST_CASE("and at every wavelength by its own") {
-    check(Slope(0.1, 1.6), Slope(0, 0));
-    check(Slope(1.2, 0.3), Slope(0.9, 0.3));
+    check(SlopeCurve(0.1, 1.6), SlopeCurve(0, 0));
+    check(SlopeCurve(1.2, 0.3), SlopeCurve(0.9, 0.3));
 }
 
 } // namespace abbe::test

@@ -1,41 +1,20 @@
 // Optical lengths that leave the range of float, and distances that few random numbers reach.
 #include "integrators/medium_tracker.h"
-#include "media/henyey_greenstein.h"
 #include "media/homogeneous.h"
+#include "support/media.h"
 
 #include <doctest/doctest.h>
 
 namespace abbe::test {
 namespace {
 
-class Line final : public Curve { // from `low` at 360 nm to `high` at 830 nm
-  public:
-    Line(double low, double high) : low_(low), high_(high) {}
-    Spectrum at(const Wavelengths& w) const override {
-        Spectrum s;
-        for (int i = 0; i < kLanes; ++i) s.v[i] = static_cast<float>(at(static_cast<double>(w.nm[i])));
-        return s;
-    }
-    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
-    bool isConstant() const override { return low_ == high_; }
-    double minimum() const override { return low_; }
-    double maximum() const override { return high_; }
-
-  private:
-    double low_, high_;
-};
-
 struct Followed {
     Spectrum beta{1.f}, density{1.f};
     bool scattered = false;
 };
 
-Followed follow(const Line& extinction, const Line& albedo, std::uint64_t seed) {
-    MediumOptics optics;
-    optics.extinction = &extinction;
-    optics.albedo = &albedo;
-    optics.phase = std::make_shared<HenyeyGreenstein>(0.f);
-    const HomogeneousMedium medium(optics);
+Followed follow(const SlopeCurve& extinction, const SlopeCurve& albedo, std::uint64_t seed) {
+    const HomogeneousMedium medium(opticsOf(extinction, albedo));
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);
     RandomStream random(seed);

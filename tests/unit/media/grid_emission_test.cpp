@@ -1,11 +1,10 @@
 // What volumes of voxels give off: along rays, as a light, and that both mean the same.
 #include "media/grid_medium.h"
-#include "media/henyey_greenstein.h"
 #include "media/volume_light.h"
 #include "spectrum/emission_curves.h"
 #include "spectrum/planck.h"
-#include "spectrum/sampled_curve.h"
 #include "support/chi_square.h"
+#include "support/media.h"
 
 #include <doctest/doctest.h>
 #include <random>
@@ -15,20 +14,7 @@ namespace {
 
 const ConstantCurve kTwo(2), kQuarter(0.25);
 
-MediumOptics optics() {
-    MediumOptics o;
-    o.extinction = &kTwo;
-    o.albedo = &kQuarter;
-    o.phase = std::make_shared<HenyeyGreenstein>(0);
-    return o;
-}
-
-GridFacts facts(const Transform& place) {
-    GridFacts f;
-    f.volumeClass = VolumeClass::fog;
-    f.indexToWorld = place;
-    return f;
-}
+MediumOptics optics() { return opticsOf(kTwo, kQuarter); }
 
 // A ball of about 17 voxels with lumps, `value` in the middle.
 VoxelGrid lumps(const Transform& place, float value, std::uint32_t seed) {
@@ -39,7 +25,7 @@ VoxelGrid lumps(const Transform& place, float value, std::uint32_t seed) {
         for (int y = -17; y <= 17; ++y)
             for (int x = -17; x <= 17; ++x)
                 if (x * x + y * y + z * z <= 17 * 17) voxels.push_back({{x, y, z}, value * lump(random)});
-    return makeVoxelGrid(voxels, facts(place));
+    return makeVoxelGrid(voxels, fogAt(place));
 }
 
 const Transform kAmounts = Transform::scale({0.1, 0.1, 0.1}).then(Transform::translate({3, 1, -2}));
@@ -217,9 +203,9 @@ TEST_CASE("cold volumes do not shine, and dark bricks are left out") {
         if (i < 6) corner.push_back({{i, 0, 0}, 1});
     }
     GridExtras extras;
-    extras.temperature = ScaledGrid{makeVoxelGrid(corner, facts(Transform::translate({40, 0, 0}))), 1500, 0};
+    extras.temperature = ScaledGrid{makeVoxelGrid(corner, fogAt(Transform::translate({40, 0, 0}))), 1500, 0};
     extras.glow = Glow::ofTemperature(kTwo);
-    const GridMedium medium(optics(), makeVoxelGrid(wide, facts({})), 1, {}, std::move(extras));
+    const GridMedium medium(optics(), makeVoxelGrid(wide, fogAt({})), 1, {}, std::move(extras));
     REQUIRE(medium.emission());
     WalkSpace space;
     MediumSegment s;

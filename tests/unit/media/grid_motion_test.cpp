@@ -1,7 +1,6 @@
 // Volumes that drift while the shutter is open, and the colour of their voxels.
 #include "media/grid_medium.h"
-#include "media/henyey_greenstein.h"
-#include "spectrum/sampled_curve.h"
+#include "support/media.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
@@ -11,20 +10,7 @@ namespace {
 
 const ConstantCurve kOne(1), kHalf(0.5);
 
-MediumOptics optics() {
-    MediumOptics o;
-    o.extinction = &kOne;
-    o.albedo = &kHalf;
-    o.phase = std::make_shared<HenyeyGreenstein>(0);
-    return o;
-}
-
-GridFacts facts(const Transform& place) {
-    GridFacts f;
-    f.volumeClass = VolumeClass::fog;
-    f.indexToWorld = place;
-    return f;
-}
+MediumOptics optics() { return opticsOf(kOne, kHalf); }
 
 const Transform kPlace = Transform::scale({0.1, 0.1, 0.1}).then(Transform::rotate({0, 0, 1}, 0.4));
 const Transform kCoarse = Transform::scale({0.4, 0.4, 0.4}).then(Transform::translate({0.1, 0, 0}));
@@ -37,7 +23,7 @@ VoxelGrid speckles(std::uint64_t seed) {
     for (int i = 0; i < 1000; ++i) voxels.push_back({{i % 10 - 5, i / 10 % 10 - 5, i / 100 - 5}, 1});
     const auto place = [&] { return static_cast<int>(random.uniform() * 40) - 20; };
     for (int i = 0; i < 300; ++i) voxels.push_back({{place(), place(), place()}, 1 + random.uniform()});
-    return makeVoxelGrid(voxels, facts(kPlace));
+    return makeVoxelGrid(voxels, fogAt(kPlace));
 }
 
 VectorGrid winds(float fastest) {
@@ -47,7 +33,7 @@ VectorGrid winds(float fastest) {
     for (int z = -18; z <= 18; ++z)
         for (int y = -18; y <= 18; ++y)
             for (int x = -18; x <= 18; ++x) voxels.push_back({{x, y, z}, Vec3(gust(), gust(), 1 + gust()) * fastest});
-    return makeVectorGrid(voxels, facts(kCoarse));
+    return makeVectorGrid(voxels, fogAt(kCoarse));
 }
 
 GridMedium moving(double first, double duration, double scale = 1) {
@@ -149,12 +135,12 @@ TEST_CASE("colour is a factor of the albedo, smooth between voxels") {
     GridExtras extras;
     const std::vector<VectorVoxel> voxels{
         {{0, 0, 0}, {0.8f, 0.8f, 0.8f}}, {{1, 0, 0}, {0.9f, 0.1f, 0.1f}}, {{2, 0, 0}, {2, 2, 2}}};
-    const VectorGrid colors = makeVectorGrid(voxels, facts({}));
+    const VectorGrid colors = makeVectorGrid(voxels, fogAt({}));
     CHECK(countOutside(colors, 0, 1) == 1);
-    extras.color = GridExtras::Color{makeVectorGrid(voxels, facts({})),
+    extras.color = GridExtras::Color{makeVectorGrid(voxels, fogAt({})),
                                      std::make_unique<UpsamplingTable>(UpsamplingTable::build(rgb::rec709, 16))};
     const std::vector<Voxel> dense{{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 1}};
-    const GridMedium medium(optics(), makeVoxelGrid(dense, facts({})), 1, {}, std::move(extras));
+    const GridMedium medium(optics(), makeVoxelGrid(dense, fogAt({})), 1, {}, std::move(extras));
     CHECK(medium.albedoVaries());
     CHECK_FALSE(GridMedium(optics(), speckles(3), 1, {}).albedoVaries());
     WalkSpace space;

@@ -1,10 +1,9 @@
 // Noise volumes: transmittance against integrals, bounds that hold nearly everywhere, and nothing lost where they do
 // not.
 #include "integrators/medium_tracker.h"
-#include "media/henyey_greenstein.h"
 #include "media/noise_medium.h"
 #include "media/noise_volume.h"
-#include "spectrum/sampled_curve.h"
+#include "support/media.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
@@ -13,27 +12,9 @@
 namespace abbe::test {
 namespace {
 
-class Level final : public Curve {
-  public:
-    explicit Level(double value) : value_(value) {}
-    Spectrum at(const Wavelengths&) const override { return Spectrum(static_cast<float>(value_)); }
-    double at(double) const override { return value_; }
-    bool isConstant() const override { return true; }
-    double minimum() const override { return value_; }
-    double maximum() const override { return value_; }
+const ConstantCurve kBlack(0), kExtinction(1.6);
 
-  private:
-    double value_;
-};
-const Level kBlack(0), kExtinction(1.6);
-
-MediumOptics optics() {
-    MediumOptics o;
-    o.extinction = &kExtinction;
-    o.albedo = &kBlack;
-    o.phase = std::make_shared<HenyeyGreenstein>(0);
-    return o;
-}
+MediumOptics optics() { return opticsOf(kExtinction, kBlack); }
 
 NoiseBox box() {
     NoiseBox b;

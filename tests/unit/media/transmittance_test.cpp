@@ -2,9 +2,8 @@
 #include "integrators/medium_tracker.h"
 #include "media/atmosphere.h"
 #include "media/grid_medium.h"
-#include "media/henyey_greenstein.h"
 #include "media/homogeneous.h"
-#include "spectrum/sampled_curve.h"
+#include "support/media.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
@@ -12,32 +11,9 @@
 namespace abbe::test {
 namespace {
 
-class Slope final : public Curve { // from `low` at 360 nm to `high` at 830 nm
-  public:
-    Slope(double low, double high) : low_(low), high_(high) {}
-    Spectrum at(const Wavelengths& w) const override {
-        Spectrum s;
-        for (int i = 0; i < kLanes; ++i) s.v[i] = static_cast<float>(at(static_cast<double>(w.nm[i])));
-        return s;
-    }
-    double at(double nm) const override { return low_ + (high_ - low_) * (nm - 360) / 470; }
-    bool isConstant() const override { return low_ == high_; }
-    double minimum() const override { return std::min(low_, high_); }
-    double maximum() const override { return std::max(low_, high_); }
+const SlopeCurve kBlack(0, 0);
 
-  private:
-    double low_, high_;
-};
-
-const Slope kBlack(0, 0);
-
-MediumOptics optics(const Curve& extinction, const Curve& albedo = kBlack) {
-    MediumOptics o;
-    o.extinction = &extinction;
-    o.albedo = &albedo;
-    o.phase = std::make_shared<HenyeyGreenstein>(0);
-    return o;
-}
+MediumOptics optics(const Curve& extinction) { return opticsOf(extinction, kBlack); }
 
 // Mean of both estimators over many rays of the same way, lane by lane, against e^(-extinction · integral).
 void check(const Medium& medium, const Ray& ray, float tMax, double integral) {
@@ -88,7 +64,7 @@ VoxelGrid makeGrid() {
 } // namespace
 
 TEST_CASE("homogeneous: exact, without a lookup") {
-    const Slope extinction(0.2, 3.2);
+    const SlopeCurve extinction(0.2, 3.2);
     const HomogeneousMedium medium(optics(extinction));
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);
@@ -104,7 +80,7 @@ TEST_CASE("homogeneous: exact, without a lookup") {
 }
 
 TEST_CASE("atmosphere: up, down, level and without an end") {
-    const Slope grey(0.7, 0.7), slope(0.1, 1.6);
+    const SlopeCurve grey(0.7, 0.7), slope(0.1, 1.6);
     for (const Curve* extinction : {static_cast<const Curve*>(&grey), static_cast<const Curve*>(&slope)}) {
         const Atmosphere medium(optics(*extinction), {0, 1, 0}, -1, 2);      // ground 1 m below, e-folding in 2 m
         const auto up = [](double h) { return 2 * (1 - std::exp(-h / 2)); }; // from the ground to height h
@@ -117,7 +93,7 @@ TEST_CASE("atmosphere: up, down, level and without an end") {
 }
 
 TEST_CASE("voxels: both estimators against quadrature, whichever way the grid is turned") {
-    const Slope grey(0.9, 0.9), slope(0.2, 1.7);
+    const SlopeCurve grey(0.9, 0.9), slope(0.2, 1.7);
     const Transform places[] = {{}, Transform::rotate({1, 2, 3}, 0.7).then(Transform::translate({0.2, -0.1, 0.3}))};
     for (const Curve* extinction : {static_cast<const Curve*>(&grey), static_cast<const Curve*>(&slope)})
         for (const Transform& place : places) {
