@@ -19,6 +19,8 @@ struct EffectText {
 constexpr EffectText kEffects[] = {
     {Effect::absorption, "absorption inside media", "no dielectric has an absorption"},
     {Effect::media, "scattering in media", "no volume and no interior of a shape"},
+    {Effect::textures, "footprints of paths", "no material looks at a texture"},
+    {Effect::interfaces, "open and nested surfaces", "no surface is partly open, no dielectrics may overlap"},
     {Effect::dispersion, "dispersion", "no refractive index and no extinction varies with wavelength"},
 };
 

@@ -27,6 +27,8 @@ std::string effectNames(Effects effects) {
     add(Effect::absorption, "absorption");
     add(Effect::dispersion, "dispersion");
     add(Effect::media, "media");
+    add(Effect::textures, "textures");
+    add(Effect::interfaces, "interfaces");
     return names.empty() ? "none" : names;
 }
 

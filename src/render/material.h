@@ -10,6 +10,14 @@
 namespace abbe {
 
 class Medium;
+class Texture;
+
+// What a surface gives off by itself, on its outer side.
+struct SurfaceEmission {
+    double luminance = 0;             // cd/m², where `texture` is 1; 0: none
+    const Curve* color = nullptr;     // of any scale; null: D65
+    const Texture* texture = nullptr; // factor over the surface; null: 1
+};
 
 // Immutable after construction, thread-safe.
 class Material {
@@ -27,6 +35,22 @@ class Material {
     virtual const Medium* interior() const { return nullptr; }
     // True if there is no surface, only the boundary of an interior: light goes straight on.
     virtual bool isBoundary() const { return false; }
+
+    // Whether bsdf(), opacity() or bend() look at the parametrisation of the hit (SurfaceHit::dpdu and after).
+    virtual bool usesTextures() const { return false; }
+    // Whether bend() changes anything. It is then called before bsdf(), to turn hit.shading; hit.shading.z stays in the
+    // hemisphere of ng.
+    virtual bool bends() const { return false; }
+    virtual void bend(SurfaceHit&) const noexcept {}
+    // Whether opacity() may be below 1. That share of the light meets the surface; the rest goes straight on.
+    virtual bool mayBeOpen() const { return false; }
+    virtual float opacity(const SurfaceHit&) const noexcept { return 1; }
+    // Refractive index of the inside; null if light does not refract into it. Where shapes overlap, the one of higher
+    // priority fills the space; among equals the one entered later.
+    virtual const Curve* ior() const { return nullptr; }
+    virtual int priority() const { return 0; }
+    // Read once, when the scene is built.
+    virtual SurfaceEmission emission() const { return {}; }
 };
 
 } // namespace abbe

@@ -7,8 +7,10 @@
 
 namespace abbe {
 
+class Curve;
 class Material;
 class Light;
+class Shape;
 
 // Render space. Plain data, filled by Intersector::intersect.
 struct SurfaceHit {
@@ -23,6 +25,19 @@ struct SurfaceHit {
     std::uint32_t primitive = 0;  // within its shape
     static constexpr std::uint32_t kNoInstance = 0xffffffffu;
     std::uint32_t instance = kNoInstance; // number of the outermost placement that it belongs to
+
+    // The parametrisation, only for materials that look at textures (Material::usesTextures).
+    Vec3 dpdu, dpdv;                     // how p changes with uv; 0 where the shape has no texture coordinates
+    Vec3 local;                          // p in the shape's own space, before its transform, m
+    const Shape* shape = nullptr;        // whose attributes `part`, `primitive` and `barycentric` find
+    std::uint32_t part = 0, element = 0; // as in RawHit: the sink's call, and the primitive in it
+    Vec2 barycentric;
+
+    // Of the path that met the surface.
+    Vec3 arrival;                   // unit direction in which it came; set for materials that bend, are open or use
+                                    // textures
+    float footprint = 0;            // radius of its cone here, m; 0: a point
+    const Curve* outside = nullptr; // index of what lies on the outer side; null: air, 1
 };
 
 // An origin on the side of the surface towards which `w` leaves, so far that no ray meets the surface again and no

@@ -2,10 +2,27 @@
 #pragma once
 
 #include "math/vec.h"
+#include "spectrum/curve.h"
 
+#include <algorithm>
 #include <array>
 
 namespace abbe {
+
+struct SurfaceHit;
+
+// Where a surface asks for a value, and over how large an area it wants the mean of it.
+struct TextureQuery {
+    explicit TextureQuery(const SurfaceHit&); // render/texture_query.h
+    TextureQuery(Vec2 place, Vec3 point) : uv(place), position(point) {}
+
+    Vec2 uv;
+    Vec2 du, dv;                     // half axes of the footprint in uv, the longer one first; 0: a point
+    Vec3 position;                   // in the shape's own space, m
+    Vec3 normal;                     // unit, render space
+    float radius = 0;                // of the footprint, m
+    const SurfaceHit* hit = nullptr; // for the attributes of its shape; may be null
+};
 
 struct TexturePoint {
     Vec3d position; // in the shape's own space, m
@@ -28,6 +45,16 @@ class Texture {
     virtual bool needsUv() const = 0;
     // Values and first derivatives are continuous wherever the texture is. Requires 1 ≤ channels ≤ channels().
     virtual TextureJet jet(const TexturePoint&, int channels) const noexcept = 0;
+    // The mean over the footprint, for shading: channels beyond channels() repeat the first one. Linear RGB for
+    // colours, the stored numbers for data.
+    virtual Vec3 value(const TextureQuery& query) const noexcept {
+        const TextureJet j = jet({Vec3d(query.position), query.uv, query.uv}, channels());
+        return channels() == 1 ? Vec3(j.value.x, j.value.x, j.value.x) : j.value;
+    }
+    // The same as a reflectance, 0 … 1 at every wavelength. By default the first channel, flat.
+    virtual Spectrum spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
+        return Spectrum(std::clamp(value(query).x, 0.f, 1.f));
+    }
     // False if uv lies where the texture has nothing to show: in a tile without a file.
     virtual bool covers(Vec2 uv) const noexcept {
         static_cast<void>(uv);

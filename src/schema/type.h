@@ -16,6 +16,10 @@
 #include <variant>
 #include <vector>
 
+namespace abbe {
+class Texture;
+}
+
 namespace abbe::schema {
 
 // What a definition can be. The keyword in a file is the enumerator's name.
@@ -126,6 +130,21 @@ struct Location {
     Span span;
 };
 
+// A spectrum, or a texture in its place: `reflectance 0.5`, `reflectance wood`, `reflectance image "wood.png"`. The
+// field's default where both are null.
+struct TexturedSpectrum {
+    const Curve* curve = nullptr;
+    const Texture* texture = nullptr;
+    Span span;
+};
+
+// A number, or a texture in its place: `roughness 0.3`, `roughness scratches`.
+struct TexturedNumber {
+    double value = 0; // of the member's initialiser: the field's default
+    const Texture* texture = nullptr;
+    Span span;
+};
+
 // Metals are a pair of curves.
 struct ComplexIndex {
     const Curve* n = nullptr;
@@ -135,7 +154,7 @@ struct ComplexIndex {
 using BoundValue =
     std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
                  std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location, const Curve*, ComplexIndex, Reference,
-                 GroupReference, WeightedReference, KeyedTransform>;
+                 GroupReference, WeightedReference, KeyedTransform, TexturedSpectrum, TexturedNumber>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -197,6 +216,7 @@ struct FieldInfo {
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
     bool canMove = false;         // a transform that may have keys
+    bool texturable = false;      // a spectrum or number that a texture may stand for: by the type of the member
     std::function<void(void* params, const BoundValue&)> store;
     std::function<void*(void* params, double time, Span)> append; // moments: a new element, to store its fields into
 };
@@ -220,6 +240,7 @@ template <typename Params, typename Member> class Field {
         info_.type = type;
         info_.name = name;
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
+        info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
         if constexpr (requires(Member m) { m.emplace_back().time; })
             info_.append = [member](void* params, double time, Span span) -> void* {
                 auto& moment = (static_cast<Params*>(params)->*member).emplace_back();
@@ -266,6 +287,13 @@ template <typename Params, typename Member> class Field {
             if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
             if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
             if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
+        } else if constexpr (std::is_same_v<M, TexturedSpectrum>) {
+            if (const auto* curve = std::get_if<const Curve*>(&value)) member.curve = *curve;
+            if (const auto* textured = std::get_if<TexturedSpectrum>(&value)) member = *textured;
+        } else if constexpr (std::is_same_v<M, TexturedNumber>) {
+            if (const auto* number = std::get_if<double>(&value)) member.value = *number;
+            if (const auto* q = std::get_if<Quantity>(&value)) member.value = q->value;
+            if (const auto* textured = std::get_if<TexturedNumber>(&value)) member = *textured;
         } else if constexpr (std::is_same_v<M, Transform>) {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
