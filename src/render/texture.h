@@ -1,7 +1,9 @@
 // Values over a surface: images and procedural patterns.
 #pragma once
 
+#include "base/source.h"
 #include "math/vec.h"
+#include "spectrum/color_space.h"
 #include "spectrum/curve.h"
 
 #include <algorithm>
@@ -9,7 +11,16 @@
 
 namespace abbe {
 
+class Diagnostics;
 struct SurfaceHit;
+
+// What a texture is asked for.
+enum class TextureUse : std::uint8_t {
+    heights,     // jet(): displacement, bumps
+    number,      // value() of plain numbers: a roughness, an opacity, the directions of a normal map
+    reflectance, // spectrum(): 0 … 1 at every wavelength
+    light,       // value() as linear RGB of rgbSpace(), without an upper bound
+};
 
 // Where a surface asks for a value, and over how large an area it wants the mean of it.
 struct TextureQuery {
@@ -37,16 +48,21 @@ struct TextureJet {
     std::array<Vec3, 2> byUv;       // ∂value/∂u, ∂v
 };
 
-// Immutable after construction, thread-safe.
+// Thread-safe and without visible changes once prepare() has run for every use.
 class Texture {
   public:
     virtual ~Texture() = default;
     virtual int channels() const = 0; // 1 or 3
     virtual bool needsUv() const = 0;
+    // The primaries of value() if its channels are a colour; null if they are plain numbers, or either (a pattern).
+    virtual const RgbSpace* rgbSpace() const { return nullptr; }
+    // Called by whoever binds the texture to a field, before the first lookup of that use, on one thread and perhaps
+    // several times: gets ready for it, and reports at `user` what speaks against it. False after an error.
+    virtual bool prepare(TextureUse, Span /*user*/, Diagnostics&) { return true; }
     // Values and first derivatives are continuous wherever the texture is. Requires 1 ≤ channels ≤ channels().
     virtual TextureJet jet(const TexturePoint&, int channels) const noexcept = 0;
-    // The mean over the footprint, for shading: channels beyond channels() repeat the first one. Linear RGB for
-    // colours, the stored numbers for data.
+    // The mean over the footprint, for shading; requires prepare(). Channels beyond channels() repeat the first one.
+    // Linear RGB for colours, the stored numbers for data.
     virtual Vec3 value(const TextureQuery& query) const noexcept {
         const TextureJet j = jet({Vec3d(query.position), query.uv, query.uv}, channels());
         return channels() == 1 ? Vec3(j.value.x, j.value.x, j.value.x) : j.value;

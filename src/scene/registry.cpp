@@ -56,15 +56,15 @@ constexpr MaterialEntry kMaterials[] = {
 
 struct TextureEntry {
     schema::TypeInfo (*type)();
-    std::unique_ptr<const Texture> (*make)(const BindParams&, Diagnostics&);
+    std::unique_ptr<Texture> (*make)(const BindParams&, Diagnostics&);
 };
 
-std::unique_ptr<const Texture> makeImage(const BindParams& bind, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeImage(const BindParams& bind, Diagnostics& diagnostics) {
     ImageTextureParams params;
     return bind(&params) ? makeImageTexture(params, diagnostics) : nullptr;
 }
 
-std::unique_ptr<const Texture> makeNoise(const BindParams& bind, Diagnostics&) {
+std::unique_ptr<Texture> makeNoise(const BindParams& bind, Diagnostics&) {
     NoiseTextureParams params;
     return bind(&params) ? std::make_unique<NoiseTexture>(params) : nullptr;
 }
@@ -121,7 +121,7 @@ std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindPa
     return nullptr;
 }
 
-std::unique_ptr<const Texture> makeTexture(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
     for (const TextureEntry& entry : kTextures)
         if (entry.type().name == type) return entry.make(bind, diagnostics);
     ABBE_CHECK(!"a registered texture type");

@@ -22,7 +22,7 @@ using BindParams = std::function<bool(void* params)>;
 std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
 
 // A texture of a registered type from bound parameters, or null after an error. Requires a name out of the table.
-std::unique_ptr<const Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);
+std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);
 
 // A camera of a registered type from bound parameters, or nothing after an error. Requires a name out of the table.
 std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams&, const CameraContext&, Diagnostics&);

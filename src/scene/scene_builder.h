@@ -157,7 +157,8 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
     // textures.cpp
     schema::Reference textureReference(const Definition&, Diagnostics&);
-    const Texture* textureOf(schema::Reference) const; // null for none
+    // Null for none, or after an error at `user`.
+    const Texture* textureFor(schema::Reference, TextureUse, Span user);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
@@ -239,7 +240,7 @@ class SceneBuilder final : public schema::Resolver {
 
     std::vector<std::unique_ptr<const Material>> materials_;
     std::unordered_map<const Definition*, schema::Reference> references_; // of what has a name
-    std::vector<std::unique_ptr<const Texture>> textures_;
+    std::vector<std::unique_ptr<Texture>> textures_;
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;    // who made it, for effects
     std::map<double, std::optional<std::uint32_t>> plainMaterials_; // by reflectance
     std::set<std::uint32_t> usedMaterials_;                         // of shapes that were placed

@@ -94,8 +94,9 @@ bool SceneBuilder::loadSubdivision(const Definition& d, LoadedShape& shape) {
     noteFiles(params->keys);
     const auto choices = cageChoices(*params, *loaded);
     if (!choices) return true;
-    const auto displacement =
-        chooseDisplacement(*params, textureOf(params->displacementMap), loaded->cage, diagnostics_);
+    const Texture* const map = textureFor(params->displacementMap, TextureUse::heights,
+                                          params->displacement ? params->displacement->span : d.span);
+    const auto displacement = chooseDisplacement(*params, map, loaded->cage, diagnostics_);
     if (!displacement) return true;
     shape.sound = true;
     if (params->interior.valid()) shape.cageEdges = openEdges(loaded->cage);

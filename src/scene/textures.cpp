@@ -3,8 +3,10 @@
 
 namespace abbe {
 
-const Texture* SceneBuilder::textureOf(schema::Reference reference) const {
-    return reference.valid() ? textures_[reference.index].get() : nullptr;
+const Texture* SceneBuilder::textureFor(schema::Reference reference, TextureUse use, Span user) {
+    if (!reference.valid()) return nullptr;
+    Texture* const texture = textures_[reference.index].get();
+    return texture->prepare(use, user, diagnostics_) ? texture : nullptr;
 }
 
 schema::Reference SceneBuilder::textureReference(const Definition& definition, Diagnostics& diagnostics) {

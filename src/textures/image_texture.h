@@ -45,6 +45,6 @@ class ImageTexture final : public Texture {
 
 schema::TypeInfo imageTextureType();
 // Reads the files; null after an error.
-std::unique_ptr<const Texture> makeImageTexture(const ImageTextureParams&, Diagnostics&);
+std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams&, Diagnostics&);
 
 } // namespace abbe

@@ -98,7 +98,7 @@ TypeInfo imageTextureType() {
             std::move(fields)};
 }
 
-std::unique_ptr<const Texture> makeImageTexture(const ImageTextureParams& p, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams& p, Diagnostics& diagnostics) {
     if (p.file.value.find(kTilePattern) == std::string::npos) {
         auto image = load(p.file.value, p.file, diagnostics);
         return image ? std::make_unique<ImageTexture>(std::move(*image), wrapOf(p.wrap)) : nullptr;
