@@ -17,6 +17,7 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "materials/sheen.h"
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
 #include "media/noise_types.h"
@@ -52,6 +53,7 @@ constexpr MaterialEntry kMaterials[] = {
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
     {boundaryType, bound<BoundaryParams, makeBoundary>},
+    {sheenType, bound<SheenParams, makeSheen>},
 };
 
 struct TextureEntry {
