@@ -42,8 +42,8 @@ class Curves final : public Shape {
     double area() const override; // of tubes without ends; of ribbons seen from the side; at first
 
     // Curves do not emit.
-    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     void addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size);

@@ -34,8 +34,8 @@ class DeformingMesh final : public Shape {
     double area() const override; // the largest of all steps
 
     // Deforming meshes do not emit: their area changes.
-    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     MeshData faces_; // and texture coordinates

@@ -43,17 +43,17 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     hit.primitive = 0;
 }
 
-std::optional<ShapeSample> Disk::sample(Vec3 from, Vec2 u) const {
+std::optional<ShapeSample> Disk::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const Vec2 q = squareToDisk(u);
     const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));
     ShapeSample s{Vec3(p), analyticError(p, magnitude_), Vec3(z_), 0};
-    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
+    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from.p, s.ng);
     if (!(s.pdfSolidAngle > 0)) return std::nullopt;
     return s;
 }
 
-float Disk::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
-    return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from, hit.ng);
+float Disk::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
+    return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from.p, hit.ng);
 }
 
 } // namespace abbe

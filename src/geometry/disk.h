@@ -21,8 +21,8 @@ class Disk final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return kPiD * radius_ * radius_; }
     // Uniform per area.
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   private:
     Vec3d centre_, x_, y_, z_;

@@ -25,8 +25,12 @@ class FaceMaterials final : public Shape {
     bool confirms(const RawHit& raw, const Ray& ray) const override { return shape_->confirms(raw, ray); }
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return shape_->area(); }
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override { return shape_->sample(from, u); }
-    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const override { return shape_->pdfSolidAngle(from, hit); }
+    std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const override {
+        return shape_->sample(from, part, u);
+    }
+    float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const override {
+        return shape_->pdfSolidAngle(from, hit);
+    }
 
   private:
     std::unique_ptr<const Shape> shape_;

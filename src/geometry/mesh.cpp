@@ -107,8 +107,8 @@ void Mesh::weighByArea() const {
     byArea_.emplace(areas);
 }
 
-std::optional<ShapeSample> Mesh::sample(Vec3 from, Vec2 u) const {
-    if (lone_) return lone_->sample(from, u);
+std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+    if (lone_) return lone_->sample(from, 0, u);
     if (!(area_ > 0)) return std::nullopt;
     std::call_once(byAreaOnce_, [this] { weighByArea(); });
     const BinSample bin = byArea_->sample(u.x);
@@ -118,15 +118,15 @@ std::optional<ShapeSample> Mesh::sample(Vec3 from, Vec2 u) const {
     Vec3 point, pError;
     trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, point, pError);
     const Vec3 ng = faceNormals_[bin.index];
-    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point - from, ng);
+    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, point, pError, ng, pdf);
 }
 
-float Mesh::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+float Mesh::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     if (lone_) return lone_->pdfSolidAngle(from, hit);
     if (!(area_ > 0)) return 0;
-    return areaToSolidAngle(static_cast<float>(1 / area_), hit.p - from, hit.ng);
+    return areaToSolidAngle(static_cast<float>(1 / area_), hit.p - from.p, hit.ng);
 }
 
 } // namespace abbe

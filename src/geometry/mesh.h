@@ -35,8 +35,8 @@ class Mesh final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     // Uniform per area over all faces; a lone quad as Quad does.
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   private:
     std::uint64_t triangleCount() const { return data_.triangles.size() + 2 * data_.quads.size(); }

@@ -69,18 +69,18 @@ double ParametricShape::pdfArea(Vec3d n) const {
     return length(back) / (determinant_ * localArea_);
 }
 
-std::optional<ShapeSample> ParametricShape::sample(Vec3 from, Vec2 u) const {
+std::optional<ShapeSample> ParametricShape::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const LocalPoint local = sampleLocal(Vec2d{static_cast<double>(u.x), static_cast<double>(u.y)});
     const Vec3d p = map_.point(local.p);
     const Vec3 ng(normalize(map_.normal(local.n)));
     const Vec3 rounded(p);
-    const float pdf = areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(ng))), rounded - from, ng);
+    const float pdf = areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(ng))), rounded - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, rounded, analyticError(p, magnitude_), ng, pdf);
 }
 
-float ParametricShape::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
-    return areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(hit.ng))), hit.p - from, hit.ng);
+float ParametricShape::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
+    return areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(hit.ng))), hit.p - from.p, hit.ng);
 }
 
 } // namespace abbe

@@ -17,8 +17,8 @@ class ParametricShape : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     // Uniform per area of the shape in its own space.
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   protected:
     // Own space. `part` tells surfaces apart that meet in an edge.

@@ -17,8 +17,8 @@ class Plane final : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override;
-    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     Vec3d point_, x_, y_, z_;

@@ -38,8 +38,8 @@ class Points final : public Shape {
     double area() const override; // at first
 
     // Points do not emit.
-    std::optional<ShapeSample> sample(Vec3, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&) const override { return 0; }
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     void removeInvisible();

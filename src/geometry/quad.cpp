@@ -104,14 +104,14 @@ void Quad::sampleArea(Vec2 u, Vec3& p, Vec3& ng) const {
     ng = half.frame.z;
 }
 
-std::optional<ShapeSample> Quad::sample(Vec3 from, Vec2 u) const {
+std::optional<ShapeSample> Quad::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     Vec3 p, ng;
     if (rectangle_) {
         const Rectangle& r = *rectangle_;
         ng = r.z;
-        if (const auto view = sphericalView(r, from)) {
+        if (const auto view = sphericalView(r, from.p)) {
             const Vec2 q = view->sample(u);
-            const Vec3 d = r.centre - from;
+            const Vec3 d = r.centre - from.p;
             p = r.centre + r.x * (q.x - dot(d, r.x)) + r.y * (q.y - dot(d, r.y));
             return std::optional<ShapeSample>(std::in_place, p, pError_, ng, 1 / view->solidAngle());
         }
@@ -119,15 +119,15 @@ std::optional<ShapeSample> Quad::sample(Vec3 from, Vec2 u) const {
     } else {
         sampleArea(u, p, ng);
     }
-    const float pdf = areaToSolidAngle(pdfArea_, p - from, ng);
+    const float pdf = areaToSolidAngle(pdfArea_, p - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, p, pError_, ng, pdf);
 }
 
-float Quad::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
+float Quad::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     if (rectangle_)
-        if (const auto view = sphericalView(*rectangle_, from)) return 1 / view->solidAngle();
-    return areaToSolidAngle(pdfArea_, hit.p - from, hit.ng);
+        if (const auto view = sphericalView(*rectangle_, from.p)) return 1 / view->solidAngle();
+    return areaToSolidAngle(pdfArea_, hit.p - from.p, hit.ng);
 }
 
 } // namespace abbe

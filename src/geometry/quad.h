@@ -18,8 +18,8 @@ class Quad final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     // Rectangles seen large: uniform per solid angle; everything else: uniform per area.
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   private:
     // One of the two triangles: p = corner + s edgeS + t edgeT.

@@ -66,12 +66,12 @@ void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
 
 double Sphere::area() const { return 4 * kPiD * radius_ * radius_; }
 
-std::optional<ShapeSample> Sphere::sample(Vec3 from, Vec2 u) const {
-    const Vec3d d = centre_ - Vec3d(from);
+std::optional<ShapeSample> Sphere::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+    const Vec3d d = centre_ - Vec3d(from.p);
     const double d2 = lengthSquared(d), r2 = radius_ * radius_;
     if (!(d2 > r2)) {
         ShapeSample s = at(Vec3d(squareToSphere(u)));
-        s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from, s.ng);
+        s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from.p, s.ng);
         if (!(s.pdfSolidAngle > 0)) return std::nullopt;
         return s;
     }
@@ -92,9 +92,9 @@ std::optional<ShapeSample> Sphere::sample(Vec3 from, Vec2 u) const {
     return s;
 }
 
-float Sphere::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
-    const double d2 = lengthSquared(centre_ - Vec3d(from)), r2 = radius_ * radius_;
-    if (!(d2 > r2)) return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from, hit.ng);
+float Sphere::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
+    const double d2 = lengthSquared(centre_ - Vec3d(from.p)), r2 = radius_ * radius_;
+    if (!(d2 > r2)) return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from.p, hit.ng);
     const auto pdf = static_cast<float>(1 / (2 * kPiD * coneOneMinusCos(d2, r2)));
     return std::isfinite(pdf) ? pdf : 0;
 }

@@ -20,8 +20,8 @@ class Sphere final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
-    std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit&) const override;
+    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   private:
     ShapeSample at(Vec3d normal) const; // without density

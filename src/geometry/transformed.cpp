@@ -66,9 +66,9 @@ double Transformed::directionJacobian(Vec3 w) const {
     return l * l * l / determinant_;
 }
 
-std::optional<ShapeSample> Transformed::sample(Vec3 from, Vec2 u) const {
-    const Vec3 origin(inverse_.point(Vec3d(from)));
-    const auto inner = shape_->sample(origin, u);
+std::optional<ShapeSample> Transformed::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+    const Vec3 origin(inverse_.point(Vec3d(from.p)));
+    const auto inner = shape_->sample(origin, 0, u);
     if (!inner) return std::nullopt;
     SurfaceHit hit;
     hit.p = inner->p;
@@ -81,8 +81,8 @@ std::optional<ShapeSample> Transformed::sample(Vec3 from, Vec2 u) const {
     return ShapeSample{hit.p, hit.pError, hit.ng, static_cast<float>(pdf)};
 }
 
-float Transformed::pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const {
-    const Vec3 origin(inverse_.point(Vec3d(from)));
+float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
+    const Vec3 origin(inverse_.point(Vec3d(from.p)));
     SurfaceHit inner;
     inner.p = Vec3(inverse_.point(Vec3d(hit.p)));
     inner.ng = Vec3(normalize(inverse_.normal(Vec3d(hit.ng))));

@@ -25,21 +25,27 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
     }
 }
 
-PickedLight LightSampler::pick(float u) const noexcept {
-    if (lights_.size() == 1) return {lights_.front(), 1};
+PickedLight LightSampler::pick(float u, const Receiver&) const noexcept {
+    if (lights_.size() == 1) return {lights_.front(), 0, 1};
     const double x = static_cast<double>(u) * cumulative_.back();
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, x);
     const auto i = static_cast<std::size_t>(found - cumulative_.begin());
-    return {lights_[i], probability_[i]};
+    return {lights_[i], 0, probability_[i]};
 }
 
-float LightSampler::probability(const Light* light) const noexcept {
+PickedLight LightSampler::pickAlong(float u, const Ray& ray, RayExtent) const noexcept { return pick(u, ray.origin); }
+
+float LightSampler::probabilityAlong(const Light* light, std::uint32_t part, const Ray& ray, RayExtent) const noexcept {
+    return probability(light, part, ray.origin);
+}
+
+float LightSampler::probability(const Light* light, std::uint32_t, const Receiver&) const noexcept {
     if (lights_.size() == 1) return 1;
     const auto found = byLight_.find(light);
     return found != byLight_.end() ? found->second : 0;
 }
 
-float LightSampler::probability(const MediumEmission* emission) const noexcept {
+float LightSampler::probability(const MediumEmission* emission, const Receiver&) const noexcept {
     const auto found = byEmission_.find(emission);
     return found != byEmission_.end() ? found->second : 0;
 }

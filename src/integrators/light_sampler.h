@@ -12,6 +12,7 @@ namespace abbe {
 
 struct PickedLight {
     const Light* light = nullptr;
+    std::uint32_t part = 0; // of the light
     float probability = 0;
 };
 
@@ -25,12 +26,15 @@ class LightSampler {
     bool needsChoice() const { return lights_.size() > 1; }
     // Whether any light may have a reach.
     bool placed() const { return placed_; }
-    // Requires !empty(); u in [0, 1).
-    PickedLight pick(float u) const noexcept;
-    // Probability with which `light`, one of the scene's, is picked.
-    float probability(const Light* light) const noexcept;
+    // For light that arrives at a receiver. Requires !empty(); u in [0, 1).
+    PickedLight pick(float u, const Receiver&) const noexcept;
+    // Probability with which a part of `light`, one of the scene's, is picked there.
+    float probability(const Light* light, std::uint32_t part, const Receiver&) const noexcept;
     // That of the light which samples this emission; 0 if none does.
-    float probability(const MediumEmission* emission) const noexcept;
+    float probability(const MediumEmission* emission, const Receiver&) const noexcept;
+    // The same for light that scatters somewhere on a piece of a ray.
+    PickedLight pickAlong(float u, const Ray&, RayExtent) const noexcept;
+    float probabilityAlong(const Light* light, std::uint32_t part, const Ray&, RayExtent) const noexcept;
     // Lights that rays which leave the scene meet.
     const std::vector<const Light*>& infinite() const { return infinite_; }
 

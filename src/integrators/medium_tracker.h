@@ -38,12 +38,6 @@ struct InScattering {
     Spectrum coefficient; // 1/m
 };
 
-// A part of a ray.
-struct RayExtent {
-    float tNear = 0, tFar = 0;
-    bool empty() const { return !(tNear < tFar); }
-};
-
 // What a ray has met so far.
 struct MediumCounters {
     std::uint64_t collisions = 0;    // tentative ones

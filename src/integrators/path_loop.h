@@ -100,7 +100,7 @@ template <EffectBits E> class PathLoop {
     class GlowCollector;
     void sampleNearLight(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings);
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
-    float trackingShare(const Light&);
+    float trackingShare(const PickedLight&);
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
     Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, RandomStream);
     void meetLight(const SurfaceHit&, Vec3 direction);
@@ -121,6 +121,11 @@ template <EffectBits E> class PathLoop {
         return dot(w, hit.ng) < 0 ? hit.material->absorption() : nullptr;
     }
     void endSecondaryWavelengths();
+    // A vertex as lights see it. What does not let light through is lit from the side of the eye alone.
+    static Receiver receiver(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye) {
+        const Vec3 n = hit.shading.z;
+        return {hit.p, eye.wo.z < 0 ? -n : n, bsdf.lobes().has(Lobe::transmission)};
+    }
     // False where the shading normal would let light through a surface or keep it from crossing one.
     static bool sidesAgree(const SurfaceHit&, const Directions&, Vec3 wi, Vec3 wiRender);
     // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation
@@ -175,6 +180,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         arena_.reset();
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
+        path_.from = receiver(hit, bsdf, eye);
         const VertexSample sample = sampler_.vertex(depth);
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
@@ -229,7 +235,8 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     float lightPdf = 0;
     if (!path_.delta && strategy == Strategy::mis)
-        lightPdf = context_.lights.probability(hit.light) * hit.light->pdfSolidAngle(path_.from, hit, path_.time);
+        lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from) *
+                   hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
     path_.radiance = fma(path_.beta * weight, emitted, path_.radiance);
 }
@@ -240,7 +247,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
         if (!path_.delta && strategy == Strategy::mis)
-            lightPdf = context_.lights.probability(light) * light->pdfEscaped(direction, path_.time);
+            lightPdf = context_.lights.probability(light, 0, path_.from) * light->pdfEscaped(direction, path_.time);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
         path_.radiance = fma(path_.beta * scatteringWeight(lightPdf), arriving, path_.radiance);
     }
@@ -251,8 +258,8 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
                               const VertexSample& sample, [[maybe_unused]] std::uint32_t depth) {
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
-    const PickedLight picked = context_.lights.pick(sample.pick);
-    const auto light = picked.light->sample(hit.p, sample.light, path_.lambda, path_.time);
+    const PickedLight picked = context_.lights.pick(sample.pick, path_.from);
+    const auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
     const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
@@ -282,7 +289,6 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
 template <EffectBits E>
 bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const Directions& eye, Ray& ray) {
     path_.beta *= next.weight;
-    path_.from = hit.p;
     path_.bsdfPdf = next.pdfSolidAngle;
     path_.delta = next.lobe.has(Lobe::delta);
     path_.etaScale *= next.eta * next.eta;

@@ -14,8 +14,8 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
         const Strategy strategy = loop_.context_.settings.strategy;
         float lightPdf = 0;
         if (!path.delta && strategy != Strategy::bsdfOnly)
-            lightPdf = loop_.context_.lights.probability(&emission) *
-                       emission.pdfSolidAngle(path.from, ray_.origin + ray_.direction * t);
+            lightPdf = loop_.context_.lights.probability(&emission, path.from) *
+                       emission.pdfSolidAngle(path.from.p, ray_.origin + ray_.direction * t);
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
         if constexpr (kAbsorption)
@@ -95,8 +95,8 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
 template <EffectBits E>
 void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
-    const PickedLight picked = context_.lights.pick(sample.pick);
-    const auto light = picked.light->sample(p, sample.light, path_.lambda, path_.time);
+    const PickedLight picked = context_.lights.pick(sample.pick, p);
+    const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const PhaseFunction& phase = collided_->phase();
     const float cosine = dot(direction, light->wi), value = phase.value(cosine);
@@ -113,7 +113,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     if constexpr (kAbsorption)
         if (const Curve* clear = path_.interior.absorption; clear && light->distance < kInfinity)
             contribution *= exp(clear->at(path_.lambda) * -light->distance);
-    path_.radiance += contribution * trackingShare(*picked.light);
+    path_.radiance += contribution * trackingShare(picked);
 }
 
 // Of everything between a vertex and a light: nothing behind a surface, the media's else.

@@ -5,10 +5,10 @@
 namespace abbe {
 
 // The light at one place of the ray, before it is followed. Next-event estimation from there and from where tracking
-// scatters share their light's choice and place, which leaves the distances to be weighed: those drawn here against
-// those that tracking finds on average, a function of the place alone. So both may estimate what lies between as they
-// like. Only for rays that the eye sees, directly or in mirrors and clear glass: further on it costs as much as before
-// and is blurred (docs/performance.md).
+// scatters share the place on their light, which leaves the choice of the light and the distances to be weighed: those
+// drawn here against those that tracking finds on average, a function of the place alone. So both may estimate what
+// lies between as they like. Only for rays that the eye sees, directly or in mirrors and clear glass: further on
+// it costs as much as before and is blurred (docs/performance.md).
 template <EffectBits E>
 void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t depth, std::uint32_t crossings) {
     auto& leg = media_.leg;
@@ -23,20 +23,21 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     // Numbers of no vertex.
     const std::uint32_t set = (crossings + 1) << 20 | depth;
     const VertexSample sample = sampler_.vertex(set);
-    const PickedLight picked = context_.lights.pick(sample.pick);
+    const PickedLight picked = context_.lights.pickAlong(sample.pick, ray, leg.media);
     const auto distances = distancesTowards(*picked.light);
     if (!distances) return;
     const float t = distances->sample(sample.bsdf.x), pdf = distances->pdf(t);
     const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda, &media_.inScattering);
-    const float share = pdf / (pdf + tracked);
+    const Vec3 p = ray.origin + ray.direction * t;
+    const float pickedThere = context_.lights.probability(picked.light, picked.part, p);
+    const float share = picked.probability * pdf / (picked.probability * pdf + pickedThere * tracked);
     // Where tracking is as good there is no need to pay for both.
     const float kept = std::min(1.f, 4 * share);
     if (media_.inScattering.empty() || !(sample.bsdf.y < kept)) return;
-    const Vec3 p = ray.origin + ray.direction * t;
-    const auto light = picked.light->sample(p, sample.light, path_.lambda, path_.time);
+    const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
 
-    const float cosine = dot(ray.direction, light->wi), lightPdf = picked.probability * light->pdfSolidAngle;
+    const float cosine = dot(ray.direction, light->wi), lightPdf = pickedThere * light->pdfSolidAngle;
     Spectrum scattered(0.f);
     for (const InScattering& at : media_.inScattering) {
         const PhaseFunction& phase = at.medium->phase();
@@ -55,7 +56,8 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     if constexpr (kAbsorption)
         if (const Curve* clear = path_.interior.absorption)
             passing *= exp(clear->at(path_.lambda) * -(t + light->distance));
-    path_.radiance += path_.beta * light->radiance * scattered * passing * (share / (kept * pdf * lightPdf));
+    const float density = kept * pdf * picked.probability * light->pdfSolidAngle;
+    path_.radiance += path_.beta * light->radiance * scattered * passing * (share / density);
 }
 
 // Of the leg, around where the light is; nothing where it is not looked for or does not arrive.
@@ -71,14 +73,15 @@ template <EffectBits E> std::optional<EquiangularDistances> PathLoop<E>::distanc
 }
 
 // The weight of a light sampled where tracking collided: 1 but for lights that sampleNearLight() samples too.
-template <EffectBits E> float PathLoop<E>::trackingShare(const Light& light) {
-    const auto distances = distancesTowards(light);
+template <EffectBits E> float PathLoop<E>::trackingShare(const PickedLight& picked) {
+    const auto distances = distancesTowards(*picked.light);
     if (!distances) return 1;
     const auto& leg = media_.leg;
-    const float pdf = distances->pdf(leg.collision);
+    const float pdf =
+        distances->pdf(leg.collision) * context_.lights.probabilityAlong(picked.light, picked.part, leg.ray, leg.media);
     if (!(pdf > 0)) return 1;
     const float tracked = media_.tracker.expected(leg.ray, leg.collision, path_.inside, path_.lambda);
-    return tracked / (pdf + tracked);
+    return picked.probability * tracked / (pdf + picked.probability * tracked);
 }
 
 } // namespace abbe

@@ -13,10 +13,11 @@ AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
         std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiantIntegral(*radiance.curve) * radiance.scale : 0;
 }
 
-std::optional<LightSample> AreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda, float) const noexcept {
-    const std::optional<ShapeSample> s = shape_.sample(from, u);
+std::optional<LightSample> AreaLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
+                                             const Wavelengths& lambda, float) const noexcept {
+    const std::optional<ShapeSample> s = shape_.sample(from, part, u);
     if (!s) return std::nullopt;
-    return arriving(*s, from, lambda);
+    return arriving(*s, from.p, lambda);
 }
 
 std::optional<LightReach> AreaLight::reach(const Ray&, float tMax) const noexcept {
@@ -44,8 +45,8 @@ Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& la
     return emits(hit.ng, w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-float AreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float) const noexcept {
-    if (!emits(hit.ng, from - hit.p)) return 0;
+float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float) const noexcept {
+    if (!emits(hit.ng, from.p - hit.p)) return 0;
     const float pdf = shape_.pdfSolidAngle(from, hit);
     return pdf < kInfinity ? pdf : 0; // as in sample
 }

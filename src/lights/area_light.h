@@ -16,11 +16,12 @@ class AreaLight : public Light {
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float) const noexcept override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
     float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 

@@ -173,7 +173,8 @@ Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
     return mix(upper, lower, fy);
 }
 
-std::optional<LightSample> EnvironmentLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
+std::optional<LightSample> EnvironmentLight::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+                                                    float) const noexcept {
     const CellSample cell = distribution_.sample(u);
     // Uniform in the cosine within the cell, so that its density is constant even at the poles.
     const double cosTheta = lerp(rowCosine_[cell.row], rowCosine_[cell.row + 1], static_cast<double>(cell.offset.y));

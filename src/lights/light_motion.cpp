@@ -4,6 +4,11 @@
 
 namespace abbe {
 
+Receiver LightPose::rest(const Receiver& from) const {
+    if (!from.surface) return {rest(from.p)};
+    return {rest(from.p), Vec3(normalize(toRest.vector(Vec3d(from.n)))), from.twoSided};
+}
+
 SurfaceHit LightPose::rest(const SurfaceHit& hit) const {
     SurfaceHit result = hit;
     result.p = rest(hit.p);

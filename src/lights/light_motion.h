@@ -3,6 +3,7 @@
 
 #include "math/interval.h"
 #include "math/keyed_transform.h"
+#include "render/receiver.h"
 #include "render/surface_hit.h"
 
 #include <optional>
@@ -15,6 +16,7 @@ struct LightPose {
     double scale = 1; // from rest to render space
 
     Vec3 rest(Vec3 p) const { return Vec3(toRest.point(Vec3d(p))); }
+    Receiver rest(const Receiver&) const;
     SurfaceHit rest(const SurfaceHit&) const; // point and geometric normal
 };
 

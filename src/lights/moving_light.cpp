@@ -28,11 +28,11 @@ ShapeSample toRender(const LightPose& pose, const ShapeSample& s) {
 
 } // namespace
 
-std::optional<LightSample> MovingLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
-                                               float time) const noexcept {
+std::optional<LightSample> MovingLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
+                                               const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
-    auto s = atRest_->sample(pose->rest(from), u, lambda, time);
+    auto s = atRest_->sample(pose->rest(from), part, u, lambda, time);
     if (!s) return s;
     s->wi = Vec3(normalize(pose->toRender.vector(Vec3d(s->wi))));
     if (!(s->distance < kInfinity)) return s;
@@ -73,16 +73,16 @@ std::optional<LightReach> MovingAreaLight::reach(const Ray& ray, float tMax) con
     return r;
 }
 
-std::optional<LightSample> MovingAreaLight::sample(Vec3 from, Vec2 u, const Wavelengths& lambda,
-                                                   float time) const noexcept {
+std::optional<LightSample> MovingAreaLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
+                                                   const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
-    const auto s = shape().sample(pose->rest(from), u);
+    const auto s = shape().sample(pose->rest(from), part, u);
     if (!s) return std::nullopt;
-    return arriving(toRender(*pose, *s), from, lambda);
+    return arriving(toRender(*pose, *s), from.p, lambda);
 }
 
-float MovingAreaLight::pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept {
+float MovingAreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? AreaLight::pdfSolidAngle(pose->rest(from), pose->rest(hit), time) : 0;
 }

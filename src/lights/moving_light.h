@@ -15,9 +15,10 @@ class MovingLight final : public Light {
     void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
     double power() const override { return atRest_->power(); }
     bool infinite() const override { return atRest_->infinite(); }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float time) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
     float pdfEscaped(Vec3 w, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
@@ -34,8 +35,9 @@ class MovingAreaLight final : public AreaLight {
     MovingAreaLight(const Shape& atRest, ScaledCurve radiance, bool twoSided, LightMotion motion)
         : AreaLight(atRest, radiance, twoSided), motion_(std::move(motion)) {}
 
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
-    float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float time) const noexcept override;
+    float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:

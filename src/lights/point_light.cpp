@@ -32,8 +32,9 @@ PointLight::PointLight(Vec3 position, ScaledCurve intensity)
     : position_(position), intensity_(intensity),
       power_(4 * kPiD * radiantIntegral(*intensity.curve) * intensity.scale) {}
 
-std::optional<LightSample> PointLight::sample(Vec3 from, Vec2, const Wavelengths& lambda, float) const noexcept {
-    const Vec3 offset = position_ - from;
+std::optional<LightSample> PointLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
+                                              float) const noexcept {
+    const Vec3 offset = position_ - from.p;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
     const float distance = std::sqrt(d2);

@@ -22,12 +22,13 @@ class PointLight final : public Light {
     PointLight(Vec3 position, ScaledCurve intensity);
 
     double power() const override { return power_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
     float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 

@@ -32,7 +32,8 @@ SkyLight::SkyLight(ScaledCurve radiance)
 
 void SkyLight::commit(const Bounds3& bounds) { power_ = 4 * kPiD * radiant_ * sceneDiskArea(bounds); }
 
-std::optional<LightSample> SkyLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
+std::optional<LightSample> SkyLight::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+                                            float) const noexcept {
     return std::optional<LightSample>(std::in_place, squareToSphere(u), Vec3{}, kInfinity, radiance_.at(lambda),
                                       kSpherePdf);
 }

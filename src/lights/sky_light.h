@@ -24,9 +24,10 @@ class SkyLight final : public Light {
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
     bool infinite() const override { return true; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths& lambda, float) const noexcept override { return radiance_.at(lambda); }
     float pdfEscaped(Vec3, float) const noexcept override;
 

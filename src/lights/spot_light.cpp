@@ -85,8 +85,9 @@ float SpotLight::falloff(Vec3 w) const noexcept {
     return t * t * (3 - 2 * t);
 }
 
-std::optional<LightSample> SpotLight::sample(Vec3 from, Vec2, const Wavelengths& lambda, float) const noexcept {
-    const Vec3 offset = position_ - from;
+std::optional<LightSample> SpotLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
+                                             float) const noexcept {
+    const Vec3 offset = position_ - from.p;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
     const float distance = std::sqrt(d2);

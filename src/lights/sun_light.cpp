@@ -90,7 +90,8 @@ bool SunLight::inside(Vec3 w) const noexcept {
     return length(w - frame_.z) <= chord_;
 }
 
-std::optional<LightSample> SunLight::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
+std::optional<LightSample> SunLight::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+                                            float) const noexcept {
     const Vec3 wi = delta_ ? frame_.z : frame_.toWorld(squareToCone(u, oneMinusCos_));
     return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, radiance_.at(lambda), delta_ ? 1 : pdf_,
                                       delta_);

@@ -16,10 +16,11 @@ class VolumeLight final : public Light {
         return LightReach{emission_.centre(), 0, tMax};
     }
     const MediumEmission* emission() const override { return &emission_; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float time) const noexcept override;
     // No surface, and nothing at infinity.
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
     float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 

@@ -52,6 +52,7 @@ struct BsdfSample {
 // spectral values use the mean over the lanes, so that they are the same for all rotations of the hero [Wilkie2014].
 class Bsdf {
   public:
+    // Without Lobe::transmission all of eval() is 0 where wo.z wi.z <= 0: lights behind are then not looked for.
     virtual Lobes lobes() const noexcept = 0;
     virtual BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept = 0;
     // uLobe, u in [0, 1). Nothing: the path ends here (no direction, zero weight). Implementations make the sample in

@@ -1,11 +1,13 @@
 // Sources of light, as next-event estimation and BSDF sampling see them.
 #pragma once
 
-#include "math/bounds.h"
+#include "render/light_bounds.h"
 #include "render/ray.h"
+#include "render/receiver.h"
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace abbe {
@@ -38,22 +40,35 @@ class Light {
     virtual ~Light() = default;
     // Called once, after the bounds of all finite geometry are known and before anything else.
     virtual void commit(const Bounds3&) {}
-    // Emitted power in W, for choosing lights. Infinite lights: through the scene's bounding disk.
+    // Emitted power in W, for choosing lights; 0 only if it is dark or cannot be sampled. Infinite lights: through the
+    // scene's bounding disk.
     virtual double power() const = 0;
+    // The same as far as the film sees it, for choosing among lights of different colours: W weighted with CIE ȳ, and
+    // a twentieth of all W, so that no light counts for nothing. The default is daylight's.
+    virtual double visiblePower() const { return 0.4 * power(); }
+    // Lights without bounds: an estimate of how much they give to a surface that faces them, W/m² weighted likewise.
+    virtual double irradiance() const { return 0; }
+    // Lights may consist of parts that are chosen and sampled one at a time (the polygons of a mesh). Fixed, > 0.
+    virtual std::uint32_t parts() const { return 1; }
+    // Where a part is; nothing if it is infinite or not known. Requires: part < parts(), after commit().
+    virtual std::optional<LightBounds> bounds(std::uint32_t /*part*/) const { return std::nullopt; }
+    // The part whose surface was hit.
+    std::uint32_t partOf(const SurfaceHit& hit) const { return parts() > 1 ? hit.primitive : 0; }
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
     // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
     virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // What this light samples, if it is a medium that shines: found along rays, never as a surface.
     virtual const MediumEmission* emission() const { return nullptr; }
-    // Light that can arrive at `from`; nothing if none can. u in [0, 1)². Here and below `time` is Ray::time, which
-    // only lights that move look at.
-    virtual std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float time) const noexcept = 0;
+    // Light of a part that can arrive at `from`; nothing if none can. All that counts there (render/receiver.h) has a
+    // density; u in [0, 1)². Here and below `time` is Ray::time, which only lights that move look at.
+    virtual std::optional<LightSample> sample(const Receiver& from, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                              float time) const noexcept = 0;
 
-    // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which sample(from, ·)
-    // makes that point.
+    // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which
+    // sample(from, partOf(hit), ·) makes that point.
     virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
-    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit, float time) const noexcept = 0;
+    virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept = 0;
 
     // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and its density.
     virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;

@@ -12,4 +12,10 @@ struct Ray {
     float time = 0;
 };
 
+// A part of a ray.
+struct RayExtent {
+    float tNear = 0, tFar = 0;
+    bool empty() const { return !(tNear < tFar); }
+};
+
 } // namespace abbe

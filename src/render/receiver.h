@@ -15,6 +15,9 @@ struct Receiver {
     Vec3 n;                // unit; that of the shading frame, on the side of the eye
     bool surface = false;  // whether n means anything
     bool twoSided = false; // light from behind n counts too
+
+    // Light from behind n counts for nothing.
+    bool oneSided() const { return surface && !twoSided; }
 };
 
 } // namespace abbe

@@ -3,6 +3,7 @@
 
 #include "math/bounds.h"
 #include "render/ray.h"
+#include "render/receiver.h"
 #include "render/surface_hit.h"
 
 #include <array>
@@ -29,6 +30,14 @@ struct ShapeSample {
     Vec3 pError;
     Vec3 ng; // unit, outside
     float pdfSolidAngle;
+};
+
+// What choosing among emitting parts needs to know. All normals are within acos(cosNormals) of the axis.
+struct EmitterPart {
+    Bounds3 box;
+    double area = 0;       // m²
+    Vec3 axis{0, 0, 1};    // unit
+    float cosNormals = -1; // -1: all directions
 };
 
 // A control point of a curve, or a sphere or disk on its own: laid out as Embree reads it.
@@ -94,10 +103,16 @@ class Shape {
 
     // What only emitters need. Area in m²; infinite for planes.
     virtual double area() const = 0;
-    // A point seen from `from`, or nothing if none can be (degenerate, below). u in [0, 1)².
-    virtual std::optional<ShapeSample> sample(Vec3 from, Vec2 u) const = 0;
-    // Density with which sample(from, ·) makes the point of `hit`, which lies on this shape; 0 if it cannot.
-    virtual float pdfSolidAngle(Vec3 from, const SurfaceHit& hit) const = 0;
+    // What is sampled at a time: the whole shape, or each of the polygons of a mesh; the part of a hit is then its
+    // SurfaceHit::primitive.
+    virtual std::uint32_t emitterParts() const { return 1; }
+    virtual EmitterPart emitterPart(std::uint32_t) const { return {.box = bounds(), .area = area()}; }
+    // A point of a part seen from `from`, or nothing if none can be (degenerate, below the horizon). All points that
+    // count there have a density. u in [0, 1)².
+    virtual std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const = 0;
+    // Density with which sample(from, part of the hit, ·) makes the point of `hit`, which lies on this shape; 0 if it
+    // cannot.
+    virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const = 0;
 };
 
 } // namespace abbe

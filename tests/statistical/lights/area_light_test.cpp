@@ -24,7 +24,7 @@ test::Moments irradiance(const Light& light, Vec3 from, Vec3 n, std::uint64_t se
     test::Moments result;
     test::Random random(seed);
     for (int i = 0; i < kSamples; ++i) {
-        const auto s = light.sample(from, {random.uniform(), random.uniform()}, kAt, 0);
+        const auto s = light.sample(from, 0, {random.uniform(), random.uniform()}, kAt, 0);
         result.add(s ? s->radiance[0] * std::max(0.f, dot(n, s->wi)) / s->pdfSolidAngle : 0);
     }
     return result;
@@ -120,7 +120,7 @@ TEST_CASE("inside a sphere that emits inwards the irradiance is π L everywhere"
         CHECK(m.standardError() < 0.02);
     }
     const AreaLight outward(sphere, {&kUnit, 1}, false);
-    CHECK_FALSE(outward.sample({}, {0.3f, 0.7f}, kAt, 0).has_value());
+    CHECK_FALSE(outward.sample(Vec3(), 0, {0.3f, 0.7f}, kAt, 0).has_value());
 }
 
 // Traces what was sampled: the ray is free up to the sample, then meets the light where emitted() and pdfSolidAngle()
@@ -134,7 +134,7 @@ void checkAgainstRays(const Shape& shape, bool twoSided, const std::vector<Vec3>
     int sampled = 0, missed = 0, shadowed = 0, different = 0;
     for (const Vec3 from : places)
         for (int i = 0; i < 2000; ++i) {
-            const auto s = light.sample(from, {random.uniform(), random.uniform()}, kAt, 0);
+            const auto s = light.sample(from, 0, {random.uniform(), random.uniform()}, kAt, 0);
             if (!s) continue;
             ++sampled;
             CHECK(s->pdfSolidAngle > 0);
@@ -195,7 +195,7 @@ TEST_CASE("on, behind, inside and at the corners of a light everything is finite
                 for (int i = 0; i < 50; ++i) {
                     const auto corner = [&](int bit) { return i & bit ? kOneMinusEpsilon : 0.f; };
                     const Vec2 u = i < 4 ? Vec2{corner(1), corner(2)} : Vec2{random.uniform(), random.uniform()};
-                    const auto s = light.sample(from, u, kAt, 0);
+                    const auto s = light.sample(from, 0, u, kAt, 0);
                     if (!s) continue;
                     CHECK(isFinite(s->wi));
                     CHECK(isFinite(s->p));
@@ -213,7 +213,7 @@ TEST_CASE("power counts the sides that emit; planes have none") {
     const Plane plane({0, 0, 0}, {0, 1, 0});
     const AreaLight light(plane, {&kUnit, 1}, false);
     CHECK(light.power() == 0);
-    CHECK_FALSE(light.sample({0, 1, 0}, {0.5f, 0.5f}, kAt, 0).has_value());
+    CHECK_FALSE(light.sample(Vec3{0, 1, 0}, 0, {0.5f, 0.5f}, kAt, 0).has_value());
 }
 
 } // namespace

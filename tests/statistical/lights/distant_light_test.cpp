@@ -46,7 +46,7 @@ test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int w
     const Transform back = turn.inverse().value();
     test::Random random(seed);
     for (int i = 0; i < samples; ++i) {
-        const Vec3d w = back.vector(Vec3d(light.sample({}, {random.uniform(), random.uniform()}, kAt, 0)->wi));
+        const Vec3d w = back.vector(Vec3d(light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0)->wi));
         const double phi = std::atan2(w.x, -w.z), theta = std::atan2(std::hypot(w.x, w.z), w.y);
         const int c = std::clamp(static_cast<int>((phi / (2 * kPiD) + 0.5) * columns), 0, columns - 1);
         const int r = std::clamp(static_cast<int>(theta / kPiD * rows), 0, rows - 1);
@@ -76,7 +76,7 @@ TEST_CASE("sun: directions are uniform over the disk") {
         test::Random random(7);
         int outside = 0;
         for (int i = 0; i < samples; ++i) {
-            const auto s = sun.sample({}, {random.uniform(), random.uniform()}, kAt, 0);
+            const auto s = sun.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0);
             outside += sun.pdfEscaped(s->wi, 0) == 0;
             const Vec3d w = normalize(Vec3d(s->wi));
             const double sine = std::hypot(w.x, w.y), h = sine * sine / (1 + w.z); // 1 - cos
@@ -94,7 +94,7 @@ test::Moments irradiance(const Light& light, Vec3 n, std::uint64_t seed) {
     test::Moments result;
     test::Random random(seed);
     for (int i = 0; i < 400000; ++i) {
-        const auto s = light.sample({}, {random.uniform(), random.uniform()}, kAt, 0);
+        const auto s = light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0);
         result.add(s->radiance[0] * std::max(0.f, dot(n, s->wi)) / s->pdfSolidAngle);
     }
     return result;

@@ -120,7 +120,8 @@ TEST_CASE("mesh: sampling meets faces in proportion to their area") {
     for (double& e : expected) e *= n / total;
     const auto scene = intersectorOf(mesh);
     for (int i = 0; i < n; ++i) {
-        const auto s = mesh.sample({0, 0, 0}, {random.uniform(), random.uniform()}); // from inside: all faces are seen
+        const auto s =
+            mesh.sample(Vec3{0, 0, 0}, 0, {random.uniform(), random.uniform()}); // from inside: all faces are seen
         REQUIRE(s);
         SurfaceHit hit;
         REQUIRE(scene->intersect({{0, 0, 0}, normalize(s->p)}, hit));

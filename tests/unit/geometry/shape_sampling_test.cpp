@@ -98,13 +98,13 @@ TEST_CASE("shapes: density is one over the Jacobian of the map") {
             int compared = 0;
             double worst = 0;
             const auto direction = [&](Vec2 u) -> std::optional<Vec3d> {
-                const auto s = c.shape->sample(from, u);
+                const auto s = c.shape->sample(from, 0, u);
                 if (!s) return std::nullopt;
                 return normalize(Vec3d(s->p) - Vec3d(from));
             };
             for (int i = 0; i < 400; ++i) {
                 const Vec2 u{0.02f + 0.96f * random.uniform(), 0.02f + 0.96f * random.uniform()};
-                const auto s = c.shape->sample(from, u);
+                const auto s = c.shape->sample(from, 0, u);
                 const auto area = smoothJacobian(direction, u);
                 if (!s || !area) continue;
                 worst = std::max(worst, std::abs(*area * static_cast<double>(s->pdfSolidAngle) - 1));
@@ -152,7 +152,7 @@ TEST_CASE("quad: irradiance under a rectangle") {
             Random random(3);
             Moments m;
             for (int i = 0; i < 100000; ++i) {
-                const auto s = quad.sample(from, {random.uniform(), random.uniform()});
+                const auto s = quad.sample(from, 0, {random.uniform(), random.uniform()});
                 const Vec3 w = normalize(s->p - from);
                 m.add(static_cast<double>(w.y / s->pdfSolidAngle) / kPiD);
             }
@@ -168,7 +168,7 @@ TEST_CASE("shapes: no point of view breaks a sampler") {
         const Bounds3 b = c.shape->bounds();
         std::vector<Vec3> points{b.lower, b.upper, b.centre(), {1e6f, -1e6f, 1e6f}, {1e15f, 0, 0}, {1e-20f, 0, 0}};
         for (int i = 0; i < 200; ++i) { // on the surface itself, and just off it
-            const auto s = c.shape->sample({3, 5, 7}, {random.uniform(), random.uniform()});
+            const auto s = c.shape->sample(Vec3{3, 5, 7}, 0, {random.uniform(), random.uniform()});
             if (!s) continue;
             points.push_back(s->p);
             points.push_back(s->p + s->ng * 1e-7f);
@@ -182,7 +182,7 @@ TEST_CASE("shapes: no point of view breaks a sampler") {
                              i == 2   ? 0.f
                              : i == 3 ? kOneMinusEpsilon
                                       : random.uniform()};
-                const auto s = c.shape->sample(from, u);
+                const auto s = c.shape->sample(from, 0, u);
                 if (!s) continue;
                 INFO(c.name << " from " << from.x << " " << from.y << " " << from.z);
                 REQUIRE(isFinite(s->p));
@@ -206,6 +206,6 @@ TEST_CASE("sphere: the cone keeps its digits when the sphere is small") {
         const double distance = 1 / std::sin(theta);
         const Sphere sphere({distance, 0, 0}, 1);
         const double exact = 2 * kPiD * 2 * square(std::sin(theta / 2));
-        CHECK(1 / static_cast<double>(sphere.pdfSolidAngle({0, 0, 0}, {})) == doctest::Approx(exact).epsilon(1e-6));
+        CHECK(1 / static_cast<double>(sphere.pdfSolidAngle(Vec3{0, 0, 0}, {})) == doctest::Approx(exact).epsilon(1e-6));
     }
 }

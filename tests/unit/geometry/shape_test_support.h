@@ -88,7 +88,7 @@ inline SamplingReport examine(const Shape& shape, Vec3 from, bool hidden, int sa
         }
     Random random(17);
     for (int i = 0; i < samples; ++i) {
-        const auto s = shape.sample(from, {random.uniform(), random.uniform()});
+        const auto s = shape.sample(from, 0, {random.uniform(), random.uniform()});
         if (!s) {
             ++observed[count];
             continue;

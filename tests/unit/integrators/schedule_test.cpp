@@ -22,11 +22,12 @@ class TestLight final : public Light {
     explicit TestLight(double power, bool infinite = false) : power_(power), infinite_(infinite) {}
     double power() const override { return power_; }
     bool infinite() const override { return infinite_; }
-    std::optional<LightSample> sample(Vec3, Vec2, const Wavelengths&, float) const noexcept override {
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t, Vec2, const Wavelengths&,
+                                      float) const noexcept override {
         return std::nullopt;
     }
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return {}; }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return {}; }
     float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 
@@ -128,7 +129,7 @@ TEST_CASE("light choice: probabilities sum to one, and are those of the picks") 
         double sum = 0, total = 0;
         for (const double p : powers) total += p;
         for (const auto& light : lights) {
-            const double p = sampler.probability(light.get());
+            const double p = sampler.probability(light.get(), 0, Vec3());
             const double n = static_cast<double>(lights.size());
             CHECK(p == doctest::Approx(0.5 / n + 0.5 * (total > 0 ? light->power() / total : 1 / n)));
             CHECK(p > 0); // a light without power by the books may still shine
@@ -142,21 +143,21 @@ TEST_CASE("light choice: probabilities sum to one, and are those of the picks") 
         std::vector<double> observed(lights.size(), 0), expected;
         Random random(7);
         for (int i = 0; i < picks; ++i) {
-            const PickedLight picked = sampler.pick(random.uniform());
-            CHECK_UNARY(picked.probability == sampler.probability(picked.light));
+            const PickedLight picked = sampler.pick(random.uniform(), Vec3());
+            CHECK_UNARY(picked.probability == sampler.probability(picked.light, picked.part, Vec3()));
             for (std::size_t k = 0; k < lights.size(); ++k) observed[k] += lights[k].get() == picked.light;
         }
         for (const auto& light : lights)
-            expected.push_back(picks * static_cast<double>(sampler.probability(light.get())));
+            expected.push_back(picks * static_cast<double>(sampler.probability(light.get(), 0, Vec3())));
         if (lights.size() > 1) CHECK(chiSquareTest(observed, expected).pValue > 1e-4);
-        CHECK(sampler.pick(0).light == lights.front().get());
-        CHECK(sampler.pick(kOneMinusEpsilon).light == lights.back().get());
+        CHECK(sampler.pick(0, Vec3()).light == lights.front().get());
+        CHECK(sampler.pick(kOneMinusEpsilon, Vec3()).light == lights.back().get());
     }
 }
 
 TEST_CASE("light choice: lights of other scenes, and no lights at all") {
     const auto lights = lightsOf({1, 2}), others = lightsOf({1});
-    CHECK(LightSampler(lights).probability(others.front().get()) == 0);
+    CHECK(LightSampler(lights).probability(others.front().get(), 0, Vec3()) == 0);
     CHECK(LightSampler({}).empty());
 }
 

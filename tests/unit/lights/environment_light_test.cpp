@@ -85,7 +85,7 @@ TEST_CASE("a constant image gives π L, for any way of sampling") {
         test::Moments irradiance;
         test::Random random(5);
         for (int i = 0; i < 200000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
+            const auto s = sky.sample(Vec3(), 0, {random.uniform(), random.uniform()}, w, 0);
             irradiance.add(s->radiance[4] * std::max(s->wi.y, 0.f) / s->pdfSolidAngle);
         }
         CHECK(test::meanTest(irradiance, kPiD) > 1e-4);
@@ -101,7 +101,7 @@ TEST_CASE("what is sampled is what is looked up") {
         test::Random random(6);
         int borders = 0;
         for (int i = 0; i < 20000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
+            const auto s = sky.sample(Vec3(), 0, {random.uniform(), random.uniform()}, w, 0);
             REQUIRE(s);
             CHECK(s->pdfSolidAngle > 0);
             CHECK(std::isinf(s->distance));
@@ -154,7 +154,7 @@ TEST_CASE("sampling without compensation misses no light: the mean is right for 
         test::Moments total;
         test::Random random(static_cast<std::uint64_t>(turn) + 20);
         for (int i = 0; i < 100000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
+            const auto s = sky.sample(Vec3(), 0, {random.uniform(), random.uniform()}, w, 0);
             total.add(s->radiance[0] / s->pdfSolidAngle);
         }
         CHECK(test::meanTest(total, reference) > 1e-4);
@@ -170,7 +170,8 @@ TEST_CASE("compensation samples only what exceeds the mean, in proportion") {
     test::Random random(8);
     int bright = 0; // the others are in halves of cells that reach just beyond the bright texels
     for (int i = 0; i < 1000; ++i)
-        bright += sky.sample({}, {random.uniform(), random.uniform()}, Wavelengths::single(550), 0)->radiance[0] > 1;
+        bright +=
+            sky.sample(Vec3(), 0, {random.uniform(), random.uniform()}, Wavelengths::single(550), 0)->radiance[0] > 1;
     CHECK(bright > 970);
 }
 
@@ -190,7 +191,7 @@ TEST_CASE("images of one texel, or one row") {
         const EnvironmentLight sky = light(image(width, height, {3, 3, 3}), {}, true);
         test::Random random(9);
         for (int i = 0; i < 1000; ++i) {
-            const auto s = sky.sample({}, {random.uniform(), random.uniform()}, w, 0);
+            const auto s = sky.sample(Vec3(), 0, {random.uniform(), random.uniform()}, w, 0);
             CHECK(s->radiance[0] == 3);
             CHECK(s->pdfSolidAngle == doctest::Approx(1 / (4 * kPiD)).epsilon(0.3));
         }
@@ -204,7 +205,7 @@ TEST_CASE("a sun of 1e9 in the image leaves the rest its probability") {
     const float overhead = sky.pdfEscaped({0, 1, 0}, 0), below = sky.pdfEscaped({0, -1, 0}, 0);
     CHECK(overhead > 0);
     CHECK(overhead == doctest::Approx(below).epsilon(1e-6));
-    CHECK(sky.sample({}, {0.5f, 0.5f}, Wavelengths::single(550), 0)->radiance[0] > 1e8f);
+    CHECK(sky.sample(Vec3(), 0, {0.5f, 0.5f}, Wavelengths::single(550), 0)->radiance[0] > 1e8f);
 }
 
 TEST_CASE("broken images are reported") {

@@ -46,14 +46,14 @@ TEST_CASE("a point light follows the inverse square, and its transform") {
     Diagnostics diagnostics;
     const auto light = makePointLight(p, context(), diagnostics);
     REQUIRE(light);
-    const auto sample = [&](Vec3 from) { return light->sample(from, {}, Wavelengths::single(555), 0); };
+    const auto sample = [&](Vec3 from) { return light->sample(from, 0, {}, Wavelengths::single(555), 0); };
     const auto s = sample({2, -2, 0});
     REQUIRE(s);
     CHECK(s->wi == Vec3{0, 1, 0});
     CHECK(s->distance == 3);
     CHECK(s->delta);
     CHECK(luminous([&](const Wavelengths& w) {
-              return light->sample({2, -2, 0}, {}, w, 0)->radiance;
+              return light->sample(Vec3{2, -2, 0}, 0, {}, w, 0)->radiance;
           }) == doctest::Approx(10).epsilon(1e-5));
     CHECK_FALSE(sample({2, 1, 0}).has_value()); // at the light
 }
@@ -75,7 +75,7 @@ TEST_CASE("a spot arrives nowhere on a ray outside of its reach, which is not mu
             for (int k = 0; k < 200; ++k) {
                 const float t = 10 * (static_cast<float>(k) + 0.5f) / 200;
                 const bool arrives =
-                    light.sample(origin + ray.direction * t, {}, Wavelengths::single(500), 0).has_value();
+                    light.sample(origin + ray.direction * t, 0, {}, Wavelengths::single(500), 0).has_value();
                 const bool inside = reach && t >= reach->tNear && t <= reach->tFar;
                 lit += arrives;
                 within += inside;
@@ -101,7 +101,7 @@ TEST_CASE("the solid angle of a spot is the integral of its falloff") {
         const float at = Wavelengths::single(555).nm[0];
         const double onAxis = kLamp.at(at);
         const auto falloff = [&](double theta) {
-            const auto s = light.sample(direction(theta, 0.3), {}, Wavelengths::single(at), 0);
+            const auto s = light.sample(direction(theta, 0.3), 0, {}, Wavelengths::single(at), 0);
             return s ? s->radiance[0] / onAxis : 0.0;
         };
         const auto part = [&](double a, double b) {
@@ -109,7 +109,7 @@ TEST_CASE("the solid angle of a spot is the integral of its falloff") {
         };
         const double integral = part(0, inner * kDegree) + part(inner * kDegree, outer * kDegree);
         CHECK(SpotLight::solidAngle(inner * kDegree, outer * kDegree) == doctest::Approx(integral).epsilon(2e-4));
-        if (outer < 180) CHECK_FALSE(light.sample(direction(1.001 * outer * kDegree, 1), {}, {}, 0).has_value());
+        if (outer < 180) CHECK_FALSE(light.sample(direction(1.001 * outer * kDegree, 1), 0, {}, {}, 0).has_value());
     }
 }
 
@@ -122,10 +122,10 @@ TEST_CASE("a spot aims at its look-at point, and states cd on its axis") {
     Diagnostics diagnostics;
     const auto light = makeSpotLight(p, context(), diagnostics);
     REQUIRE(light);
-    CHECK(luminous([&](const Wavelengths& w) { return light->sample({}, {}, w, 0)->radiance; }) ==
+    CHECK(luminous([&](const Wavelengths& w) { return light->sample(Vec3(), 0, {}, w, 0)->radiance; }) ==
           doctest::Approx(100).epsilon(1e-5));
     const auto lit = [&](double degrees) {
-        return light->sample({static_cast<float>(3 * std::tan(degrees * kDegree)), 0, 0}, {}, {}, 0).has_value();
+        return light->sample(Vec3{static_cast<float>(3 * std::tan(degrees * kDegree)), 0, 0}, 0, {}, {}, 0).has_value();
     };
     CHECK(lit(19.9));
     CHECK_FALSE(lit(20.1)); // `angle` is the full angle
@@ -182,7 +182,7 @@ TEST_CASE("the solid angle of small suns does not cancel") {
     for (const double half : {2e-5, 1e-4, 1e-3, 0.1, 1.0, kPiD / 2}) {
         const SunLight sun({0, 1, 0}, half, {&kLamp, 1});
         const double exact = 4 * kPiD * square(std::sin(half / 2));
-        CHECK(1 / sun.sample({}, {0.5f, 0.5f}, {}, 0)->pdfSolidAngle == doctest::Approx(exact).epsilon(1e-6));
+        CHECK(1 / sun.sample(Vec3(), 0, {0.5f, 0.5f}, {}, 0)->pdfSolidAngle == doctest::Approx(exact).epsilon(1e-6));
     }
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("sampled directions of the sun lie in its disk with its radiance") {
     test::Random random(4);
     Vec3d sum;
     for (int i = 0; i < 10000; ++i) {
-        const auto s = sun.sample({}, {random.uniform() * 0.999f, random.uniform()}, w, 0);
+        const auto s = sun.sample(Vec3(), 0, {random.uniform() * 0.999f, random.uniform()}, w, 0);
         REQUIRE(s);
         CHECK(sun.escaped(s->wi, w, 0)[3] == s->radiance[3]);
         CHECK(sun.pdfEscaped(s->wi, 0) == s->pdfSolidAngle);
@@ -212,8 +212,8 @@ TEST_CASE("a sun without diameter is a direction") {
     const auto sun = makeSunLight(p, context(), diagnostics);
     REQUIRE(sun);
     CHECK_FALSE(sun->infinite());
-    CHECK(sun->sample({}, {}, {}, 0)->delta);
-    CHECK(luminous([&](const Wavelengths& w) { return sun->sample({}, {}, w, 0)->radiance; }) ==
+    CHECK(sun->sample(Vec3(), 0, {}, {}, 0)->delta);
+    CHECK(luminous([&](const Wavelengths& w) { return sun->sample(Vec3(), 0, {}, w, 0)->radiance; }) ==
           doctest::Approx(5).epsilon(1e-5));
 }
 
@@ -224,7 +224,9 @@ TEST_CASE("elevation and azimuth: clockwise from north, which is -z, or +y where
     p.angularDiameter = 0;
     Diagnostics diagnostics;
     const float c = std::sqrt(0.75f);
-    const auto towards = [&](LightContext c0) { return makeSunLight(p, c0, diagnostics)->sample({}, {}, {}, 0)->wi; };
+    const auto towards = [&](LightContext c0) {
+        return makeSunLight(p, c0, diagnostics)->sample(Vec3(), 0, {}, {}, 0)->wi;
+    };
     CHECK(length(towards(context()) - Vec3{c, 0.5f, 0}) < 1e-6f);
     LightContext zUp = context();
     zUp.zUp = true;

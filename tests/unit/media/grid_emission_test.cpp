@@ -126,7 +126,7 @@ TEST_CASE("the light's points follow the density that the emission states") {
         REQUIRE(std::min({bin.x, bin.y, bin.z}) >= 0);
         REQUIRE(std::max({bin.x, bin.y, bin.z}) < kSide);
         ++counts[static_cast<std::size_t>((bin.x * kSide + bin.y) * kSide + bin.z)];
-        const auto s = light.sample(from, u, Wavelengths::single(kNm), 0);
+        const auto s = light.sample(from, 0, u, Wavelengths::single(kNm), 0);
         if (!s) {
             ++missing; // nothing shines there
             continue;
@@ -174,7 +174,7 @@ TEST_CASE("the light has all that the grids give off, and nothing else") {
     Random random(11);
     Moments m;
     for (int i = 0; i < 2'000'000; ++i) {
-        const auto s = light.sample(from, {random.uniform(), random.uniform()}, Wavelengths::single(kNm), 0);
+        const auto s = light.sample(from, 0, {random.uniform(), random.uniform()}, Wavelengths::single(kNm), 0);
         m.add(s ? static_cast<double>(s->radiance[0]) / static_cast<double>(s->pdfSolidAngle) : 0);
     }
     CHECK(std::abs(m.mean() - sum) < 4 * std::sqrt(m.variance() / m.count()) + 2e-3 * sum);
