@@ -128,7 +128,7 @@ TEST_CASE("shapes: area") {
     CHECK(ellipse.area() == doctest::Approx(6 * kPiD));
     CHECK(Mesh(roof()).area() == doctest::Approx(4 * std::sqrt(2.0) + 2));
     CHECK(std::isinf(Plane(Vec3d(), Vec3d(0, 1, 0)).area()));
-    CHECK_FALSE(Plane(Vec3d(), Vec3d(0, 1, 0)).sample({0, 1, 0}, {0.5f, 0.5f}));
+    CHECK_FALSE(Plane(Vec3d(), Vec3d(0, 1, 0)).sample(Vec3{0, 1, 0}, 0, {0.5f, 0.5f}));
 }
 
 TEST_CASE("quad: irradiance under a rectangle") {
