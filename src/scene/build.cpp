@@ -64,7 +64,7 @@ schema::Reference SceneBuilder::materialReference(const Definition& definition, 
         return {};
     }
     if (checkPlanned(definition)) return {};
-    auto material = makeMaterial(definition.type->name, bindInto);
+    auto material = makeMaterial(definition.type->name, bindInto, diagnostics);
     if (!material) return {};
     materials_.push_back(std::move(material));
     const auto index = static_cast<std::uint32_t>(materials_.size() - 1);

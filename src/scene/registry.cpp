@@ -17,7 +17,10 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "materials/diffuse_transmission.h"
+#include "materials/hair.h"
 #include "materials/sheen.h"
+#include "materials/thin_dielectric.h"
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
 #include "media/noise_types.h"
@@ -39,12 +42,17 @@ namespace {
 
 struct MaterialEntry {
     schema::TypeInfo (*type)();
-    std::unique_ptr<const Material> (*make)(const BindParams&);
+    std::unique_ptr<const Material> (*make)(const BindParams&, Diagnostics&);
 };
 
-template <typename Params, auto make> std::unique_ptr<const Material> bound(const BindParams& bind) {
+// What no single property can say wrong, `bool checkParams(const Params&, Diagnostics&)` does, if there is one.
+template <typename Params, auto make>
+std::unique_ptr<const Material> bound(const BindParams& bind, Diagnostics& diagnostics) {
     Params params;
-    return bind(&params) ? make(params) : nullptr;
+    if (!bind(&params)) return nullptr;
+    if constexpr (requires { checkParams(params, diagnostics); })
+        if (!checkParams(params, diagnostics)) return nullptr;
+    return make(params);
 }
 
 // A material is one line here (docs/adding_a_material.md).
@@ -54,6 +62,9 @@ constexpr MaterialEntry kMaterials[] = {
     {dielectricType, bound<DielectricParams, makeDielectric>},
     {boundaryType, bound<BoundaryParams, makeBoundary>},
     {sheenType, bound<SheenParams, makeSheen>},
+    {thinDielectricType, bound<ThinDielectricParams, makeThinDielectric>},
+    {diffuseTransmissionType, bound<DiffuseTransmissionParams, makeDiffuseTransmission>},
+    {hairType, bound<HairParams, makeHair>},
 };
 
 struct TextureEntry {
@@ -116,9 +127,9 @@ schema::TypeTable makeTypeTable() {
     return table;
 }
 
-std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams& bind) {
+std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
     for (const MaterialEntry& entry : kMaterials)
-        if (entry.type().name == type) return entry.make(bind);
+        if (entry.type().name == type) return entry.make(bind, diagnostics);
     ABBE_CHECK(!"a registered material type");
     return nullptr;
 }

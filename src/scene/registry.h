@@ -19,7 +19,7 @@ schema::TypeTable makeTypeTable();
 using BindParams = std::function<bool(void* params)>;
 
 // A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
-std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&);
+std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&, Diagnostics&);
 
 // A texture of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);
