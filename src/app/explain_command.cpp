@@ -1,4 +1,5 @@
 #include "app/options.h"
+#include "app/presets.h"
 #include "base/diagnostic_catalogue.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
@@ -88,7 +89,11 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
 
 ExitCode run(const ExplainOptions& options, const CommonOptions& common) {
     if (looksLikeFile(options.topic)) return explainScene(options, common);
-    const schema::Explanation explanation = schema::explain(makeTypeTable(), options.topic);
+    schema::TypeTable types = makeTypeTable();
+    SourceMap sources;
+    Diagnostics diagnostics;
+    addPresets(types, sources, diagnostics);
+    const schema::Explanation explanation = schema::explain(types, options.topic);
     if (explanation.found) {
         common.console.data(explanation.text);
         return ExitCode::done;

@@ -1,5 +1,6 @@
 #include "app/load.h"
 
+#include "app/presets.h"
 #include "app/stopwatch.h"
 #include "parser/parse.h"
 #include "scene/registry.h"
@@ -23,6 +24,7 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
         if (auto override = readOverride(loaded->sources, define, loaded->diagnostics))
             options.overrides.push_back(std::move(*override));
     const auto document = parse(loaded->sources, *file, options, loaded->diagnostics);
+    addPresets(loaded->types, loaded->sources, loaded->diagnostics);
     loaded->parseSeconds = watch.lap();
     loaded->tree =
         schema::resolve(document, loaded->types, std::filesystem::path(input.path).parent_path(), loaded->diagnostics);

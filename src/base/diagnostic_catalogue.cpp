@@ -177,6 +177,9 @@ constexpr CodeInfo kCodes[] = {
     {"W0692", "colours that are no share", "Components of a `color` grid are shares of the light that is scattered, within 0 and 1; those outside count as the nearest within."},
     {"W0693", "nothing glows", "The volume has a temperature but is nowhere above 400 K where there is anything to glow. Files often hold temperatures from 0 to 1: `temperature scale=1500` makes kelvin of them."},
     {"W0694", "a surface with holes holds a medium", "A mesh or cage with an `interior` has edges of a single face, or faces that are turned against each other. A ray that leaves through a hole takes the medium along to infinity, and one that enters through a hole does not find it. Vertices in the same place count as one."},
+    // E07: materials and the library
+    {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
+    {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some liquids and stones are both: `material preset milk; interior preset milk` are the surface and what is below it."},
 };
 // clang-format on
 

@@ -1,6 +1,7 @@
 #include "schema/definition_reader.h"
 
 #include "schema/entry.h"
+#include "schema/preset_library.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -247,6 +248,7 @@ void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Plac
     if (*kind == Kind::spectrum || isTyped(*kind) || *kind == Kind::instances) {
         if (*kind != Kind::instances) definition.keys = keysOf(node); // a container's keys have been reported
         definition.properties = childrenOf(node);
+        if (isPreset(definition.type)) expandPreset(definition, table_, head.diagnostics_);
     } else {
         containerBlock(node, definition);
     }
@@ -277,6 +279,10 @@ std::optional<Definition> DefinitionReader::readInline(Kind kind, const Node& pr
     definition.arguments = valuesFrom(property, hasWord ? 1 : 0);
     definition.keys = keysOf(property);
     definition.properties = childrenOf(property);
+    if (isPreset(definition.type)) {
+        expandPreset(definition, table_, diagnostics_);
+        if (!definition.type) return std::nullopt;
+    }
     return definition;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/diagnostic_catalogue.h"
 #include "schema/measure.h"
+#include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
 
@@ -172,6 +173,11 @@ std::string explainWord(const TypeTable& table, std::string_view word) {
         return fmt::format("{}: {}\n  {}\n", code->code, code->title, code->explanation);
     if (word == "units") return explainUnits();
     if (word == "codes") return diagnosticsMarkdown();
+    if (const PresetLibrary* presets = table.presets()) {
+        if (word == "presets") return presetListText(*presets);
+        if (word == "library") return presetMarkdown(*presets);
+        text = presetText(*presets, word);
+    }
     if (const auto kind = findKind(word)) text += explainKind(table, *kind);
     for (const TypeInfo& type : table.all())
         if (type.name == word && keyword(type.kind) != word) text += explainType(type);
@@ -189,6 +195,7 @@ std::string explainPath(const TypeTable& table, const std::vector<std::string>& 
         const auto unit = findUnit(parts[1]);
         return unit ? explainUnit(*unit) : std::string();
     }
+    if (parts[0] == "preset" && table.presets()) return presetText(*table.presets(), parts[1]);
     std::string text;
     for (const TypeInfo& type : table.all()) {
         const bool ofKind = keyword(type.kind) == parts[0];
@@ -209,6 +216,8 @@ std::string suggestion(const TypeTable& table, std::string_view word) {
                      spellings(static_cast<Dimension>(i)).end());
     for (const SpectrumForm& form : spectrumForms()) names.push_back(form.name);
     for (const CodeInfo& code : allCodes()) names.push_back(code.code);
+    if (table.presets())
+        for (const Preset& preset : table.presets()->all()) names.push_back(preset.name);
     for (const TypeInfo& type : table.all()) {
         names.push_back(type.name);
         for (const FieldInfo& field : type.fields) names.push_back(field.name);

@@ -14,7 +14,8 @@ struct Explanation {
 };
 
 // Explains `camera`, `light.quad`, `camera.lens`, `light.quad.power`, `dielectric`, `lens`, `spectrum`, `blackbody`,
-// `units`, `unit nits`, `nits`, a code such as `E0310`, or `codes` (the whole page of them).
+// `units`, `unit nits`, `nits`, a code such as `E0310`, `codes` (the whole page of them), `presets`, `preset gold`,
+// `gold`, or `library` (the page of presets).
 Explanation explain(const TypeTable&, std::string_view query);
 
 // The reference manual: every kind, type, property, spectrum form and unit, as Markdown.

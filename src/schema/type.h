@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,8 @@ class Texture;
 }
 
 namespace abbe::schema {
+
+class PresetLibrary;
 
 // What a definition can be. The keyword in a file is the enumerator's name.
 enum class Kind : std::uint8_t {
@@ -325,9 +328,13 @@ class TypeTable {
     const TypeInfo* defaultOf(Kind) const;
     std::vector<const TypeInfo*> of(Kind) const;
     const std::vector<TypeInfo>& all() const { return types_; }
+    // What `preset NAME` stands for; null: there is no library.
+    void setPresets(std::shared_ptr<const PresetLibrary> presets) { presets_ = std::move(presets); }
+    const PresetLibrary* presets() const { return presets_.get(); }
 
   private:
     std::vector<TypeInfo> types_; // complete before the first pointer is taken
+    std::shared_ptr<const PresetLibrary> presets_;
 };
 
 } // namespace abbe::schema

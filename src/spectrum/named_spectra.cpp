@@ -30,16 +30,32 @@ constexpr Alias kMeasuredAliases[] = {
 };
 constexpr Alias kGlassAliases[] = {
     // Names without the N of the lead-free catalogue, where no older glass holds them.
-    {"BK7", "N-BK7"},         {"BAF10", "N-BAF10"},       {"FK51A", "N-FK51A"},  {"K5", "N-K5"},
-    {"LAK22", "N-LAK22"},     {"LASF9", "N-LASF9"},       {"SF5", "N-SF5"},      {"SF66", "N-SF66"},
-    {"SiO2", "fused-silica"}, {"silica", "fused-silica"}, {"Al2O3", "sapphire"}, {"C", "diamond"},
-    {"H2O", "water"},         {"NaCl", "rock-salt"},      {"salt", "rock-salt"}, {"CaF2", "fluorite"},
-    {"TiO2", "rutile"},
+    {"BK7", "N-BK7"},         {"BAF10", "N-BAF10"},       {"FK51A", "N-FK51A"},      {"K5", "N-K5"},
+    {"LAK22", "N-LAK22"},     {"LASF9", "N-LASF9"},       {"SF5", "N-SF5"},          {"SF66", "N-SF66"},
+    {"SiO2", "fused-silica"}, {"silica", "fused-silica"}, {"Al2O3", "sapphire"},     {"C", "diamond"},
+    {"H2O", "water"},         {"NaCl", "rock-salt"},      {"salt", "rock-salt"},     {"CaF2", "fluorite"},
+    {"TiO2", "rutile"},       {"PMMA", "acrylic"},        {"plexiglass", "acrylic"},
 };
 constexpr Alias kMetalAliases[] = {
-    {"silver", "Ag"},  {"aluminium", "Al"}, {"aluminum", "Al"}, {"gold", "Au"},   {"chromium", "Cr"},
-    {"copper", "Cu"},  {"iron", "Fe"},      {"mercury", "Hg"},  {"nickel", "Ni"}, {"platinum", "Pt"},
-    {"silicon", "Si"}, {"titanium", "Ti"},  {"tungsten", "W"},
+    {"silver", "Ag"},
+    {"aluminium", "Al"},
+    {"aluminum", "Al"},
+    {"gold", "Au"},
+    {"chromium", "Cr"},
+    {"copper", "Cu"},
+    {"iron", "Fe"},
+    {"mercury", "Hg"},
+    {"nickel", "Ni"},
+    {"platinum", "Pt"},
+    {"silicon", "Si"},
+    {"titanium", "Ti"},
+    {"tungsten", "W"},
+    {"cobalt", "Co"},
+    {"palladium", "Pd"},
+    {"zinc", "Zn"},
+    {"titanium-nitride", "TiN"},
+    {"purple-gold", "AuAl2"},
+    {"steel", "stainless-steel"},
 };
 
 template <typename T>

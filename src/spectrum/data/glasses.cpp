@@ -139,6 +139,11 @@ constexpr double kwaterK[] = {
 constexpr double krock_salt[] = {0.00055, 0.198, 0.05, 0.48398, 0.1, 0.38696, 0.128, 0.25998, 0.158, 0.08796, 40.5, 3.17064, 60.98, 0.30038, 120.34};
 constexpr double kfluorite[] = {0, 0.5675888, 0.050263605, 0.4710914, 0.1003909, 3.8484723, 34.64904};
 constexpr double krutile[] = {5.913, 0.2441, 0, 0.0803, 1, 0, 0, 0, 1};
+constexpr double kacrylic[] = {0, 1.1819, 0.011313};
+constexpr double kpolycarbonate[] = {0, 1.4182, 0.021304};
+constexpr double kpolystyrene[] = {0, 1.4435, 0.020216};
+constexpr double kethanol[] = {1.35265, 0.00306, -2, 0.00002, -4};
+constexpr double kglycerol[] = {1.45797, 0.00598, -2, -0.00036, -4};
 
 constexpr Glass kGlasses[] = {
     {"F2",
@@ -207,6 +212,21 @@ constexpr Glass kGlasses[] = {
     {"rutile",
      "J. R. Devore. Refractive indices of rutile and sphalerite. J. Opt. Soc. Am. 41, 416-419 (1951); refractiveindex.info (CC0)",
      DispersionFormula::refractiveIndexInfo, krutile, 430, 1530, {}, {}},
+    {"acrylic",
+     "N. Sultanova, S. Kasarova, I. Nikolov. Dispersion properties of optical polymers. Acta Physica Polonica A 116, 585-587 (2009); refractiveindex.info (CC0)",
+     DispersionFormula::sellmeierSquared, kacrylic, 437, 1052, {}, {}},
+    {"polycarbonate",
+     "N. Sultanova, S. Kasarova, I. Nikolov. Dispersion properties of optical polymers. Acta Physica Polonica A 116, 585-587 (2009); refractiveindex.info (CC0)",
+     DispersionFormula::sellmeierSquared, kpolycarbonate, 437, 1052, {}, {}},
+    {"polystyrene",
+     "N. Sultanova, S. Kasarova, I. Nikolov. Dispersion properties of optical polymers. Acta Physica Polonica A 116, 585-587 (2009); refractiveindex.info (CC0)",
+     DispersionFormula::sellmeierSquared, kpolystyrene, 437, 1052, {}, {}},
+    {"ethanol",
+     "J. Rheims, J. Köser, T. Wriedt. Refractive-index measurements in the near-IR using an Abbe refractometer. Meas. Sci. Technol. 8, 601-605 (1997); refractiveindex.info (CC0)",
+     DispersionFormula::cauchy, kethanol, 476, 830, {}, {}},
+    {"glycerol",
+     "J. Rheims, J. Köser, T. Wriedt. Refractive-index measurements in the near-IR using an Abbe refractometer. Meas. Sci. Technol. 8, 601-605 (1997); refractiveindex.info (CC0)",
+     DispersionFormula::cauchy, kglycerol, 589, 1050, {}, {}},
 };
 
 } // namespace

@@ -138,6 +138,91 @@ constexpr double kWK[] = {
     2.937, 2.943, 2.937, 2.914, 2.904, 2.879, 2.869, 2.85, 2.828, 2.788, 2.784, 2.737, 2.731, 2.733, 2.735, 2.757,
     2.801,
 };
+constexpr double kAuAl2Nm[] = {
+    330, 360, 390, 420, 450, 480, 510, 540, 570, 600, 630, 660, 690, 720, 750, 780, 810, 840,
+};
+constexpr double kAuAl2N[] = {
+    2.084, 2.042, 1.842, 1.644, 1.43, 1.35, 1.289, 1.275, 1.235, 1.187, 1.117, 1.057, 1.007, 0.97, 0.944, 0.93,
+    0.921, 0.914,
+};
+constexpr double kAuAl2K[] = {
+    1.722, 1.863, 1.872, 1.785, 1.639, 1.503, 1.406, 1.407, 1.47, 1.566, 1.717, 1.874, 2.042, 2.21, 2.372, 2.532,
+    2.686, 2.836,
+};
+constexpr double kCoNm[] = {
+    354, 368, 381, 397, 413, 431, 451, 471, 496, 521, 549, 582, 617, 659, 704, 756, 821, 892,
+};
+constexpr double kCoN[] = {
+    1.49, 1.5, 1.53, 1.57, 1.61, 1.67, 1.74, 1.81, 1.88, 1.97, 2.05, 2.13, 2.19, 2.25, 2.31, 2.4, 2.53, 2.65,
+};
+constexpr double kCoK[] = {
+    2.61, 2.71, 2.82, 2.93, 3.05, 3.17, 3.28, 3.41, 3.55, 3.68, 3.82, 3.96, 4.11, 4.27, 4.45, 4.64, 4.88, 5.16,
+};
+constexpr double kPdNm[] = {
+    354, 368, 381, 397, 413, 431, 451, 471, 496, 521, 549, 582, 617, 659, 704, 756, 821, 892,
+};
+constexpr double kPdN[] = {
+    1.23, 1.24, 1.26, 1.3, 1.33, 1.37, 1.41, 1.46, 1.52, 1.57, 1.64, 1.68, 1.75, 1.8, 1.86, 1.95, 2.06, 2.23,
+};
+constexpr double kPdK[] = {
+    2.65, 2.74, 2.83, 2.93, 3.03, 3.14, 3.26, 3.39, 3.54, 3.68, 3.84, 4.02, 4.21, 4.42, 4.65, 4.89, 5.19, 5.5,
+};
+constexpr double kTiNNm[] = {
+    354.2, 413.3, 495.9, 619.9, 826.6, 1239.9,
+};
+constexpr double kTiNN[] = {
+    2.14, 1.74, 1.2, 1.32, 1.82, 2.69,
+};
+constexpr double kTiNK[] = {
+    1.06, 1.04, 1.65, 2.69, 3.81, 5.04,
+};
+constexpr double kZnNm[] = {
+    354.241, 381.49, 413.281, 450.852, 495.937, 551.041, 619.921, 708.481, 826.561, 991.874,
+};
+constexpr double kZnN[] = {
+    0.524, 0.5508, 0.6029, 0.6794, 0.7858, 0.9322, 1.1356, 1.4247, 1.8489, 2.4976,
+};
+constexpr double kZnK[] = {
+    2.9907, 3.2986, 3.6376, 4.0209, 4.4636, 4.985, 5.6116, 6.3811, 7.3486, 8.5981,
+};
+constexpr double kbrassNm[] = {
+    350, 370, 390, 400, 410, 420, 430, 440, 450, 460, 470, 480, 490, 500, 510, 520, 530, 540, 550, 560, 570, 580,
+    600, 620, 640, 660, 680, 700, 740, 780, 800, 830, 840,
+};
+constexpr double kbrassN[] = {
+    1.504, 1.497, 1.471, 1.445, 1.405, 1.35, 1.278, 1.191, 1.094, 0.994, 0.9, 0.816, 0.745, 0.686, 0.639, 0.602,
+    0.573, 0.549, 0.527, 0.505, 0.484, 0.468, 0.45, 0.449, 0.444, 0.445, 0.444, 0.446, 0.455, 0.464, 0.473, 0.483,
+    0.486,
+};
+constexpr double kbrassK[] = {
+    1.815, 1.818, 1.813, 1.805, 1.794, 1.786, 1.784, 1.797, 1.829, 1.883, 1.957, 2.046, 2.145, 2.25, 2.358, 2.464,
+    2.568, 2.668, 2.765, 2.86, 2.958, 3.059, 3.253, 3.434, 3.609, 3.778, 3.943, 4.106, 4.424, 4.737, 4.89, 5.115,
+    5.192,
+};
+constexpr double kred_brassNm[] = {
+    350, 370, 390, 410, 430, 450, 470, 490, 500, 510, 520, 530, 540, 550, 560, 570, 580, 590, 600, 620, 640, 660,
+    680, 700, 740, 780, 800, 830, 840,
+};
+constexpr double kred_brassN[] = {
+    1.292, 1.193, 1.126, 1.072, 1.024, 0.98, 0.937, 0.883, 0.846, 0.798, 0.738, 0.667, 0.592, 0.519, 0.457, 0.409,
+    0.377, 0.357, 0.346, 0.333, 0.323, 0.317, 0.311, 0.306, 0.3, 0.293, 0.291, 0.28, 0.279,
+};
+constexpr double kred_brassK[] = {
+    1.443, 1.534, 1.641, 1.745, 1.847, 1.945, 2.033, 2.108, 2.14, 2.173, 2.211, 2.262, 2.329, 2.415, 2.516, 2.626,
+    2.739, 2.848, 2.95, 3.137, 3.312, 3.478, 3.638, 3.795, 4.097, 4.394, 4.537, 4.757, 4.833,
+};
+constexpr double kstainless_steelNm[] = {
+    340, 360, 380, 400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700, 720, 740, 760,
+    780, 800, 820, 840,
+};
+constexpr double kstainless_steelN[] = {
+    1.1172, 1.1694, 1.2344, 1.3075, 1.3766, 1.4517, 1.5372, 1.6307, 1.7244, 1.8059, 1.873, 1.9355, 1.9969, 2.0565,
+    2.1139, 2.1685, 2.2199, 2.2679, 2.3124, 2.3536, 2.3917, 2.4268, 2.4597, 2.4912, 2.5218, 2.5522,
+};
+constexpr double kstainless_steelK[] = {
+    2.1638, 2.2971, 2.4214, 2.534, 2.6334, 2.7256, 2.8162, 2.9055, 2.9919, 3.0721, 3.1404, 3.2004, 3.2617, 3.3248,
+    3.3881, 3.4507, 3.5118, 3.5707, 3.6273, 3.6821, 3.7354, 3.7877, 3.8395, 3.8909, 3.9422, 3.9933,
+};
 
 constexpr Metal kMetals[] = {
     {"Ag",
@@ -176,6 +261,30 @@ constexpr Metal kMetals[] = {
     {"W",
      "J. H. Weaver, C. G. Olson, D. W. Lynch. Optical properties of crystalline tungsten. Phys. Rev. B 12, 1293-1297 (1975); refractiveindex.info (CC0)",
      kWNm, kWN, kWK},
+    {"AuAl2",
+     "S. Supansomboon, A. I. Maaroof, M. B. Cortie. “Purple glory”: The optical properties and technology of AuAl2 coatings. Gold Bulletin 41, 296-304 (2008); refractiveindex.info (CC0)",
+     kAuAl2Nm, kAuAl2N, kAuAl2K},
+    {"Co",
+     "P. B. Johnson and R. W. Christy. Optical constants of transition metals: Ti, V, Cr, Mn, Fe, Co, Ni, and Pd. Phys. Rev. B 9, 5056-5070 (1974); refractiveindex.info (CC0)",
+     kCoNm, kCoN, kCoK},
+    {"Pd",
+     "P. B. Johnson and R. W. Christy. Optical constants of transition metals: Ti, V, Cr, Mn, Fe, Co, Ni, and Pd. Phys. Rev. B 9, 5056-5070 (1974); refractiveindex.info (CC0)",
+     kPdNm, kPdN, kPdK},
+    {"TiN",
+     "J. Pflüger, J. Fink. Determination of optical constants by high-energy, electron-energy-loss spectroscopy (EELS). In Handbook of optical constants of solids II, E. D. Palik, ed. (1991) 293-310; refractiveindex.info (CC0)",
+     kTiNNm, kTiNN, kTiNK},
+    {"Zn",
+     "W. S. M. Werner, K. Glantschnig, C. Ambrosch-Draxl. Optical constants and inelastic electron-scattering data for 17 elemental metals. J. Phys Chem Ref. Data 38, 1013-1092 (2009); refractiveindex.info (CC0)",
+     kZnNm, kZnN, kZnK},
+    {"brass",
+     "M. R. Querry. Optical constants. Contractor Report CRDC-CR-85034 (1985), 70 % Cu, 30 % Zn; refractiveindex.info (CC0)",
+     kbrassNm, kbrassN, kbrassK},
+    {"red-brass",
+     "M. R. Querry. Optical constants. Contractor Report CRDC-CR-85034 (1985), 90 % Cu, 10 % Zn; refractiveindex.info (CC0)",
+     kred_brassNm, kred_brassN, kred_brassK},
+    {"stainless-steel",
+     "B. Karlsson and C. G. Ribbing. Optical constants and spectral selectivity of stainless steel and its oxides. J. Appl. Phys. 53, 6340-6346 (1982), ferritic steel Avesta 393 M; refractiveindex.info (CC0)",
+     kstainless_steelNm, kstainless_steelN, kstainless_steelK},
 };
 
 } // namespace
