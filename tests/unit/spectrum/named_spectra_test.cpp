@@ -41,9 +41,11 @@ TEST_CASE("glasses have the index and Abbe number of the catalogue") {
 }
 
 TEST_CASE("other transparent media have their handbook index at the sodium line") {
-    const Catalogue expected[] = {{"water", 1.3334, 0},    {"diamond", 2.4175, 0}, {"fused silica", 0, 0},
-                                  {"sapphire", 1.7682, 0}, {"NaCl", 1.5443, 0},    {"CaF2", 1.43385, 0},
-                                  {"SiO2", 1.45846, 0},    {"rutile", 2.61427, 0}};
+    const Catalogue expected[] = {{"water", 1.3334, 0},    {"diamond", 2.4175, 0},       {"fused silica", 0, 0},
+                                  {"sapphire", 1.7682, 0}, {"NaCl", 1.5443, 0},          {"CaF2", 1.43385, 0},
+                                  {"SiO2", 1.45846, 0},    {"rutile", 2.61427, 0},       {"acrylic", 1.4906, 0},
+                                  {"PMMA", 1.4906, 0},     {"polycarbonate", 1.5850, 0}, {"polystyrene", 1.5916, 0},
+                                  {"ethanol", 1.3617, 0},  {"glycerol", 1.4722, 0}};
     for (const Catalogue& c : expected) {
         CAPTURE(c.name);
         const auto glass = findGlass(c.name);
@@ -132,8 +134,16 @@ TEST_CASE("metals have their published constants") {
     near("Cu", 659.5, 0.22, 3.747);
     near("Cr", 549, 3.18, 3.33);
     near("Fe", 549, 2.95, 2.93);
+    near("Pd", 549, 1.64, 3.84);
+    near("cobalt", 549, 2.05, 3.82);
+    check("brass", 550, 0.527, 2.765);
+    check("red-brass", 550, 0.519, 2.415);
+    check("steel", 600, 2.0565, 3.3248);
+    near("zinc", 551.041, 0.9322, 4.985);
+    check("purple-gold", 540, 1.275, 1.407);
+    near("TiN", 495.9, 1.2, 1.65);
     check("Si", 550, 4.077, 0.027968);
-    CHECK(metalNames().size() >= 12);
+    CHECK(metalNames().size() >= 20);
     for (const auto name : metalNames()) {
         CAPTURE(name);
         const auto metal = findMetal(name);
