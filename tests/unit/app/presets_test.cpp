@@ -121,7 +121,7 @@ TEST_CASE("unknown presets") {
     check("material ring preset xyzzy-plugh\nshape sphere { material ring }", "E0771", "xyzzy-plugh", "unknown name");
     check("shape sphere { material preset gold; interior preset gold }", "E0771", "gold",
           "this is a material of the library");
-    check("material ring preset\nshape sphere { material ring }", "E0770", "material", "write it behind the word");
+    check("material ring preset\nshape sphere { material ring }", "E0770", "ring", "write it behind the word");
     check("material ring preset 3\nshape sphere { material ring }", "E0770", "3", "write it behind the word");
     check("shape sphere { material preset gold 0.3 }", "E0306", "0.3", "unexpected");
 }
