@@ -30,7 +30,7 @@ mkdir -p "$work" "$(dirname -- "$sheet")"
 # "  gold  material  Gold, polished.": two columns are enough.
 list=$("$build/abbe" explain presets)
 mapfile -t names < <(awk '/^  / && $2 == "material" { print $1 }' <<<"$list")
-media=$(awk '/^  / && $2 == "medium" { print $1 }' <<<"$list")
+hair=$(awk '/^[^ ]/ { group = $0 } /^  / && group == "Hair" { print $1 }' <<<"$list")
 [[ $# -eq 0 ]] || names=("$@")
 
 pictures=()
@@ -38,10 +38,14 @@ for name in "${names[@]}"; do
     scene=$work/$name.scene picture=$work/$name.exr
     pictures+=("$picture")
     [[ ! -e $picture ]] || continue
-    interior=
-    if grep -qxF -- "$name" <<<"$media"; then interior="; interior preset $name"; fi
-    sed -e "s/material ball }/material ball$interior }/" -e "s/^param preset .*/param preset $name/" \
-        "$root/scenes/shader-ball/shader-ball.scene" >"$scene"
+    edits=(-e "s/^param preset .*/param preset $name/")
+    if grep -qxF -- "$name" <<<"$hair"; then
+        # A ball of fur in the place of the ball; the ring shows nothing of hair.
+        fur="shape ball curves \"$root/scenes/hair-ball/hair.ply\" { material ball; transform { scale 3.09e-4; translate 0 6.3 0 } }"
+        skull="shape skull sphere { center 0 6.3 0; radius 3.55; material diffuse { reflectance 0.1 } }"
+        edits+=(-e "s|^shape ball .*|$fur\n$skull|" -e '/^shape ring /d')
+    fi
+    sed "${edits[@]}" "$root/scenes/shader-ball/shader-ball.scene" >"$scene"
     "$build/abbe" render "$scene" --size "${size}x$size" --samples "$samples" -t "$threads" --quiet -o "$picture"
 done
 "$build/contact_sheet" "$sheet" "${pictures[@]}"
