@@ -40,8 +40,8 @@ inline Spectrum hypot(Spectrum x, Spectrum y) {
 //
 // a + ib = √((n + ik)² - sin²θ) [Born1999, §14.2]. Of a and b the larger one is taken from the root and the other from
 // 2ab = 2nk, and the numerators are sums of squares, so that k ≈ 0 and large k keep their digits (case 29).
-inline Spectrum fresnelConductor(float cosI, Spectrum n, Spectrum k) {
-    const float c = cosI, s2 = (1 - c) * (1 + c);
+inline Spectrum fresnelConductor(Spectrum cosI, Spectrum n, Spectrum k) {
+    const Float8 c = cosI.v, s2 = (1.f - c) * (1.f + c);
     const Float8 twoNk = 2.f * n.v * k.v;
     const Float8 real = (n.v - k.v) * (n.v + k.v) - s2;
     const Float8 modulus = hypot(Spectrum(real), Spectrum(twoNk)).v;
@@ -56,5 +56,6 @@ inline Spectrum fresnelConductor(float cosI, Spectrum n, Spectrum k) {
     const Float8 rp = rs * ratio(minus * minus + b2 * (c * c), plus * plus + b2 * (c * c));
     return min(Spectrum(0.5f * (rs + rp)), Spectrum(1.f));
 }
+inline Spectrum fresnelConductor(float cosI, Spectrum n, Spectrum k) { return fresnelConductor(Spectrum(cosI), n, k); }
 
 } // namespace abbe

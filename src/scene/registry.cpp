@@ -19,6 +19,7 @@
 #include "materials/diffuse.h"
 #include "materials/diffuse_transmission.h"
 #include "materials/hair.h"
+#include "materials/openpbr.h"
 #include "materials/sheen.h"
 #include "materials/thin_dielectric.h"
 #include "media/atmosphere.h"
@@ -65,6 +66,7 @@ constexpr MaterialEntry kMaterials[] = {
     {thinDielectricType, bound<ThinDielectricParams, makeThinDielectric>},
     {diffuseTransmissionType, bound<DiffuseTransmissionParams, makeDiffuseTransmission>},
     {hairType, bound<HairParams, makeHair>},
+    {openPbrType, bound<OpenPbrParams, makeOpenPbr>},
 };
 
 struct TextureEntry {

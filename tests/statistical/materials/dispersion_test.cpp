@@ -1,5 +1,6 @@
 // Spectral multiple importance sampling of dispersive interfaces [Wilkie2014]: all eight wavelengths carried by paths
 // of any hero must give what each wavelength gives alone.
+#include "hero_checks.h"
 #include "suite.h"
 
 #include <doctest/doctest.h>
@@ -9,48 +10,7 @@ namespace {
 
 using namespace test;
 
-// The same eight wavelengths with lane `hero` first.
-Wavelengths rotated(const Wavelengths& w, int hero) {
-    Spectrum nm, pdf;
-    for (int i = 0; i < kLanes; ++i) {
-        nm.v[i] = w.nm[(hero + i) % kLanes];
-        pdf.v[i] = w.pdf[(hero + i) % kLanes];
-    }
-    return Wavelengths::at(nm, pdf);
-}
-
-// Light from around that tells directions apart.
-double sky(Vec3 w) { return 1 + 0.5 * w.x + 0.8 * w.y * w.z + 0.3 * w.x * w.x; }
-
-// What an integrator does with a sample: the weight of each lane under the balance heuristic over heroes.
-Spectrum combined(const BsdfSample& s) {
-    if (s.lobe.has(Lobe::delta) && s.lobe.has(Lobe::dispersive)) { // the others end; the hero stands for all eight
-        Float8 only{};
-        only[0] = kLanes * s.weight[0];
-        return only;
-    }
-    return s.weight / mean(s.pdfRatio);
-}
-
 constexpr int kSamples = 40000;
-
-std::array<double, kLanes> throughAllHeroes(const Curve& ior, float roughness, const Wavelengths& w, Vec3 wo) {
-    std::array<double, kLanes> result{};
-    const EvenPoints points(kSamples);
-    for (int hero = 0; hero < kLanes; ++hero) {
-        const BsdfUnderTest b = dispersiveGlass(ior, roughness, rotated(w, hero));
-        for (int i = 0; i < kSamples; ++i) {
-            const auto p = points(i);
-            const auto s = b.bsdf->sample(wo, p.lobe, p.u, Transport::importance);
-            if (!s) continue;
-            const Spectrum weight = combined(*s);
-            for (int lane = 0; lane < kLanes; ++lane)
-                result[static_cast<std::size_t>((hero + lane) % kLanes)] +=
-                    weight[lane] * sky(s->wi) / (kSamples * static_cast<double>(kLanes));
-        }
-    }
-    return result;
-}
 
 TEST_CASE("each wavelength gets what it gets alone") {
     const CauchyCurve flint(1.55, 0.03); // about three times the dispersion of SF11
@@ -58,7 +18,8 @@ TEST_CASE("each wavelength gets what it gets alone") {
     for (const float roughness : {0.f, 0.03f, 0.15f, 0.3f, 0.6f, 1.f})
         for (const Vec3 wo : {directionAt(0), directionAt(50), directionAt(80), mirrored(directionAt(20)),
                               mirrored(directionAt(37)), mirrored(directionAt(70))}) {
-            const auto together = throughAllHeroes(flint, roughness, w, wo);
+            const auto together = throughAllHeroes(
+                [&](const Wavelengths& lanes) { return dispersiveGlass(flint, roughness, lanes); }, w, wo, kSamples);
             for (int lane = 0; lane < kLanes; ++lane) {
                 const BsdfUnderTest alone = dispersiveGlass(flint, roughness, Wavelengths::single(w.nm[lane]));
                 const double expected = meanOfSamples(*alone.bsdf, wo, Transport::importance, kSamples,

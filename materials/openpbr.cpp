@@ -1,0 +1,187 @@
+#include "materials/openpbr.h"
+
+#include "materials/attenuation_curve.h"
+#include "materials/openpbr_bsdf.h"
+#include "render/surface_input.h"
+#include "spectrum/cauchy_curve.h"
+#include "spectrum/sampled_curve.h"
+
+#include <optional>
+
+namespace abbe {
+namespace {
+
+// Cauchy's curve through n_d with the Abbe number V = (n_d - 1)/(n_F - n_C): lines of Fraunhofer, µm.
+CauchyCurve cauchyOf(double index, double abbeNumber) {
+    constexpr double f = 0.4861, d = 0.5876, c = 0.6563;
+    const double b = (index - 1) / (abbeNumber * (1 / (f * f) - 1 / (c * c)));
+    return {index - b / (d * d), b};
+}
+
+bool isWhite(const schema::TexturedSpectrum& s) {
+    return !s.texture && (!s.curve || (s.curve->minimum() == 1 && s.curve->maximum() == 1));
+}
+
+class OpenPbr final : public Material {
+  public:
+    explicit OpenPbr(const OpenPbrParams&);
+
+    Effects needs() const override;
+    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept override;
+    const Curve* absorption() const override { return attenuation_ ? &*attenuation_ : nullptr; }
+    const Curve* ior() const override { return refracts() ? ior_ : nullptr; }
+    SurfaceEmission emission() const override { return {p_.emissionLuminance, p_.emissionColor, nullptr}; }
+    bool usesTextures() const override;
+
+  private:
+    bool refracts() const { return !p_.geometryThinWalled && !transmissionWeight_.is(0) && !baseMetalness_.is(1); }
+    OpenPbrCover cover(const SurfaceHit&, const Wavelengths&) const;
+    OpenPbrMetal metal(const SurfaceHit&, const Wavelengths&, const OpenPbrCover&) const;
+    float coveredRoughness(const SurfaceHit&) const;
+    GgxLobe specularLobe(const SurfaceHit&, float roughness) const;
+    GgxLobe coatLobe(const SurfaceHit&) const;
+
+    OpenPbrParams p_;
+    NumberInput baseWeight_, baseDiffuseRoughness_, baseMetalness_, specularWeight_, specularRoughness_,
+        specularRoughnessAnisotropy_, transmissionWeight_, subsurfaceWeight_, coatWeight_, coatRoughness_,
+        coatRoughnessAnisotropy_, coatDarkening_, fuzzWeight_, fuzzRoughness_, thinFilmWeight_;
+    SpectrumInput baseColor_, specularColor_, transmissionColor_, subsurfaceColor_, coatColor_, fuzzColor_;
+    std::optional<CauchyCurve> cauchy_;
+    ConstantCurve plainIor_{1.5};
+    const Curve* ior_; // never null
+    std::optional<AttenuationCurve> attenuation_;
+    float coatReturns_;
+    std::optional<StretchedLobe> stretched_, stretchedCoat_;
+};
+
+OpenPbr::OpenPbr(const OpenPbrParams& p)
+    : p_(p), baseWeight_(p.baseWeight, 0, 1), baseDiffuseRoughness_(p.baseDiffuseRoughness, 0, 1),
+      baseMetalness_(p.baseMetalness, 0, 1), specularWeight_(p.specularWeight, 0, 1),
+      specularRoughness_(p.specularRoughness, 0, 1), specularRoughnessAnisotropy_(p.specularRoughnessAnisotropy, 0, 1),
+      transmissionWeight_(p.transmissionWeight, 0, 1), subsurfaceWeight_(p.subsurfaceWeight, 0, 1),
+      coatWeight_(p.coatWeight, 0, 1), coatRoughness_(p.coatRoughness, 0, 1),
+      coatRoughnessAnisotropy_(p.coatRoughnessAnisotropy, 0, 1), coatDarkening_(p.coatDarkening, 0, 1),
+      fuzzWeight_(p.fuzzWeight, 0, 1), fuzzRoughness_(p.fuzzRoughness, 0, 1), thinFilmWeight_(p.thinFilmWeight, 0, 1),
+      baseColor_(p.baseColor, 0.8f), specularColor_(p.specularColor, 1), transmissionColor_(p.transmissionColor, 1),
+      subsurfaceColor_(p.subsurfaceColor, 0.8f), coatColor_(p.coatColor, 1), fuzzColor_(p.fuzzColor, 1),
+      ior_(p.specularIor ? p.specularIor : &plainIor_),
+      coatReturns_(static_cast<float>(1 - (1 - hemisphericalReflectance(p.coatIor)) / (p.coatIor * p.coatIor))) {
+    if (p.transmissionDispersionScale > 0) {
+        cauchy_.emplace(cauchyOf(ior_->at(587.6), p.transmissionDispersionAbbeNumber / p.transmissionDispersionScale));
+        ior_ = &*cauchy_;
+    }
+    if (refracts() && p.transmissionDepth > 0 && p.transmissionColor.curve && !isWhite(p.transmissionColor))
+        attenuation_.emplace(*p.transmissionColor.curve, p.transmissionDepth);
+    const auto constant = [](const NumberInput& n) { return !n.textured(); };
+    if (constant(specularRoughness_) && constant(specularRoughnessAnisotropy_) && constant(coatWeight_) &&
+        constant(coatRoughness_)) {
+        const Ggx ggx = Ggx::fromRoughness(coveredRoughness({}), specularRoughnessAnisotropy_.at({}));
+        if (!ggx.smooth() && ggx.alphaX() != ggx.alphaY()) stretched_.emplace(ggx.alphaX(), ggx.alphaY());
+    }
+    if (!coatWeight_.is(0) && constant(coatRoughness_) && constant(coatRoughnessAnisotropy_)) {
+        const Ggx ggx = Ggx::fromRoughness(coatRoughness_.at({}), coatRoughnessAnisotropy_.at({}));
+        if (!ggx.smooth() && ggx.alphaX() != ggx.alphaY()) stretchedCoat_.emplace(ggx.alphaX(), ggx.alphaY());
+    }
+}
+
+Effects OpenPbr::needs() const {
+    Effects effects;
+    if (refracts() && !ior_->isConstant()) effects |= Effect::dispersion;
+    if (attenuation_) effects |= Effect::absorption;
+    return effects;
+}
+
+bool OpenPbr::usesTextures() const {
+    for (const NumberInput* n :
+         {&baseWeight_, &baseDiffuseRoughness_, &baseMetalness_, &specularWeight_, &specularRoughness_,
+          &specularRoughnessAnisotropy_, &transmissionWeight_, &subsurfaceWeight_, &coatWeight_, &coatRoughness_,
+          &coatRoughnessAnisotropy_, &coatDarkening_, &fuzzWeight_, &fuzzRoughness_, &thinFilmWeight_})
+        if (n->textured()) return true;
+    for (const SpectrumInput* s :
+         {&baseColor_, &specularColor_, &transmissionColor_, &subsurfaceColor_, &coatColor_, &fuzzColor_})
+        if (s->textured()) return true;
+    return false;
+}
+
+OpenPbrCover OpenPbr::cover(const SurfaceHit& hit, const Wavelengths& lambda) const {
+    OpenPbrCover c;
+    c.coat = coatWeight_.at(hit);
+    c.film = thinFilmWeight_.at(hit);
+    if (hit.outside) c.outer = hit.outside->at(lambda);
+    c.coatEta = Spectrum(static_cast<float>(p_.coatIor)) / c.outer;
+    c.filmIndex = Spectrum(static_cast<float>(p_.thinFilmIor));
+    c.filmThickness = static_cast<float>(p_.thinFilmThickness * 1e9);
+    c.wavelength = lambda.nm;
+    c.varies = c.film > 0 || !ior_->isConstant() || (hit.outside && !hit.outside->isConstant());
+    return c;
+}
+
+OpenPbrMetal OpenPbr::metal(const SurfaceHit& hit, const Wavelengths& lambda, const OpenPbrCover& cover) const {
+    const float weight = specularWeight_.at(hit);
+    if (p_.baseMetalIndex.n) return {cover, p_.baseMetalIndex.n->at(lambda), p_.baseMetalIndex.k->at(lambda), weight};
+    return {cover, baseColor_.at(hit, lambda) * baseWeight_.at(hit), specularColor_.at(hit, lambda), weight, nullptr};
+}
+
+// A rough coat blurs what lies under it: widths add up like variances, twice that of the coat.
+float OpenPbr::coveredRoughness(const SurfaceHit& hit) const {
+    const float r = specularRoughness_.at(hit), coat = coatWeight_.at(hit);
+    if (coat == 0) return r;
+    const float both = square(square(r)) + 2 * square(square(coatRoughness_.at(hit)));
+    return std::lerp(r, std::sqrt(std::sqrt(std::min(1.f, both))), coat);
+}
+
+GgxLobe OpenPbr::specularLobe(const SurfaceHit& hit, float roughness) const {
+    return GgxLobe(Ggx::fromRoughness(roughness, specularRoughnessAnisotropy_.at(hit)),
+                   stretched_ ? &*stretched_ : nullptr);
+}
+
+GgxLobe OpenPbr::coatLobe(const SurfaceHit& hit) const {
+    return GgxLobe(Ggx::fromRoughness(coatRoughness_.at(hit), coatRoughnessAnisotropy_.at(hit)),
+                   stretchedCoat_ ? &*stretchedCoat_ : nullptr);
+}
+
+const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept {
+    const OpenPbrCover covering = cover(hit, lambda);
+    const float roughness = coveredRoughness(hit), transmission = transmissionWeight_.at(hit);
+    const Spectrum one(1.f), index = ior_->at(lambda);
+    const OpenPbrDielectric dielectric(covering, index, specularWeight_.at(hit));
+    const GgxLobe specular = specularLobe(hit, roughness);
+    const bool tinted = transmission > 0 && (p_.geometryThinWalled || p_.transmissionDepth == 0);
+    // Light through a sheet is bent once to, once fro by slopes that do not know each other: small angles deviate by
+    // √2 |η - 1| times the slope, a reflection by twice it.
+    const float bend = std::min(1.f, mean(abs(dielectric.eta() - one)) * 0.70710678f);
+    const Ggx through = Ggx::fromRoughness(std::sqrt(specular.ggx().alphaX() * bend), 0);
+    return arena.make<OpenPbrBsdf>(OpenPbrPoint{
+        .metalness = baseMetalness_.at(hit),
+        .transmission = transmission,
+        .subsurface = subsurfaceWeight_.at(hit),
+        .thinWalled = p_.geometryThinWalled,
+        .forward = static_cast<float>(0.5 * (1 + p_.subsurfaceScatterAnisotropy)),
+        .base = baseColor_.at(hit, lambda) * baseWeight_.at(hit),
+        .under = subsurfaceColor_.at(hit, lambda),
+        .tint = specularColor_.at(hit, lambda),
+        .through = tinted ? transmissionColor_.at(hit, lambda) : one,
+        .coatLog = covering.coat > 0 && !isWhite(p_.coatColor)
+                       ? 0.5f * log(max(coatColor_.at(hit, lambda), Spectrum(1e-6f)))
+                       : Spectrum(0.f),
+        .diffuseRoughness = baseDiffuseRoughness_.at(hit),
+        .roughness = roughness,
+        .coatDarkening = coatDarkening_.at(hit),
+        .coatReturns = coatReturns_,
+        .fuzz = fuzzWeight_.at(hit),
+        .fuzzColor = fuzzColor_.at(hit, lambda),
+        .sheen = SheenLobe(fuzzRoughness_.at(hit)),
+        .cover = covering,
+        .dielectric = dielectric,
+        .metal = metal(hit, lambda, covering),
+        .specular = specular,
+        .coat = coatLobe(hit),
+        .sheet = GgxLobe(through),
+    });
+}
+
+} // namespace
+
+std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams& params) { return std::make_unique<OpenPbr>(params); }
+
+} // namespace abbe

@@ -1,0 +1,63 @@
+// OpenPBR Surface 1.1: the exchange standard for everyday surfaces, with the parameter names of its specification.
+#pragma once
+
+#include "render/material.h"
+#include "schema/type.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Defaults are the specification's; null colours stand for them too.
+struct OpenPbrParams {
+    using Color = schema::TexturedSpectrum;
+    using Number = schema::TexturedNumber;
+
+    Number baseWeight{1, nullptr, {}};
+    Color baseColor; // null: 0.8
+    Number baseDiffuseRoughness{0, nullptr, {}};
+    Number baseMetalness{0, nullptr, {}};
+    schema::ComplexIndex baseMetalIndex; // measured metal; instead of the colours
+
+    Number specularWeight{1, nullptr, {}};
+    Color specularColor; // null: 1
+    Number specularRoughness{0.3, nullptr, {}};
+    Number specularRoughnessAnisotropy{0, nullptr, {}};
+    const Curve* specularIor = nullptr; // null: 1.5
+
+    Number transmissionWeight{0, nullptr, {}};
+    Color transmissionColor;      // null: 1
+    double transmissionDepth = 0; // m
+    double transmissionDispersionScale = 0;
+    double transmissionDispersionAbbeNumber = 20;
+
+    Number subsurfaceWeight{0, nullptr, {}};
+    Color subsurfaceColor; // null: 0.8
+    double subsurfaceScatterAnisotropy = 0;
+
+    Number coatWeight{0, nullptr, {}};
+    Color coatColor; // null: 1
+    Number coatRoughness{0, nullptr, {}};
+    Number coatRoughnessAnisotropy{0, nullptr, {}};
+    double coatIor = 1.6;
+    Number coatDarkening{1, nullptr, {}};
+
+    Number fuzzWeight{0, nullptr, {}};
+    Color fuzzColor; // null: 1
+    Number fuzzRoughness{0.5, nullptr, {}};
+
+    double emissionLuminance = 0;         // cd/m²
+    const Curve* emissionColor = nullptr; // of any scale; null: D65
+
+    Number thinFilmWeight{0, nullptr, {}};
+    double thinFilmThickness = 0.5e-6; // m
+    double thinFilmIor = 1.4;
+
+    bool geometryThinWalled = false;
+};
+
+schema::TypeInfo openPbrType();
+// The curves and textures must outlive the material.
+std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams&);
+
+} // namespace abbe

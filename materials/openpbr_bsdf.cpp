@@ -1,0 +1,305 @@
+#include "materials/openpbr_bsdf.h"
+
+#include "materials/dielectric_bsdf.h"
+#include "math/warp.h"
+
+namespace abbe {
+namespace {
+
+const Spectrum kOne(1.f), kNone(0.f);
+
+// Radiance is compressed into a smaller cone by refraction: 1/η² towards the eye, nothing for light paths.
+Spectrum compression(Spectrum eta, Transport transport) {
+    return transport == Transport::radiance ? kOne / (eta * eta) : kOne;
+}
+
+bool isOne(const Spectrum& a) { return maxLane(abs(a - kOne)) == 0; }
+
+Vec3 flipped(Vec3 w) { return {w.x, w.y, -w.z}; }
+
+} // namespace
+
+OpenPbrBsdf::OpenPbrBsdf(const OpenPbrPoint& point) : point_(point) {
+    const Spectrum& eta = point.dielectric.eta();
+    const float weakest = -maxLane(-abs(eta - kOne));
+    const Ggx& ggx = point.specular.ggx();
+    // A refracted lobe narrower than directions can tell is none, as in materials/dielectric_bsdf.h.
+    smooth_ = ggx.smooth() || (refracts() && std::max(ggx.alphaX(), ggx.alphaY()) * weakest < 5e-5f);
+    if (smooth_) point_.specular = GgxLobe(Ggx::fromRoughness(0, 0));
+    disperses_ = abbe::disperses(eta);
+    coatAbsorbs_ = anyNonZero(point.coatLog);
+    sheetAbsorbs_ = !isOne(point.through);
+    if (!(point.cover.coat > 0)) return;
+    baseAlbedo_ = opaqueAlbedo();
+    const float glossy = mean(point.dielectric.reflectance(kOne));
+    baseRoughness_ = std::lerp(std::lerp(1.f, point.roughness, glossy), point.roughness, point.metalness);
+}
+
+Lobes OpenPbrBsdf::lobes() const noexcept {
+    Lobes result = Lobe::reflection;
+    const bool coat = point_.cover.coat > 0, opaque = point_.metalness < 1 && point_.transmission < 1;
+    const bool sheet = point_.thinWalled && point_.transmission > 0 && point_.metalness < 1;
+    if (smooth_ || (coat && point_.coat.smooth()) || (sheet && point_.sheet.smooth())) result |= Lobe::delta;
+    if (!smooth_ || (coat && !point_.coat.smooth()) || (sheet && !point_.sheet.smooth())) result |= Lobe::glossy;
+    if (opaque || point_.fuzz > 0) result |= Lobe::diffuse;
+    if (refracts() || sheet || (opaque && point_.subsurface > 0)) result |= Lobe::transmission;
+    if (refracts() && disperses_) result |= Lobe::dispersive;
+    return result;
+}
+
+OpenPbrBsdf::Passing OpenPbrBsdf::passing(const View& v, float cosI, bool entering) const {
+    if (point_.cover.coat == 0) return {Spectrum(v.ground), Spectrum(v.ground)};
+    const Spectrum bare(v.ground * (1 - point_.cover.coat));
+    Spectrum through = v.covered;
+    if (coatAbsorbs_) {
+        Spectrum path = v.pathOut;
+        if (entering && !v.within) path += point_.coatLog / point_.cover.cosineInCoat(Spectrum(cosI));
+        through *= exp(path);
+    }
+    return {fma(through, v.darkening, bare), bare + through};
+}
+
+OpenPbrBsdf::Facet OpenPbrBsdf::facet(const View& v, Spectrum c) const {
+    Facet f{kNone, kNone, kNone};
+    const float dielectric = 1 - point_.metalness;
+    if (point_.metalness > 0) f.opaque = v.metalScale * point_.metal.reflectance(c) * point_.metalness;
+    if (v.within) {
+        const Spectrum r = point_.dielectric.reflectanceWithin(c);
+        f.clear = v.scale * r * v.clear;
+        f.transmitted = v.scale * (kOne - r) * v.clear;
+    } else if (dielectric > 0) {
+        const Spectrum r = point_.dielectric.reflectance(c);
+        f.opaque += v.scale * point_.tint * r * (dielectric * (1 - point_.transmission));
+        if (v.clear > 0) {
+            f.clear = v.scale * point_.tint * (point_.thinWalled ? sheetFacet(c).reflected : r) * v.clear;
+            if (!point_.thinWalled) f.transmitted = v.scale * (kOne - r) * v.clear;
+        }
+    }
+    return f;
+}
+
+float OpenPbrBsdf::reflectionShare(const Facet& f) const {
+    if (!refracts()) return 1;
+    const float reflected = mean(f.opaque + f.clear), through = mean(f.transmitted);
+    return reflected + through > 0 ? reflected / (reflected + through) : 1;
+}
+
+BsdfEval OpenPbrBsdf::eval(Vec3 wo, Vec3 wi, Transport transport) const noexcept {
+    if (!(wo.z != 0 && wi.z != 0)) return {};
+    return evalFrom(view(wo), wo.z < 0 ? flipped(wi) : wi, transport);
+}
+
+BsdfEval OpenPbrBsdf::evalFrom(const View& v, Vec3 wi, Transport transport) const {
+    LaneEval lanes = wi.z > 0            ? reflection(v, wi)
+                     : point_.thinWalled ? sheetTransmission(v, flipped(wi))
+                                         : refraction(v, wi, transport);
+    if (!(wi.z < 0 && disperses_ && refracts())) return {lanes.fcos, lanes.pdf[0]};
+    // The hero alone may be unable to refract this way; see materials/dielectric_bsdf.cpp.
+    const float pdf = std::max(lanes.pdf[0], 1e-7f * maxLane(lanes.pdf));
+    if (!(pdf > 0)) return {};
+    return {lanes.fcos, pdf, lanes.pdf / pdf};
+}
+
+OpenPbrBsdf::LaneEval OpenPbrBsdf::reflection(const View& v, Vec3 wi) const {
+    Spectrum f(0.f);
+    float pdf = 0;
+    if (v.pick[kFuzz] > 0) {
+        const SheenLobe::Value fuzz = point_.sheen.eval(v.wo, wi);
+        f += point_.fuzzColor * (point_.fuzz * fuzz.fcos);
+        pdf += v.pick[kFuzz] * fuzz.pdf;
+    }
+    const Vec3 h = normalize(v.wo + wi); // both z > 0: never 0
+    const Spectrum c(std::min(dot(v.wo, h), 1.f));
+    if (v.pick[kCoat] > 0 && !point_.coat.smooth()) {
+        const Ggx& ggx = point_.coat.ggx();
+        const float d = ggx.D(h);
+        f += v.coatScale * point_.cover.coatReflectance(c) *
+             (v.ground * point_.cover.coat * 0.25f * d * ggx.maskingOverCosine(v.wo, wi));
+        pdf += v.pick[kCoat] * ggx.boundedReflection(v.wo) * d;
+    }
+    const Passing pass = passing(v, wi.z, true);
+    if (v.pick[kSpecular] > 0 && !smooth_) {
+        const Ggx& ggx = point_.specular.ggx();
+        const float d = ggx.D(h);
+        const Facet at = facet(v, c);
+        f += (at.opaque * pass.opaque + at.clear * pass.clear) * (0.25f * d * ggx.maskingOverCosine(v.wo, wi));
+        const float density =
+            refracts() ? 0.25f * ggx.visible(v.wo) * reflectionShare(at) : ggx.boundedReflection(v.wo);
+        pdf += v.pick[kSpecular] * density * d;
+    }
+    if (v.pick[kDiffuse] > 0) {
+        const float plastic = (1 - point_.metalness) * (1 - point_.transmission), s = point_.subsurface;
+        Spectrum matte(0.f);
+        if (s < 1) matte = EonDiffuse(point_.base, point_.diffuseRoughness)(v.wo, wi) * (1 - s);
+        if (s > 0) matte += EonDiffuse(point_.under, point_.diffuseRoughness)(v.wo, wi) * (s * (1 - point_.forward));
+        f += pass.opaque * v.below * matte * (plastic * wi.z);
+        pdf += v.pick[kDiffuse] * cosineHemispherePdf(wi.z);
+    }
+    return {f, Spectrum(pdf)};
+}
+
+// Through a thin-walled surface; wi is turned to the side of wo.
+OpenPbrBsdf::LaneEval OpenPbrBsdf::sheetTransmission(const View& v, Vec3 wi) const {
+    Spectrum f(0.f);
+    float pdf = 0;
+    const Passing pass = passing(v, 1, false);
+    if (v.pick[kSheet] > 0 && !point_.sheet.smooth()) {
+        const Ggx& ggx = point_.sheet.ggx();
+        const float d = ggx.D(normalize(v.wo + wi));
+        f += pass.clear * v.sheet *
+             (v.clear * 0.25f * d * ggx.maskingOverCosine(v.wo, wi) / point_.sheet.mirrorAlbedo(v.wo));
+        pdf += v.pick[kSheet] * ggx.boundedReflection(v.wo) * d;
+    }
+    if (v.pick[kDiffuseThrough] > 0) {
+        const float share = (1 - point_.metalness) * (1 - point_.transmission) * point_.subsurface * point_.forward;
+        f += pass.opaque * v.below * EonDiffuse(point_.under, point_.diffuseRoughness)(v.wo, wi) * (share * wi.z);
+        pdf += v.pick[kDiffuseThrough] * cosineHemispherePdf(wi.z);
+    }
+    return {f, Spectrum(pdf)};
+}
+
+// Value and density per lane, each off its own microfacet [Walter2007]; see RoughDielectricBsdf::transmission.
+OpenPbrBsdf::LaneEval OpenPbrBsdf::refraction(const View& v, Vec3 wi, Transport transport) const {
+    if (!refracts() || smooth_ || !(v.pick[kSpecular] > 0)) return {kNone, kNone};
+    const Ggx& ggx = point_.specular.ggx();
+    const Vec3 wo = v.wo;
+    const Spectrum eta = v.within ? kOne / point_.dielectric.eta() : point_.dielectric.eta();
+    const Float8 x = wo.x + eta.v * wi.x, y = wo.y + eta.v * wi.y, z = wo.z + eta.v * wi.z;
+    const Float8 length2 = max(Spectrum(x * x + y * y + z * z), Spectrum(1e-20f)).v;
+    const Float8 unit = (z < 0.f ? -1.f : 1.f) / sqrt(Spectrum(length2)).v;
+    const Float8 hx = x * unit, hy = y * unit, hz = z * unit;
+    const Float8 cosO = wo.x * hx + wo.y * hy + wo.z * hz, cosI = wi.x * hx + wi.y * hy + wi.z * hz;
+    const Int8 possible = (cosO > 0.f) & (cosI < 0.f);
+    const Spectrum cosine = max(min(Spectrum(cosO), kOne), kNone);
+    const Facet at = facet(v, cosine);
+    Spectrum chosen(1 - reflectionShare(at));
+    if (disperses_) // each lane meets another microfacet, whose choice is a mean over all lanes
+        for (int i = 0; i < kLanes; ++i) chosen.v[i] = 1 - reflectionShare(facet(v, Spectrum(cosine[i])));
+    const float ax = ggx.alphaX(), ay = ggx.alphaY();
+    const Float8 sx = hx * (1 / ax), sy = hy * (1 / ay), slope2 = sx * sx + sy * sy + hz * hz;
+    const Float8 density = (1 / (kPi * ax * ay)) / (slope2 * slope2); // D(h)
+    const Spectrum common = density * cosO * (eta * eta).v * -cosI / length2;
+    const Passing pass = passing(v, 1, false);
+    Spectrum out = pass.clear;
+    if (v.within && coatAbsorbs_) out = leavingCoat(-wi.z);
+    const Spectrum fcos =
+        at.transmitted * point_.through * out * compression(eta, transport) * common * ggx.maskingOverCosine(wo, wi);
+    const Spectrum pdf = chosen * common * (v.pick[kSpecular] * ggx.visible(wo));
+    return {select(possible, fcos, kNone), select(possible, pdf, kNone)};
+}
+
+Spectrum OpenPbrBsdf::leavingCoat(float cosI) const {
+    const float coat = point_.cover.coat;
+    return mix(kOne, exp(point_.coatLog / point_.cover.cosineInCoat(Spectrum(cosI))), coat);
+}
+
+std::optional<BsdfSample> OpenPbrBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Transport transport) const noexcept {
+    if (wo.z == 0) return std::nullopt;
+    const View v = view(wo);
+    int choice = -1;
+    float rest = uLobe;
+    for (int i = 0; i < kChoices; ++i) {
+        if (!(v.pick[i] > 0)) continue;
+        choice = i;
+        if (rest < v.pick[i]) break;
+        rest -= v.pick[i];
+    }
+    if (choice < 0) return std::nullopt; // black
+    rest = std::min(rest / v.pick[choice], kOneMinusEpsilon);
+    const auto chosen = static_cast<Choice>(choice);
+    const bool delta = (chosen == kCoat && point_.coat.smooth()) || (chosen == kSpecular && smooth_) ||
+                       (chosen == kSheet && point_.sheet.smooth());
+    std::optional<BsdfSample> result;
+    if (delta) {
+        result = sampleSmooth(v, chosen, rest, transport);
+    } else if (const auto wi = direction(v, chosen, rest, u)) {
+        const BsdfEval e = evalFrom(v, *wi, transport);
+        if (!(e.pdfSolidAngle > 0)) return std::nullopt;
+        const bool through = wi->z < 0, refracted = through && refracts();
+        Lobes lobe = Lobes(chosen >= kDiffuse || chosen == kFuzz ? Lobe::diffuse : Lobe::glossy) |
+                     (through ? Lobe::transmission : Lobe::reflection);
+        if (refracted && disperses_) lobe |= Lobe::dispersive;
+        const float hero = point_.dielectric.eta()[0];
+        result.emplace(*wi, e.fcos / e.pdfSolidAngle, e.pdfSolidAngle, lobe,
+                       refracted ? (v.within ? 1 / hero : hero) : 1, e.pdfRatio);
+    }
+    if (result && wo.z < 0) result->wi.z = -result->wi.z;
+    return result;
+}
+
+std::optional<Vec3> OpenPbrBsdf::direction(const View& v, Choice choice, float rest, Vec2 u) const {
+    Vec3 wi;
+    switch (choice) {
+    case kFuzz:
+        wi = point_.sheen.sample(v.wo, u);
+        break;
+    case kCoat:
+        wi = reflect(v.wo, point_.coat.ggx().sampleBounded(v.wo, u));
+        break;
+    case kSpecular: {
+        const Ggx& ggx = point_.specular.ggx();
+        if (!refracts()) {
+            wi = reflect(v.wo, ggx.sampleBounded(v.wo, u));
+            break;
+        }
+        const Vec3 m = ggx.sampleVisible(v.wo, u);
+        const float c = std::min(dot(v.wo, m), 1.f);
+        if (!(c > 0)) return std::nullopt;
+        if (rest >= reflectionShare(facet(v, Spectrum(c)))) return refracted(v, m, c);
+        wi = reflect(v.wo, m);
+        break;
+    }
+    case kSheet:
+        wi = reflect(v.wo, point_.sheet.ggx().sampleBounded(v.wo, u));
+        break;
+    default:
+        wi = squareToCosineHemisphere(u);
+    }
+    if (!(wi.z > 0)) return std::nullopt;
+    return choice == kSheet || choice == kDiffuseThrough ? flipped(wi) : wi;
+}
+
+// The hero's direction through the microfacet m, met at cosine c.
+std::optional<Vec3> OpenPbrBsdf::refracted(const View& v, Vec3 m, float c) const {
+    const float n = point_.dielectric.eta()[0], eta = v.within ? 1 / n : n;
+    const float g2 = (eta - 1) * (eta + 1) + c * c;
+    if (!(g2 > 0)) return std::nullopt; // total reflection of the hero
+    const Vec3 wi = (m * (c - std::sqrt(g2)) - v.wo) * (1 / eta);
+    return wi.z < 0 ? std::optional(wi) : std::nullopt;
+}
+
+std::optional<BsdfSample> OpenPbrBsdf::sampleSmooth(const View& v, Choice choice, float rest,
+                                                    Transport transport) const {
+    const float p = v.pick[choice];
+    const Vec3 mirror{-v.wo.x, -v.wo.y, v.wo.z};
+    const Spectrum c(v.wo.z);
+    const Lobes through = Lobes(Lobe::delta) | Lobe::transmission, back = Lobes(Lobe::delta) | Lobe::reflection;
+    if (choice == kCoat)
+        return std::optional<BsdfSample>(
+            std::in_place, mirror, v.coatScale * point_.cover.coatReflectance(c) * (v.ground * point_.cover.coat / p),
+            p, back);
+    if (choice == kSheet)
+        return std::optional<BsdfSample>(std::in_place, -v.wo, passing(v, 1, false).clear * v.sheet * (v.clear / p), p,
+                                         through);
+    const Facet at = facet(v, c);
+    const float share = reflectionShare(at);
+    if (rest < share) {
+        const Passing pass = passing(v, v.wo.z, true);
+        return std::optional<BsdfSample>(
+            std::in_place, mirror, (at.opaque * pass.opaque + at.clear * pass.clear) / (p * share), p * share, back);
+    }
+    // Snell's law in double: wi is then right to the last bit of its floats.
+    const Spectrum eta = v.within ? kOne / point_.dielectric.eta() : point_.dielectric.eta();
+    const double ratio = 1 / static_cast<double>(eta[0]), x = -ratio * v.wo.x, y = -ratio * v.wo.y;
+    const double cos2 = 1 - x * x - y * y;
+    if (!(cos2 > 0 && share < 1)) return std::nullopt; // total reflection of the hero alone
+    const double z = -std::sqrt(cos2);
+    const Vec3 wi{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    const Spectrum out = v.within && coatAbsorbs_ ? leavingCoat(-wi.z) : passing(v, 1, false).clear;
+    const float probability = p * (1 - share);
+    return std::optional<BsdfSample>(std::in_place, wi,
+                                     at.transmitted * point_.through * out * compression(eta, transport) / probability,
+                                     probability, disperses_ ? through | Lobe::dispersive : through, eta[0]);
+}
+
+} // namespace abbe

@@ -1,0 +1,165 @@
+// What of an OpenPBR surface depends on the direction of view alone: the albedos by which its layers share the light.
+#include "materials/openpbr_bsdf.h"
+
+#include <cmath>
+
+namespace abbe {
+namespace {
+
+const Spectrum kOne(1.f);
+
+} // namespace
+
+double hemisphericalReflectance(double n) {
+    if (std::abs(n - 1) < 1e-3) return 0;
+    if (n < 1) return 1 - n * n * (1 - hemisphericalReflectance(1 / n)); // by reciprocity, total reflection included
+    const double n2 = n * n, n4 = n2 * n2, minus = n2 - 1, plus = n2 + 1;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+           n2 * minus * minus / (plus * plus * plus) * std::log((n - 1) / (n + 1)) -
+           2 * n * n2 * (n2 + 2 * n - 1) / (plus * (n4 - 1)) +
+           8 * n4 * (n4 + 1) / (plus * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
+OpenPbrBsdf::View OpenPbrBsdf::view(Vec3 wo) const {
+    View v;
+    v.within = wo.z < 0 && refracts();
+    v.wo = {wo.x, wo.y, std::abs(wo.z)};
+    v.opaque = point_.metalness + (1 - point_.metalness) * (1 - point_.transmission);
+    v.clear = (1 - point_.metalness) * point_.transmission;
+    v.coatScale = v.pathOut = v.sheet = Spectrum(0.f);
+    v.darkening = kOne;
+    const float fuzz = v.within || point_.fuzz == 0 ? 0 : point_.fuzz * point_.sheen.albedo(v.wo.z);
+    v.ground = 1 - fuzz;
+    v.covered = Spectrum(v.ground * point_.cover.coat);
+    if (v.within)
+        viewWithin(v);
+    else
+        viewDielectric(v);
+    // Light that further bounces between the microfacets return, as in materials/conductor.cpp.
+    v.metalScale = kOne;
+    if (point_.metalness > 0)
+        v.metalScale = fma(point_.metal.reflectance(kOne), Spectrum(1 / point_.specular.mirrorAlbedo(v.wo) - 1), kOne);
+    for (float& p : v.pick) p = 0;
+    v.pick[kFuzz] = fuzz * mean(point_.fuzzColor);
+    if (!v.within && point_.cover.coat > 0) viewCoat(v);
+    choose(v);
+    return v;
+}
+
+// Single scattering returns `mirror` times the mean of Fresnel's reflectance; scaling it and what goes through alike
+// makes them sum to 1.
+void OpenPbrBsdf::viewDielectric(View& v) const {
+    const OpenPbrDielectric& d = point_.dielectric;
+    v.scale = kOne;
+    v.below = Spectrum(0.f);
+    if (point_.metalness == 1) return;
+    const Spectrum cosines = point_.specular.cosines(v.wo);
+    const auto reflectance = [&](Spectrum c) { return d.reflectance(c); };
+    const Spectrum mean = d.meanOver(cosines, reflectance);
+    const Spectrum mirror(point_.specular.mirrorAlbedo(v.wo));
+    if (point_.thinWalled) {
+        v.scale = kOne / mirror; // the sheet's other lobe is scaled to fit
+        v.below = kOne - mean;
+        if (point_.transmission > 0)
+            v.sheet = d.meanOver(
+                cosines, [&](Spectrum c) { return sheetFacet(c).through; }, sheetAbsorbs_);
+        return;
+    }
+    const auto bare = [&](Spectrum c) { return fresnelDielectric(c, d.eta()); };
+    v.scale = kOne / interfaceAlbedo(v.wo, d.eta(), reflectance, bare);
+    v.below = max(kOne - v.scale * mirror * mean, Spectrum(0.f));
+}
+
+void OpenPbrBsdf::viewWithin(View& v) const {
+    const OpenPbrDielectric& d = point_.dielectric;
+    const Spectrum eta = kOne / d.eta();
+    const auto covered = [&](Spectrum c) { return d.reflectanceWithin(c); };
+    const auto bare = [&](Spectrum c) { return fresnelDielectric(c, eta); };
+    v.below = kOne;
+    v.scale = kOne / interfaceAlbedo(v.wo, eta, covered, bare);
+}
+
+// What single scattering at the interface returns and transmits together. The tables know the bare interface; film and
+// coat change its reflectance, and with it either part.
+template <typename Covered, typename Bare>
+Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, Covered&& covered, Bare&& bare) const {
+    const OpenPbrDielectric& d = point_.dielectric;
+    const GgxLobe& lobe = point_.specular;
+    const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_);
+    if (!d.covered() || lobe.smooth()) return pair;
+    const Spectrum cosines = lobe.cosines(wo), visible = lobe.visible(wo), mirror(lobe.mirrorAlbedo(wo));
+    const Spectrum through = max(pair - mirror * d.meanOver(cosines, bare), Spectrum(0.f));
+    const Spectrum change =
+        (kOne - d.meanOver(visible, covered)) / max(kOne - d.meanOver(visible, bare), Spectrum(1e-3f));
+    return fma(through, change, mirror * d.meanOver(cosines, covered));
+}
+
+// The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is
+// partly sent back, (1 - K)/(1 - E K) of it gets out in the end.
+void OpenPbrBsdf::viewCoat(View& v) const {
+    const OpenPbrCover& cover = point_.cover;
+    const auto reflectance = [&](Spectrum c) { return cover.coatReflectance(c); };
+    const Spectrum mean = point_.dielectric.meanOver(point_.coat.cosines(v.wo), reflectance);
+    v.coatScale = kOne / point_.coat.interfaceAlbedo(v.wo, cover.coatEta,
+                                                     maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0);
+    const Spectrum albedo = min(v.coatScale * point_.coat.mirrorAlbedo(v.wo) * mean, kOne);
+    v.pick[kCoat] = v.ground * cover.coat * abbe::mean(albedo);
+    v.covered *= kOne - albedo;
+    if (coatAbsorbs_) v.pathOut = point_.coatLog / cover.cosineInCoat(Spectrum(v.wo.z));
+    if (!(point_.coatDarkening > 0 && v.opaque > 0)) return;
+    const Spectrum smooth = cover.coatReflectance(Spectrum(v.wo.z));
+    const Spectrum returned = mix(smooth, Spectrum(point_.coatReturns), baseRoughness_);
+    const Spectrum dark = (kOne - returned) / max(kOne - baseAlbedo_ * returned, Spectrum(1e-6f));
+    v.darkening = mix(kOne, dark, point_.coatDarkening);
+}
+
+// Albedo of the opaque base at normal incidence.
+Spectrum OpenPbrBsdf::opaqueAlbedo() const {
+    const float plastic = (1 - point_.metalness) * (1 - point_.transmission), whole = point_.metalness + plastic;
+    if (!(whole > 0)) return kOne;
+    const Spectrum f = point_.dielectric.reflectance(kOne);
+    const Spectrum diffuse = mix(point_.base, point_.under, point_.subsurface);
+    const Spectrum dielectric = f * point_.tint + (kOne - f) * diffuse;
+    return (point_.metal.reflectance(kOne) * point_.metalness + dielectric * plastic) / whole;
+}
+
+// Probabilities of the lobes, in proportion to the mean of their albedos over the lanes: the same for all rotations of
+// the hero.
+void OpenPbrBsdf::choose(View& v) const {
+    const Passing pass = passing(v, v.wo.z, true);
+    const float plastic = (1 - point_.metalness) * (1 - point_.transmission);
+    const Spectrum mirror = kOne - v.below, metal = point_.metal.reflectance(Spectrum(v.wo.z)) * point_.metalness;
+    Spectrum specular = pass.opaque * (metal + (v.within ? Spectrum(0.f) : mirror * point_.tint * plastic));
+    if (v.clear > 0) {
+        if (point_.thinWalled) {
+            specular += pass.clear * v.clear * mirror;
+            v.pick[kSheet] = mean(pass.clear * v.clear * v.sheet);
+        } else {
+            specular += pass.clear * v.clear * (v.within ? kOne : mirror + v.below);
+        }
+    }
+    v.pick[kSpecular] = mean(specular);
+    const Spectrum matte = pass.opaque * v.below * plastic;
+    const float back = point_.subsurface * (1 - point_.forward), through = point_.subsurface * point_.forward;
+    v.pick[kDiffuse] = mean(matte * (point_.base * (1 - point_.subsurface) + point_.under * back));
+    v.pick[kDiffuseThrough] = mean(matte * point_.under * through);
+    float total = 0;
+    for (const float p : v.pick) total += p;
+    if (total > 0)
+        for (float& p : v.pick) p /= total;
+}
+
+// A thin sheet reflects at both of its faces and all the times that light goes to and fro between them.
+OpenPbrBsdf::Sheet OpenPbrBsdf::sheetFacet(Spectrum c) const {
+    const Spectrum r = point_.dielectric.reflectance(c), enters = kOne - r;
+    Spectrum t = point_.through;
+    if (sheetAbsorbs_) {
+        const Spectrum eta = point_.dielectric.eta();
+        const Spectrum cos2 = kOne - (kOne - c) * (kOne + c) / (eta * eta);
+        t = exp(log(max(t, Spectrum(1e-6f))) / sqrt(max(cos2, Spectrum(1e-4f))));
+    }
+    const Spectrum ladder = max(kOne - r * r * t * t, Spectrum(1e-6f));
+    return {r + enters * enters * t * t * r / ladder, enters * enters * t / ladder};
+}
+
+} // namespace abbe

@@ -1,0 +1,91 @@
+// Energy of the OpenPBR surface over its parameter cube.
+#include "openpbr_suite.h"
+
+#include <doctest/doctest.h>
+
+namespace abbe {
+namespace {
+
+using namespace test;
+
+// Mean weight per lane, in equilibrium: radiance that refraction compressed counts η² times.
+double albedo(const Bsdf& bsdf, Vec3 wo, int samples, int lane = 0) {
+    return meanOfSamples(bsdf, wo, Transport::radiance, samples,
+                         [lane](const BsdfSample& s) { return s.weight[lane] * s.eta * s.eta; });
+}
+
+struct Furnace {
+    double worst = 0, worstWithin = 0, sum = 0;
+    int count = 0;
+    std::string where, whereWithin;
+
+    void add(const OpenPbrParams& p, int samples) {
+        const BsdfUnderTest b = openPbr(p, describe(p));
+        for (const double degrees : {5.0, 40.0, 65.0, 80.0, 87.0}) {
+            note(std::abs(albedo(*b.bsdf, directionAt(degrees), samples) - 1), b.name, degrees, worst, where);
+            if (b.eta > 0)
+                note(std::abs(albedo(*b.bsdf, mirrored(directionAt(degrees)), samples) - 1), b.name, degrees,
+                     worstWithin, whereWithin);
+        }
+    }
+    void report() const {
+        MESSAGE("mean error ", sum / count, ", largest ", worst, ": ", where, "; within ", worstWithin, ": ",
+                whereWithin);
+    }
+
+  private:
+    void note(double error, const std::string& name, double degrees, double& largest, std::string& place) {
+        sum += error, ++count;
+        if (error > largest) largest = error, place = fmt::format("{} at {}", name, degrees);
+    }
+};
+
+TEST_CASE("white furnace over the cube: opaque surfaces") {
+    RandomOpenPbr cube(1);
+    Furnace furnace;
+    for (int i = 0; i < 150; ++i) furnace.add(cube(true, true, false), 4000);
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+    CHECK(furnace.sum / furnace.count < 0.001);
+}
+
+// From within, coats and films near the critical angle are interpolated less exactly.
+TEST_CASE("white furnace over the cube: translucent surfaces, from both sides") {
+    RandomOpenPbr cube(2);
+    Furnace furnace;
+    for (int i = 0; i < 150; ++i) furnace.add(cube(false, true, false), 4000);
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+    CHECK(furnace.worstWithin < 0.02);
+    CHECK(furnace.sum / furnace.count < 0.001);
+}
+
+TEST_CASE("white furnace over the cube: stretched highlights") {
+    RandomOpenPbr cube(3);
+    Furnace furnace;
+    for (int i = 0; i < 20; ++i) furnace.add(cube(true, false, true), 4000);
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+}
+
+TEST_CASE("no surface returns more than it receives, at any wavelength") {
+    RandomOpenPbr cube(4);
+    double most = 0;
+    for (int i = 0; i < 100; ++i) {
+        OpenPbrParams p = cube(i % 2, true, false);
+        p.baseColor = color(flat(0.2)), p.coatColor = color(i % 3 ? white() : flat(0.2));
+        p.transmissionColor = color(i % 4 ? white() : flat(0.2));
+        const BsdfUnderTest b = openPbr(p, describe(p), Wavelengths::sample(0.4f));
+        for (const double degrees : {5.0, 60.0, 85.0})
+            for (const bool within : {false, true}) {
+                if (within && b.eta == 0) continue;
+                const Vec3 wo = within ? mirrored(directionAt(degrees)) : directionAt(degrees);
+                for (const int lane : {0, 3, 6}) most = std::max(most, albedo(*b.bsdf, wo, 2000, lane));
+            }
+    }
+    MESSAGE("largest albedo ", most);
+    CHECK(most < 1.02);
+}
+
+} // namespace
+} // namespace abbe
