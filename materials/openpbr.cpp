@@ -182,6 +182,26 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
 
 } // namespace
 
+bool checkParams(const OpenPbrParams& p, Diagnostics& diagnostics) {
+    const std::size_t before = diagnostics.errorCount();
+    if (!p.geometryThinWalled && (p.subsurfaceWeight.texture || p.subsurfaceWeight.value > 0))
+        diagnostics
+            .error("E0700", p.subsurfaceWeight.span, "`subsurface-weight` needs `geometry-thin-walled on`",
+                   "light under the surface of a solid")
+            .help = "leave `subsurface-weight` out, or use `material subsurface` for solids";
+    if (p.transmissionDispersionScale > 0 && p.specularIor && !p.specularIor->isConstant())
+        diagnostics
+            .error("E0701", p.transmissionColor.span, "the dispersion is stated twice",
+                   "`specular-ior` varies with wavelength, and `transmission-dispersion-scale` is above 0")
+            .help = "leave one of them out";
+    if (!p.geometryThinWalled && p.transmissionDepth > 0 && p.transmissionColor.texture)
+        diagnostics
+            .error("E0702", p.transmissionColor.span, "the colour of an inside cannot be a texture",
+                   "`transmission-depth` is above 0")
+            .help = "leave `transmission-depth` out to tint at the surface, or give one colour";
+    return diagnostics.errorCount() == before;
+}
+
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams& params) { return std::make_unique<OpenPbr>(params); }
 
 } // namespace abbe

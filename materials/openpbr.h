@@ -1,6 +1,7 @@
 // OpenPBR Surface 1.1: the exchange standard for everyday surfaces, with the parameter names of its specification.
 #pragma once
 
+#include "base/diagnostic.h"
 #include "render/material.h"
 #include "schema/type.h"
 
@@ -57,6 +58,8 @@ struct OpenPbrParams {
 };
 
 schema::TypeInfo openPbrType();
+// Reports what no single property can say wrong; false if it did.
+bool checkParams(const OpenPbrParams&, Diagnostics&);
 // The curves and textures must outlive the material.
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams&);
 

@@ -88,10 +88,13 @@ Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, Covered&& covered, 
     const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_);
     if (!d.covered() || lobe.smooth()) return pair;
     const Spectrum cosines = lobe.cosines(wo), visible = lobe.visible(wo), mirror(lobe.mirrorAlbedo(wo));
-    const Spectrum through = max(pair - mirror * d.meanOver(cosines, bare), Spectrum(0.f));
-    const Spectrum change =
+    // Near total reflection the tables may disagree in the last digits: no more is reflected than both parts together.
+    const Spectrum bareReflected = mirror * d.meanOver(cosines, bare);
+    const Spectrum share = min(pair / max(bareReflected, Spectrum(1e-6f)), kOne);
+    const Spectrum through = pair - bareReflected * share, reflected = mirror * d.meanOver(cosines, covered) * share;
+    const Spectrum less =
         (kOne - d.meanOver(visible, covered)) / max(kOne - d.meanOver(visible, bare), Spectrum(1e-3f));
-    return fma(through, change, mirror * d.meanOver(cosines, covered));
+    return fma(through, less, reflected);
 }
 
 // The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is

@@ -95,7 +95,7 @@ TEST_CASE("nothing jumps: coat, film, fuzz, dispersion, roughness, metal") {
         near([](OpenPbrParams& p) { p.transmissionDispersionScale = 1e-6; }, nothing, glass, 2e-3);
         near([](OpenPbrParams& p) { p.baseMetalness = number(1e-5); }, nothing, glass, 2e-3);
     }
-    near([](OpenPbrParams& p) { p.baseDiffuseRoughness = number(1e-4); }, nothing, false, 1e-3);
+    near([](OpenPbrParams& p) { p.baseDiffuseRoughness = number(1e-4); }, nothing, false, 2e-3);
     near([](OpenPbrParams& p) { p.thinFilmWeight = number(1), p.baseMetalness = number(1), p.thinFilmThickness = 0; },
          [](OpenPbrParams& p) { p.baseMetalness = number(1); }, false, 1e-4);
 }
