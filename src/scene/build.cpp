@@ -1,6 +1,5 @@
 #include "scene/build.h"
 
-#include "scene/planned_types.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "spectrum/observer.h"
@@ -37,7 +36,7 @@ schema::Reference SceneBuilder::reference(const Definition& definition, Diagnost
 schema::Reference SceneBuilder::makeReference(const Definition& definition, Diagnostics& diagnostics) {
     switch (definition.kind) {
     case Kind::material:
-        return materialReference(definition, diagnostics);
+        return materialReference(definition);
     case Kind::texture:
         return textureReference(definition, diagnostics);
     case Kind::phase:
@@ -55,37 +54,6 @@ std::function<bool(void*)> SceneBuilder::binder(const Definition& definition, Di
         schema::bind(definition, tree_, types_, *this, params, diagnostics);
         return diagnostics.errorCount() == before;
     };
-}
-
-schema::Reference SceneBuilder::materialReference(const Definition& definition, Diagnostics& diagnostics) {
-    const auto bindInto = binder(definition, diagnostics);
-    if (!definition.type) {
-        bindInto(nullptr);
-        return {};
-    }
-    if (checkPlanned(definition)) return {};
-    auto material = makeMaterial(definition.type->name, bindInto, diagnostics);
-    if (!material) return {};
-    materials_.push_back(std::move(material));
-    const auto index = static_cast<std::uint32_t>(materials_.size() - 1);
-    materialAskers_.emplace_back(index, definition.span);
-    return {index};
-}
-
-// True for a type of a later version, whose properties have then been checked.
-bool SceneBuilder::checkPlanned(const Definition& d) {
-    if (!d.type || !isPlanned(d.kind, d.type->name)) return false;
-    bindPlanned(d.kind, [&](void* params) { schema::bind(d, tree_, types_, *this, params, diagnostics_); });
-    planned_.emplace_back(d.type->name, d.span);
-    return true;
-}
-
-// Only when there is nothing to mend: what this version lacks is no mistake of the scene's.
-void SceneBuilder::reportPlanned() {
-    if (diagnostics_.hasErrors()) return;
-    for (const auto& [type, span] : planned_)
-        diagnostics_.error("E0206", span, fmt::format("`{}` is not available in this version", type),
-                           "not rendered yet");
 }
 
 const schema::Definition* SceneBuilder::only(Kind kind, std::string_view name) {
@@ -160,6 +128,7 @@ void SceneBuilder::finish(BuiltScene& built) {
         built.commitSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     built.scene.curves = curves_.release();
+    for (auto& inner : undressed_) materials_.push_back(std::move(inner));
     built.scene.materials = std::move(materials_);
     built.scene.shapes = std::move(shapes_);
     for (auto& light : lights_) built.scene.lights.push_back(std::move(light));
@@ -178,7 +147,6 @@ void SceneBuilder::build(BuiltScene& built) {
             reference(d, diagnostics_);
         if (d.kind == Kind::object) objectGeometry(d);
     }
-    reportPlanned();
     finish(built);
 }
 

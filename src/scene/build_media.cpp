@@ -4,6 +4,7 @@
 #include "scene/filled_material.h"
 #include "scene/scene_builder.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -84,16 +85,32 @@ std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParam
     return std::make_unique<Atmosphere>(*optics, Vec3(up), ground, params.scaleHeight);
 }
 
+void SceneBuilder::noteInterior(const Medium& medium) {
+    if (std::ranges::find(interiorAskers_, &medium, &std::pair<const Medium*, Span>::first) != interiorAskers_.end())
+        return;
+    for (std::size_t i = 0; i < media_.size(); ++i)
+        if (media_[i].get() == &medium) interiorAskers_.emplace_back(&medium, mediumSpans_[i]);
+}
+
+bool SceneBuilder::holdsMedium(const ShapeParams& params) const {
+    const auto filling = [this](schema::Reference m) { return m.valid() && materials_[m.index]->interior(); };
+    return params.interior.valid() || filling(params.material) ||
+           std::ranges::any_of(params.groupMaterials, [&](const auto& g) { return filling(g.reference); });
+}
+
 // The surface and what it holds, as one material.
 const Material* SceneBuilder::filled(const Material* surface, const ShapeParams& params) {
-    if (!params.interior.valid()) return surface;
+    if (!params.interior.valid()) {
+        if (surface->interior()) noteInterior(*surface->interior());
+        return surface;
+    }
     const Medium& medium = *media_[params.interior.index];
     auto& index = filled_[{surface, &medium}];
     if (!index) {
         index = static_cast<std::uint32_t>(materials_.size());
         materials_.push_back(std::make_unique<FilledMaterial>(*surface, medium));
         usedMaterials_.insert(*index);
-        interiorAskers_.emplace_back(&medium, mediumSpans_[params.interior.index]);
+        noteInterior(medium);
     }
     return materials_[*index].get();
 }

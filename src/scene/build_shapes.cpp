@@ -76,8 +76,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             };
     } else if (type == "mesh") {
         loadMeshShape(d, shape);
-    } else if (!loadParametric(d, shape, up) && !loadCurves(d, shape) && !loadSubdivision(d, shape) &&
-               !checkPlanned(d)) {
+    } else if (!loadParametric(d, shape, up) && !loadCurves(d, shape) && !loadSubdivision(d, shape)) {
         bound<ShapeParams>(d); // unknown type: report what is wrong besides
     }
     if (shape.sound && !shape.common.groupMaterials.empty())

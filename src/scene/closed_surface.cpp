@@ -84,10 +84,18 @@ OpenEdges openEdges(const SubdivisionCage& cage) {
 
 // Media fill what has an inside: a plane has one, below it; a disk has none.
 void SceneBuilder::checkInterior(LoadedShape& shape) {
-    if (!shape.sound || !shape.common.interior.valid()) return;
+    if (!shape.sound || !holdsMedium(shape.common)) return;
+    const bool own = shape.common.interior.valid();
     Span span = shape.definition->span;
     for (const schema::Node& property : shape.definition->properties)
-        if (property.name() == "interior") span = property.nameSpan();
+        if (property.name() == (own ? "interior" : "material")) span = property.nameSpan();
+    const schema::Reference material = shape.common.material;
+    if (own && material.valid() && materials_[material.index]->interior()) {
+        diagnostics_.error("E0725", span, "this shape is filled twice", "its material fills it already").help =
+            "take a `dielectric` for the surface of an `interior`";
+        shape.sound = false;
+        return;
+    }
     const std::string_view type = shape.definition->type->name;
     std::string_view open = shape.openBecause;
     if (type == "quad" || type == "disk") open = "it has no inside";

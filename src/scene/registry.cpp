@@ -21,6 +21,7 @@
 #include "materials/hair.h"
 #include "materials/openpbr.h"
 #include "materials/sheen.h"
+#include "materials/subsurface.h"
 #include "materials/thin_dielectric.h"
 #include "media/atmosphere.h"
 #include "media/homogeneous.h"
@@ -29,7 +30,6 @@
 #include "media/vdb_type.h"
 #include "scene/camera_gltf.h"
 #include "scene/instances_type.h"
-#include "scene/planned_types.h"
 #include "scene/shape_curves.h"
 #include "scene/shape_parametric.h"
 #include "scene/shape_subdivision.h"
@@ -41,27 +41,62 @@ namespace abbe {
 
 namespace {
 
+// How a material is made and its type dressed.
+struct MaterialMaker {
+    MadeMaterial (*make)(const BindParams&, const MaterialParts&);
+    void (*dress)(schema::TypeInfo&);
+};
 struct MaterialEntry {
     schema::TypeInfo (*type)();
-    std::unique_ptr<const Material> (*make)(const BindParams&, Diagnostics&);
+    MaterialMaker maker;
 };
 
 // What no single property can say wrong, `bool checkParams(const Params&, Diagnostics&)` does, if there is one.
 template <typename Params, auto make>
-std::unique_ptr<const Material> bound(const BindParams& bind, Diagnostics& diagnostics) {
-    Params params;
-    if (!bind(&params)) return nullptr;
-    if constexpr (requires { checkParams(params, diagnostics); })
-        if (!checkParams(params, diagnostics)) return nullptr;
-    return make(params);
+MadeMaterial made(const BindParams& bind, [[maybe_unused]] const MaterialParts& parts) {
+    WithDress<Params> params;
+    if (!bind(&params)) return {};
+    const Params& own = params;
+    if constexpr (requires { checkParams(own, parts.diagnostics); })
+        if (!checkParams(own, parts.diagnostics)) return {};
+    return {make(params), params.dress, {}};
 }
+template <typename Params, auto make> constexpr MaterialMaker bound{made<Params, make>, addDress<Params>};
+
+// One that consists of others.
+template <typename Params, auto make> MadeMaterial madeOf(const BindParams& bind, const MaterialParts& parts) {
+    WithDress<Params> params;
+    if (!bind(&params)) return {};
+    return {make(params, parts), params.dress, {}};
+}
+template <typename Params, auto make> constexpr MaterialMaker composed{madeOf<Params, make>, addDress<Params>};
+
+MadeMaterial madeSubsurface(const BindParams& bind, const MaterialParts&) {
+    WithDress<SubsurfaceParams> params;
+    if (!bind(&params)) return {};
+    return {makeSubsurfaceSurface(params), params.dress,
+            makeSubsurfaceInside(*params.reflectance, *params.meanFreePath, params.anisotropy)};
+}
+constexpr MaterialMaker kSubsurface{madeSubsurface, addDress<SubsurfaceParams>};
+
+// What is no surface wears nothing.
+template <typename Params, auto make> MadeMaterial madeBare(const BindParams& bind, const MaterialParts&) {
+    Params params;
+    if (!bind(&params)) return {};
+    return {make(params), {}, {}};
+}
+template <typename Params, auto make> constexpr MaterialMaker bare{madeBare<Params, make>, [](schema::TypeInfo&) {}};
 
 // A material is one line here (docs/adding_a_material.md).
 constexpr MaterialEntry kMaterials[] = {
     {diffuseType, bound<DiffuseParams, makeDiffuse>},
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
-    {boundaryType, bound<BoundaryParams, makeBoundary>},
+    {subsurfaceType, kSubsurface},
+    {mixMaterialType, composed<MixParams, makeMixOf>},
+    {twoSidedType, composed<TwoSidedParams, makeTwoSidedOf>},
+    {layeredType, composed<LayeredParams, makeLayeredOf>},
+    {boundaryType, bare<BoundaryParams, makeBoundary>},
     {sheenType, bound<SheenParams, makeSheen>},
     {thinDielectricType, bound<ThinDielectricParams, makeThinDielectric>},
     {diffuseTransmissionType, bound<DiffuseTransmissionParams, makeDiffuseTransmission>},
@@ -116,7 +151,11 @@ constexpr schema::TypeInfo (*kOthers[])() = {
 
 schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
-    for (const MaterialEntry& entry : kMaterials) table.add(entry.type());
+    for (const MaterialEntry& entry : kMaterials) {
+        schema::TypeInfo type = entry.type();
+        entry.maker.dress(type);
+        table.add(std::move(type));
+    }
     for (const TextureEntry& entry : kTextures) table.add(entry.type());
     for (const CameraEntry& entry : kCameras) table.add(entry.type());
     for (const auto type : kOthers) table.add(type());
@@ -125,15 +164,14 @@ schema::TypeTable makeTypeTable() {
     for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
     for (const auto type : {homogeneousType, atmosphereType, vdbType, noiseMediumType, noiseVolumeType})
         table.add(type());
-    for (const schema::TypeInfo& type : plannedTypes()) table.add(type);
     return table;
 }
 
-std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
+MadeMaterial makeMaterial(std::string_view type, const BindParams& bind, const MaterialParts& parts) {
     for (const MaterialEntry& entry : kMaterials)
-        if (entry.type().name == type) return entry.make(bind, diagnostics);
+        if (entry.type().name == type) return entry.maker.make(bind, parts);
     ABBE_CHECK(!"a registered material type");
-    return nullptr;
+    return {};
 }
 
 std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {

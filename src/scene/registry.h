@@ -2,8 +2,11 @@
 #pragma once
 
 #include "cameras/camera_params.h"
+#include "materials/subsurface_albedo.h"
 #include "render/material.h"
 #include "render/texture.h"
+#include "scene/material_dress.h"
+#include "scene/material_parts.h"
 #include "schema/type.h"
 
 #include <functional>
@@ -18,8 +21,15 @@ schema::TypeTable makeTypeTable();
 // Fills the parameter struct of a type; false after an error.
 using BindParams = std::function<bool(void* params)>;
 
-// A material of a registered type from bound parameters, or null after an error. Requires a name out of the table.
-std::unique_ptr<const Material> makeMaterial(std::string_view type, const BindParams&, Diagnostics&);
+// A material before it is dressed; null after an error.
+struct MadeMaterial {
+    std::unique_ptr<const Material> material;
+    MaterialDress dress;
+    std::optional<SubsurfaceInside> inside; // of translucent solids: a medium to be made of it
+};
+
+// A material of a registered type from bound parameters. Requires a name out of the table.
+MadeMaterial makeMaterial(std::string_view type, const BindParams&, const MaterialParts&);
 
 // A texture of a registered type from bound parameters, or null after an error. Requires a name out of the table.
 std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);

@@ -29,8 +29,12 @@ namespace abbe {
 struct CurvesParams;
 struct GridExtras;
 struct LoadedCage;
+struct BumpMap;
+struct MaterialDress;
+struct NormalMap;
 class NoiseMedium;
 struct PointsParams;
+struct SubsurfaceInside;
 struct VdbGrid;
 struct VdbParams;
 
@@ -105,15 +109,22 @@ class SceneBuilder final : public schema::Resolver {
 
     // build.cpp
     schema::Reference makeReference(const Definition&, Diagnostics&);
-    schema::Reference materialReference(const Definition&, Diagnostics&);
     // Binds to the parameters that it is given; false after a diagnostic. Both arguments must outlive it.
     std::function<bool(void*)> binder(const Definition&, Diagnostics&);
     void buildSettings(BuiltScene&);
     void finish(BuiltScene&);
     void noteEffects(BuiltScene&);
-    bool checkPlanned(const Definition&);
-    void reportPlanned();
     const Definition* only(schema::Kind, std::string_view name);
+
+    // build_materials.cpp
+    schema::Reference materialReference(const Definition&);
+    std::uint32_t keepMaterial(std::unique_ptr<const Material>, Span asker);
+    // The material in its dress, or the material itself where it wears nothing; null after an error.
+    std::unique_ptr<const Material> dressed(std::unique_ptr<const Material>, const MaterialDress&, const Definition&);
+    std::unique_ptr<const Material> translucent(std::unique_ptr<const Material> surface, const SubsurfaceInside&,
+                                                const Definition&);
+    bool checkDress(const Material&, const MaterialDress&, const Definition&);
+    std::optional<std::pair<NormalMap, BumpMap>> mapsOf(const MaterialDress&);
 
     // build_camera.cpp
     void buildCamera(BuiltScene&);
@@ -190,6 +201,8 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<const Medium> makeNoiseMedium(const Definition&);
     void placeNoise(Vec3d origin);
     const Material* filled(const Material* surface, const ShapeParams&);
+    void noteInterior(const Medium&);
+    bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
 
@@ -238,7 +251,8 @@ class SceneBuilder final : public schema::Resolver {
     EmbreeSceneBuilder embree_;
     BuiltScene* built_ = nullptr;
 
-    std::vector<std::unique_ptr<const Material>> materials_;
+    std::vector<std::unique_ptr<const Material>> materials_, undressed_;
+    std::vector<const Definition*> openMaterials_;                        // being made
     std::unordered_map<const Definition*, schema::Reference> references_; // of what has a name
     std::vector<std::unique_ptr<Texture>> textures_;
     std::vector<std::pair<std::uint32_t, Span>> materialAskers_;    // who made it, for effects
@@ -259,9 +273,8 @@ class SceneBuilder final : public schema::Resolver {
     std::map<const Definition*, ObjectGeometry> objects_;
     std::vector<const Definition*> chain_; // objects being built
     std::size_t instanceCount_ = 0, unsharedCount_ = 0;
-    std::vector<std::pair<std::string, Span>> planned_; // types that this version does not render, and where
-    bool inObject_ = false;                             // placeInObject() is running: no camera to measure pixels by
-    Bounds3d bounds_;                                   // of finite geometry, render space
+    bool inObject_ = false; // placeInObject() is running: no camera to measure pixels by
+    Bounds3d bounds_;       // of finite geometry, render space
 };
 
 template <typename P> std::optional<P> SceneBuilder::bound(const Definition& definition) {

@@ -45,7 +45,7 @@ class Binding {
     // Notes that a field is given, and reports a second time. False if it must not be bound.
     bool give(const FieldInfo& field, Span span) {
         const auto [first, fresh] = given_.emplace(&field, span);
-        if (!fresh && (field.type == FieldType::sharpRow || field.type == FieldType::weighted)) return true; // one each
+        if (!fresh && field.repeats) return true;
         if (!fresh) {
             auto& d =
                 report(context_.diagnostics, span, "E0208", fmt::format("`{}` is given twice", field.name), "second");

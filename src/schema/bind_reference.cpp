@@ -54,7 +54,8 @@ std::optional<BoundValue> bindWeighted(const FieldInfo& field, const Entry& entr
     const bool sound =
         !key || (key->value.kind == ValueKind::number && key->value.number >= 0 && std::isfinite(key->value.number));
     if (!sound)
-        reportAt(context.diagnostics, key->value, "E0303", "a weight is a number of at least 0", "not such a number");
+        reportAt(context.diagnostics, key->value, "E0303", fmt::format("`{}=` is a number of at least 0", key->name),
+                 "not such a number");
     const auto bound = bindReference(field, entry, context);
     if (!bound || !sound) return std::nullopt;
     WeightedReference result{{}, key ? key->value.number : 1, entry.span()};

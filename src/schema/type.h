@@ -183,8 +183,8 @@ enum class FieldType : std::uint8_t {
     place,     // a quantity, or `on=NAME` of a shape -> Location
     moments, // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time` and
              // `Span span`, whose other fields stand in the block
-    weighted, // a reference with a key `weight=`, 1 when absent; may be repeated -> WeightedReference, into a
-              // std::vector
+    weighted, // a reference with a key `weight=` (or of another name), 1 when absent; may be repeated where the member
+              // is a std::vector -> WeightedReference
 };
 
 struct FieldKey {
@@ -215,6 +215,7 @@ struct FieldInfo {
     std::string_view note;                  // shown with a unit or range error
     std::string_view elsewhere;             // shown when another type of the kind is given it
     bool required = false;
+    bool repeats = false;         // may be given several times: by the type of the member
     bool tiles = false;           // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
@@ -244,6 +245,8 @@ template <typename Params, typename Member> class Field {
         info_.name = name;
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
         info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
+        info_.repeats =
+            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>>;
         if constexpr (requires(Member m) { m.emplace_back().time; })
             info_.append = [member](void* params, double time, Span span) -> void* {
                 auto& moment = (static_cast<Params*>(params)->*member).emplace_back();

@@ -1,0 +1,104 @@
+#include "materials/mix.h"
+
+#include "materials/mixed_bsdf.h"
+#include "materials/part_bsdf.h"
+#include "render/surface_input.h"
+
+namespace abbe {
+namespace {
+
+bool sameCurve(const Curve* a, const Curve* b) {
+    if (a == b) return true;
+    if (!a || !b) return false;
+    for (double nm = 360; nm <= 830; nm += 5)
+        if (std::abs(a->at(nm) - b->at(nm)) > 1e-6 * std::abs(a->at(nm))) return false;
+    return true;
+}
+
+class Mix final : public Material {
+  public:
+    Mix(const MixParams& params, const Material& first, const Material& second)
+        : first_(first), second_(second), inside_(hasInside(second) ? second : first), amount_(params.amount, 0, 1) {}
+
+    Effects needs() const override {
+        Effects effects = first_.needs() | second_.needs();
+        if (amount_.textured()) effects |= Effect::textures;
+        return effects;
+    }
+    const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
+        const Shares s = shares(hit);
+        // Of what meets the surface at all.
+        const float sum = s.first + s.second, amount = sum > 0 ? s.second / sum : 0;
+        if (!(amount > 0)) return &partBsdf(first_, hit, lambda, arena);
+        if (!(amount < 1)) return &partBsdf(second_, hit, lambda, arena);
+        return arena.make<MixedBsdf>(partBsdf(first_, hit, lambda, arena), partBsdf(second_, hit, lambda, arena),
+                                     amount);
+    }
+    const Curve* absorption() const override { return inside_.absorption(); }
+    const Medium* interior() const override { return inside_.interior(); }
+    bool usesTextures() const override { return amount_.textured() || first_.usesTextures() || second_.usesTextures(); }
+    bool mayBeOpen() const override { return first_.mayBeOpen() || second_.mayBeOpen(); }
+    float opacity(const SurfaceHit& hit) const noexcept override {
+        const Shares s = shares(hit);
+        return s.first + s.second;
+    }
+    const Curve* ior() const override { return inside_.ior(); }
+    int priority() const override { return inside_.priority(); }
+
+  private:
+    struct Shares {
+        float first, second;
+    };
+    Shares shares(const SurfaceHit& hit) const {
+        const float amount = amount_.at(hit);
+        if (!mayBeOpen()) return {1 - amount, amount};
+        return {(1 - amount) * first_.opacity(hit), amount * second_.opacity(hit)};
+    }
+
+    const Material &first_, &second_, &inside_;
+    NumberInput amount_;
+};
+
+} // namespace
+
+bool hasInside(const Material& m) { return m.interior() || m.absorption() || m.ior(); }
+
+bool sameInside(const Material& a, const Material& b) {
+    return a.interior() == b.interior() && sameCurve(a.absorption(), b.absorption()) && sameCurve(a.ior(), b.ior()) &&
+           a.priority() == b.priority();
+}
+
+schema::TypeInfo mixMaterialType() {
+    using namespace schema;
+    return {.kind = Kind::material,
+            .name = "mix",
+            .doc = "Two materials side by side, too fine to see apart: rust on steel, dust on glass.",
+            .example = "material bronze mix { first conductor { index metal Cu }; second diffuse; amount 30 % }",
+            .fields = {
+                field(FieldType::reference, "first", &MixParams::first)
+                    .to(Kind::material)
+                    .required()
+                    .synonyms({"a", "base", "material", "material1"})
+                    .doc("Name of a material, or one written in place; all of it where `amount` is 0.")
+                    .example("first conductor { index metal Fe; roughness 0.3 }"),
+                field(FieldType::reference, "second", &MixParams::second)
+                    .to(Kind::material)
+                    .required()
+                    .synonyms({"b", "material2"})
+                    .doc("The other material; all of it where `amount` is 1.")
+                    .example("second diffuse { reflectance 0.1 }"),
+                field(FieldType::number, "amount", &MixParams::amount)
+                    .unit({Dimension::none, Dimension::fraction})
+                    .range(0, 1)
+                    .byDefault("0.5")
+                    .synonyms({"mask", "weight", "blend", "factor", "mix"})
+                    .doc("Share of the second material, 0 … 1.")
+                    .example("amount 30 %"),
+            }};
+}
+
+std::unique_ptr<const Material> makeMix(const MixParams& params, const Material& first, const Material& second) {
+    return std::make_unique<Mix>(params, first, second);
+}
+
+} // namespace abbe

@@ -1,0 +1,26 @@
+// Skin, marble, wax, milk: light that wanders under the surface and comes out elsewhere.
+#pragma once
+
+#include "materials/subsurface_albedo.h"
+#include "render/material.h"
+#include "schema/type.h"
+
+#include <memory>
+
+namespace abbe {
+
+struct SubsurfaceParams {
+    const Curve* reflectance = nullptr;  // 0 … 1; set
+    const Curve* meanFreePath = nullptr; // m; set
+    double anisotropy = 0;
+    const Curve* ior = nullptr; // set
+    float roughness = 0.3f;
+    schema::Choice boundary{"dielectric", {}};
+};
+
+schema::TypeInfo subsurfaceType();
+// The surface alone; its inside is makeSubsurfaceInside(reflectance, meanFreePath, anisotropy). The curves must outlive
+// it.
+std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams&);
+
+} // namespace abbe

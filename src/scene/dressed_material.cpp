@@ -1,0 +1,63 @@
+#include "scene/dressed_material.h"
+
+#include "math/consistent_normal.h"
+
+namespace abbe {
+
+namespace {
+
+// For Bsdfs that tell directions about the normal apart, x stays along the texture's u.
+void turn(SurfaceHit& hit, Vec3 normal) {
+    const bool known = lengthSquared(hit.dpdu) > 0;
+    hit.shading = Frame::fromNormalTangent(normal, known ? hit.dpdu : hit.shading.x);
+}
+
+} // namespace
+
+Vec3 mappedNormal(const NormalMap& map, const SurfaceHit& hit) {
+    const Vec3 n = hit.shading.z, stored = map.texture->value(TextureQuery(hit));
+    const Vec3 along = hit.dpdu - n * dot(n, hit.dpdu);
+    const float l2 = lengthSquared(along);
+    if (!(l2 > 1e-12f * lengthSquared(hit.dpdu))) return n;
+    const Vec3 t = along * (1 / std::sqrt(l2)), across = cross(n, t);
+    const Vec3 b = dot(across, hit.dpdv) < 0 ? -across : across; // mirrored texture coordinates
+    const float x = (2 * stored.x - 1) * map.strength, y = (2 * stored.y - 1) * map.strength;
+    const Vec3 bent = t * x + b * y + n * std::max(2 * stored.z - 1, 1e-3f);
+    const float length2 = lengthSquared(bent);
+    return length2 > 0 && length2 < kInfinity ? bent * (1 / std::sqrt(length2)) : n;
+}
+
+// n' ∝ n - ∇h, with the gradient of the height along the surface [Mikkelsen2010, eq. 3; Blinn1978]: by uv with the
+// vectors dual to dp/du and dp/dv, by position with the gradients of the local coordinates.
+Vec3 bumpedNormal(const BumpMap& map, const SurfaceHit& hit) {
+    const Vec3 n = hit.shading.z;
+    const TextureJet j = map.texture->jet({Vec3d(hit.local), hit.uv, hit.uv}, 1);
+    Vec3 gradient = hit.localX * j.byPosition[0].x + hit.localY * j.byPosition[1].x + hit.localZ * j.byPosition[2].x;
+    const Vec3 dual = cross(hit.dpdv, n);
+    const float area = dot(hit.dpdu, dual);
+    if (square(area) > 1e-12f * lengthSquared(hit.dpdu) * lengthSquared(hit.dpdv))
+        gradient = gradient + (dual * j.byUv[0].x + cross(n, hit.dpdu) * j.byUv[1].x) * (1 / area);
+    const Vec3 bent = n - (gradient - n * dot(n, gradient)) * map.height;
+    const float l2 = lengthSquared(bent);
+    return l2 < kInfinity ? bent * (1 / std::sqrt(l2)) : n;
+}
+
+Effects DressedMaterial::needs() const {
+    Effects effects = inner_.needs();
+    if (mayBeOpen() || dress_.priority != 0) effects |= Effect::interfaces;
+    if (usesTextures()) effects |= Effect::textures;
+    return effects;
+}
+
+bool DressedMaterial::usesTextures() const {
+    return dress_.opacity.textured() || dress_.normal.texture || dress_.bump.texture || inner_.usesTextures();
+}
+
+void DressedMaterial::bend(SurfaceHit& hit) const noexcept {
+    inner_.bend(hit);
+    if (dress_.normal.texture) turn(hit, mappedNormal(dress_.normal, hit));
+    if (dress_.bump.texture) turn(hit, bumpedNormal(dress_.bump, hit));
+    turn(hit, consistentNormal(hit.ng, hit.shading.z, -hit.arrival));
+}
+
+} // namespace abbe

@@ -1,0 +1,228 @@
+// A clear coat over a base, and the gloss that it is made of.
+#include "materials/gloss.h"
+#include "materials/layered.h"
+#include "materials/subsurface.h"
+#include "suite.h"
+
+#include <doctest/doctest.h>
+
+namespace abbe {
+namespace {
+
+using namespace test;
+
+const ConstantCurve kOne(1), kNone(1.00000001), kMiddle(0.4);
+
+const Material& base(int which) {
+    static const auto white = makeDiffuse({&kOne}), grey = makeDiffuse({&flat(0.2)});
+    static const BsdfUnderTest metal = conductor(0, 3, 0.5f), copper = conductor(0.2, 3, 0.3f),
+                               mirror = conductor(0, 3, 0);
+    return *(which == 0   ? white.get()
+             : which == 1 ? grey.get()
+             : which == 2 ? metal.material.get()
+             : which == 3 ? copper.material.get()
+                          : mirror.material.get());
+}
+
+LayeredParams coat(const Curve& ior, float roughness) {
+    LayeredParams params;
+    params.ior = &ior;
+    params.roughness = roughness;
+    return params;
+}
+
+BsdfUnderTest coated(const char* name, const LayeredParams& params, int which) {
+    return {name, makeLayered(params, base(which)), which < 2 ? 0.3f : 0.15f};
+}
+
+std::vector<BsdfUnderTest> suite() {
+    LayeredParams tinted = coat(flat(1.5), 0.4f);
+    tinted.tint = &kMiddle;
+    std::vector<BsdfUnderTest> all;
+    all.push_back(coated("rough coat on grey", coat(flat(1.5), 0.4f), 1));
+    all.push_back(coated("rough coat on copper", coat(flat(2.4), 0.5f), 3));
+    all.push_back(coated("tinted coat on white", tinted, 0));
+    SubsurfaceParams skin;
+    skin.ior = &flat(1.5);
+    skin.roughness = 0.5f;
+    skin.boundary.word = "diffuse";
+    all.emplace_back("boundary of skin", makeSubsurfaceSurface(skin), 0.25f, 1.0001f);
+    return all;
+}
+
+std::vector<Vec3> outgoing() {
+    std::vector<Vec3> result;
+    for (const double a : {0.0, 30.0, 65.0, 85.0})
+        result.push_back(directionAt(a)), result.push_back(mirrored(directionAt(a)));
+    return result;
+}
+
+double albedo(const Bsdf& b, Vec3 wo) {
+    return meanOfSamples(b, wo, Transport::radiance, 40000, [](const BsdfSample& s) { return s.weight[0]; });
+}
+
+} // namespace
+
+TEST_CASE("gloss: its table is the share that its samples reflect, and smooth it is Fresnel's") {
+    for (const double ior : {1.33, 1.5, 2.4})
+        for (const float roughness : {0.05f, 0.2f, 0.5f, 1.f}) {
+            const Gloss gloss(ior, roughness);
+            double mean = 0;
+            for (int i = 0; i < 40; ++i) {
+                const float mu = (static_cast<float>(i) + 0.5f) / 40;
+                const Vec3 wo{std::sqrt(1 - mu * mu), 0, mu};
+                const EvenPoints points(20000);
+                double sum = 0;
+                for (int k = 0; k < 20000; ++k)
+                    if (const auto wi = gloss.sample(wo, points(k).u))
+                        sum += static_cast<double>(gloss.weight(wo, *wi));
+                CHECK(std::abs(sum / 20000 - static_cast<double>(gloss.albedo(mu))) < 2e-3);
+                mean += 2 * static_cast<double>(mu * gloss.albedo(mu)) / 40;
+            }
+            CHECK(std::abs(mean - static_cast<double>(gloss.meanAlbedo())) < 2e-3);
+        }
+    const Gloss smooth(1.5, 0), none(1, 0.3f);
+    CHECK(smooth.albedo(1) == doctest::Approx(0.04));
+    CHECK(smooth.meanAlbedo() == doctest::Approx(0.0918).epsilon(0.002)); // of an index of 1.5
+    CHECK(none.albedo(0.1f) == 0);
+}
+
+TEST_CASE("coats: chi-square of the samples") {
+    const auto all = suite();
+    const double level = sidak(1e-3, static_cast<int>(all.size()) * 16);
+    Random random(211);
+    for (const BsdfUnderTest& b : all)
+        for (const Vec3 wo : outgoing())
+            for (const bool upper : {true, false}) {
+                if (b.eta == 0 && upper != (wo.z > 0)) continue;
+                const auto sample = [&]() -> std::optional<Vec3d> {
+                    const float uLobe = random.uniform();
+                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, Transport::radiance);
+                    return s ? std::optional(Vec3d(s->wi)) : std::nullopt;
+                };
+                const auto pdf = [&](Vec3d wi) {
+                    return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
+                };
+                const Vec3 centre = upper == (wo.z > 0) ? wo : mirrored(wo);
+                HemisphereCells cells(upper, Vec3d{-centre.x, -centre.y, centre.z}, 0.25, 24, 24);
+                const ChiSquareResult r = chiSquareDirections(cells, sample, pdf, chiSquareSamples());
+                CHECK_MESSAGE(r.pValue > level, b.name, " wo.z ", wo.z, upper ? " up" : " down", ": chi2 ", r.statistic,
+                              " with ", r.degrees, " degrees");
+            }
+}
+
+TEST_CASE("coats: sample() returns the weight and the density that eval() gives") {
+    Random random(212);
+    for (const BsdfUnderTest& b : suite())
+        for (const Vec3 wo : outgoing()) {
+            double worst = 0;
+            for (int i = 0; i < 4000; ++i) {
+                const float uLobe = random.uniform();
+                const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, Transport::radiance);
+                if (!s) continue;
+                const BsdfEval e = b.bsdf->eval(wo, s->wi, Transport::radiance);
+                worst = std::max(worst, static_cast<double>(std::abs(e.pdfSolidAngle / s->pdfSolidAngle - 1)));
+                const float f = s->weight[0] * s->pdfSolidAngle;
+                worst = std::max(worst, static_cast<double>(std::abs(e.fcos[0] - f) / std::max(f, 1e-6f)));
+                CHECK(s->lobe.has(Lobe::reflection) == (s->wi.z * wo.z > 0));
+                CHECK(b.bsdf->lobes().contains(s->lobe));
+            }
+            CHECK_MESSAGE(worst < 2e-4 + 4e-6 / std::abs(static_cast<double>(wo.z)), b.name, " wo.z ", wo.z, ": ",
+                          worst);
+        }
+}
+
+TEST_CASE("coats: a white furnace over roughness, index and base, within half a percent") {
+    double worst = 0;
+    for (const int which : {0, 2, 4})
+        for (const double ior : {1.33, 1.5, 2.4})
+            for (const float roughness : {0.f, 0.05f, 0.2f, 0.5f, 1.f}) {
+                const BsdfUnderTest b = coated("lossless", coat(flat(ior), roughness), which);
+                for (const double angle : {2.0, 30.0, 50.0, 65.0, 75.0, 82.0, 87.0}) {
+                    const double e = albedo(*b.bsdf, directionAt(angle));
+                    CHECK_MESSAGE(std::abs(e - 1) < 5e-3, "base ", which, " ior ", ior, " roughness ", roughness,
+                                  " at ", angle, ": ", e);
+                    worst = std::max(worst, std::abs(e - 1));
+                }
+            }
+    MESSAGE("largest error ", worst);
+}
+
+TEST_CASE("coats darken what is between black and white, as an ideal diffuser under a smooth coat shows") {
+    // Saunderson's equation for light that has been let in: (1 - E)(1 - K) ρ/(1 - K ρ) [Saunderson1942].
+    const BsdfUnderTest b = coated("grey", coat(flat(1.5), 0), 1);
+    const double e = 0.04, k = 1 - (1 - 0.0918) / 2.25, rho = 0.2;
+    CHECK(albedo(*b.bsdf, {0, 0, 1}) == doctest::Approx(e + (1 - e) * (1 - k) * rho / (1 - k * rho)).epsilon(0.03));
+    LayeredParams off = coat(flat(1.5), 0);
+    off.darkening = 0;
+    CHECK(albedo(*coated("grey", off, 1).bsdf, {0, 0, 1}) == doctest::Approx(e + (1 - e) * rho).epsilon(0.002));
+}
+
+TEST_CASE("a coat without an index is no coat, and as the index falls to 1 it fades away") {
+    Arena arena;
+    const Wavelengths lambda = Wavelengths::single(550);
+    Random random(213);
+    for (const int which : {1, 3}) {
+        const Bsdf& bare = *base(which).bsdf({}, lambda, arena);
+        double before = 1;
+        for (const double ior : {1.3, 1.1, 1.03, 1.01, 1.001, 1.0}) {
+            const ConstantCurve n(ior);
+            const BsdfUnderTest b = coated("fading", coat(n, 0.4f), which);
+            double worst = 0;
+            Random same(5);
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 wo = squareToCosineHemisphere({same.uniform(), same.uniform()}),
+                           wi = squareToCosineHemisphere({same.uniform(), same.uniform()});
+                const float f = b.bsdf->eval(wo, wi, Transport::radiance).fcos[0],
+                            g = bare.eval(wo, wi, Transport::radiance).fcos[0];
+                if (wo.z > 0.1f) worst = std::max(worst, static_cast<double>(std::abs(f - g)));
+            }
+            CHECK(worst <= before);
+            before = worst + 1e-12;
+            if (ior == 1.0) CHECK(worst == 0);
+        }
+    }
+}
+
+TEST_CASE("the tint is what is left straight in and out, and obliquely less") {
+    LayeredParams tinted = coat(kNone, 0.4f);
+    tinted.tint = &kMiddle;
+    CHECK(albedo(*coated("mirror", tinted, 4).bsdf, {0, 0, 1}) == doctest::Approx(0.4).epsilon(1e-4));
+    LayeredParams thick = coat(flat(1.5), 0);
+    const ConstantCurve sigma(1000);
+    thick.absorption = &sigma;
+    thick.thickness = 1e-3;
+    thick.darkening = 0;
+    const double mu = std::cos(50 * kPiD / 180), inside = std::sqrt(1 - (1 - mu * mu) / 2.25);
+    const BsdfUnderTest b = coated("mirror", thick, 4);
+    const double gloss = static_cast<double>(Gloss(1.5, 0).albedo(static_cast<float>(mu)));
+    CHECK(albedo(*b.bsdf, directionAt(50)) ==
+          doctest::Approx(gloss + (1 - gloss) * std::exp(-2 / inside)).epsilon(2e-3));
+}
+
+TEST_CASE("coats at every cosine and number are finite") {
+    constexpr float cosines[] = {1, 1e-3f, 1e-8f, 1e-20f, 1e-37f, 1e-38f, 0};
+    constexpr float numbers[] = {0, 1e-7f, 0.3f, 0.5f, kOneMinusEpsilon};
+    for (const BsdfUnderTest& b : suite()) {
+        bool good = true;
+        for (const float c : cosines)
+            for (const float side : {1.f, -1.f})
+                for (const float lobe : numbers)
+                    for (const float u : numbers)
+                        for (const float v : numbers) {
+                            const Vec3 wo{std::sqrt(1 - c * c), 0, side * c};
+                            for (const Vec3 wi : {wo, -wo, mirrored(wo), Vec3{0, u, v}}) {
+                                const BsdfEval e = b.bsdf->eval(wo, wi, Transport::radiance);
+                                good = good && allFinite(e.fcos) && allFinite(e.pdfRatio) &&
+                                       std::isfinite(e.pdfSolidAngle) && e.pdfSolidAngle >= 0;
+                            }
+                            const auto s = b.bsdf->sample(wo, lobe, {u, v}, Transport::importance);
+                            if (s)
+                                good = good && allFinite(s->weight) && allFinite(s->pdfRatio) && isFinite(s->wi) &&
+                                       s->pdfSolidAngle > 0 && std::isfinite(s->pdfSolidAngle);
+                        }
+        CHECK_MESSAGE(good, b.name);
+    }
+}
+
+} // namespace abbe
