@@ -78,8 +78,8 @@ TEST_CASE("subsurface: eight wavelengths to a path agree with one, where red goe
             boundary + " } }\n");
         const TestImage hero = render(scene, nightly() ? 8192 : 1024);
         constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media).bits();
-        const RecordingFilm single =
-            renderPaths<kGrey>(scene, {.samples = nightly() ? 16384u : 4096u, .seed = 77, .wavelengths = oneWavelength});
+        const RecordingFilm single = renderPaths<kGrey>(
+            scene, {.samples = nightly() ? 16384u : 4096u, .seed = 77, .wavelengths = oneWavelength});
         for (const Channel channel : {Channel::x, Channel::y, Channel::z})
             checkSame(compareImages(hero.film, single, channel), 0.01);
     }
