@@ -188,7 +188,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0694", "a surface with holes holds a medium", "A mesh or cage with an `interior` has edges of a single face, or faces that are turned against each other. A ray that leaves through a hole takes the medium along to infinity, and one that enters through a hole does not find it. Vertices in the same place count as one."},
     // E07: materials and the library
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
-    {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some liquids and stones are both: `material preset milk; interior preset milk` are the surface and what is below it."},
+    {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
 };
 // clang-format on
 
