@@ -10,7 +10,8 @@ namespace {
 class Dielectric final : public Material {
   public:
     explicit Dielectric(const DielectricParams& params)
-        : ior_(params.ior), ggx_(Ggx::fromRoughness(params.roughness, 0)), absorption_(params.absorption) {
+        : ior_(params.ior ? params.ior : &crown_), ggx_(Ggx::fromRoughness(params.roughness, 0)),
+          absorption_(params.absorption) {
         if (!params.attenuationColor) return;
         attenuation_ = std::make_unique<AttenuationCurve>(*params.attenuationColor, params.attenuationDistance);
         absorption_ = attenuation_.get();
@@ -18,21 +19,24 @@ class Dielectric final : public Material {
 
     Effects needs() const override {
         Effects effects;
-        if (ior_ && !ior_->isConstant()) effects |= Effect::dispersion;
+        if (!ior_->isConstant()) effects |= Effect::dispersion;
         if (absorption_) effects |= Effect::absorption;
         return effects;
     }
 
-    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
-        const Spectrum n = ior_ ? ior_->at(wavelengths) : Spectrum(1.5f);
+    const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
+        Spectrum n = ior_->at(wavelengths);
+        if (hit.outside) n = n / hit.outside->at(wavelengths);
         if (RoughDielectricBsdf::representable(n, ggx_)) return arena.make<RoughDielectricBsdf>(n, ggx_);
         return arena.make<SmoothDielectricBsdf>(n);
     }
 
     const Curve* absorption() const override { return absorption_; }
+    const Curve* ior() const override { return ior_; }
 
   private:
-    const Curve* ior_; // null: 1.5
+    ConstantCurve crown_{1.5}; // of the default
+    const Curve* ior_;
     Ggx ggx_;
     const Curve* absorption_; // null: clear
     std::unique_ptr<const Curve> attenuation_;

@@ -7,6 +7,7 @@
 #include "geometry/instance_table.h"
 #include "geometry/surface_math.h"
 #include "geometry/time_steps.h"
+#include "render/material.h"
 
 #include <array>
 #include <atomic>
@@ -46,6 +47,7 @@ class EmbreeScene final : public Intersector {
     bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
         return occluded({from, to - from, kBeforeEnd, time});
     }
+    std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
     Bounds3 bounds() const override { return bounds_; }
     std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 
@@ -82,6 +84,7 @@ void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray&
     const RawHit raw{h.u, h.v, distance, h.primID, record.part};
     hit.material = record.material;
     hit.light = record.light;
+    hit.shape = record.shape;
     if (path.empty()) [[likely]] {
         hit.instance = SurfaceHit::kNoInstance;
         record.shape->surface(raw, ray, hit);
@@ -214,6 +217,32 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     return std::isfinite(best) && best <= static_cast<double>(ray.tMax);
 }
 
+// Within the offset of the origins of rays that go on, on both sides.
+std::size_t EmbreeScene::coincident(const Ray& ray, const SurfaceHit& hit,
+                                    std::span<SurfaceHit> others) const noexcept {
+    const float cosine = std::max(std::abs(dot(ray.direction, hit.ng)), 0.01f);
+    const float rounding = 4 * dot(abs(hit.ng), hit.pError) / cosine + 0x1p-21f * hit.distance;
+    Ray window = ray;
+    window.tMax = hit.distance + rounding;
+    RayContext context(rejected_);
+    context.skipped[context.skippedCount++] = hit.shape;
+    std::size_t count = 0;
+    while (count < others.size()) {
+        RTCRayHit rayHit;
+        fill(rayHit.ray, window, std::max(hit.distance - rounding, kNearestHit));
+        cast(scene.get(), context, rayHit);
+        if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+        SurfaceHit& other = others[count];
+        surface(rayHit.hit, context.path(rayHit.hit), rayHit.ray.tfar, ray, other);
+        other.distance = rayHit.ray.tfar;
+        context.skipped[context.skippedCount++] = other.shape;
+        // Only those of the same layer of other dielectrics: an opaque surface ends the path when it is met.
+        if (other.material->ior()) ++count;
+        if (context.skippedCount == RayContext::kMaxSkipped) break;
+    }
+    return count;
+}
+
 bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     if (!isTraceable(ray)) [[unlikely]] {
         rejected_.fetch_add(1, std::memory_order_relaxed);
@@ -236,6 +265,7 @@ struct EmbreeSceneBuilder::Impl {
     std::map<Inside, std::vector<Placement>> placements;
     std::map<Inside, std::vector<Motion>> moving;
     Interval shutter;
+    bool nested = false;
 
     // What is known of an object's scene once it is built.
     struct BuiltObject {
@@ -248,7 +278,7 @@ struct EmbreeSceneBuilder::Impl {
     std::uint64_t instanceCount = 0;
 
     static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
-    static void addShapes(EmbreeScene&, const Shapes&, BuiltObject&);
+    void addShapes(EmbreeScene&, const Shapes&, BuiltObject&) const;
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     void addMoving(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     static const InstanceTable& addTable(EmbreeScene&, std::size_t geometryId, const BuiltObject& placed,
@@ -263,10 +293,10 @@ EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const
 }
 
 // Adds the shapes to the scene, their records to the target, and the bounds of the finite ones.
-void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& shapes, BuiltObject& object) {
+void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& added, BuiltObject& object) const {
     object.firstRecord = target.records.size();
-    EmbreeSink sink(target.device.get(), object.scene, target.records);
-    for (const auto& [shape, binding] : shapes) {
+    EmbreeSink sink(target.device.get(), object.scene, target.records, nested);
+    for (const auto& [shape, binding] : added) {
         sink.add(*shape, binding.material, binding.light);
         if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());
     }
@@ -340,6 +370,7 @@ void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placemen
 
 void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutter = {open, duration}; }
 Interval EmbreeSceneBuilder::shutter() const { return impl_->shutter; }
+void EmbreeSceneBuilder::setNested(bool nested) { impl_->nested = nested; }
 
 void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, std::uint32_t inside) {
     ABBE_CHECK(object < impl_->objects.size() &&
@@ -353,12 +384,12 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
     s.scene = Impl::newScene(s);
     Impl::BuiltObject top;
     top.scene = s.scene.get();
-    Impl::addShapes(s, impl_->shapes, top); // first: its records stand at its geometry ids
+    impl_->addShapes(s, impl_->shapes, top); // first: its records stand at its geometry ids
     const std::size_t firstTable = s.records.size();
     for (std::uint32_t i = 0; i < impl_->objects.size(); ++i) {
         Impl::BuiltObject object;
         object.scene = s.objectScenes.emplace_back(Impl::newScene(s)).get();
-        Impl::addShapes(s, impl_->objects[i], object);
+        impl_->addShapes(s, impl_->objects[i], object);
         impl_->addTables(s, i, s.records.size() - object.firstRecord, object);
         rtcCommitScene(object.scene);
         impl_->built.push_back(object);

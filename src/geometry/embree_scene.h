@@ -44,6 +44,8 @@ class EmbreeSceneBuilder {
     // The time, in s, at which Ray::time is 0, and how much later it is 1. Before the first addMoving.
     void setShutter(double open, double duration);
     Interval shutter() const;
+    // Whether Intersector::coincident() is to find anything, for which meshes of dielectrics pay.
+    void setNested(bool);
     // Places an object that moves while the shutter is open, as addInstance. Requires maps without fault at all times
     // of the interval.
     void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene);

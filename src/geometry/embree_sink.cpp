@@ -1,11 +1,24 @@
 #include "geometry/embree_sink.h"
 
+#include "geometry/instance_table.h"
+#include "render/material.h"
+
 namespace abbe {
 
 namespace {
 
 // Callbacks of shapes that intersect themselves. The geometry's user pointer is the shape.
 const Shape& shapeOf(void* user) { return *static_cast<const Shape*>(user); }
+
+const RayContext& contextOf(const RTCIntersectContext* context) {
+    return *reinterpret_cast<const RayContext*>(context);
+}
+
+// Filters the hits of meshes.
+void skipMesh(const RTCFilterFunctionNArguments* args) {
+    if (args->N != 1 || args->valid[0] == 0) return;
+    if (contextOf(args->context).skips(&shapeOf(args->geometryUserPtr))) args->valid[0] = 0;
+}
 
 void analyticBounds(const RTCBoundsFunctionArguments* args) {
     const Bounds3 b = shapeOf(args->geometryUserPtr).bounds();
@@ -24,7 +37,9 @@ std::optional<RawHit> analyticHit(const Shape& shape, const RTCRay& r) {
 void analyticIntersect(const RTCIntersectFunctionNArguments* args) {
     auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     if (args->N != 1 || args->valid[0] == 0) return;
-    const auto hit = analyticHit(shapeOf(args->geometryUserPtr), rayHit.ray);
+    const Shape& shape = shapeOf(args->geometryUserPtr);
+    if (contextOf(args->context).skips(&shape)) return;
+    const auto hit = analyticHit(shape, rayHit.ray);
     if (!hit) return;
     rayHit.ray.tfar = hit->distance;
     rayHit.hit.u = hit->u; // the shape's own words
@@ -49,8 +64,8 @@ void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id) {
     rtcReleaseGeometry(geometry);
 }
 
-EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records)
-    : device_(device), scene_(scene), records_(records), firstRecord_(records.size()) {}
+EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records, bool nested)
+    : device_(device), scene_(scene), records_(records), firstRecord_(records.size()), nested_(nested) {}
 
 void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light) {
     next_ = {&shape, material, light, 0, PrimitiveKind::analytic, 1};
@@ -80,6 +95,10 @@ void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, TimeSteps<Vec3> ve
     RTCGeometry geometry = rtcNewGeometry(device_, type);
     shareSteps(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
+    if (nested_ && next_.material && next_.material->ior()) {
+        rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+        rtcSetGeometryIntersectFilterFunction(geometry, skipMesh);
+    }
     attach(geometry, type == RTC_GEOMETRY_TYPE_QUAD ? PrimitiveKind::quads : PrimitiveKind::triangles);
 }
 

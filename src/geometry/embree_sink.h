@@ -32,7 +32,8 @@ inline constexpr float kNearestHit = std::numeric_limits<float>::min();
 // end of `records`. Refers to the shapes and their data (see EmbreeSceneBuilder).
 class EmbreeSink final : public GeometrySink {
   public:
-    EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records);
+    // `nested`: meshes of dielectrics can be skipped by rays (RayContext::skips).
+    EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records, bool nested);
 
     void add(const Shape&, const Material*, const Light*);
 
@@ -53,6 +54,7 @@ class EmbreeSink final : public GeometrySink {
     RTCScene scene_;
     std::vector<GeometryRecord>& records_;
     std::size_t firstRecord_;
+    bool nested_;
     GeometryRecord next_;
 };
 

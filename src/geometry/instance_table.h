@@ -36,9 +36,19 @@ struct RayContext {
     }
     std::span<const PlacementStep> path(const RTCHit& hit) const { return {steps.data(), hit.instID[0]}; }
 
+    bool skips(const Shape* shape) const {
+        for (int i = 0; i < skippedCount; ++i)
+            if (skipped[static_cast<std::size_t>(i)] == shape) return true;
+        return false;
+    }
+
     RTCIntersectContext rtc; // first: Embree hands its address to the callbacks
     std::atomic<std::uint64_t>& rejected;
     std::array<PlacementStep, kMaxInstanceLevels> steps; // only those of a hit are ever written or read
+    // Shapes that the ray does not see: meshes of dielectrics, if they are built for it, and analytic shapes.
+    static constexpr int kMaxSkipped = 8;
+    std::array<const Shape*, kMaxSkipped> skipped;
+    int skippedCount = 0;
 };
 
 // Immutable once attached; the callbacks may run in any number of threads. Rays inside an object have the same

@@ -3,7 +3,9 @@
 namespace abbe {
 
 TileResult renderTileMedia(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<(Effects(Effect::absorption) | Effect::media).bits()>(context, film, job).run();
+    return TileKernel<(Effects(Effect::absorption) | Effect::textures | Effect::interfaces | Effect::media).bits()>(
+               context, film, job)
+        .run();
 }
 
 } // namespace abbe

@@ -4,11 +4,11 @@
 
 #include "base/arena.h"
 #include "integrators/light_sampler.h"
-#include "integrators/medium_around.h"
 #include "integrators/medium_tracker.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
+#include "integrators/surroundings_at.h"
 #include "math/equiangular.h"
 #include "render/integrator.h"
 #include "render/scene.h"
@@ -40,7 +40,6 @@ struct MediaState {
     };
 
     MediumTracker tracker;
-    MediumStack aroundCamera;
     Leg leg;
     std::vector<InScattering> inScattering;
 };
@@ -52,6 +51,9 @@ template <EffectBits E> class PathLoop {
     static constexpr std::uint32_t kLongPath = 64;
 
     static constexpr bool kMedia = hasEffect(E, Effect::media);
+    static constexpr bool kInterfaces = hasEffect(E, Effect::interfaces);
+    static constexpr bool kTextures = hasEffect(E, Effect::textures);
+    static_assert(kInterfaces || !kMedia, "media are entered and left as dielectrics are");
     // No path is longer: with these probabilities of survival a path of this length has a probability below any
     // machine's patience only if everything reflects everything; such paths are counted, never silent. In a white
     // medium paths of several times the square of its optical radius still carry light.
@@ -75,8 +77,12 @@ template <EffectBits E> class PathLoop {
     PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
         : context_(context), sampler_(sampler), arena_(arena), counters_(counters), media_(media) {}
 
-    // The camera ray is that of the hero alone; to be called before radiance().
+    // To be called before radiance(). The camera ray is that of the hero alone:
     void startWithHero() { startWithHero_ = true; }
+    // The camera is immersed:
+    void startIn(const Surroundings& around) requires(kInterfaces) { path_.nested.here = around; }
+    // The camera ray is a cone:
+    void startWith(const path_detail::Cone& cone) requires(kTextures) { path_.cone = cone; }
     // `rouletteScale` of the pixel, see RouletteReference.
     Spectrum radiance(Ray ray, const Wavelengths& lambda, float rouletteScale);
 
@@ -95,14 +101,20 @@ template <EffectBits E> class PathLoop {
     enum class Arrival : std::uint8_t { surface, collision, nowhere };
 
     Arrival arrive(Ray&, SurfaceHit&, std::uint32_t depth);
-    Arrival arriveThroughMedia(Ray&, SurfaceHit&, std::uint32_t depth);
+    Arrival arriveThrough(Ray&, SurfaceHit&, std::uint32_t depth);
+    bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t depth, std::uint32_t crossings);
+    bool hidden(SurfaceHit&, const Ray&, path_detail::Nested&) const;
+    float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&) const;
+    void meetSurface(SurfaceHit&, Vec3 direction);
+    void scatterCone();
     bool scatterInMedium(Ray&, std::uint32_t depth);
     class GlowCollector;
     void sampleNearLight(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings);
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
     float trackingShare(const PickedLight&);
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
-    Spectrum transmittance(Vec3 origin, const LightSample&, MediumStack inside, RandomStream);
+    Spectrum transmittance(Vec3 origin, const LightSample&, path_detail::Nested, RandomStream);
+    Spectrum clearness(const Surroundings&, float distance) const;
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
@@ -156,7 +168,6 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         path_.densities.film = lambda;
         if (startWithHero_) endSecondaryWavelengths();
     }
-    if constexpr (kMedia) path_.inside = media_.aroundCamera;
     const std::uint32_t maxDepth = context_.settings.maxDepth ? context_.settings.maxDepth : kMaxVertices;
     SurfaceHit hit;
     for (std::uint32_t depth = 0;; ++depth) {
@@ -166,7 +177,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
             leaveScene(ray.direction);
             break;
         }
-        if (arrival == Arrival::surface && hit.light) meetLight(hit, ray.direction);
+        if (arrival == Arrival::surface) meetSurface(hit, ray.direction);
         if (depth >= maxDepth) {
             counters_.capped += context_.settings.maxDepth == 0;
             break;
@@ -192,10 +203,27 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
 
 template <EffectBits E>
 typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
-    if constexpr (kMedia) return arriveThroughMedia(ray, hit, depth);
+    if constexpr (kInterfaces) return arriveThrough(ray, hit, depth);
     if (!context_.scene.intersector->intersect(ray, hit)) return Arrival::nowhere;
     if constexpr (kAbsorption) absorb(hit, ray.direction, hit.distance);
+    if constexpr (kTextures) path_.cone.radius += path_.cone.spread * hit.distance;
     return Arrival::surface;
+}
+
+// What shading needs to know of the path, and what the surface gives off.
+template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 direction) {
+    if constexpr (kTextures || kInterfaces) hit.arrival = direction;
+    if constexpr (kTextures) hit.footprint = path_.cone.radius;
+    if (hit.light) meetLight(hit, direction);
+    if constexpr (kTextures)
+        if (hit.material->bends()) hit.material->bend(hit);
+}
+
+// The directions of a wide lobe lie far apart: each stands for a cone of about the solid angle 1/p. Only a part of that
+// is averaged over, so that what a bounce sees keeps its texture (docs/language/textures.md, "Filtering").
+template <EffectBits E> void PathLoop<E>::scatterCone() {
+    constexpr float kShare = 0.15f;
+    if (!path_.delta) path_.cone.spread = std::max(path_.cone.spread, kShare / std::sqrt(kPi * path_.bsdfPdf));
 }
 
 template <EffectBits E>
@@ -267,22 +295,22 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     ++counters_.shadowRays;
     // From the moved origin to the light's own moved point: neither surface shadows itself.
     const Vec3 origin = spawnOrigin(hit, light->wi);
+    const bool through = eye.wo.z * wi.z < 0;
     [[maybe_unused]] Spectrum passing;
-    if constexpr (kMedia) {
-        MediumStack beyond = path_.inside;
-        if (eye.wo.z * wi.z < 0) crossBoundary(hit, light->wi, beyond);
-        passing = transmittance(origin, *light, beyond, sampler_.stream(2 * depth + 1));
+    if constexpr (kInterfaces) {
+        passing = transmittance(origin, *light, {path_.nested.after(through), {}}, sampler_.stream(2 * depth + 1));
         if (!anyNonZero(passing)) return;
     } else if (occluded(origin, *light)) {
         return;
     }
     const float pdf = picked.probability * light->pdfSolidAngle;
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
-    if constexpr (kAbsorption) {
-        const Curve* medium = eye.wo.z * wi.z < 0 ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
+    if constexpr (kInterfaces) {
+        contribution *= passing;
+    } else if constexpr (kAbsorption) {
+        const Curve* medium = through ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
         if (medium && light->distance < kInfinity) contribution *= exp(medium->at(path_.lambda) * -light->distance);
     }
-    if constexpr (kMedia) contribution *= passing;
     path_.radiance += contribution;
 }
 
@@ -301,10 +329,13 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
     if (!sidesAgree(hit, eye, next.wi, direction)) return false;
-    if constexpr (kAbsorption)
-        if (next.lobe.has(Lobe::transmission)) path_.interior.absorption = absorptionBeyond(hit, direction);
-    if constexpr (kMedia)
-        if (next.lobe.has(Lobe::transmission) && !crossBoundary(hit, direction, path_.inside)) ++counters_.capped;
+    if (next.lobe.has(Lobe::transmission)) {
+        if constexpr (kInterfaces)
+            path_.nested.here = path_.nested.beyond;
+        else if constexpr (kAbsorption)
+            path_.interior.absorption = absorptionBeyond(hit, direction);
+    }
+    if constexpr (kTextures) scatterCone();
     ray = {spawnOrigin(hit, direction), direction, kInfinity, path_.time};
     return anyNonZero(path_.beta);
 }
@@ -334,6 +365,10 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
 // Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a
 // boundary met from behind while no interior was entered.
 template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 direction, float distance) {
+    if constexpr (kInterfaces) {
+        if (const Curve* clear = path_.nested.here.absorption()) path_.beta *= exp(clear->at(path_.lambda) * -distance);
+        return;
+    }
     const Curve*& absorption = path_.interior.absorption;
     if (!absorption && dot(direction, hit.ng) > 0) absorption = hit.material->absorption();
     if (absorption) path_.beta *= exp(absorption->at(path_.lambda) * -distance);
@@ -357,5 +392,6 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 
 } // namespace abbe
 
+#include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_near_light.h"

@@ -18,8 +18,7 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
                        emission.pdfSolidAngle(path.from.p, ray_.origin + ray_.direction * t);
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
-        if constexpr (kAbsorption)
-            if (const Curve* clear = path.interior.absorption) arriving *= exp(clear->at(path.lambda) * -t);
+        arriving *= loop_.clearness(path.nested.here, t);
         path.radiance += arriving;
     }
 
@@ -40,35 +39,25 @@ inline Vec3 placeOfCollision(const Ray& ray, float t, const SurfaceHit* ahead) {
     return spawnOrigin(*ahead, -ray.direction);
 }
 
-// Goes on to the next surface or collision, straight through shapes that are only the boundary of a medium.
+// Follows the ray up to the surface ahead, if any; true if the path collided on the way, where the ray then starts.
 template <EffectBits E>
-typename PathLoop<E>::Arrival PathLoop<E>::arriveThroughMedia(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
-    RandomStream random = sampler_.stream(2 * depth);
+bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& random, std::uint32_t depth,
+                           std::uint32_t crossings) {
+    const float tMax = ahead ? ahead->distance : kInfinity;
     TrackedWeights weights{&path_.beta, nullptr};
     if constexpr (kDispersion) weights.density = &path_.densities.unidirectional;
     GlowCollector glow(*this, ray);
-    for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        const bool met = context_.scene.intersector->intersect(ray, hit);
-        const float tMax = met ? hit.distance : kInfinity;
-        sampleNearLight(ray, tMax, depth, crossings);
-        const MediumCollision collision =
-            media_.tracker.follow(ray, tMax, path_.inside, path_.lambda, random, weights, &glow);
-        if constexpr (kAbsorption)
-            if (met) absorb(hit, ray.direction, collision.medium ? collision.t : tMax);
-        if (collision.medium) {
-            media_.leg.collision = collision.t;
-            ray.origin = placeOfCollision(ray, collision.t, met ? &hit : nullptr);
-            collided_ = collision.medium;
-            return Arrival::collision;
-        }
-        if (!met) return Arrival::nowhere;
-        if (!hit.material->isBoundary()) return Arrival::surface;
-        if (!crossBoundary(hit, ray.direction, path_.inside)) ++counters_.capped;
-        ray.origin = spawnOrigin(hit, ray.direction);
-    }
-    ++counters_.capped;
-    path_.beta = Spectrum(0.f);
-    return Arrival::nowhere;
+    sampleNearLight(ray, tMax, depth, crossings);
+    const MediumCollision collision =
+        media_.tracker.follow(ray, tMax, path_.nested.here.media(), path_.lambda, random, weights, &glow);
+    if constexpr (kAbsorption)
+        if (ahead) absorb(*ahead, ray.direction, collision.medium ? collision.t : tMax);
+    if (!collision.medium) return false;
+    media_.leg.collision = collision.t;
+    if constexpr (kTextures) path_.cone.radius += path_.cone.spread * collision.t;
+    ray.origin = placeOfCollision(ray, collision.t, ahead);
+    collided_ = collision.medium;
+    return true;
 }
 
 // The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1 but for wavelengths.
@@ -88,6 +77,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
         path_.densities.before = path_.densities.unidirectional;
         path_.densities.direction = path_.densities.unidirectional;
     }
+    if constexpr (kTextures) scatterCone();
     ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
     return true;
 }
@@ -102,7 +92,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     const float cosine = dot(direction, light->wi), value = phase.value(cosine);
     if (!(value > 0)) return;
     ++counters_.shadowRays;
-    const Spectrum passing = transmittance(p, *light, path_.inside, sampler_.stream(2 * depth + 1));
+    const Spectrum passing = transmittance(p, *light, {path_.nested.here, {}}, sampler_.stream(2 * depth + 1));
     if (!anyNonZero(passing)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     BsdfEval eval;
@@ -110,40 +100,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);
-    if constexpr (kAbsorption)
-        if (const Curve* clear = path_.interior.absorption; clear && light->distance < kInfinity)
-            contribution *= exp(clear->at(path_.lambda) * -light->distance);
     path_.radiance += contribution * trackingShare(picked);
-}
-
-// Of everything between a vertex and a light: nothing behind a surface, the media's else.
-template <EffectBits E>
-Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, MediumStack inside, RandomStream random) {
-    const bool infinite = !(light.distance < kInfinity);
-    Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path_.time};
-    if (!context_.scene.boundaries) {
-        if (occluded(origin, light)) return Spectrum(0.f);
-        return media_.tracker.transmittance(ray, ray.tMax, inside, path_.lambda, random);
-    }
-    Spectrum result(1.f);
-    SurfaceHit hit;
-    for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        // The direction is made anew: rounding would let long chains of boundaries miss the light's own point.
-        if (!infinite) {
-            const Vec3 way = light.p - ray.origin;
-            ray.tMax = length(way);
-            if (!(ray.tMax > 0)) return result;
-            ray.direction = way / ray.tMax;
-        }
-        const bool met = context_.scene.intersector->intersect(ray, hit) && hit.distance < ray.tMax;
-        if (met && !hit.material->isBoundary()) return Spectrum(0.f);
-        result *= media_.tracker.transmittance(ray, met ? hit.distance : ray.tMax, inside, path_.lambda, random);
-        if (!met || !anyNonZero(result)) return result;
-        crossBoundary(hit, ray.direction, inside);
-        ray.origin = spawnOrigin(hit, ray.direction);
-    }
-    ++counters_.capped;
-    return Spectrum(0.f);
 }
 
 } // namespace abbe

@@ -18,7 +18,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
         (settings.maxDepth && depth >= settings.maxDepth))
         return;
     leg.ray = ray;
-    leg.media = media_.tracker.extent(ray, tMax, path_.inside);
+    leg.media = media_.tracker.extent(ray, tMax, path_.nested.here.media());
     if (leg.media.empty()) return;
     // Numbers of no vertex.
     const std::uint32_t set = (crossings + 1) << 20 | depth;
@@ -27,7 +27,8 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     const auto distances = distancesTowards(*picked.light);
     if (!distances) return;
     const float t = distances->sample(sample.bsdf.x), pdf = distances->pdf(t);
-    const float tracked = media_.tracker.expected(ray, t, path_.inside, path_.lambda, &media_.inScattering);
+    const float tracked =
+        media_.tracker.expected(ray, t, path_.nested.here.media(), path_.lambda, &media_.inScattering);
     const Vec3 p = ray.origin + ray.direction * t;
     const float pickedThere = context_.lights.probability(picked.light, picked.part, p);
     const float share = picked.probability * pdf / (picked.probability * pdf + pickedThere * tracked);
@@ -49,13 +50,11 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     }
     if (!anyNonZero(scattered)) return;
     ++counters_.shadowRays;
-    Spectrum passing = transmittance(p, *light, path_.inside, sampler_.stream(2 * set + 1));
+    Spectrum passing = transmittance(p, *light, {path_.nested.here, {}}, sampler_.stream(2 * set + 1));
     if (!anyNonZero(passing)) return;
     RandomStream random = sampler_.stream(2 * set);
-    passing *= media_.tracker.transmittance(ray, t, path_.inside, path_.lambda, random);
-    if constexpr (kAbsorption)
-        if (const Curve* clear = path_.interior.absorption)
-            passing *= exp(clear->at(path_.lambda) * -(t + light->distance));
+    passing *= media_.tracker.transmittance(ray, t, path_.nested.here.media(), path_.lambda, random);
+    passing *= clearness(path_.nested.here, t);
     const float density = kept * pdf * picked.probability * light->pdfSolidAngle;
     path_.radiance += path_.beta * light->radiance * scattered * passing * (share / density);
 }
@@ -80,7 +79,7 @@ template <EffectBits E> float PathLoop<E>::trackingShare(const PickedLight& pick
     const float pdf =
         distances->pdf(leg.collision) * context_.lights.probabilityAlong(picked.light, picked.part, leg.ray, leg.media);
     if (!(pdf > 0)) return 1;
-    const float tracked = media_.tracker.expected(leg.ray, leg.collision, path_.inside, path_.lambda);
+    const float tracked = media_.tracker.expected(leg.ray, leg.collision, path_.nested.here.media(), path_.lambda);
     return picked.probability * tracked / (pdf + picked.probability * tracked);
 }
 

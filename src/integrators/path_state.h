@@ -1,7 +1,7 @@
 // What a path carries from vertex to vertex. Members of effects that a scene lacks do not exist.
 #pragma once
 
-#include "integrators/medium_stack.h"
+#include "integrators/surroundings.h"
 #include "render/effects.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
@@ -31,6 +31,17 @@ struct SpectralDensities {
 struct Interior {
     const Curve* absorption = nullptr;
 };
+// What the path is in, and what it will be in once it has gone through the surface that it met.
+struct Nested {
+    Surroundings here, beyond;
+    // Where a ray starts that leaves the surface.
+    const Surroundings& after(bool throughIt) const { return throughIt ? beyond : here; }
+};
+// How wide the path is: a cone about its ray, whose radius grows along the way [Amanatides1984].
+struct Cone {
+    float radius = 0; // at the start of the segment, m
+    float spread = 0; // radius gained per m
+};
 } // namespace path_detail
 
 template <EffectBits E> struct PathState {
@@ -48,7 +59,11 @@ template <EffectBits E> struct PathState {
     [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::absorption), path_detail::Interior,
                                              path_detail::Nothing>
         interior;
-    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::media), MediumStack, path_detail::Nothing> inside;
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::interfaces), path_detail::Nested,
+                                             path_detail::Nothing>
+        nested;
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::textures), path_detail::Cone, path_detail::Nothing>
+        cone;
 };
 
 } // namespace abbe

@@ -19,12 +19,16 @@ struct Kernel {
     const char* name;
     TileFunction render;
 };
+constexpr Effects kSurfaces = Effects(Effect::absorption) | Effect::textures | Effect::interfaces;
 constexpr Kernel kKernels[] = {
     {{}, "plain", renderTilePlain},
+    {Effect::textures, "textures", renderTileTextures},
     {Effect::absorption, "absorption", renderTileAbsorption},
+    {kSurfaces, "absorption+textures+interfaces", renderTileInterfaces},
     {Effects(Effect::absorption) | Effect::dispersion, "absorption+dispersion", renderTileDispersion},
-    {Effects(Effect::absorption) | Effect::media, "absorption+media", renderTileMedia},
-    {kAllEffects, "absorption+dispersion+media", renderTileFull},
+    {kSurfaces | Effect::dispersion, "absorption+textures+interfaces+dispersion", renderTileSpectralInterfaces},
+    {kSurfaces | Effect::media, "absorption+textures+interfaces+media", renderTileMedia},
+    {kAllEffects, "all", renderTileFull},
 };
 
 double threadSeconds() {

@@ -45,10 +45,24 @@ template <EffectBits E> class TileKernel {
   private:
     using Media = typename PathLoop<E>::Media;
     // Rays of a pinhole share their origin, and what is around it.
-    void findMediaAround(const Ray& ray) {
-        if (!context_.scene.interiors || ray.origin == lastOrigin_) return;
-        lastOrigin_ = ray.origin;
-        media_.aroundCamera = mediaAround(context_.scene, ray.origin, ray.time);
+    const Surroundings& around(const Ray& ray) {
+        const auto contains = [&](const Bounds3& filled) { return filled.contains(ray.origin); };
+        if (ray.origin == around_.origin) return around_.surroundings;
+        around_ = {};
+        around_.origin = ray.origin;
+        if (std::ranges::any_of(context_.scene.filled, contains))
+            around_.surroundings = surroundingsAt(context_.scene, ray.origin, ray.time);
+        return around_.surroundings;
+    }
+
+    // Half of what lies between the rays of two neighbouring pixels, and half of that again: textures are averaged over
+    // less than the filter covers, which averages the rest.
+    path_detail::Cone coneOf(const CameraSample& at, const Ray& ray) const {
+        CameraSample next = at;
+        next.film.x += 1;
+        const CameraRay other = context_.scene.camera->ray(next);
+        if (!(other.weight > 0)) return {};
+        return {0.25f * length(other.ray.origin - ray.origin), 0.25f * length(other.ray.direction - ray.direction)};
     }
 
     void replicate(int x, int y, int r) {
@@ -78,12 +92,14 @@ template <EffectBits E> class TileKernel {
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
         const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
-        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
+        const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
+        const CameraRay camera = context_.scene.camera->ray(at);
         radiance_ = Spectrum(0.f);
         maySubtract_ = false;
         if (!(camera.weight > 0)) return {};
-        if constexpr (PathLoop<E>::kMedia) findMediaAround(camera.ray);
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
+        if constexpr (PathLoop<E>::kInterfaces) loop.startIn(around(camera.ray));
+        if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(at, camera.ray));
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
         const std::uint64_t before = signedWeights();
@@ -123,7 +139,11 @@ template <EffectBits E> class TileKernel {
     Sampler sampler_;
     Arena arena_;
     [[no_unique_address]] Media media_;
-    Vec3 lastOrigin_{kInfinity, kInfinity, kInfinity};
+    struct Around {
+        Vec3 origin{kInfinity, kInfinity, kInfinity};
+        Surroundings surroundings;
+    };
+    [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, Around, path_detail::Nothing> around_;
     TileResult result_;
     Spectrum radiance_; // of the last sample
     bool maySubtract_ = false;
@@ -131,10 +151,13 @@ template <EffectBits E> class TileKernel {
 
 using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);
 
-// A chain of supersets, one translation unit each (path_kernel_*.cpp). All are always built, so that none rots.
+// Supersets of each other, one translation unit each (path_kernel_*.cpp). All are always built, so that none rots.
 TileResult renderTilePlain(const PathContext&, Film&, const TileJob&);
+TileResult renderTileTextures(const PathContext&, Film&, const TileJob&);
 TileResult renderTileAbsorption(const PathContext&, Film&, const TileJob&);
+TileResult renderTileInterfaces(const PathContext&, Film&, const TileJob&);
 TileResult renderTileDispersion(const PathContext&, Film&, const TileJob&);
+TileResult renderTileSpectralInterfaces(const PathContext&, Film&, const TileJob&);
 TileResult renderTileMedia(const PathContext&, Film&, const TileJob&);
 TileResult renderTileFull(const PathContext&, Film&, const TileJob&);
 

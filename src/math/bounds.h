@@ -20,6 +20,14 @@ template <typename T> struct Bounds3T {
         lower = min(lower, b.lower);
         upper = max(upper, b.upper);
     }
+    bool contains(Vec3T<T> p) const {
+        return p.x >= lower.x && p.y >= lower.y && p.z >= lower.z && p.x <= upper.x && p.y <= upper.y && p.z <= upper.z;
+    }
+    // Touching counts.
+    bool overlaps(const Bounds3T& b) const {
+        return lower.x <= b.upper.x && lower.y <= b.upper.y && lower.z <= b.upper.z && b.lower.x <= upper.x &&
+               b.lower.y <= upper.y && b.lower.z <= upper.z;
+    }
     Vec3T<T> centre() const { return (lower + upper) * T(0.5); }
     Vec3T<T> diagonal() const { return upper - lower; }
     // Radius of the bounding sphere about the centre; 0 for an empty box.

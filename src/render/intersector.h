@@ -6,6 +6,7 @@
 #include "render/surface_hit.h"
 
 #include <cstdint>
+#include <span>
 
 namespace abbe {
 
@@ -15,6 +16,12 @@ class Intersector {
     virtual ~Intersector() = default;
     // Nearest hit in (0, tMax]; fills `hit` and returns true, or returns false.
     virtual bool intersect(const Ray&, SurfaceHit& hit) const noexcept = 0;
+    // The faces of other shapes of dielectrics that lie where `hit`, found along this ray, lies, to within rounding: a
+    // ray that goes on from it would miss them. At most others.size(); their number.
+    virtual std::size_t coincident(const Ray&, const SurfaceHit& hit, std::span<SurfaceHit> others) const noexcept {
+        static_cast<void>(hit), static_cast<void>(others);
+        return 0;
+    }
     // True if anything lies in (0, tMax).
     virtual bool occluded(const Ray&) const noexcept = 0;
     // True if anything lies between two points: a shadow ray without the cost of a unit direction.

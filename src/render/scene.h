@@ -21,8 +21,10 @@ struct Scene {
     std::vector<std::unique_ptr<const Light>> lights; // committed
     std::vector<std::unique_ptr<const Medium>> media;
     std::vector<const Medium*> openMedia; // those that no shape bounds
-    bool interiors = false;               // whether any shape bounds one
-    bool boundaries = false;              // whether any shape is nothing but such a boundary: light passes through
+    std::vector<Bounds3> filled;          // of the shapes that a medium or a dielectric fills
+    bool nested = false;                  // whether such dielectrics may overlap
+    bool boundaries = false; // whether light goes straight through any surface: one that only bounds a medium, is
+                             // partly open, or lies hidden in a dielectric
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
     Effects effects;

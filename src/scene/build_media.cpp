@@ -115,6 +115,25 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
     return materials_[*index].get();
 }
 
+void SceneBuilder::noteFilled(const Material& material, const Bounds3& box, bool repeated) {
+    if (material.ior() || material.interior()) filledShapes_.push_back({box, &material, repeated});
+}
+
+// By their boxes: what is apart for certain need not be followed from one into the other.
+bool SceneBuilder::dielectricsMayOverlap() const {
+    constexpr std::size_t kMany = 300; // not worth the pairs
+    std::vector<const FilledShape*> dielectrics;
+    for (const FilledShape& shape : filledShapes_)
+        if (shape.material->ior()) dielectrics.push_back(&shape);
+    if (dielectrics.size() > kMany) return true;
+    for (std::size_t i = 0; i < dielectrics.size(); ++i) {
+        if (dielectrics[i]->repeated) return true;
+        for (std::size_t j = 0; j < i; ++j)
+            if (dielectrics[i]->box.overlaps(dielectrics[j]->box)) return true;
+    }
+    return false;
+}
+
 void SceneBuilder::noteMedia(Scene& scene) {
     placeNoise(scene.origin);
     const auto note = [&](const Medium& medium, Span span, std::string_view what) {
@@ -128,8 +147,16 @@ void SceneBuilder::noteMedia(Scene& scene) {
         note(*medium, span, "this volume");
         scene.openMedia.push_back(medium);
     }
-    scene.interiors = !interiorAskers_.empty();
-    for (const std::uint32_t index : usedMaterials_) scene.boundaries |= materials_[index]->isBoundary();
+    for (const FilledShape& shape : filledShapes_) scene.filled.push_back(shape.box);
+    scene.nested = dielectricsMayOverlap();
+    if (scene.nested) {
+        scene.effects |= Effect::interfaces;
+        scene.reasons.push_back({Effect::interfaces, {}, "dielectrics touch or may lie in one another"});
+    }
+    scene.boundaries = scene.nested;
+    for (const std::uint32_t index : usedMaterials_)
+        scene.boundaries |= materials_[index]->isBoundary() || materials_[index]->mayBeOpen();
+    embree_.setNested(scene.nested);
     scene.media = std::move(media_);
 }
 

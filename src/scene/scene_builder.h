@@ -38,6 +38,9 @@ struct SubsurfaceInside;
 struct VdbGrid;
 struct VdbParams;
 
+// The box around anything.
+inline constexpr Bounds3 kEverything{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+
 class SceneBuilder final : public schema::Resolver {
   public:
     SceneBuilder(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&);
@@ -203,6 +206,8 @@ class SceneBuilder final : public schema::Resolver {
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteInterior(const Medium&);
     bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
+    void noteFilled(const Material&, const Bounds3&, bool repeated);
+    bool dielectricsMayOverlap() const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
 
@@ -264,6 +269,12 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<NoiseMedium*> noiseMedia_; // those of media_
     std::vector<Span> mediumSpans_;        // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
+    struct FilledShape {
+        Bounds3 box; // render space; of what is placed in objects or moves: everything
+        const Material* material;
+        bool repeated; // in an object, of which there may be several
+    };
+    std::vector<FilledShape> filledShapes_;
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;

@@ -154,8 +154,9 @@ shape sphere { center 0 0 -3; radius 1; material dielectric { ior 1; absorption 
             auto media = PathLoop<E>::makeMedia(scene.scene());
             // The eye is the origin of render space.
             const Ray ray{origin - Vec3{0, 0, 5}, normalize(direction)};
-            const Spectrum seen =
-                PathLoop<E>(context, sampler, arena, counters, media).radiance(ray, lambda, 1e9f); // no roulette
+            PathLoop<E> loop(context, sampler, arena, counters, media);
+            if constexpr (PathLoop<E>::kInterfaces) loop.startIn(surroundingsAt(scene.scene(), ray.origin, 0));
+            const Spectrum seen = loop.radiance(ray, lambda, 1e9f); // no roulette
             for (int lane = 0; lane < kLanes; ++lane) {
                 const double sigma = ink->at(static_cast<double>(lambda.nm[lane]));
                 CHECK(seen[lane] == doctest::Approx(2 * std::exp(-sigma * inInk - 0.25 * inSphere)).epsilon(1e-5));

@@ -1,0 +1,11 @@
+#include "integrators/tile_kernel.h"
+
+namespace abbe {
+
+TileResult renderTileSpectralInterfaces(const PathContext& context, Film& film, const TileJob& job) {
+    return TileKernel<(Effects(Effect::absorption) | Effect::textures | Effect::interfaces | Effect::dispersion)
+                          .bits()>(context, film, job)
+        .run();
+}
+
+} // namespace abbe

@@ -1,0 +1,146 @@
+// Dielectrics inside one another: what fills the space decides, however the walls were modelled.
+#include "support/scene_test_paths.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+constexpr EffectBits kAll = kAllEffects.bits();
+
+// A closed box as a mesh, or the hollow of one.
+std::string box(double half, bool hollow, int first) {
+    std::string faces;
+    for (const std::array<int, 4>& f :
+         {std::array{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
+        faces += hollow ? fmt::format("- {} {} {} {}; ", f[3] + first, f[2] + first, f[1] + first, f[0] + first)
+                        : fmt::format("- {} {} {} {}; ", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
+    static_cast<void>(half);
+    return faces;
+}
+std::string corners(double h) {
+    return fmt::format("- -{0} -{0} -{0}; - {0} -{0} -{0}; - {0} {0} -{0}; - -{0} {0} -{0}; - -{0} -{0} {0}; "
+                       "- {0} -{0} {0}; - {0} {0} {0}; - -{0} {0} {0}; ",
+                       fmt::format("{:.12f}", h));
+}
+
+// A tank of glass, 24 mm wide with walls of 2 mm, and a block of inky water in it whose half width is given.
+TestScene tank(double water, int glassPriority = 2) {
+    return TestScene::parse(fmt::format(
+        R"(scene 1
+camera {{ from 0 0 0.2; look-at 0 0 0 }}
+light sky {{ radiance 1 }}
+material glass dielectric {{ ior 1.5; priority {} }}
+material water dielectric {{ ior 1.33; absorption 30; priority 1 }}
+shape mesh {{ material glass; points {{ {}{} }}; faces {{ {}{} }} }}
+shape mesh {{ material water; points {{ {} }}; faces {{ {} }} }}
+)",
+        glassPriority, corners(0.012), corners(0.01), box(0.012, false, 0), box(0.01, true, 8), corners(water),
+        box(water, false, 0)));
+}
+
+struct Estimate {
+    double mean = 0, error = 0;
+};
+
+// Radiance along a ray, over many paths.
+Estimate seen(const TestScene& scene, Vec3 origin, Vec3 direction, std::uint32_t paths = 40000) {
+    const LightSampler lights(scene.scene().lights);
+    const PathContext context{scene.scene(), lights, {}, true};
+    auto media = PathLoop<kAll>::makeMedia(scene.scene());
+    Sampler sampler;
+    sampler.startPixel(7, true, true);
+    Arena arena;
+    PathCounters counters;
+    double sum = 0, squares = 0;
+    const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
+    const Surroundings around = surroundingsAt(scene.scene(), eye, 0);
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        sampler.start(i);
+        PathLoop<kAll> loop(context, sampler, arena, counters, media);
+        loop.startIn(around);
+        const double x = mean(loop.radiance({eye, normalize(direction)}, Wavelengths::sample(0.3f), 1));
+        sum += x;
+        squares += x * x;
+    }
+    const double n = paths, m = sum / n;
+    CHECK(counters.capped == 0);
+    return {m, std::sqrt(std::max(0.0, squares / n - m * m) / n)};
+}
+
+// Reflected and transmitted share of a stack of layers, seen from one side, all lit with 1 from both sides.
+struct Stack {
+    double r = 0, t = 1, back = 0;   // back: reflection seen from the far side
+    void add(double r2, double t2) { // a symmetric layer
+        const double bounces = 1 / (1 - back * r2);
+        const double reflected = r + t * t * r2 * bounces, through = t * t2 * bounces;
+        back = r2 + t2 * t2 * back * bounces;
+        r = reflected;
+        t = through;
+    }
+};
+double interfaceReflectance(double n1, double n2) { return ((n1 - n2) / (n1 + n2)) * ((n1 - n2) / (n1 + n2)); }
+
+} // namespace
+
+TEST_CASE("a tank of water is as bright along its axis as the layers say, with overlapping and coincident walls") {
+    const double outer = interfaceReflectance(1, 1.5), inner = interfaceReflectance(1.5, 1.33);
+    Stack stack;
+    stack.add(outer, 1 - outer);
+    stack.add(inner, 1 - inner);
+    stack.add(0, std::exp(-30 * 0.02));
+    stack.add(inner, 1 - inner);
+    stack.add(outer, 1 - outer);
+    const double expected = stack.r + stack.t;
+    // Overlapping by half the wall; by a hair; coincident; apart by less than light can tell (optical contact).
+    for (const double half : {0.011, 0.01001, 0.01, 0.01 - 2e-8}) {
+        CAPTURE(half);
+        const Estimate e = seen(tank(half), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+        CHECK(std::abs(e.mean - expected) < 4 * e.error + 1e-5);
+    }
+    // Apart by an air film, there is an air film.
+    Stack film;
+    const double wet = interfaceReflectance(1, 1.33);
+    for (const double r : {outer, outer, wet}) film.add(r, 1 - r);
+    film.add(0, std::exp(-30 * 0.0199));
+    for (const double r : {wet, outer, outer}) film.add(r, 1 - r);
+    const Estimate apart = seen(tank(0.00995), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    CHECK(std::abs(apart.mean - film.r - film.t) < 4 * apart.error + 1e-5);
+    CHECK(std::abs(expected - film.r - film.t) > 0.01);
+}
+
+TEST_CASE("overlapping and coincident walls agree at any angle, and with the eye in the water") {
+    const TestScene overlapping = tank(0.011), coincident = tank(0.01);
+    for (const auto& [origin, direction] : {std::pair{Vec3{0.05f, 0.02f, 0.2f}, Vec3{-0.21f, -0.06f, -1}},
+                                            {Vec3{0.003f, 0.002f, 0.001f}, Vec3{0.3f, -0.5f, 1}},
+                                            {Vec3{0.0f, 0.04f, 0.05f}, Vec3{0.02f, -0.8f, -1}}}) {
+        const Estimate a = seen(overlapping, origin, direction), b = seen(coincident, origin, direction);
+        CAPTURE(a.mean);
+        CAPTURE(b.mean);
+        CHECK(std::abs(a.mean - b.mean) < 4 * std::hypot(a.error, b.error) + 1e-5);
+    }
+}
+
+TEST_CASE("the priority decides what fills the overlap") {
+    // Water over glass: less glass, more water.
+    const Estimate glass = seen(tank(0.011, 2), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    const Estimate water = seen(tank(0.011, 0), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    CHECK(water.mean < glass.mean * std::exp(-30 * 0.001));
+}
+
+TEST_CASE("dielectrics that are apart ask for nothing") {
+    const auto effects = [](const char* second) {
+        const TestScene scene = TestScene::parse(fmt::format(R"(scene 1
+light sky {{ radiance 1 }}
+shape sphere {{ material dielectric {{ ior 1.5 }} }}
+shape sphere {{ {}; material dielectric {{ ior 1.33 }} }}
+)",
+                                                             second));
+        return scene.scene().effects;
+    };
+    CHECK(!effects("center 3 0 0").has(Effect::interfaces));
+    CHECK(effects("center 1.5 0 0").has(Effect::interfaces));
+}
+
+} // namespace abbe::test
