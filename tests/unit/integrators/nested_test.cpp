@@ -1,4 +1,5 @@
 // Dielectrics inside one another: what fills the space decides, however the walls were modelled.
+#include "materials/dielectric.h"
 #include "support/scene_test_paths.h"
 
 #include <doctest/doctest.h>
@@ -127,6 +128,25 @@ TEST_CASE("the priority decides what fills the overlap") {
     const Estimate glass = seen(tank(0.011, 2), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
     const Estimate water = seen(tank(0.011, 0), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
     CHECK(water.mean < glass.mean * std::exp(-30 * 0.001));
+}
+
+TEST_CASE("the list of dielectrics: priorities, equals, strangers, and no room") {
+    const auto glass = makeDielectric({}), ink = makeDielectric({});
+    DielectricStack stack;
+    CHECK(stack.top() == nullptr);
+    stack.leave(glass.get());
+    CHECK(stack.size() == 0);
+    CHECK(stack.enter(glass.get()));
+    CHECK(stack.enter(ink.get()));
+    CHECK(stack.top() == ink.get()); // of equals, the one entered last
+    CHECK(stack.enter(glass.get())); // twice in the same
+    CHECK(stack.top() == glass.get());
+    stack.leave(glass.get());
+    CHECK(stack.top() == ink.get());
+    stack.leave(ink.get());
+    CHECK(stack.top() == glass.get());
+    while (stack.size() < DielectricStack::kMax) CHECK(stack.enter(ink.get()));
+    CHECK(!stack.enter(ink.get()));
 }
 
 TEST_CASE("dielectrics that are apart ask for nothing") {
