@@ -217,11 +217,13 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     return std::isfinite(best) && best <= static_cast<double>(ray.tMax);
 }
 
-// Within the offset of the origins of rays that go on, on both sides.
+// Within the offset of the origins of rays that go on, on both sides, or a film of air that light crosses as if it were
+// not there (docs/decisions/016-nested-dielectrics.md).
 std::size_t EmbreeScene::coincident(const Ray& ray, const SurfaceHit& hit,
                                     std::span<SurfaceHit> others) const noexcept {
     const float cosine = std::max(std::abs(dot(ray.direction, hit.ng)), 0.01f);
-    const float rounding = 4 * dot(abs(hit.ng), hit.pError) / cosine + 0x1p-21f * hit.distance;
+    constexpr float kOpticalContact = 5e-8f; // m
+    const float rounding = (4 * dot(abs(hit.ng), hit.pError) + kOpticalContact) / cosine + 0x1p-21f * hit.distance;
     Ray window = ray;
     window.tMax = hit.distance + rounding;
     RayContext context(rejected_);

@@ -16,7 +16,11 @@ template <EffectBits E> bool PathLoop<E>::hidden(SurfaceHit& hit, const Ray& ray
     std::size_t count = 0;
     if (context_.scene.nested) {
         count = context_.scene.intersector->coincident(ray, hit, others);
-        for (std::size_t i = 0; i < count; ++i) nested.beyond.cross(others[i], ray.direction);
+        for (std::size_t i = 0; i < count; ++i) {
+            nested.beyond.cross(others[i], ray.direction);
+            // Rays that leave have to start before or behind all of them.
+            hit.pError = hit.pError + abs(others[i].p - hit.p) + others[i].pError;
+        }
     }
     const Material* const after = nested.beyond.filling();
     // A dielectric that is left without having been entered, as through a hole, is taken to have been there.
@@ -25,9 +29,13 @@ template <EffectBits E> bool PathLoop<E>::hidden(SurfaceHit& hit, const Ray& ray
         return false;
     }
     if (before == after) return true;
-    for (std::size_t i = 0; i < count; ++i)
-        if (hit.material != after && (others[i].material == after || (hit.material != before && !after)))
-            std::swap(hit, others[i]);
+    const auto takeFaceOf = [&, offset = hit.pError](const Material* material) {
+        for (std::size_t i = 0; i < count && hit.material != material; ++i)
+            if (others[i].material == material) hit = others[i];
+        hit.pError = offset;
+        return hit.material == material;
+    };
+    if (!after || !takeFaceOf(after)) takeFaceOf(before);
     hit.outside = hit.material == after ? nested.here.ior() : nested.beyond.ior();
     return false;
 }
