@@ -1,14 +1,12 @@
 // Dielectrics inside one another: what fills the space decides, however the walls were modelled.
 #include "materials/dielectric.h"
-#include "support/scene_test_paths.h"
+#include "support/ray_estimate.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 namespace abbe::test {
 namespace {
-
-constexpr EffectBits kAll = kAllEffects.bits();
 
 // A closed box as a mesh, or the hollow of one.
 std::string box(double half, bool hollow, int first) {
@@ -41,35 +39,6 @@ shape mesh {{ material water; points {{ {} }}; faces {{ {} }} }}
         box(water, false, 0)));
 }
 
-struct Estimate {
-    double mean = 0, error = 0;
-};
-
-// Radiance along a ray, over many paths.
-Estimate seen(const TestScene& scene, Vec3 origin, Vec3 direction, std::uint32_t paths = 40000) {
-    const LightSampler lights(scene.scene().lights);
-    const PathContext context{scene.scene(), lights, {}, true};
-    auto media = PathLoop<kAll>::makeMedia(scene.scene());
-    Sampler sampler;
-    sampler.startPixel(7, true, true);
-    Arena arena;
-    PathCounters counters;
-    double sum = 0, squares = 0;
-    const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
-    const Surroundings around = surroundingsAt(scene.scene(), eye, 0);
-    for (std::uint32_t i = 0; i < paths; ++i) {
-        sampler.start(i);
-        PathLoop<kAll> loop(context, sampler, arena, counters, media);
-        loop.startIn(around);
-        const double x = mean(loop.radiance({eye, normalize(direction)}, Wavelengths::sample(0.3f), 1));
-        sum += x;
-        squares += x * x;
-    }
-    const double n = paths, m = sum / n;
-    CHECK(counters.capped == 0);
-    return {m, std::sqrt(std::max(0.0, squares / n - m * m) / n)};
-}
-
 // Reflected and transmitted share of a stack of layers, seen from one side, all lit with 1 from both sides.
 struct Stack {
     double r = 0, t = 1, back = 0;   // back: reflection seen from the far side
@@ -97,7 +66,7 @@ TEST_CASE("a tank of water is as bright along its axis as the layers say, with o
     // Overlapping by half the wall; by a hair; coincident; apart by less than light can tell (optical contact).
     for (const double half : {0.011, 0.01001, 0.01, 0.01 - 2e-8}) {
         CAPTURE(half);
-        const Estimate e = seen(tank(half), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+        const RayEstimate e = seenAlong(tank(half), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
         CHECK(std::abs(e.mean - expected) < 4 * e.error + 1e-5);
     }
     // Apart by an air film, there is an air film.
@@ -106,7 +75,7 @@ TEST_CASE("a tank of water is as bright along its axis as the layers say, with o
     for (const double r : {outer, outer, wet}) film.add(r, 1 - r);
     film.add(0, std::exp(-30 * 0.0199));
     for (const double r : {wet, outer, outer}) film.add(r, 1 - r);
-    const Estimate apart = seen(tank(0.00995), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    const RayEstimate apart = seenAlong(tank(0.00995), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
     CHECK(std::abs(apart.mean - film.r - film.t) < 4 * apart.error + 1e-5);
     CHECK(std::abs(expected - film.r - film.t) > 0.01);
 }
@@ -116,7 +85,7 @@ TEST_CASE("overlapping and coincident walls agree at any angle, and with the eye
     for (const auto& [origin, direction] : {std::pair{Vec3{0.05f, 0.02f, 0.2f}, Vec3{-0.21f, -0.06f, -1}},
                                             {Vec3{0.003f, 0.002f, 0.001f}, Vec3{0.3f, -0.5f, 1}},
                                             {Vec3{0.0f, 0.04f, 0.05f}, Vec3{0.02f, -0.8f, -1}}}) {
-        const Estimate a = seen(overlapping, origin, direction), b = seen(coincident, origin, direction);
+        const RayEstimate a = seenAlong(overlapping, origin, direction), b = seenAlong(coincident, origin, direction);
         CAPTURE(a.mean);
         CAPTURE(b.mean);
         CHECK(std::abs(a.mean - b.mean) < 4 * std::hypot(a.error, b.error) + 1e-5);
@@ -125,8 +94,8 @@ TEST_CASE("overlapping and coincident walls agree at any angle, and with the eye
 
 TEST_CASE("the priority decides what fills the overlap") {
     // Water over glass: less glass, more water.
-    const Estimate glass = seen(tank(0.011, 2), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
-    const Estimate water = seen(tank(0.011, 0), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    const RayEstimate glass = seenAlong(tank(0.011, 2), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    const RayEstimate water = seenAlong(tank(0.011, 0), {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
     CHECK(water.mean < glass.mean * std::exp(-30 * 0.001));
 }
 

@@ -1,5 +1,5 @@
 // Partly open surfaces: the share of light that their opacity leaves goes straight on, to the eye and from lights.
-#include "support/scene_test_paths.h"
+#include "support/ray_estimate.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -7,42 +7,15 @@
 namespace abbe::test {
 namespace {
 
-struct Estimate {
-    double mean = 0, error = 0;
-};
-
-Estimate seen(const TestScene& scene, Vec3 origin, Vec3 direction) {
-    constexpr EffectBits all = kAllEffects.bits();
-    constexpr std::uint32_t paths = 40000;
-    const LightSampler lights(scene.scene().lights);
-    const PathContext context{scene.scene(), lights, {}, true};
-    auto media = PathLoop<all>::makeMedia(scene.scene());
-    Sampler sampler;
-    sampler.startPixel(3, true, true);
-    Arena arena;
-    PathCounters counters;
-    double sum = 0, squares = 0;
-    for (std::uint32_t i = 0; i < paths; ++i) {
-        sampler.start(i);
-        const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
-        const double x = mean(PathLoop<all>(context, sampler, arena, counters, media)
-                                  .radiance({eye, normalize(direction)}, Wavelengths::sample(0.4f), 1));
-        sum += x;
-        squares += x * x;
-    }
-    const double n = paths, m = sum / n;
-    return {m, std::sqrt(std::max(0.0, squares / n - m * m) / n)};
-}
-
 // Sheets of an opacity over each other, over the ground.
 std::string sheets(double opacity, const char* light) {
     return fmt::format(R"(scene 1
 camera {{ from 0 0.5 0; look-at 0 0 0 }}
 {}
 material veil diffuse {{ reflectance 0; opacity {} }}
-shape quad {{ size 200 200; material veil; transform {{ rotate x=-90 deg; translate 0 1 0 }} }}
-shape quad {{ size 200 200; material veil; transform {{ rotate x=-90 deg; translate 0 1.25 0 }} }}
-shape quad {{ size 200 200; material diffuse {{ reflectance 0.5 }}; transform {{ rotate x=-90 deg }} }}
+shape quad {{ size 200 200; material veil; transform {{ rotate x -90 deg; translate 0 1 0 }} }}
+shape quad {{ size 200 200; material veil; transform {{ rotate x -90 deg; translate 0 1.25 0 }} }}
+shape quad {{ size 200 200; material diffuse {{ reflectance 0.5 }}; transform {{ rotate x -90 deg }} }}
 )",
                        light, opacity);
 }
@@ -54,7 +27,7 @@ TEST_CASE("the eye sees the share of the sky that two open sheets leave") {
         CAPTURE(opacity);
         const TestScene scene = TestScene::parse(sheets(opacity, "light sky { radiance 1 }"));
         REQUIRE(scene.report() == "");
-        const Estimate e = seen(scene, {0, 0.5f, 0}, {0.1f, 1, 0.2f});
+        const RayEstimate e = seenAlong(scene, {0, 0.5f, 0}, {0.1f, 1, 0.2f});
         const double open = (1 - opacity) * (1 - opacity);
         CHECK(std::abs(e.mean - open) < 4 * e.error + 1e-6);
         CHECK((e.mean > 0) == (opacity < 1));
@@ -65,8 +38,8 @@ TEST_CASE("lamps and the sky shine through open sheets, found on the light or by
     for (const char* light : {"light sky { radiance 1 }", "light point { position 0 2 0; intensity 100 cd }",
                               "light sun { toward 0 -1 0; angular-diameter 20 deg; irradiance 3 W-per-m2 }"}) {
         CAPTURE(light);
-        const Estimate clear = seen(TestScene::parse(sheets(0, light)), {0, 0.5f, 0}, {0.05f, -1, 0.02f});
-        const Estimate veiled = seen(TestScene::parse(sheets(0.4, light)), {0, 0.5f, 0}, {0.05f, -1, 0.02f});
+        const RayEstimate clear = seenAlong(TestScene::parse(sheets(0, light)), {0, 0.5f, 0}, {0.05f, -1, 0.02f});
+        const RayEstimate veiled = seenAlong(TestScene::parse(sheets(0.4, light)), {0, 0.5f, 0}, {0.05f, -1, 0.02f});
         CHECK(clear.mean > 0);
         CHECK(std::abs(veiled.mean - 0.36 * clear.mean) < 4 * std::hypot(veiled.error, 0.36 * clear.error) + 1e-6);
     }

@@ -1,0 +1,38 @@
+// The radiance along one ray, over many paths of the kernel with all effects.
+#pragma once
+
+#include "support/scene_test_paths.h"
+
+namespace abbe::test {
+
+struct RayEstimate {
+    double mean = 0, error = 0; // over all wavelengths; of the mean
+    std::uint64_t capped = 0;
+};
+
+// The ray starts in world space; what it starts in surrounds it.
+inline RayEstimate seenAlong(const TestScene& scene, Vec3 origin, Vec3 direction, std::uint32_t paths = 40000) {
+    constexpr EffectBits all = kAllEffects.bits();
+    const LightSampler lights(scene.scene().lights);
+    const PathContext context{scene.scene(), lights, {}, true};
+    auto media = PathLoop<all>::makeMedia(scene.scene());
+    Sampler sampler;
+    sampler.startPixel(7, true, true);
+    Arena arena;
+    PathCounters counters;
+    const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
+    const Surroundings around = surroundingsAt(scene.scene(), eye, 0);
+    double sum = 0, squares = 0;
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        sampler.start(i);
+        PathLoop<all> loop(context, sampler, arena, counters, media);
+        loop.startIn(around);
+        const double x = mean(loop.radiance({eye, normalize(direction)}, Wavelengths::sample(0.3f), 1));
+        sum += x;
+        squares += x * x;
+    }
+    const double n = paths, m = sum / n;
+    return {m, std::sqrt(std::max(0.0, squares / n - m * m) / n), counters.capped};
+}
+
+} // namespace abbe::test
