@@ -16,11 +16,8 @@ template <EffectBits E> bool PathLoop<E>::hidden(SurfaceHit& hit, const Ray& ray
     std::size_t count = 0;
     if (context_.scene.nested) {
         count = context_.scene.intersector->coincident(ray, hit, others);
-        for (std::size_t i = 0; i < count; ++i) {
-            nested.beyond.cross(others[i], ray.direction);
-            // Rays that leave have to start before or behind all of them.
-            hit.pError = hit.pError + abs(others[i].p - hit.p) + others[i].pError;
-        }
+        for (std::size_t i = 0; i < count; ++i) nested.beyond.cross(others[i], ray.direction);
+        leaveBeyond(hit, std::span(others).first(count));
     }
     const Material* const after = nested.beyond.filling();
     // A dielectric that is left without having been entered, as through a hole, is taken to have been there.

@@ -5,7 +5,14 @@
 #include "integrators/medium_stack.h"
 #include "render/surface_hit.h"
 
+#include <span>
+
 namespace abbe {
+
+// Rays that leave a hit shall start before or behind other faces that coincide with it.
+inline void leaveBeyond(SurfaceHit& hit, std::span<const SurfaceHit> others) {
+    for (const SurfaceHit& other : others) hit.pError = hit.pError + abs(other.p - hit.p) + other.pError;
+}
 
 // A dielectric's own medium is there only where that dielectric fills the space; the interiors of other shapes add up.
 class Surroundings {

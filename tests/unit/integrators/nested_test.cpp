@@ -131,7 +131,7 @@ shape sphere {{ {}; material dielectric {{ ior 1.33 }} }}
         return scene.scene().effects;
     };
     CHECK(!effects("center 3 0 0").has(Effect::interfaces));
-    CHECK(effects("center 1.5 0 0").has(Effect::interfaces));
+    CHECK(effects("center 0.9 0 0").has(Effect::interfaces));
 }
 
 } // namespace abbe::test

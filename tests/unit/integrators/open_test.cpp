@@ -10,7 +10,7 @@ namespace {
 // Sheets of an opacity over each other, over the ground.
 std::string sheets(double opacity, const char* light) {
     return fmt::format(R"(scene 1
-camera {{ from 0 0.5 0; look-at 0 0 0 }}
+camera {{ from 0 0.5 0; look-at 0 0.5 -1 }}
 {}
 material veil diffuse {{ reflectance 0; opacity {} }}
 shape quad {{ size 200 200; material veil; transform {{ rotate x -90 deg; translate 0 1 0 }} }}
