@@ -56,6 +56,25 @@ TEST_CASE("white hair in white surroundings cannot be seen") {
                       1, 128, 0.004);
 }
 
+// Under light from far away a straight tube and a ribbon of hair differ in nothing: the same place across the fibre,
+// the same fibre. The sun stands behind, where light has to pass the fibre and, in the tube, its far side.
+TEST_CASE("a tube of hair looks like a ribbon of hair") {
+    const auto picture = [](const char* form, const char* sun) {
+        const auto scene = TestScene::parse(fmt::format(
+            "scene 1\nfilm {{ size 16 16; filter box 0.5 }}\ncamera {{ from 0 0 4; look-at 0 0 0; fov 20 deg }}\n"
+            "light sun {{ toward {}; angular-diameter 20 deg; irradiance 100 klx }}\nlight sky {{ radiance 1 }}\n"
+            "shape curves {{ basis bspline; form {}; radius 0.5; material hair {{ eumelanin 0.3 }}\n"
+            "points {{ - -1.5 -6 1; - -0.5 -2 0.3333333; - 0.5 2 -0.3333333; - 1.5 6 -1 }} }}\n",
+            sun, form));
+        REQUIRE(scene.report() == "");
+        return render(scene, 512);
+    };
+    for (const char* sun : {"0.3 0.4 -1", "0.8 0.2 1"}) {
+        const TestImage tube = picture("round", sun), ribbon = picture("flat", sun);
+        checkSame(compareImages(tube.film, ribbon.film), 0.004);
+    }
+}
+
 // A grey surface that no other part of it can see shows its reflectance, at any distance from the camera and any size.
 // Any false shadow makes it darker.
 TEST_CASE("grey tubes and spheres that fill the view are evenly grey") {
