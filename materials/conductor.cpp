@@ -5,31 +5,33 @@
 #include "materials/ggx.h"
 #include "materials/ggx_albedo.h"
 #include "materials/stretched_albedo.h"
+#include "render/surface_input.h"
 
 namespace abbe {
 namespace {
 
 class SmoothConductorBsdf final : public Bsdf {
   public:
-    SmoothConductorBsdf(Spectrum n, Spectrum k) : n_(n), k_(k) {}
+    SmoothConductorBsdf(Spectrum n, Spectrum k, Spectrum tint) : n_(n), k_(k), tint_(tint) {}
 
     Lobes lobes() const noexcept override { return Lobes(Lobe::delta) | Lobe::reflection; }
     BsdfEval eval(Vec3, Vec3, Transport) const noexcept override { return {}; }
     std::optional<BsdfSample> sample(Vec3 wo, float, Vec2, Transport) const noexcept override {
         if (wo.z == 0) return std::nullopt;
         return std::optional<BsdfSample>(std::in_place, Vec3{-wo.x, -wo.y, wo.z},
-                                         fresnelConductor(std::abs(wo.z), n_, k_), 1.f, lobes());
+                                         fresnelConductor(std::abs(wo.z), n_, k_) * tint_, 1.f, lobes());
     }
 
   private:
-    Spectrum n_, k_;
+    Spectrum n_, k_, tint_;
 };
 
 // Two-sided: directions below the surface are mirrored to +z first.
 class RoughConductorBsdf final : public Bsdf {
   public:
-    RoughConductorBsdf(Spectrum n, Spectrum k, Ggx ggx, const StretchedAlbedo* stretched)
-        : n_(n), k_(k), normalReflectance_(fresnelConductor(1, n, k)), ggx_(ggx), stretched_(stretched) {}
+    RoughConductorBsdf(Spectrum n, Spectrum k, Spectrum tint, Ggx ggx, const StretchedAlbedo* stretched)
+        : n_(n), k_(k), tint_(tint), normalReflectance_(fresnelConductor(1, n, k) * tint), ggx_(ggx),
+          stretched_(stretched) {}
 
     Lobes lobes() const noexcept override { return Lobes(Lobe::glossy) | Lobe::reflection; }
 
@@ -58,32 +60,54 @@ class RoughConductorBsdf final : public Bsdf {
     // Fresnel's reflectance, with the light of further bounces between microfacets added: 1 + F0 (1 - E)/E
     // [Turquin2019]. Exact for F = 1; not reciprocal.
     Spectrum reflectance(Vec3 wo, Vec3 m) const {
-        const float albedo = stretched_ ? (*stretched_)(wo) : ggxAlbedo(wo.z, ggx_.alphaX());
+        const float albedo = stretched_ ? (*stretched_)(wo) : ggxAlbedo(wo.z, widthTowards(wo));
         const Spectrum compensation = fma(normalReflectance_, Spectrum(1 / albedo - 1), Spectrum(1.f));
-        return fresnelConductor(std::min(dot(wo, m), 1.f), n_, k_) * compensation;
+        return fresnelConductor(std::min(dot(wo, m), 1.f), n_, k_) * compensation * tint_;
     }
 
-    Spectrum n_, k_, normalReflectance_;
+    // The width of the profile cut along wo. Where widths come from textures there is no table of what a stretched
+    // surface keeps: a round one of this width stands in.
+    float widthTowards(Vec3 wo) const {
+        if (ggx_.alphaX() == ggx_.alphaY()) return ggx_.alphaX();
+        const float s2 = wo.x * wo.x + wo.y * wo.y;
+        if (!(s2 > 1e-12f)) return std::sqrt(0.5f * (square(ggx_.alphaX()) + square(ggx_.alphaY())));
+        return std::sqrt((square(ggx_.alphaX() * wo.x) + square(ggx_.alphaY() * wo.y)) / s2);
+    }
+
+    Spectrum n_, k_, tint_, normalReflectance_;
     Ggx ggx_;
-    const StretchedAlbedo* stretched_; // null: both widths are the same
+    const StretchedAlbedo* stretched_; // null: both widths are the same, or vary over the surface
 };
 
 class Conductor final : public Material {
   public:
     explicit Conductor(const ConductorParams& params)
-        : n_(*params.index.n), k_(*params.index.k), ggx_(Ggx::fromRoughness(params.roughness, params.anisotropy)) {
+        : n_(*params.index.n), k_(*params.index.k), roughness_(params.roughness, 0, 1),
+          anisotropy_(params.anisotropy, 0, 1), tint_(params.tint, 1),
+          shaped_(roughness_.textured() || anisotropy_.textured()) {
+        if (shaped_) return;
+        ggx_ =
+            Ggx::fromRoughness(static_cast<float>(params.roughness.value), static_cast<float>(params.anisotropy.value));
         if (!ggx_.smooth() && ggx_.alphaX() != ggx_.alphaY()) stretched_.emplace(ggx_.alphaX(), ggx_.alphaY());
     }
 
-    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
-        const Spectrum n = n_.at(wavelengths), k = k_.at(wavelengths);
-        if (ggx_.smooth()) return arena.make<SmoothConductorBsdf>(n, k);
-        return arena.make<RoughConductorBsdf>(n, k, ggx_, stretched_ ? &*stretched_ : nullptr);
+    Effects needs() const override { return usesTextures() ? Effects(Effect::textures) : Effects(); }
+
+    const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
+        const Spectrum n = n_.at(wavelengths), k = k_.at(wavelengths), tint = tint_.at(hit, wavelengths);
+        const Ggx ggx = shaped_ ? Ggx::fromRoughness(roughness_.at(hit), anisotropy_.at(hit)) : ggx_;
+        if (ggx.smooth()) return arena.make<SmoothConductorBsdf>(n, k, tint);
+        return arena.make<RoughConductorBsdf>(n, k, tint, ggx, stretched_ ? &*stretched_ : nullptr);
     }
+
+    bool usesTextures() const override { return shaped_ || tint_.textured(); }
 
   private:
     const Curve &n_, &k_;
-    Ggx ggx_;
+    NumberInput roughness_, anisotropy_;
+    SpectrumInput tint_;
+    bool shaped_; // by textures; else by what follows
+    Ggx ggx_{0, 0};
     std::optional<StretchedAlbedo> stretched_;
 };
 
@@ -117,6 +141,12 @@ schema::TypeInfo conductorType() {
                     .range(0, 1)
                     .byDefault("0")
                     .synonyms({"anisotropic", "specular_roughness_anisotropy", "aspect"}),
+                field(FieldType::spectrum, "tint", &ConductorParams::tint)
+                    .doc("Share of the reflected light that remains: a lacquer, tarnish, fingerprints; 1 when absent.")
+                    .example("tint 0.8")
+                    .role(SpectrumRole::albedo)
+                    .range(0, 1)
+                    .synonyms({"reflectance", "color", "specular_color", "specular_reflectance"}),
             }};
 }
 

@@ -9,9 +9,10 @@
 namespace abbe {
 
 struct ConductorParams {
-    schema::ComplexIndex index; // both curves set
-    float roughness = 0;        // 0 … 1; α = roughness²
-    float anisotropy = 0;       // 0 … 1; αy = (1 - anisotropy) αx
+    schema::ComplexIndex index;             // both curves set
+    schema::TexturedNumber roughness = {};  // 0 … 1; α = roughness²
+    schema::TexturedNumber anisotropy = {}; // 0 … 1; αy = (1 - anisotropy) αx
+    schema::TexturedSpectrum tint = {};     // 0 … 1, factor on all that is reflected; absent: 1
 };
 
 schema::TypeInfo conductorType();

@@ -2,6 +2,7 @@
 
 #include "materials/attenuation_curve.h"
 #include "materials/dielectric_bsdf.h"
+#include "render/surface_input.h"
 #include "spectrum/sampled_curve.h"
 
 namespace abbe {
@@ -10,8 +11,8 @@ namespace {
 class Dielectric final : public Material {
   public:
     explicit Dielectric(const DielectricParams& params)
-        : ior_(params.ior ? params.ior : &crown_), ggx_(Ggx::fromRoughness(params.roughness, 0)),
-          absorption_(params.absorption) {
+        : ior_(params.ior ? params.ior : &crown_), roughness_(params.roughness, 0, 1),
+          ggx_(Ggx::fromRoughness(static_cast<float>(params.roughness.value), 0)), absorption_(params.absorption) {
         if (!params.attenuationColor) return;
         attenuation_ = std::make_unique<AttenuationCurve>(*params.attenuationColor, params.attenuationDistance);
         absorption_ = attenuation_.get();
@@ -21,23 +22,27 @@ class Dielectric final : public Material {
         Effects effects;
         if (!ior_->isConstant()) effects |= Effect::dispersion;
         if (absorption_) effects |= Effect::absorption;
+        if (usesTextures()) effects |= Effect::textures;
         return effects;
     }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
         Spectrum n = ior_->at(wavelengths);
         if (hit.outside) n = n / hit.outside->at(wavelengths);
-        if (RoughDielectricBsdf::representable(n, ggx_)) return arena.make<RoughDielectricBsdf>(n, ggx_);
+        const Ggx ggx = roughness_.textured() ? Ggx::fromRoughness(roughness_.at(hit), 0) : ggx_;
+        if (RoughDielectricBsdf::representable(n, ggx)) return arena.make<RoughDielectricBsdf>(n, ggx);
         return arena.make<SmoothDielectricBsdf>(n);
     }
 
     const Curve* absorption() const override { return absorption_; }
     const Curve* ior() const override { return ior_; }
+    bool usesTextures() const override { return roughness_.textured(); }
 
   private:
     ConstantCurve crown_{1.5}; // of the default
     const Curve* ior_;
-    Ggx ggx_;
+    NumberInput roughness_;
+    Ggx ggx_; // unless it is textured
     const Curve* absorption_; // null: clear
     std::unique_ptr<const Curve> attenuation_;
 };

@@ -11,7 +11,7 @@ namespace abbe {
 // Outside is the side that the normal points to; the index there is 1.
 struct DielectricParams {
     const Curve* ior = nullptr;              // index of the inside; null: 1.5. A curve that varies disperses
-    float roughness = 0;                     // 0 … 1; α = roughness²
+    schema::TexturedNumber roughness = {};   // 0 … 1; α = roughness²
     const Curve* absorption = nullptr;       // 1/m, inside; null: clear
     const Curve* attenuationColor = nullptr; // share left after attenuationDistance; instead of absorption
     double attenuationDistance = 1;          // m

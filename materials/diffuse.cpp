@@ -1,6 +1,7 @@
 #include "materials/diffuse.h"
 
 #include "math/warp.h"
+#include "render/surface_input.h"
 #include "spectrum/sampled_curve.h"
 
 namespace abbe {
@@ -33,16 +34,19 @@ class DiffuseBsdf final : public Bsdf {
 
 class Diffuse final : public Material {
   public:
-    explicit Diffuse(const DiffuseParams& params) : reflectance_(params.reflectance) {}
+    explicit Diffuse(const DiffuseParams& params) : reflectance_(params.reflectance, 0.5f) {}
 
-    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
-        return arena.make<DiffuseBsdf>(reflectance_ ? reflectance_->at(wavelengths) : Spectrum(0.5f));
+    Effects needs() const override { return usesTextures() ? Effects(Effect::textures) : Effects(); }
+
+    const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
+        return arena.make<DiffuseBsdf>(reflectance_.at(hit, wavelengths));
     }
 
     bool choosesLobe() const override { return false; }
+    bool usesTextures() const override { return reflectance_.textured(); }
 
   private:
-    const Curve* reflectance_; // null: 0.5
+    SpectrumInput reflectance_;
 };
 
 } // namespace

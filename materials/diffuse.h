@@ -9,11 +9,11 @@
 namespace abbe {
 
 struct DiffuseParams {
-    const Curve* reflectance = nullptr; // 0 … 1; null: 0.5
+    schema::TexturedSpectrum reflectance = {}; // 0 … 1; absent: 0.5
 };
 
 schema::TypeInfo diffuseType();
-// The curve must outlive the material.
+// What it refers to must outlive the material.
 std::unique_ptr<const Material> makeDiffuse(const DiffuseParams&);
 
 } // namespace abbe

@@ -168,6 +168,12 @@ constexpr CodeInfo kCodes[] = {
     {"E0723", "this cannot be a part of a material", "The parts of `mix`, `two-sided` and `layered` are surfaces that scatter light. A `boundary` is none, and a material that shines would have to be a light of the whole shape."},
     {"E0724", "the insides of a material's parts", "Light that enters a shape through one part of its surface leaves it through another, so all parts that let light in must agree on what is inside: refractive index, absorption and medium. The sides of a `two-sided` sheet have no inside at all."},
     {"E0725", "a shape is filled twice", "A `subsurface` material says what is inside of the shape, and so does the shape's `interior`. Keep one of them: for a medium of your own take `dielectric` as the surface."},
+    {"E0730", "a name of two things", "The word names a spectrum and a texture, and either could stand here. Give one of them another name."},
+    {"E0731", "a texture within itself", "A texture is made of itself, directly or through others."},
+    {"E0732", "too many textures within each other", "A texture is made of others more than 32 levels deep, or of more than 4096 in all: each of them would be asked at every point of the surface."},
+    {"E0733", "no texture coordinates for a texture", "An image, or another texture over uv, is in the material of a mesh without texture coordinates: `vt` in an OBJ file, `u` and `v` in a PLY file, TEXCOORD_0 in glTF. Textures in space, such as `noise` and `triplanar`, need none."},
+    {"E0735", "stops out of order", "The stops of a ramp are written in the order of their positions. Two at the same position make a step."},
+    {"E0736", "a texture that cannot be heights", "A displacement needs a texture whose slope follows from the place alone: `noise`, `image`, `ramp`. `triplanar` follows the normal, and an `attribute` has values at vertices only."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
@@ -189,6 +195,7 @@ constexpr CodeInfo kCodes[] = {
     // E07: materials and the library
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
+    {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
 };
 // clang-format on
 

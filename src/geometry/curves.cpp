@@ -156,6 +156,23 @@ void Curves::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     hit.primitive = strand;
 }
 
+void Curves::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    std::array<SizedPoint, 4> room;
+    const std::uint32_t needed = leastPoints(data_.basis), primitive = firstPoints_[raw.primitive];
+    const CurveSegment segment(data_.basis, pointsAt(primitive, needed, ray.time, room.data()));
+    const std::uint32_t strand = strand_[raw.primitive], first = strandFirst_[strand];
+    const double segments = (strandFirst_[strand + 1] - first - needed) / pointStep(data_.basis) + 1;
+    const double before = (primitive - first) / pointStep(data_.basis);
+    const double u = std::clamp(static_cast<double>(hit.uv.x) * segments - before, 0.0, 1.0);
+    const Vec3d along = segment.derivative(u) * segments;
+    const Vec3d side = cross(Vec3d(hit.shading.x), Vec3d(hit.ng));
+    hit.dpdu = Vec3(along);
+    hit.dpdv = Vec3(side * (-2 * segment.radius(u)));
+    if (data_.later.empty()) return;
+    const Vec3d moved = CurveSegment(data_.basis, &data_.points[primitive]).position(u) - segment.position(u);
+    hit.local = Vec3(Vec3d(hit.p) + moved);
+}
+
 double Curves::area() const {
     // Simpson's rule per quarter of a segment is far closer than anyone needs.
     double sum = 0;

@@ -39,6 +39,8 @@ class Curves final : public Shape {
     void commit(GeometrySink&) const override;
     bool confirms(const RawHit&, const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    // dp/dv is taken as twice the radius across the curve: exact for ribbons and in the middle of tubes.
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override; // of tubes without ends; of ribbons seen from the side; at first
 
     // Curves do not emit.

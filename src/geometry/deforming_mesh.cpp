@@ -95,6 +95,19 @@ void DeformingMesh::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) 
     hit.shading = texturedFrame(n, t.b - t.a, t.c - t.a, uv1, uv2);
 }
 
+void DeformingMesh::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const MeshCorners corner = cornersOf(faces_, raw);
+    const StepPosition at = stepAt(ray.time, steps_.size());
+    const MovedTriangle t = moved(steps_[at.step].positions, steps_[at.step + 1].positions, corner, at.fraction);
+    const auto& uv = faces_.uvs;
+    if (uv.empty())
+        parametrizeFace(raw, t.b - t.a, t.c - t.a, corner.primitive >= faces_.triangles.size(), false, hit);
+    else
+        parametrizeTriangle(t.b - t.a, t.c - t.a, uv[corner.b] - uv[corner.a], uv[corner.c] - uv[corner.a], hit);
+    const auto& first = steps_[0].positions;
+    hit.local = first[corner.a] * (1 - corner.s - corner.t) + first[corner.b] * corner.s + first[corner.c] * corner.t;
+}
+
 double DeformingMesh::area() const {
     double largest = 0;
     for (const MeshStep& step : steps_) {

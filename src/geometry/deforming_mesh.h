@@ -31,6 +31,8 @@ class DeformingMesh final : public Shape {
     void commit(GeometrySink&) const override;
     // Primitives are numbered triangles first, then quads.
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    bool hasTextureCoordinates() const override { return !faces_.uvs.empty(); }
     double area() const override; // the largest of all steps
 
     // Deforming meshes do not emit: their area changes.

@@ -3,7 +3,20 @@
 #include "geometry/surface_math.h"
 #include "math/warp.h"
 
+#include <tuple>
+
 namespace abbe {
+
+std::pair<Vec3d, Vec3d> axesAfter(const Transform& place, Vec3d normal) {
+    const auto& a = place.a; // normals went by A⁻ᵀ; they go back by Aᵀ
+    const Vec3d own = normalize(Vec3d(a[0][0] * normal.x + a[1][0] * normal.y + a[2][0] * normal.z,
+                                      a[0][1] * normal.x + a[1][1] * normal.y + a[2][1] * normal.z,
+                                      a[0][2] * normal.x + a[1][2] * normal.y + a[2][2] * normal.z)) *
+                      (place.determinant() < 0 ? -1.0 : 1.0);
+    const Vec3d guess(Frame::fromNormal(Vec3(own)).x);
+    const Vec3d x = normalize(guess - own * dot(guess, own));
+    return {place.vector(x), place.vector(cross(own, x))};
+}
 
 Disk::Disk(Vec3d centre, Vec3d normal, double radius)
     : centre_(centre), z_(normalize(normal)), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {
@@ -11,6 +24,14 @@ Disk::Disk(Vec3d centre, Vec3d normal, double radius)
     const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
     x_ = normalize(guess - z_ * dot(guess, z_));
     y_ = cross(z_, x_);
+    textureX_ = x_;
+    textureY_ = y_;
+}
+
+Disk::Disk(Vec3d centre, Vec3d normal, double radius, const Transform& place) : Disk(centre, normal, radius) {
+    std::tie(textureX_, textureY_) = axesAfter(place, z_);
+    textureX_ = normalize(textureX_);
+    textureY_ = normalize(textureY_);
 }
 
 Bounds3 Disk::bounds() const {
@@ -41,6 +62,18 @@ void Disk::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     const double turn = std::atan2(y, x) / (2 * kPiD);
     hit.uv = {static_cast<float>(std::sqrt(x * x + y * y) / radius_), static_cast<float>(turn < 0 ? turn + 1 : turn)};
     hit.primitive = 0;
+}
+
+void parametrizeDisk(double x, double y, double radius, Vec3d axisX, Vec3d axisY, SurfaceHit& hit) {
+    const double l = std::hypot(x, y), turn = std::atan2(y, x) / (2 * kPiD);
+    hit.uv = {static_cast<float>(std::min(1.0, l / radius)), static_cast<float>(turn < 0 ? turn + 1 : turn)};
+    hit.dpdu = Vec3(l > 0 ? (axisX * x + axisY * y) * (radius / l) : axisX * radius);
+    hit.dpdv = Vec3((axisY * x - axisX * y) * (2 * kPiD));
+}
+
+void Disk::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d d = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance) - centre_;
+    parametrizeDisk(dot(d, textureX_), dot(d, textureY_), radius_, textureX_, textureY_, hit);
 }
 
 std::optional<ShapeSample> Disk::sample(const Receiver& from, std::uint32_t, Vec2 u) const {

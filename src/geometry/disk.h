@@ -1,6 +1,7 @@
 // Flat round disks.
 #pragma once
 
+#include "math/transform.h"
 #include "render/shape.h"
 
 namespace abbe {
@@ -10,6 +11,9 @@ namespace abbe {
 class Disk final : public Shape {
   public:
     Disk(Vec3d centre, Vec3d normal, double radius);
+    // Of what this map, which keeps angles, makes of a disk in its own space: the angle that textures see starts and
+    // turns as it does there.
+    Disk(Vec3d centre, Vec3d normal, double radius, const Transform& place);
 
     Vec3d centre() const { return centre_; }
     Vec3d normal() const { return z_; }
@@ -19,6 +23,7 @@ class Disk final : public Shape {
     void commit(GeometrySink&) const override;
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return kPiD * radius_ * radius_; }
     // Uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
@@ -26,8 +31,15 @@ class Disk final : public Shape {
 
   private:
     Vec3d centre_, x_, y_, z_;
+    Vec3d textureX_, textureY_; // axes of the angle for textures
     double radius_;
     double magnitude_; // largest coordinate in size
 };
+
+// uv, dpdu and dpdv of a disk at x and y along two orthonormal axes.
+void parametrizeDisk(double x, double y, double radius, Vec3d axisX, Vec3d axisY, SurfaceHit&);
+// Two axes across a normal, as a shape in its own space has them, after the map that took it there. `normal` is that
+// after the map.
+std::pair<Vec3d, Vec3d> axesAfter(const Transform& place, Vec3d normal);
 
 } // namespace abbe

@@ -55,6 +55,11 @@ class EmbreeScene final : public Intersector {
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
+    struct OwnSpace {
+        Transform map; // from the coordinates of the shape
+        float scale;   // of lengths
+    };
+    std::vector<OwnSpace> ownSpaces; // GeometryRecord::space
     std::vector<std::unique_ptr<const InstanceTable>> tables;
     Bounds3 bounds_;
 
@@ -64,6 +69,7 @@ class EmbreeScene final : public Intersector {
     const GeometryRecord& recordOf(const RTCHit&, Path) const;
     void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
     void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;
+    void parametrize(const GeometryRecord&, const RawHit&, const Ray&, SurfaceHit&) const;
     bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
     bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
 
@@ -88,9 +94,26 @@ void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray&
     if (path.empty()) [[likely]] {
         hit.instance = SurfaceHit::kNoInstance;
         record.shape->surface(raw, ray, hit);
+        if (record.space != GeometryRecord::kUntextured) [[unlikely]]
+            parametrize(record, raw, ray, hit);
     } else {
         surfaceInside(record, raw, path, ray, hit);
     }
+}
+
+[[gnu::noinline]] void EmbreeScene::parametrize(const GeometryRecord& record, const RawHit& raw, const Ray& ray,
+                                                SurfaceHit& hit) const {
+    hit.shape = record.shape;
+    hit.part = raw.part;
+    hit.element = raw.primitive;
+    hit.barycentric = {raw.u, raw.v};
+    hit.dpdu = hit.dpdv = {};
+    hit.local = hit.p;
+    record.shape->parametrize(raw, ray, hit);
+    const OwnSpace& own = ownSpaces[record.space];
+    hit.local = Vec3(own.map.point(Vec3d(hit.local)));
+    hit.localNormal = Vec3(normalize(own.map.normal(Vec3d(hit.shading.z))));
+    hit.localScale = own.scale;
 }
 
 void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw, Path path, const Ray& ray,
@@ -98,7 +121,13 @@ void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw,
     Ray inside = ray;
     for (const PlacementStep& step : path) inside = step.placement(ray.time).toObject(inside);
     record.shape->surface(raw, inside, hit);
-    for (std::size_t i = path.size(); i-- > 0;) Instance(path[i].placement(ray.time)).toRender(hit);
+    const bool textured = record.space != GeometryRecord::kUntextured;
+    if (textured) parametrize(record, raw, inside, hit);
+    for (std::size_t i = path.size(); i-- > 0;) {
+        const Instance instance(path[i].placement(ray.time));
+        instance.toRender(hit);
+        if (textured) instance.parametrizationToRender(hit);
+    }
     hit.instance = static_cast<std::uint32_t>(path[0].table->firstInstance() + path[0].index);
 }
 
@@ -299,7 +328,13 @@ void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& adde
     object.firstRecord = target.records.size();
     EmbreeSink sink(target.device.get(), object.scene, target.records, nested);
     for (const auto& [shape, binding] : added) {
-        sink.add(*shape, binding.material, binding.light);
+        std::uint32_t space = GeometryRecord::kUntextured;
+        if (binding.parametrized || shape->usesTextures() || (binding.material && binding.material->usesTextures())) {
+            space = static_cast<std::uint32_t>(target.ownSpaces.size());
+            const Transform own = binding.toOwn.value_or(Transform{});
+            target.ownSpaces.push_back({own, static_cast<float>(std::cbrt(std::abs(own.determinant())))});
+        }
+        sink.add(*shape, binding.material, binding.light, space);
         if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());
     }
 }

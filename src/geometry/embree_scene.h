@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ class EmbreeSceneBuilder {
     struct Binding {
         const Material* material = nullptr;
         const Light* light = nullptr;
+        // For textures: from the coordinates of the shape to its own space, before its transform; nothing: the same.
+        std::optional<Transform> toOwn = {};
+        bool parametrized = false; // even if no material looks at textures
     };
 
     EmbreeSceneBuilder();

@@ -67,15 +67,15 @@ void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id) {
 EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records, bool nested)
     : device_(device), scene_(scene), records_(records), firstRecord_(records.size()), nested_(nested) {}
 
-void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light) {
-    next_ = {&shape, material, light, 0, PrimitiveKind::analytic, 1};
+void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light, std::uint32_t space) {
+    next_ = {&shape, material, light, space, 0, PrimitiveKind::analytic, 1};
     shape.commit(*this);
 }
 
 // A buffer per time step; Embree refuses other numbers of them than the geometry has.
 template <typename T>
 void EmbreeSink::shareSteps(RTCGeometry geometry, RTCBufferType type, RTCFormat format, TimeSteps<T> steps) {
-    next_.steps = static_cast<std::uint16_t>(steps.size());
+    next_.steps = static_cast<std::uint8_t>(steps.size());
     if (steps.size() > 1) rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps.size()));
     for (std::size_t i = 0; i < steps.size(); ++i)
         rtcSetSharedGeometryBuffer(geometry, type, static_cast<unsigned>(i), format, steps[i].data(), 0, sizeof(T),

@@ -12,16 +12,19 @@ namespace abbe {
 class Material;
 class Light;
 
-enum class PrimitiveKind : std::uint16_t { triangles, quads, curves, points, analytic, instance };
+enum class PrimitiveKind : std::uint8_t { triangles, quads, curves, points, analytic, instance };
 
 // What a geometry id stands for: 32 bytes, one load per hit. Instances have no shape; `part` is their index.
 struct GeometryRecord {
     const Shape* shape = nullptr;
     const Material* material = nullptr;
     const Light* light = nullptr;
-    std::uint32_t part = 0;
+    std::uint32_t space = kUntextured; // position of the map to the shape's own space, for textures
+    std::uint16_t part = 0;
     PrimitiveKind kind = PrimitiveKind::instance;
-    std::uint16_t steps = 1; // in time
+    std::uint8_t steps = 1; // in time
+
+    static constexpr std::uint32_t kUntextured = 0xffffffffu; // no material of it looks at textures
 };
 static_assert(sizeof(GeometryRecord) == 32);
 
@@ -35,7 +38,7 @@ class EmbreeSink final : public GeometrySink {
     // `nested`: meshes of dielectrics can be skipped by rays (RayContext::skips).
     EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records, bool nested);
 
-    void add(const Shape&, const Material*, const Light*);
+    void add(const Shape&, const Material*, const Light*, std::uint32_t space = GeometryRecord::kUntextured);
 
     void triangles(TimeSteps<Vec3>, Triangles) override;
     void quads(TimeSteps<Vec3>, Quads) override;

@@ -1,7 +1,9 @@
 #include "geometry/face_materials.h"
 
 #include "base/check.h"
+#include "render/material.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace abbe {
@@ -16,6 +18,10 @@ void FaceMaterials::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) 
     shape_->surface(raw, ray, hit);
     ABBE_DCHECK(hit.primitive < choice_.size());
     if (const Material* own = materials_[choice_[hit.primitive]]) hit.material = own;
+}
+
+bool FaceMaterials::usesTextures() const {
+    return std::ranges::any_of(materials_, [](const Material* m) { return m && m->usesTextures(); });
 }
 
 } // namespace abbe

@@ -24,6 +24,11 @@ class FaceMaterials final : public Shape {
     std::optional<RawHit> intersect(const Ray& ray) const override { return shape_->intersect(ray); }
     bool confirms(const RawHit& raw, const Ray& ray) const override { return shape_->confirms(raw, ray); }
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const override {
+        shape_->parametrize(raw, ray, hit);
+    }
+    bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
+    bool usesTextures() const override;
     double area() const override { return shape_->area(); }
     std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const override {
         return shape_->sample(from, part, u);

@@ -141,6 +141,13 @@ ParametricShape::LocalPoint Frustum::project(Vec3d p, int part) const {
     return sidePoint(std::atan2(p.x, p.z), std::clamp(p.y, -halfHeight_, halfHeight_));
 }
 
+ParametricShape::LocalDerivatives Frustum::derivatives(const LocalPoint& at, int part) const {
+    const Vec3d around = Vec3d(at.p.z, 0, -at.p.x) * (2 * kPiD);
+    if (part != side) return {at.tangent * (part == topCap ? top_ : bottom_), around};
+    const double rise = top_ - bottom_; // outwards is (-tangent.z, 0, tangent.x)
+    return {around, {-at.tangent.z * rise, 2 * halfHeight_, at.tangent.x * rise}};
+}
+
 ParametricShape::LocalPoint Frustum::sampleLocal(Vec2d u) const {
     double x = u.x * (sideArea_ + capAreas_[0] + capAreas_[1]);
     if (x < sideArea_) {

@@ -124,6 +124,12 @@ void Instance::toRender(SurfaceHit& hit) const {
     hit.shading = Frame::fromNormalTangent(n, Vec3(normalize(tangent)));
 }
 
+void Instance::parametrizationToRender(SurfaceHit& hit) const {
+    hit.dpdu = Vec3(objectToRender_.vector(Vec3d(hit.dpdu)));
+    hit.dpdv = Vec3(objectToRender_.vector(Vec3d(hit.dpdv)));
+    hit.localScale *= static_cast<float>(std::cbrt(std::abs(renderToObject_.determinant())));
+}
+
 Bounds3 Instance::toRender(const Bounds3& b) const { return Placement(objectToRender_).toOuter(b); }
 
 } // namespace abbe

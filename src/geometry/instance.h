@@ -77,6 +77,8 @@ class Instance {
     Ray toObject(const Ray&) const;
     // From object to render space: point, error bound, normals, frame. Outward normals stay outward.
     void toRender(SurfaceHit&) const;
+    // The same for dpdu, dpdv and localScale.
+    void parametrizationToRender(SurfaceHit&) const;
     Bounds3 toRender(const Bounds3&) const;
 
   private:

@@ -15,7 +15,7 @@ Vec3 interpolate(const std::vector<Vec3>& v, std::uint32_t a, std::uint32_t b, s
 
 } // namespace
 
-Mesh::Mesh(MeshData data) : data_(std::move(data)) {
+Mesh::Mesh(MeshData data, bool mirrored) : data_(std::move(data)), mirrored_(mirrored) {
     ABBE_CHECK(data_.normals.empty() || data_.normals.size() == data_.positions.size());
     ABBE_CHECK(data_.uvs.empty() || data_.uvs.size() == data_.positions.size());
     ABBE_CHECK(triangleCount() < 0xffffffffu);
@@ -95,6 +95,17 @@ void Mesh::shade(const MeshCorners& c, SurfaceHit& hit) const {
     hit.uv = uv[c.a] + s * c.s + t * c.t;
     const auto& p = data_.positions;
     hit.shading = texturedFrame(n, p[c.b] - p[c.a], p[c.c] - p[c.a], s, t);
+}
+
+void Mesh::parametrize(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
+    const MeshCorners c = cornersOf(data_, raw);
+    const auto& p = data_.positions;
+    const Vec3 p1 = p[c.b] - p[c.a], p2 = p[c.c] - p[c.a];
+    const auto& uv = data_.uvs;
+    if (uv.empty())
+        parametrizeFace(raw, p1, p2, c.primitive >= data_.triangles.size(), mirrored_, hit);
+    else
+        parametrizeTriangle(p1, p2, uv[c.b] - uv[c.a], uv[c.c] - uv[c.a], hit);
 }
 
 void Mesh::weighByArea() const {

@@ -23,7 +23,8 @@ struct NormalReport {
 // Requires data that cleanMesh() has accepted: indices in range, finite positions.
 class Mesh final : public Shape {
   public:
-    explicit Mesh(MeshData);
+    // `mirrored`: faces were turned round, because the map that placed them is a mirror.
+    explicit Mesh(MeshData, bool mirrored = false);
     ~Mesh() override;
 
     const MeshData& data() const { return data_; }
@@ -33,6 +34,8 @@ class Mesh final : public Shape {
     void commit(GeometrySink&) const override;
     // Primitives are numbered triangles first, then quads.
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    bool hasTextureCoordinates() const override { return !data_.uvs.empty(); }
     double area() const override { return area_; }
     // Uniform per area over all faces; a lone quad as Quad does.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
@@ -50,6 +53,7 @@ class Mesh final : public Shape {
     Bounds3 bounds_;
     NormalReport normalReport_;
     double area_ = 0;
+    bool mirrored_;
     std::unique_ptr<const Quad> lone_; // the mesh itself if it is a single quad
     // Over the triangles, by area: made when an emitter first asks, because most meshes never emit.
     mutable std::once_flag byAreaOnce_;

@@ -53,4 +53,25 @@ inline Frame texturedFrame(Vec3 n, Vec3 p1, Vec3 p2, Vec2 uv1, Vec2 uv2) {
     return defined ? Frame::fromNormalTangent(n, tangent) : Frame::fromNormal(n);
 }
 
+// dp/du and dp/dv of such a triangle; left as they are where its coordinates are degenerate.
+inline void parametrizeTriangle(Vec3 p1, Vec3 p2, Vec2 uv1, Vec2 uv2, SurfaceHit& hit) {
+    const float determinant = uv1.x * uv2.y - uv1.y * uv2.x;
+    const float scale = std::max(uv1.x * uv1.x + uv1.y * uv1.y, uv2.x * uv2.x + uv2.y * uv2.y);
+    const Vec3 byU = (p1 * uv2.y - p2 * uv1.y) * (1 / determinant), byV = (p2 * uv1.x - p1 * uv2.x) * (1 / determinant);
+    if (!(std::abs(determinant) > 1e-6f * scale) || !isFinite(byU) || !isFinite(byV)) return;
+    hit.dpdu = byU;
+    hit.dpdv = byV;
+}
+
+// The same where the mesh has no texture coordinates: uv are those of the face that was hit. A mirrored quad has its
+// corners the other way round.
+inline void parametrizeFace(const RawHit& raw, Vec3 p1, Vec3 p2, bool quad, bool mirrored, SurfaceHit& hit) {
+    const bool second = quad && raw.u + raw.v > 1;
+    hit.dpdu = second ? -p1 : p1;
+    hit.dpdv = second ? -p2 : p2;
+    if (!mirrored) return;
+    std::swap(hit.dpdu, hit.dpdv);
+    hit.uv = {raw.v, raw.u};
+}
+
 } // namespace abbe

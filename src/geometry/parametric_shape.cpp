@@ -60,6 +60,14 @@ void ParametricShape::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit
     hit.primitive = static_cast<std::uint32_t>(raw.u);
 }
 
+void ParametricShape::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d along = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance);
+    const int part = static_cast<int>(raw.u);
+    const LocalDerivatives d = derivatives(project(inverse_.point(along), part), part);
+    hit.dpdu = Vec3(map_.vector(d.byU));
+    hit.dpdv = Vec3(map_.vector(d.byV));
+}
+
 // Density per area in render space. A⁻ᵀ takes normals there, so that an area with the unit normal n there has grown by
 // |det A| / |Aᵀ n|.
 double ParametricShape::pdfArea(Vec3d n) const {

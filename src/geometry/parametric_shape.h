@@ -15,6 +15,7 @@ class ParametricShape : public Shape {
     void commit(GeometrySink&) const override;
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     // Uniform per area of the shape in its own space.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
@@ -33,6 +34,10 @@ class ParametricShape : public Shape {
         Vec2d uv;
     };
 
+    struct LocalDerivatives {
+        Vec3d byU, byV; // of the point
+    };
+
     // Requires an invertible map.
     explicit ParametricShape(const Transform& toRender);
     // To be called once by the constructors of derived classes: the bounds, and the areas in own and in render space.
@@ -48,6 +53,7 @@ class ParametricShape : public Shape {
     virtual std::optional<LocalHit> meet(Vec3d o, Vec3d d, double tMax) const = 0;
     // The point of the part that is nearest to p, which is off by rounding only.
     virtual LocalPoint project(Vec3d p, int part) const = 0;
+    virtual LocalDerivatives derivatives(const LocalPoint&, int part) const = 0;
     // Uniform per own area.
     virtual LocalPoint sampleLocal(Vec2d u) const = 0;
 

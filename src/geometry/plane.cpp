@@ -1,6 +1,9 @@
 #include "geometry/plane.h"
 
+#include "geometry/disk.h"
 #include "geometry/surface_math.h"
+
+#include <tuple>
 
 namespace abbe {
 
@@ -8,6 +11,15 @@ Plane::Plane(Vec3d point, Vec3d normal) : point_(point), z_(normalize(normal)) {
     const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
     x_ = normalize(guess - z_ * dot(guess, z_));
     y_ = cross(z_, x_);
+    byU_ = toU_ = x_;
+    byV_ = toV_ = y_;
+}
+
+Plane::Plane(Vec3d point, Vec3d normal, const Transform& place) : Plane(point, normal) {
+    std::tie(byU_, byV_) = axesAfter(place, z_);
+    const double uu = dot(byU_, byU_), uv = dot(byU_, byV_), vv = dot(byV_, byV_), scale = 1 / (uu * vv - uv * uv);
+    toU_ = (byU_ * vv - byV_ * uv) * scale;
+    toV_ = (byV_ * uu - byU_ * uv) * scale;
 }
 
 Bounds3 Plane::bounds() const {
@@ -37,6 +49,13 @@ void Plane::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     hit.shading = {Vec3(x_), Vec3(y_), Vec3(z_)};
     hit.uv = {static_cast<float>(x), static_cast<float>(y)};
     hit.primitive = 0;
+}
+
+void Plane::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Vec3d d = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(raw.distance) - point_;
+    hit.uv = {static_cast<float>(dot(d, toU_)), static_cast<float>(dot(d, toV_))};
+    hit.dpdu = Vec3(byU_);
+    hit.dpdv = Vec3(byV_);
 }
 
 double Plane::area() const { return std::numeric_limits<double>::infinity(); }

@@ -1,6 +1,7 @@
 // Infinite planes.
 #pragma once
 
+#include "math/transform.h"
 #include "render/shape.h"
 
 namespace abbe {
@@ -10,18 +11,23 @@ namespace abbe {
 class Plane final : public Shape {
   public:
     Plane(Vec3d point, Vec3d normal);
+    // Of what this map makes of a plane in its own space: textures see metres along axes there.
+    Plane(Vec3d point, Vec3d normal, const Transform& place);
 
     // Finite because Embree needs it, and so large that no scene sees the edge.
     Bounds3 bounds() const override;
     void commit(GeometrySink&) const override;
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override;
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     Vec3d point_, x_, y_, z_;
+    Vec3d byU_, byV_; // dp/du and dp/dv for textures
+    Vec3d toU_, toV_; // whose dot products with a vector of the plane are u and v
 };
 
 } // namespace abbe

@@ -1,6 +1,8 @@
 #include "geometry/points.h"
 
 #include "base/check.h"
+#include "geometry/disk.h"
+#include "geometry/sphere.h"
 #include "geometry/surface_math.h"
 #include "geometry/time_steps.h"
 
@@ -115,6 +117,17 @@ void Points::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
         disk(point, data_.form == PointForm::disk ? Vec3(-d) : normalAt(raw.primitive, ray.time), o, d, hit);
     hit.pError = errorBound(point);
     hit.primitive = raw.primitive;
+}
+
+void Points::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const SizedPoint point = pointAt(raw.primitive, ray.time);
+    if (data_.form == PointForm::sphere) {
+        parametrizeSphere(hit.ng, point.radius, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, hit);
+    } else {
+        const Vec3d w = Vec3d(hit.p) - Vec3d(point.position), x(hit.shading.x), y(hit.shading.y);
+        parametrizeDisk(dot(w, x), dot(w, y), static_cast<double>(point.radius), x, y, hit);
+    }
+    hit.local = hit.p - point.position + data_.points[raw.primitive].position;
 }
 
 void Points::sphere(const SizedPoint& point, Vec3d o, Vec3d d, double t, SurfaceHit& hit) const {

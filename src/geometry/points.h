@@ -35,6 +35,7 @@ class Points final : public Shape {
     Bounds3 bounds() const override { return bounds_; } // at all times
     void commit(GeometrySink&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override; // at first
 
     // Points do not emit.

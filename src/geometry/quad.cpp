@@ -1,5 +1,6 @@
 #include "geometry/quad.h"
 
+#include "geometry/mesh_corners.h"
 #include "geometry/spherical_rectangle.h"
 #include "geometry/surface_math.h"
 #include "math/warp.h"
@@ -28,7 +29,8 @@ template <typename Rectangle> std::optional<SphericalRectangle> sphericalView(co
 
 } // namespace
 
-Quad::Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01) : corners_{p00, p10, p11, p01, p00} {
+Quad::Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01, bool mirrored)
+    : corners_{p00, p10, p11, p01, p00}, mirrored_(mirrored) {
     const std::array<std::array<Vec3, 3>, 2> triangles{{{p00, p10, p01}, {p11, p01, p10}}};
     std::array<double, 2> areas{};
     Vec3 magnitude, extent;
@@ -93,6 +95,11 @@ void Quad::surface(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
     hit.shading = half.frame;
     hit.uv = {raw.u, raw.v};
     hit.primitive = 0;
+}
+
+void Quad::parametrize(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
+    const Half& half = halves_[raw.u + raw.v > 1];
+    parametrizeFace(raw, half.edgeS, half.edgeT, true, mirrored_, hit);
 }
 
 void Quad::sampleArea(Vec2 u, Vec3& p, Vec3& ng) const {

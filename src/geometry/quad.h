@@ -11,11 +11,13 @@ namespace abbe {
 // (p11, p01, p10); uv runs from p00 to p10 (u) and to p01 (v). Requires finite corners and a nonzero area.
 class Quad final : public Shape {
   public:
-    Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01);
+    // `mirrored`: the corners were turned round, because the map that placed them is a mirror.
+    Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01, bool mirrored = false);
 
     Bounds3 bounds() const override;
     void commit(GeometrySink&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     // Rectangles seen large: uniform per solid angle; everything else: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
@@ -44,6 +46,7 @@ class Quad final : public Shape {
     double area_;
     float pdfArea_;
     float firstHalf_; // share of the area in halves_[0]
+    bool mirrored_;
 };
 
 } // namespace abbe

@@ -19,6 +19,12 @@ double coneOneMinusCos(double d2, double r2) {
 Sphere::Sphere(Vec3d centre, double radius)
     : centre_(centre), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {}
 
+Sphere::Sphere(Vec3d centre, double radius, const Transform& place) : Sphere(centre, radius) {
+    x_ = Vec3(normalize(place.vector({1, 0, 0})));
+    y_ = Vec3(normalize(place.vector({0, 1, 0})));
+    z_ = Vec3(normalize(place.vector({0, 0, 1})));
+}
+
 Bounds3 Sphere::bounds() const {
     // Rounded outwards: float bounds must hold the double sphere.
     const Vec3d r(radius_, radius_, radius_);
@@ -49,6 +55,19 @@ std::optional<RawHit> Sphere::intersect(const Ray& ray) const {
 ShapeSample Sphere::at(Vec3d normal) const {
     const Vec3d p = centre_ + normal * radius_;
     return {Vec3(p), analyticError(p, magnitude_), Vec3(normal), 0};
+}
+
+void parametrizeSphere(Vec3 n, float radius, Vec3 x, Vec3 y, Vec3 z, SurfaceHit& hit) {
+    const float nx = dot(n, x), ny = std::clamp(dot(n, y), -1.f, 1.f), nz = dot(n, z);
+    const float longitude = std::atan2(nx, nz) * (0.5f * kInvPi);
+    hit.uv = {longitude < 0 ? longitude + 1 : longitude, 1 - std::acos(ny) * kInvPi};
+    hit.dpdu = (x * nz - z * nx) * (2 * kPi * radius);
+    const float sine = std::hypot(nx, nz);
+    if (sine > 0) hit.dpdv = (y * sine - (x * nx + z * nz) * (ny / sine)) * (kPi * radius);
+}
+
+void Sphere::parametrize(const RawHit&, const Ray&, SurfaceHit& hit) const {
+    parametrizeSphere(hit.ng, static_cast<float>(radius_), x_, y_, z_, hit);
 }
 
 void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {

@@ -1,15 +1,19 @@
 // Spheres, intersected and sampled in double.
 #pragma once
 
+#include "math/transform.h"
 #include "render/shape.h"
 
 namespace abbe {
 
-// Poles on the y axis: u is the longitude / 2π from +z towards +x, v rises from the south pole to the north.
+// Poles on the y axis: u is the longitude / 2π from +z towards +x, v rises from the south pole to the north. Those
+// textures see are about the axes of the shape's own space.
 // Requires radius > 0. Rays may have directions of any length (under instances).
 class Sphere final : public Shape {
   public:
     Sphere(Vec3d centre, double radius);
+    // Of what this map, which keeps angles, makes of a sphere in its own space.
+    Sphere(Vec3d centre, double radius, const Transform& place);
 
     Vec3d centre() const { return centre_; }
     double radius() const { return radius_; }
@@ -18,6 +22,7 @@ class Sphere final : public Shape {
     void commit(GeometrySink&) const override;
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
@@ -28,7 +33,11 @@ class Sphere final : public Shape {
 
     Vec3d centre_;
     double radius_;
-    double magnitude_; // largest coordinate in size
+    double magnitude_;                          // largest coordinate in size
+    Vec3 x_{1, 0, 0}, y_{0, 1, 0}, z_{0, 0, 1}; // axes of the own space, of unit length; left-handed after a mirror
 };
+
+// uv, dpdu and dpdv of a sphere about these axes where its normal is n.
+void parametrizeSphere(Vec3 n, float radius, Vec3 x, Vec3 y, Vec3 z, SurfaceHit&);
 
 } // namespace abbe

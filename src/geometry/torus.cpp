@@ -91,6 +91,11 @@ ParametricShape::LocalPoint Torus::project(Vec3d p, int) const {
     return l > 0 ? at(s, c, across / l, p.y / l) : at(s, c, 1, 0);
 }
 
+ParametricShape::LocalDerivatives Torus::derivatives(const LocalPoint& at, int) const {
+    const double s = -at.tangent.z, c = at.tangent.x, across = at.n.x * s + at.n.z * c;
+    return {Vec3d(at.p.z, 0, -at.p.x) * (2 * kPiD), Vec3d(-at.n.y * s, across, -at.n.y * c) * (2 * kPiD * minor_)};
+}
+
 ParametricShape::LocalPoint Torus::sampleLocal(Vec2d u) const {
     const double tube = tubeAngle(u.x, minor_ / major_), longitude = 2 * kPiD * u.y;
     return at(std::sin(longitude), std::cos(longitude), std::cos(tube), std::sin(tube));

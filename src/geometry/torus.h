@@ -15,6 +15,7 @@ class Torus final : public ParametricShape {
   private:
     std::optional<LocalHit> meet(Vec3d o, Vec3d d, double tMax) const override;
     LocalPoint project(Vec3d p, int part) const override;
+    LocalDerivatives derivatives(const LocalPoint&, int part) const override;
     LocalPoint sampleLocal(Vec2d u) const override;
 
     LocalPoint at(double sinLongitude, double cosLongitude, double across, double up) const;

@@ -60,6 +60,17 @@ void Transformed::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) co
     map_.toRender(hit);
 }
 
+void Transformed::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    const Ray inside = map_.toObject(ray);
+    SurfaceHit own;
+    shape_->surface(raw, inside, own);
+    shape_->parametrize(raw, inside, own);
+    map_.parametrizationToRender(own);
+    hit.uv = own.uv;
+    hit.dpdu = own.dpdu;
+    hit.dpdv = own.dpdv;
+}
+
 // dω in object space per dω in render space, for the unit object direction w: |A w|³ / |det A|.
 double Transformed::directionJacobian(Vec3 w) const {
     const double l = length(map_.map().vector(Vec3d(w)));

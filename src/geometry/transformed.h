@@ -20,6 +20,7 @@ class Transformed final : public Shape {
     void commit(GeometrySink&) const override;
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;

@@ -8,6 +8,7 @@
 #include "render/material.h"
 #include "render/medium.h"
 #include "render/shape.h"
+#include "render/texture.h"
 
 #include <memory>
 #include <vector>
@@ -16,6 +17,7 @@ namespace abbe {
 
 struct Scene {
     std::vector<std::unique_ptr<const Curve>> curves;
+    std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
     std::vector<std::unique_ptr<const Material>> materials;
     std::vector<std::unique_ptr<const Shape>> shapes;
     std::vector<std::unique_ptr<const Light>> lights; // committed

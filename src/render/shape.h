@@ -100,6 +100,14 @@ class Shape {
     virtual bool confirms(const RawHit&, const Ray&) const { return true; }
     // Fills p, pError, ng, shading, uv and primitive of the hit.
     virtual void surface(const RawHit&, const Ray&, SurfaceHit&) const = 0;
+    // Completes a hit that surface() has filled, for materials that look at textures: dpdu and dpdv, which are 0
+    // before; uv where those of surface() do not turn with the shape; and `local`, the point before, where the shape
+    // deforms: as it was when the shutter opened. All in the shape's coordinates.
+    virtual void parametrize(const RawHit&, const Ray&, SurfaceHit&) const {}
+    // Whether uv are texture coordinates of the whole shape.
+    virtual bool hasTextureCoordinates() const { return true; }
+    // Whether some of its faces have a material of their own that looks at textures.
+    virtual bool usesTextures() const { return false; }
 
     // What only emitters need. Area in m²; infinite for planes.
     virtual double area() const = 0;

@@ -30,8 +30,8 @@ struct TextureQuery {
     Vec2 uv;
     Vec2 du, dv;                     // half axes of the footprint in uv, the longer one first; 0: a point
     Vec3 position;                   // in the shape's own space, m
-    Vec3 normal;                     // unit, render space
-    float radius = 0;                // of the footprint, m
+    Vec3 normal;                     // unit, in the shape's own space
+    float radius = 0;                // of the footprint, in the shape's own space, m
     const SurfaceHit* hit = nullptr; // for the attributes of its shape; may be null
 };
 

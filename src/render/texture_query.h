@@ -9,7 +9,7 @@ namespace abbe {
 // The cone of the path meets the tangent plane in an ellipse; its half axes in uv follow from dp/du and dp/dv by least
 // squares [Igehy1999, sec. 3.2; Pharr2023, eq. 10.5].
 inline TextureQuery::TextureQuery(const SurfaceHit& h)
-    : uv(h.uv), position(h.local), normal(h.shading.z), radius(h.footprint), hit(&h) {
+    : uv(h.uv), position(h.local), normal(h.localNormal), radius(h.footprint * h.localScale), hit(&h) {
     if (!(h.footprint > 0)) return;
     const float uu = dot(h.dpdu, h.dpdu), uw = dot(h.dpdu, h.dpdv), ww = dot(h.dpdv, h.dpdv);
     const float determinant = uu * ww - uw * uw;

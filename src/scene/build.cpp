@@ -26,10 +26,11 @@ schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagn
 
 // What has a name is made once, whatever its kind.
 schema::Reference SceneBuilder::reference(const Definition& definition, Diagnostics& diagnostics) {
-    if (definition.name.empty()) return makeReference(definition, diagnostics);
-    if (const auto found = references_.find(&definition); found != references_.end()) return found->second;
-    const schema::Reference made = makeReference(definition, diagnostics);
-    references_[&definition] = made;
+    const auto named = definition.name.empty() ? references_.end() : references_.find(&definition);
+    const bool known = named != references_.end();
+    const schema::Reference made = known ? named->second : makeReference(definition, diagnostics);
+    if (!known && !definition.name.empty()) references_[&definition] = made;
+    if (definition.kind == Kind::material && made.valid()) askTextures(made.index);
     return made;
 }
 
@@ -100,6 +101,8 @@ void SceneBuilder::noteEffects(BuiltScene& built) {
         built.scene.effects |= needs;
         if (needs.has(Effect::dispersion))
             built.scene.reasons.push_back({Effect::dispersion, span, "its refractive index varies with wavelength"});
+        if (needs.has(Effect::textures))
+            built.scene.reasons.push_back({Effect::textures, span, "it looks at a texture"});
         if (needs.has(Effect::absorption))
             built.scene.reasons.push_back({Effect::absorption, span, "light is absorbed inside it"});
     }
@@ -129,6 +132,7 @@ void SceneBuilder::finish(BuiltScene& built) {
     }
     built.scene.curves = curves_.release();
     for (auto& inner : undressed_) materials_.push_back(std::move(inner));
+    for (auto& texture : textures_) built.scene.textures.push_back(std::move(texture));
     built.scene.materials = std::move(materials_);
     built.scene.shapes = std::move(shapes_);
     for (auto& light : lights_) built.scene.lights.push_back(std::move(light));

@@ -2,6 +2,7 @@
 #include "scene/scene_builder.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -156,7 +157,8 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     countShape(loaded);
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
-    addPlaced(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion)}, place);
+    if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
+    addPlaced(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse()}, place);
 }
 
 void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {

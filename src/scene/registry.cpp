@@ -34,8 +34,12 @@
 #include "scene/shape_parametric.h"
 #include "scene/shape_subdivision.h"
 #include "scene/shape_types.h"
+#include "textures/checker_texture.h"
 #include "textures/image_texture.h"
 #include "textures/noise_texture.h"
+#include "textures/product_texture.h"
+#include "textures/ramp_texture.h"
+#include "textures/triplanar_texture.h"
 
 namespace abbe {
 
@@ -114,12 +118,24 @@ std::unique_ptr<Texture> makeImage(const BindParams& bind, Diagnostics& diagnost
     return bind(&params) ? makeImageTexture(params, diagnostics) : nullptr;
 }
 
-std::unique_ptr<Texture> makeNoise(const BindParams& bind, Diagnostics&) {
-    NoiseTextureParams params;
-    return bind(&params) ? std::make_unique<NoiseTexture>(params) : nullptr;
+std::unique_ptr<Texture> makeRamp(const BindParams& bind, Diagnostics& diagnostics) {
+    RampTextureParams params;
+    return bind(&params) ? makeRampTexture(params, diagnostics) : nullptr;
 }
 
-constexpr TextureEntry kTextures[] = {{imageTextureType, makeImage}, {noiseTextureType, makeNoise}};
+template <typename T, typename Params> std::unique_ptr<Texture> pattern(const BindParams& bind, Diagnostics&) {
+    Params params;
+    return bind(&params) ? std::make_unique<T>(params) : nullptr;
+}
+
+constexpr TextureEntry kTextures[] = {
+    {imageTextureType, makeImage},
+    {noiseTextureType, pattern<NoiseTexture, NoiseTextureParams>},
+    {checkerTextureType, pattern<CheckerTexture, CheckerTextureParams>},
+    {rampTextureType, makeRamp},
+    {triplanarTextureType, pattern<TriplanarTexture, TriplanarTextureParams>},
+    {productTextureType, pattern<ProductTexture, ProductTextureParams>},
+};
 
 struct CameraEntry {
     schema::TypeInfo (*type)();
@@ -191,7 +207,7 @@ std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams& 
 
 std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance) {
     DiffuseParams params;
-    params.reflectance = reflectance;
+    params.reflectance.curve = reflectance;
     return makeDiffuse(params);
 }
 

@@ -51,6 +51,7 @@ class SceneBuilder final : public schema::Resolver {
     const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&) override;
     schema::ComplexIndex metal(std::string_view name, Span, Diagnostics&) override;
     schema::Reference reference(const schema::Definition&, Diagnostics&) override;
+    const Texture* texture(const schema::TextureRequest&, Diagnostics&) override;
 
   private:
     using Definition = schema::Definition;
@@ -69,6 +70,7 @@ class SceneBuilder final : public schema::Resolver {
         OpenEdges cageEdges;                               // of a cage that a medium fills
         bool infinite = false;
         bool sound = false;
+        bool texturesChecked = false;
     };
     struct ObjectGeometry;
     using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
@@ -173,6 +175,9 @@ class SceneBuilder final : public schema::Resolver {
     schema::Reference textureReference(const Definition&, Diagnostics&);
     // Null for none, or after an error at `user`.
     const Texture* textureFor(schema::Reference, TextureUse, Span user);
+    bool prepareTexture(std::uint32_t, TextureUse, Span user);
+    void askTextures(std::uint32_t material); // of a material that is part of another one
+    void checkTextures(const LoadedShape&, const Shape&);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
@@ -260,9 +265,26 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<const Definition*> openMaterials_;                        // being made
     std::unordered_map<const Definition*, schema::Reference> references_; // of what has a name
     std::vector<std::unique_ptr<Texture>> textures_;
-    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;    // who made it, for effects
-    std::map<double, std::optional<std::uint32_t>> plainMaterials_; // by reflectance
-    std::set<std::uint32_t> usedMaterials_;                         // of shapes that were placed
+    struct TextureParts {
+        std::uint32_t size = 1; // how many textures it asks at most, itself included
+        // The textures that it is made of, and whether as numbers whatever it is asked for itself.
+        std::vector<std::pair<std::uint32_t, bool>> parts;
+    };
+    struct OpenTexture {
+        const Definition* definition;
+        TextureParts made;
+    };
+    std::vector<TextureParts> textureParts_; // like textures_
+    std::vector<OpenTexture> openTextures_;  // being made, each for the one before
+    struct TextureAsker {
+        std::uint32_t texture;
+        Span span; // where
+    };
+    std::vector<std::vector<TextureAsker>> openAskers_;                // of materials being made
+    std::map<std::uint32_t, std::vector<TextureAsker>> textureAskers_; // of materials, with those that they are made of
+    std::vector<std::pair<std::uint32_t, Span>> materialAskers_;       // who made it, for effects
+    std::map<double, std::optional<std::uint32_t>> plainMaterials_;    // by reflectance
+    std::set<std::uint32_t> usedMaterials_;                            // of shapes that were placed
     std::vector<std::shared_ptr<const PhaseFunction>> phases_;
     std::vector<const Definition*> openMixes_; // being made
     std::vector<std::unique_ptr<const Medium>> media_;

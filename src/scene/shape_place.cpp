@@ -49,7 +49,7 @@ std::unique_ptr<const Shape> makeQuad(const std::vector<Vec3d>& points, Vec2d si
                          cross(corners[3] - corners[2], corners[1] - corners[2]);
     const double extent = std::max(lengthSquared(corners[2] - corners[0]), lengthSquared(corners[3] - corners[1]));
     if (!(length(normal) > 1e-12 * extent) || !(extent > 0)) return noArea(span, diagnostics, "quad"), nullptr;
-    return std::make_unique<Quad>(Vec3(corners[0]), Vec3(corners[1]), Vec3(corners[2]), Vec3(corners[3]));
+    return std::make_unique<Quad>(Vec3(corners[0]), Vec3(corners[1]), Vec3(corners[2]), Vec3(corners[3]), mirrored);
 }
 
 std::unique_ptr<const Shape> makeSphere(Vec3d center, double radius, const Transform& place, Span span,
@@ -58,7 +58,7 @@ std::unique_ptr<const Shape> makeSphere(Vec3d center, double radius, const Trans
     const auto scale = place.uniformScale();
     if (!inReach(c) || (scale && !(*scale * radius < kLargestCoordinate)))
         return outOfReach(span, diagnostics), nullptr;
-    if (scale) return std::make_unique<Sphere>(c, *scale * radius);
+    if (scale) return std::make_unique<Sphere>(c, *scale * radius, place);
     return std::make_unique<Transformed>(std::make_unique<Sphere>(center, radius), place);
 }
 
@@ -69,7 +69,7 @@ std::unique_ptr<const Shape> makeDisk(Vec3d center, Vec3d normal, double radius,
     const auto scale = place.uniformScale();
     if (!inReach(c) || (scale && !(*scale * radius < kLargestCoordinate)))
         return outOfReach(span, diagnostics), nullptr;
-    if (scale) return std::make_unique<Disk>(c, normalize(place.normal(normal)), *scale * radius);
+    if (scale) return std::make_unique<Disk>(c, normalize(place.normal(normal)), *scale * radius, place);
     return std::make_unique<Transformed>(std::make_unique<Disk>(center, normalize(normal), radius), place);
 }
 
@@ -78,7 +78,7 @@ std::unique_ptr<const Shape> makePlane(Vec3d point, Vec3d normal, const Transfor
     if (!(length(normal) > 0)) return noArea(span, diagnostics, "normal"), nullptr;
     const Vec3d p = place.point(point);
     if (!inReach(p)) return outOfReach(span, diagnostics), nullptr;
-    return std::make_unique<Plane>(p, normalize(place.normal(normal)));
+    return std::make_unique<Plane>(p, normalize(place.normal(normal)), place);
 }
 
 std::unique_ptr<const Shape> placeMesh(MeshData mesh, const Transform& place, Span span, Diagnostics& diagnostics) {
@@ -98,7 +98,7 @@ std::unique_ptr<const Shape> placeMesh(MeshData mesh, const Transform& place, Sp
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
         for (auto& q : mesh.quads) std::swap(q[1], q[3]);
     }
-    return std::make_unique<Mesh>(std::move(mesh));
+    return std::make_unique<Mesh>(std::move(mesh), place.determinant() < 0);
 }
 
 } // namespace abbe

@@ -22,6 +22,7 @@ bool takesBlock(const FieldInfo& field) {
     case FieldType::transform:
     case FieldType::table:
     case FieldType::moments:
+    case FieldType::stop:
         return true;
     default:
         return false;
@@ -32,7 +33,7 @@ bool takesBlock(const FieldInfo& field) {
 bool readsKeys(FieldType type) {
     return type == FieldType::text || type == FieldType::file || type == FieldType::spectrum ||
            type == FieldType::sharpRow || type == FieldType::reference || type == FieldType::weighted ||
-           type == FieldType::place;
+           type == FieldType::place || type == FieldType::stop;
 }
 
 bool checkBlockAndKeys(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
@@ -103,6 +104,10 @@ std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry
 }
 
 std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    return field.texturable ? bindTextured(field, entry, context) : bindUntextured(field, entry, context);
+}
+
+std::optional<BoundValue> bindUntextured(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     if (!checkBlockAndKeys(field, entry, context.diagnostics)) return std::nullopt;
     switch (field.type) {
     case FieldType::integer:
@@ -133,6 +138,8 @@ std::optional<BoundValue> bindField(const FieldInfo& field, const Entry& entry, 
         return bindWeighted(field, entry, context);
     case FieldType::transform:
         return bindTransformField(field, entry, context);
+    case FieldType::stop:
+        return bindStop(field, entry, context);
     case FieldType::moments:
         break; // several values: bind() itself
     }

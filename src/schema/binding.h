@@ -18,7 +18,12 @@ struct BindContext {
 // The value of a field; nothing after a diagnostic.
 std::optional<BoundValue> bindField(const FieldInfo&, const Entry&, const BindContext&);
 
+// The same for a field that takes no textures, or for a value that is none.
+std::optional<BoundValue> bindUntextured(const FieldInfo&, const Entry&, const BindContext&);
+
 // The parts of bindField, by group of field types.
+std::optional<BoundValue> bindTextured(const FieldInfo&, const Entry&, const BindContext&); // texturable ones
+std::optional<BoundValue> bindStop(const FieldInfo&, const Entry&, const BindContext&);
 std::optional<BoundValue> bindNumeric(const FieldInfo&, const Entry&, const BindContext&); // integer … vector3
 std::optional<BoundValue> bindWord(const FieldInfo&, const Entry&, const BindContext&);    // toggle, choice, text, file
 std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindContext&);    // points, numbers, rows

@@ -13,6 +13,8 @@ namespace abbe::schema {
 
 namespace {
 
+std::string describeUntextured(const FieldInfo&);
+
 constexpr int kDimensions = static_cast<int>(Dimension::pixels) + 1;
 
 std::string dimensionList(const FieldInfo& field) {
@@ -232,6 +234,12 @@ std::string suggestion(const TypeTable& table, std::string_view word) {
 } // namespace
 
 std::string describeField(const FieldInfo& field) {
+    return describeUntextured(field) + (field.texturable ? ", or a texture" : "");
+}
+
+namespace {
+
+std::string describeUntextured(const FieldInfo& field) {
     switch (field.type) {
     case FieldType::integer:
         return "a whole number";
@@ -267,6 +275,8 @@ std::string describeField(const FieldInfo& field) {
     case FieldType::weighted:
         return fmt::format("the name of a {0}, or an inline {0}, perhaps `weight=`; may be repeated",
                            keyword(field.referenceKind));
+    case FieldType::stop:
+        return "a number and a spectrum or texture; may be repeated";
     case FieldType::transform:
         return field.canMove
                    ? "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`, or keys `at TIME { … }`"
@@ -280,6 +290,8 @@ std::string describeField(const FieldInfo& field) {
     }
     return {};
 }
+
+} // namespace
 
 std::string describeRange(const FieldInfo& field) {
     if (!std::isfinite(field.lower) && !std::isfinite(field.upper)) return {};

@@ -20,18 +20,22 @@ class Entry {
     Entry(std::string_view name, Span span, std::vector<Value> values, std::span<const Key> keys = {})
         : values_(std::move(values)), name_(name), span_(span), keys_(keys) {}
 
+    // The same property without its first `skipped` values.
+    Entry(Node property, std::size_t skipped) : Entry(property) { skipped_ = skipped; }
+
     std::string_view name() const { return name_; }
     Span span() const { return span_; } // of the whole entry without its block
-    std::size_t count() const { return node_ ? node_->valueCount() : values_.size(); }
-    Value value(std::size_t i) const { return node_ ? node_->value(i) : values_[i]; }
+    std::size_t count() const { return node_ ? node_->valueCount() - skipped_ : values_.size(); }
+    Value value(std::size_t i) const { return node_ ? node_->value(skipped_ + i) : values_[i]; }
     bool packed() const { return node_ && node_->allNumbers(); }
-    std::span<const double> numbers() const { return node_->numbers(); } // requires packed()
+    std::span<const double> numbers() const { return node_->numbers().subspan(skipped_); } // requires packed()
     std::span<const Key> keys() const { return keys_; }
     const std::optional<Node>& node() const { return node_; } // nothing for arguments
     bool hasBlock() const { return node_ && node_->hasBlock(); }
 
   private:
     std::optional<Node> node_;
+    std::size_t skipped_ = 0; // of the node's values
     std::vector<Value> values_;
     std::string_view name_;
     Span span_;

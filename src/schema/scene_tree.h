@@ -87,6 +87,13 @@ struct SpectrumValue {
     Span span;
 };
 
+// A texture in the place of a spectrum or a number.
+struct TextureRequest {
+    const Definition& definition;     // named or inline
+    std::optional<SpectrumRole> role; // of the spectrum; nothing: a number
+    Span span;                        // of the name or type
+};
+
 // What binding needs from the scene that is being built.
 class Resolver {
   public:
@@ -99,6 +106,8 @@ class Resolver {
     // inline one: it lives only during the call, so its address must not be remembered. A definition with an unknown
     // type (type == nullptr) has been reported already.
     virtual Reference reference(const Definition&, Diagnostics&) = 0;
+    // The texture of a definition, built like other definitions; null after a diagnostic.
+    virtual const Texture* texture(const TextureRequest&, Diagnostics&) = 0;
 };
 
 // First pass over a document: header, kinds, names, types. Unknown words are errors with a suggestion, names are

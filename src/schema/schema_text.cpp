@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kFieldTypes = {"integer",  "number",   "quantity",     "vector2",   "vector3",   "toggle",
                                     "choice",   "text",     "file",         "points",    "numbers",   "indexRows",
                                     "sharpRow", "spectrum", "complexIndex", "reference", "transform", "table",
-                                    "place",    "moments",  "weighted"};
+                                    "place",    "moments",  "weighted",     "stop"};
 constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
 constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
                                       "temperature", "power",      "luminousFlux", "luminousIntensity",
@@ -82,7 +82,8 @@ std::string jsonField(const FieldInfo& field) {
     if (!field.defaultText.empty()) out += fmt::format(R"(,"default":{})", jsonString(field.defaultText));
     if (std::isfinite(field.lower)) out += fmt::format(R"(,"minimum":{})", field.lower);
     if (std::isfinite(field.upper)) out += fmt::format(R"(,"maximum":{})", field.upper);
-    if (field.type == FieldType::spectrum) out += fmt::format(R"(,"role":"{}")", id(field.role));
+    if (field.type == FieldType::spectrum || field.type == FieldType::stop)
+        out += fmt::format(R"(,"role":"{}")", id(field.role));
     if (field.type == FieldType::reference || field.type == FieldType::weighted)
         out += fmt::format(R"(,"kind":"{}")", keyword(field.referenceKind));
     if (!field.choices.empty()) out += fmt::format(R"(,"choices":{})", array(field.choices, jsonView));
@@ -96,6 +97,7 @@ std::string jsonField(const FieldInfo& field) {
     if (!field.group.empty()) out += fmt::format(R"(,"group":{})", jsonString(field.group));
     if (field.required) out += R"(,"required":true)";
     if (field.argument >= 0) out += fmt::format(R"(,"argument":{})", field.argument);
+    if (field.texturable) out += R"(,"texturable":true)";
     return out + "}";
 }
 
@@ -165,7 +167,8 @@ std::string schemaListing(const TypeTable& table) {
             text += fmt::format("{} {} {} {}", keyword(type.kind), type.name, field.name, id(field.type));
             for (const Dimension d : field.dimensions)
                 if (d != Dimension::none) text += fmt::format(" [{}]", id(d));
-            if (field.type == FieldType::spectrum) text += fmt::format(" role={}", id(field.role));
+            if (field.type == FieldType::spectrum || field.type == FieldType::stop)
+                text += fmt::format(" role={}", id(field.role));
             if (field.type == FieldType::reference) text += fmt::format(" kind={}", keyword(field.referenceKind));
             if (!field.defaultText.empty()) text += fmt::format(" default=\"{}\"", field.defaultText);
             if (std::isfinite(field.lower)) text += fmt::format(" min={}", field.lower);
@@ -173,6 +176,7 @@ std::string schemaListing(const TypeTable& table) {
             for (const std::string_view choice : field.choices) text += fmt::format(" |{}", choice);
             for (const FieldKey& key : field.keys) text += fmt::format(" {}=", key.name);
             if (!field.group.empty()) text += fmt::format(" group=\"{}\"", field.group);
+            if (field.texturable) text += " texturable";
             if (field.required) text += " required";
             if (field.argument >= 0) text += fmt::format(" argument={}", field.argument);
             text += '\n';

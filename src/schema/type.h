@@ -148,6 +148,12 @@ struct TexturedNumber {
     Span span;
 };
 
+// A spectrum or texture at a position: `stop 0.5 rgb 0.9 0.5 0.2`.
+struct SpectrumStop {
+    double position = 0;
+    TexturedSpectrum value = {};
+};
+
 // Metals are a pair of curves.
 struct ComplexIndex {
     const Curve* n = nullptr;
@@ -157,7 +163,7 @@ struct ComplexIndex {
 using BoundValue =
     std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
                  std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location, const Curve*, ComplexIndex, Reference,
-                 GroupReference, WeightedReference, KeyedTransform, TexturedSpectrum, TexturedNumber>;
+                 GroupReference, WeightedReference, KeyedTransform, TexturedSpectrum, TexturedNumber, SpectrumStop>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -185,6 +191,7 @@ enum class FieldType : std::uint8_t {
              // `Span span`, whose other fields stand in the block
     weighted, // a reference with a key `weight=` (or of another name), 1 when absent; may be repeated where the member
               // is a std::vector -> WeightedReference
+    stop,     // a number and a spectrum or texture; may be repeated -> SpectrumStop, into a std::vector
 };
 
 struct FieldKey {
@@ -246,7 +253,8 @@ template <typename Params, typename Member> class Field {
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
         info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
         info_.repeats =
-            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>>;
+            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>> ||
+            std::is_same_v<Member, std::vector<SpectrumStop>>;
         if constexpr (requires(Member m) { m.emplace_back().time; })
             info_.append = [member](void* params, double time, Span span) -> void* {
                 auto& moment = (static_cast<Params*>(params)->*member).emplace_back();
@@ -304,6 +312,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
             if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
+        } else if constexpr (std::is_same_v<M, std::vector<SpectrumStop>>) {
+            if (const auto* one = std::get_if<SpectrumStop>(&value)) member.push_back(*one);
         } else if constexpr (std::is_same_v<M, std::vector<WeightedReference>>) {
             if (const auto* one = std::get_if<WeightedReference>(&value)) member.push_back(*one);
         } else if constexpr (std::is_same_v<M, std::vector<GroupReference>>) {

@@ -21,11 +21,15 @@ void collectTexts(const Node& node, Texts& out) {
     if (!node.allNumbers())
         for (std::size_t i = 0; i < node.valueCount(); ++i)
             if (const Value value = node.value(i); value.isText()) out.insert(value.text);
+    for (const Key& key : node.keys())
+        if (key.value.isText()) out.insert(key.value.text);
     for (const Node child : node.children()) collectTexts(child, out);
 }
 
 void collectTexts(const Definitions& definitions, Texts& out) {
     for (const Definition& d : definitions) {
+        for (const Key& key : d.keys)
+            if (key.value.isText()) out.insert(key.value.text);
         for (const Node& property : d.properties) collectTexts(property, out);
         collectTexts(d.children, out);
     }
@@ -151,7 +155,7 @@ void checkUnused(const SceneTree& tree, const std::vector<const Definition*>& in
     collectTexts(tree.definitions, texts);
     for (const Definition* instance : instances) targets.insert(instance->target);
     for (const Definition* d : tree.index.sorted) {
-        const bool slot = d->kind == Kind::material || d->kind == Kind::spectrum;
+        const bool slot = d->kind == Kind::material || d->kind == Kind::spectrum || d->kind == Kind::texture;
         if (!slot && d->kind != Kind::object) continue;
         const Texts& uses = slot ? texts : targets;
         if (uses.contains(d->name) || mayBeMisspelt(d->name, uses, budget)) continue;
@@ -167,9 +171,9 @@ void checkNames(const SceneTree& tree, const TypeTable& table, Diagnostics& diag
     for (const Definition* d : tree.index.sorted) {
         if (!first || first->kind != d->kind || first->name != d->name) {
             first = d;
-            if (d->kind == Kind::material && table.find(d->kind, d->name))
+            if ((d->kind == Kind::material || d->kind == Kind::texture) && table.find(d->kind, d->name))
                 diagnostics.warning("W0202", d->nameSpan,
-                                    fmt::format("the name `{}` hides a type of material", d->name),
+                                    fmt::format("the name `{}` hides a type of {}", d->name, keyword(d->kind)),
                                     "names win over types");
             continue;
         }

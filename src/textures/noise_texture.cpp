@@ -73,19 +73,46 @@ NoiseTexture::NoiseTexture(const NoiseTextureParams& params) : params_(params) {
     for (std::int64_t k = 0; k < params.octaves; ++k, weight *= params.gain) total_ += weight;
 }
 
+namespace {
+
+// What a disk leaves of an octave: the transform of the disk, 2 J1(x)/x with x = 2π ν r, is nearly exp(-x²/8), and the
+// power of gradient noise lies about the frequency ν = kCentre per cell (tests/unit/textures/procedural_test.cpp).
+double kept(double cellsAcrossRadius) {
+    constexpr double kCentre = 0.85;
+    const double x = 2 * kPiD * kCentre * cellsAcrossRadius;
+    return std::exp(-x * x / 8);
+}
+constexpr double kUnseen = 1e-3; // less is left out
+
+} // namespace
+
 TextureJet NoiseTexture::jet(const TexturePoint& point, int channels) const noexcept {
+    return sum(point.position, channels, 0);
+}
+
+Vec3 NoiseTexture::value(const TextureQuery& query) const noexcept {
+    return sum(Vec3d(query.position), 3, static_cast<double>(query.radius)).value;
+}
+
+Spectrum NoiseTexture::spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
+    return Spectrum(sum(Vec3d(query.position), 1, static_cast<double>(query.radius)).value.x);
+}
+
+TextureJet NoiseTexture::sum(Vec3d position, int channels, double radius) const {
     TextureJet result;
     float value[3] = {0.5f, channels > 1 ? 0.5f : 0, channels > 2 ? 0.5f : 0}, slope[3][3] = {};
     double frequency = 1 / params_.scale, weight = 0.5 / total_;
     for (std::int64_t k = 0; k < params_.octaves; ++k, frequency *= params_.lacunarity, weight *= params_.gain) {
-        const Vec3d cell = point.position * frequency;
-        if (!(maxComponent(abs(cell)) < kFarthest)) break;
+        const Vec3d cell = position * frequency;
+        const double fading = radius > 0 ? kept(radius * frequency) : 1;
+        if (!(maxComponent(abs(cell)) < kFarthest) || !(fading > kUnseen)) break;
+        const double strength = weight * fading;
         for (int c = 0; c < channels; ++c) {
             const auto seed = static_cast<std::uint32_t>(
                 combine64(static_cast<std::uint64_t>(params_.seed), static_cast<std::uint64_t>(k * 3 + c)));
             const NoiseJet n = gradientNoise(cell + shiftOf(seed), seed);
-            value[c] += static_cast<float>(weight) * n.value;
-            const Vec3 g = n.gradient * static_cast<float>(weight * frequency);
+            value[c] += static_cast<float>(strength) * n.value;
+            const Vec3 g = n.gradient * static_cast<float>(strength * frequency);
             slope[0][c] += g.x;
             slope[1][c] += g.y;
             slope[2][c] += g.z;

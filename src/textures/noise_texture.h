@@ -27,8 +27,13 @@ class NoiseTexture final : public Texture {
     int channels() const override { return 3; }
     bool needsUv() const override { return false; }
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
+    // Octaves fade out as the footprint grows across their bumps, as averaging over it makes them.
+    Vec3 value(const TextureQuery&) const noexcept override;
+    Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
 
   private:
+    TextureJet sum(Vec3d position, int channels, double radius) const;
+
     NoiseTextureParams params_;
     double total_ = 0; // Σ gain^k
 };

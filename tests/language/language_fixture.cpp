@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace language_test {
@@ -106,6 +107,17 @@ TypeInfo material(std::string_view name, std::vector<FieldInfo> fields) {
     return {Kind::material, name, "A material.", "material diffuse { reflectance 0.5 }", false, std::move(fields)};
 }
 
+TypeInfo texture(std::string_view name) {
+    return {Kind::texture,
+            name,
+            "A texture.",
+            "texture noise { scale 2 cm }",
+            false,
+            {make(FieldType::quantity, "scale", &Params::radius).unit({Dimension::length}),
+             make(FieldType::text, "pattern", &Params::file).argument(0).key({"space", {"data"}, "The space."}),
+             make(FieldType::spectrum, "odd", &Params::paint).range(0, 1)}};
+}
+
 } // namespace
 
 TypeTable testTypes() {
@@ -122,7 +134,12 @@ TypeTable testTypes() {
     table.add(
         shape("quad", {pointsField(), make(FieldType::vector2, "size", &Params::size).unit({Dimension::length})}));
     table.add(meshLike("mesh"));
-    table.add(material("diffuse", {reflectance(), roughness()}));
+    table.add(material(
+        "diffuse",
+        {reflectance(), roughness(), make(FieldType::spectrum, "paint", &Params::paint).range(0, 1),
+         make(FieldType::number, "gloss", &Params::gloss).unit({Dimension::none, Dimension::fraction}).range(0, 1)}));
+    table.add(texture("noise"));
+    table.add(texture("image"));
     table.add(material("dielectric",
                        {make(FieldType::spectrum, "ior", &Params::ior).role(SpectrumRole::index).byDefault("glass BK7"),
                         make(FieldType::spectrum, "absorption", &Params::absorption)
@@ -164,6 +181,13 @@ ComplexIndex RecordingResolver::metal(std::string_view name, Span, Diagnostics&)
 Reference RecordingResolver::reference(const Definition& d, Diagnostics&) {
     references.push_back(!d.name.empty() ? d.name : d.type ? "(" + std::string(d.type->name) + ")" : "(?)");
     return d.type ? Reference{static_cast<std::uint32_t>(references.size() - 1)} : Reference{};
+}
+
+const Texture* RecordingResolver::texture(const TextureRequest& use, Diagnostics&) {
+    const Definition& d = use.definition;
+    textures.push_back(fmt::format("{}{}", d.name.empty() ? fmt::format("({})", d.type->name) : d.name,
+                                   use.role ? "" : " as a number"));
+    return reinterpret_cast<const Texture*>(kTexture);
 }
 
 namespace {

@@ -35,6 +35,8 @@ struct Params {
     std::vector<double> numbers;
     IndexRows faces;
     const Curve* reflectance = nullptr;
+    TexturedSpectrum paint;
+    TexturedNumber gloss = {0.25, nullptr, {}};
     const Curve* ior = nullptr;
     const Curve* radiance = nullptr;
     const Curve* absorption = nullptr;
@@ -57,10 +59,14 @@ class RecordingResolver final : public Resolver {
     const Curve* curve(const SpectrumValue& value, SpectrumRole, Diagnostics&) override;
     ComplexIndex metal(std::string_view name, Span, Diagnostics&) override;
     Reference reference(const Definition&, Diagnostics&) override;
+    const Texture* texture(const TextureRequest&, Diagnostics&) override;
 
     std::vector<SpectrumValue> values;
     std::vector<std::string> metals;
     std::vector<std::string> references; // "name" or "(type)"
+    std::vector<std::string> textures;   // the same
+
+    static constexpr std::uintptr_t kTexture = 0x1000; // stands for any texture
 
   private:
     ConstantCurve curve_{1};

@@ -111,7 +111,7 @@ TEST_CASE("no metal reflects more than it receives, and rough ones keep their co
 }
 
 TEST_CASE("diffuse: albedo is the reflectance") {
-    const BsdfUnderTest b("diffuse", makeDiffuse({&flat(0.2)}), 1);
+    const BsdfUnderTest b("diffuse", makeDiffuse({{&flat(0.2), nullptr, {}}}), 1);
     for (int i = 0; i < 20; ++i)
         CHECK(albedo(*b.bsdf, furnaceDirection(i), Transport::radiance) == doctest::Approx(0.2).epsilon(1e-6));
     const double e = cellsFor(b, {0, 0, 1}, true).integral([&](Vec3d wi) {

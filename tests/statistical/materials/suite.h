@@ -22,13 +22,17 @@ inline const Curve& flat(double value) {
 }
 
 inline BsdfUnderTest conductor(double n, double k, float roughness, float anisotropy = 0) {
+    ConductorParams params;
+    params.index = {&flat(n), &flat(k)};
+    params.roughness.value = roughness;
+    params.anisotropy.value = anisotropy;
     return {fmt::format("conductor n {} k {} roughness {} anisotropy {}", n, k, roughness, anisotropy),
-            makeConductor({{&flat(n), &flat(k)}, roughness, anisotropy}), roughness * roughness};
+            makeConductor(params), roughness * roughness};
 }
 inline BsdfUnderTest dielectric(double ior, float roughness) {
     DielectricParams params;
     params.ior = &flat(ior);
-    params.roughness = roughness;
+    params.roughness.value = roughness;
     return {fmt::format("dielectric ior {} roughness {}", ior, roughness), makeDielectric(params),
             roughness * roughness, static_cast<float>(ior)};
 }
@@ -37,7 +41,7 @@ inline BsdfUnderTest dielectric(double ior, float roughness) {
 inline BsdfUnderTest dispersiveGlass(const Curve& ior, float roughness, Wavelengths wavelengths) {
     DielectricParams params;
     params.ior = &ior;
-    params.roughness = roughness;
+    params.roughness.value = roughness;
     return {fmt::format("dispersive glass roughness {}", roughness), makeDielectric(params), roughness * roughness,
             static_cast<float>(ior.at(static_cast<double>(wavelengths.nm[0]))), wavelengths};
 }

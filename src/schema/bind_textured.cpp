@@ -1,0 +1,140 @@
+// Spectra and numbers in whose place a texture may stand.
+#include "schema/binding.h"
+#include "schema/definition_reader.h"
+#include "schema/measure.h"
+#include "schema/spectrum_reader.h"
+#include "schema/suggest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe::schema {
+
+namespace {
+
+class TexturedBinder {
+  public:
+    TexturedBinder(const FieldInfo& field, const Entry& entry, const BindContext& context)
+        : field_(field), entry_(entry), context_(context), spectral_(field.type == FieldType::spectrum) {}
+
+    // A bare word is first a defined name, then a type; with arguments or a block it is always a type.
+    std::optional<BoundValue> bind() {
+        if (entry_.count() == 0 || !entry_.value(0).isText()) return plain();
+        const Value word = entry_.value(0);
+        const bool bare = entry_.count() == 1 && !entry_.hasBlock() && entry_.keys().empty();
+        const Definition* const spectrum = spectral_ ? context_.tree.find(Kind::spectrum, word.text) : nullptr;
+        const Definition* const named = context_.tree.find(Kind::texture, word.text);
+        if (bare && spectrum && named) return ambiguous(word, *spectrum, *named);
+        if (bare && spectrum) return plain();
+        if (bare && named) return texture(*named);
+        if (const TypeInfo* const type = context_.table.find(Kind::texture, word.text)) return inlined(*type, word);
+        if (named) return overloaded(word);
+        const bool form = spectral_ && (findSpectrumForm(word.text) || !bare);
+        const bool fraction = !spectral_ && word.kind == ValueKind::string; // "1/3"
+        if (form || fraction) return plain();
+        unknown(word);
+        return std::nullopt;
+    }
+
+  private:
+    std::optional<BoundValue> plain() {
+        auto value = bindUntextured(field_, entry_, context_);
+        if (!value) return std::nullopt;
+        if (spectral_) return TexturedSpectrum{std::get<const Curve*>(*value), nullptr, entry_.span()};
+        const auto* const quantity = std::get_if<Quantity>(&*value);
+        return TexturedNumber{quantity ? quantity->value : std::get<double>(*value), nullptr, entry_.span()};
+    }
+
+    std::optional<BoundValue> texture(const Definition& definition) {
+        const auto role = spectral_ ? std::optional(field_.role) : std::nullopt;
+        const TextureRequest use{definition, role, place(entry_.value(0))};
+        const Texture* const made = context_.resolver.texture(use, context_.diagnostics);
+        if (!made) return std::nullopt;
+        if (spectral_) return TexturedSpectrum{nullptr, made, entry_.span()};
+        return TexturedNumber{0, made, entry_.span()};
+    }
+
+    std::optional<BoundValue> inlined(const TypeInfo& type, const Value& word) {
+        Definition definition;
+        definition.kind = Kind::texture;
+        definition.nameSpan = place(word);
+        definition.span = entry_.span();
+        definition.type = &type;
+        for (std::size_t i = 1; i < entry_.count(); ++i) definition.arguments.push_back(entry_.value(i));
+        definition.keys.assign(entry_.keys().begin(), entry_.keys().end());
+        if (entry_.hasBlock())
+            for (const Node child : entry_.node()->children()) definition.properties.push_back(child);
+        return texture(definition);
+    }
+
+    std::optional<BoundValue> ambiguous(const Value& word, const Definition& spectrum, const Definition& named) {
+        auto& d = reportAt(context_.diagnostics, word, "E0730",
+                           fmt::format("`{}` names a spectrum and a texture", word.text), "which of them?");
+        d.related.push_back({spectrum.nameSpan, "the spectrum"});
+        d.related.push_back({named.nameSpan, "the texture"});
+        d.help = "give one of them another name";
+        return std::nullopt;
+    }
+
+    std::optional<BoundValue> overloaded(const Value& word) {
+        reportAt(context_.diagnostics, word, "E0214",
+                 fmt::format("`{}` is a name: it takes no arguments and no block", word.text),
+                 fmt::format("write `{} {}` alone", field_.name, word.text));
+        return std::nullopt;
+    }
+
+    void unknown(const Value& word) {
+        std::vector<std::string_view> names;
+        for (const Definition* d : context_.tree.index.sorted)
+            if (d->kind == Kind::texture || (spectral_ && d->kind == Kind::spectrum)) names.push_back(d->name);
+        const auto types = typeNames(context_.table, Kind::texture);
+        std::vector<std::string_view> words = types;
+        if (spectral_)
+            for (const SpectrumForm& form : spectrumForms()) words.push_back(form.name);
+        auto meant = nearest(word.text, names);
+        if (meant.empty()) meant = nearest(word.text, words);
+        const std::string_view what = spectral_ ? "spectrum or texture" : "texture";
+        auto& d = reportAt(context_.diagnostics, word, "E0202", fmt::format("no {} is named `{}`", what, word.text),
+                           meant.empty() ? "unknown name" : didYouMean(meant));
+        for (const Kind kind : {Kind::spectrum, Kind::texture})
+            if (const Definition* const definition = context_.tree.find(kind, meant))
+                d.related.push_back({definition->nameSpan, "defined here"});
+        if (meant.empty())
+            d.help = fmt::format("write {}, or one of {}",
+                                 spectral_ ? "a spectrum, the name of a texture" : "a number, the name of a texture",
+                                 quotedList(types, "or"));
+    }
+
+    const FieldInfo& field_;
+    const Entry& entry_;
+    const BindContext& context_;
+    bool spectral_;
+};
+
+} // namespace
+
+std::optional<BoundValue> bindTextured(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    return TexturedBinder(field, entry, context).bind();
+}
+
+std::optional<BoundValue> bindStop(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    if (!entry.node() || entry.count() < 2) {
+        report(context.diagnostics, entry.span(), "E0306",
+               fmt::format("`{}` needs a position and a spectrum or texture", field.name), "has too few values")
+            .help = fmt::format("for example `{}`", field.example);
+        return std::nullopt;
+    }
+    constexpr std::array plain = {Dimension::none};
+    const Measure measure{field.name, plain, -HUGE_VAL, HUGE_VAL, {}, field.example};
+    const auto position = MeasureReader(measure, context.tree.header, context.diagnostics).number(entry.value(0));
+    if (!position) return std::nullopt;
+    FieldInfo value = field;
+    value.type = FieldType::spectrum;
+    const auto bound = bindTextured(value, Entry(*entry.node(), 1), context);
+    if (!bound) return std::nullopt;
+    return SpectrumStop{*position, std::get<TexturedSpectrum>(*bound)};
+}
+
+} // namespace abbe::schema
