@@ -78,7 +78,7 @@ namespace {
 // What a disk leaves of an octave: the transform of the disk, 2 J1(x)/x with x = 2π ν r, is nearly exp(-x²/8), and the
 // power of gradient noise lies about the frequency ν = kCentre per cell (tests/unit/textures/procedural_test.cpp).
 double kept(double cellsAcrossRadius) {
-    constexpr double kCentre = 0.85;
+    constexpr double kCentre = 0.55;
     const double x = 2 * kPiD * kCentre * cellsAcrossRadius;
     return std::exp(-x * x / 8);
 }
