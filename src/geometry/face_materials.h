@@ -28,6 +28,10 @@ class FaceMaterials final : public Shape {
         shape_->parametrize(raw, ray, hit);
     }
     bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
+    std::optional<Vec3> attribute(std::string_view name, const SurfaceHit& hit) const override {
+        return shape_->attribute(name, hit);
+    }
+    std::vector<std::string_view> attributeNames() const override { return shape_->attributeNames(); }
     bool usesTextures() const override;
     double area() const override { return shape_->area(); }
     std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const override {

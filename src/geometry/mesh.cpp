@@ -18,6 +18,8 @@ Vec3 interpolate(const std::vector<Vec3>& v, std::uint32_t a, std::uint32_t b, s
 Mesh::Mesh(MeshData data, bool mirrored) : data_(std::move(data)), mirrored_(mirrored) {
     ABBE_CHECK(data_.normals.empty() || data_.normals.size() == data_.positions.size());
     ABBE_CHECK(data_.uvs.empty() || data_.uvs.size() == data_.positions.size());
+    for (const MeshAttribute& a : data_.attributes)
+        ABBE_CHECK(a.values.size() == data_.positions.size() * static_cast<std::size_t>(a.channels));
     ABBE_CHECK(triangleCount() < 0xffffffffu);
     data_.positions.reserve(data_.positions.size() + 2); // Embree reads vertices as 16 bytes
     faceNormals_.resize(triangleCount());
@@ -106,6 +108,25 @@ void Mesh::parametrize(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
         parametrizeFace(raw, p1, p2, c.primitive >= data_.triangles.size(), mirrored_, hit);
     else
         parametrizeTriangle(p1, p2, uv[c.b] - uv[c.a], uv[c.c] - uv[c.a], hit);
+}
+
+std::optional<Vec3> Mesh::attribute(std::string_view name, const SurfaceHit& hit) const {
+    for (const MeshAttribute& a : data_.attributes) {
+        if (a.name != name) continue;
+        const MeshCorners c = cornersOf(data_, {hit.barycentric.x, hit.barycentric.y, 0, hit.element, hit.part});
+        const auto at = [&](std::uint32_t vertex) {
+            const float* const v = &a.values[static_cast<std::size_t>(vertex) * static_cast<std::size_t>(a.channels)];
+            return a.channels == 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0], v[0], v[0]);
+        };
+        return at(c.a) * (1 - c.s - c.t) + at(c.b) * c.s + at(c.c) * c.t;
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string_view> Mesh::attributeNames() const {
+    std::vector<std::string_view> names;
+    for (const MeshAttribute& a : data_.attributes) names.push_back(a.name);
+    return names;
 }
 
 void Mesh::weighByArea() const {

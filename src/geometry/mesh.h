@@ -36,6 +36,8 @@ class Mesh final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     bool hasTextureCoordinates() const override { return !data_.uvs.empty(); }
+    std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
+    std::vector<std::string_view> attributeNames() const override;
     double area() const override { return area_; }
     // Uniform per area over all faces; a lone quad as Quad does.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

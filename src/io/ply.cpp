@@ -3,6 +3,7 @@
 #include "io/mesh_file.h"
 #include "io/ply_cursor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <string_view>
@@ -24,6 +25,8 @@ class PlyParser {
     void vertices(const PlyElement&);
     void faces(const PlyElement&);
     void store(PlyRole, float);
+    void findAttributes(const PlyElement&);
+    void keepAttributes();
     void corners(const PlyProperty&);
 
     PlyHeader header_;
@@ -31,7 +34,42 @@ class PlyParser {
 
     MeshFile file_;
     std::vector<std::uint32_t> corners_, faceSizes_;
+    struct Column {
+        std::size_t property; // of the vertices
+        MeshAttribute attribute;
+        double scale;
+    };
+    std::vector<Column> columns_; // properties without a role, in their order
 };
+
+// 8 and 16 bits without sign are shares of the largest value, as colours are written.
+void PlyParser::findAttributes(const PlyElement& e) {
+    for (std::size_t i = 0; i < e.properties.size(); ++i) {
+        const PlyProperty& p = e.properties[i];
+        if (p.listCount || p.role != PlyRole::none || p.name.empty()) continue;
+        const double scale = p.type == PlyScalar::uint8 ? 1 / 255.0 : p.type == PlyScalar::uint16 ? 1 / 65535.0 : 1;
+        columns_.push_back({i, {p.name, 1, {}}, scale});
+        columns_.back().attribute.values.reserve(e.count);
+    }
+}
+
+// `red`, `green` and `blue` are one attribute: `color`.
+void PlyParser::keepAttributes() {
+    auto& attributes = file_.mesh.attributes;
+    const auto column = [this](std::string_view name) {
+        return std::ranges::find_if(columns_, [&](const Column& c) { return c.attribute.name == name; });
+    };
+    const auto red = column("red"), green = column("green"), blue = column("blue"), none = columns_.end();
+    const bool colored = red != none && green != none && blue != none;
+    if (colored) {
+        MeshAttribute& color = attributes.emplace_back(MeshAttribute{"color", 3, {}});
+        color.values.reserve(3 * red->attribute.values.size());
+        for (std::size_t i = 0; i < red->attribute.values.size(); ++i)
+            for (const auto& c : {red, green, blue}) color.values.push_back(c->attribute.values[i]);
+    }
+    for (auto c = columns_.begin(); c != none; ++c)
+        if (!colored || (c != red && c != green && c != blue)) attributes.push_back(std::move(c->attribute));
+}
 
 void PlyParser::store(PlyRole role, float value) {
     MeshData& m = file_.mesh;
@@ -70,21 +108,29 @@ void PlyParser::vertices(const PlyElement& e) {
     m.positions.reserve(e.count + 2);
     if (header_.normals) m.normals.reserve(e.count);
     if (header_.uvs) m.uvs.reserve(e.count);
+    findAttributes(e);
     for (std::uint64_t i = 0; i < e.count; ++i) {
         m.positions.emplace_back();
         if (header_.normals) m.normals.emplace_back();
         if (header_.uvs) m.uvs.emplace_back();
-        for (const PlyProperty& p : e.properties) {
+        auto column = columns_.begin();
+        for (std::size_t k = 0; k < e.properties.size(); ++k) {
+            const PlyProperty& p = e.properties[k];
             if (p.listCount) {
                 cursor_.skip(p);
                 continue;
             }
-            const auto value = static_cast<float>(cursor_.scalar(p.type));
+            const bool kept = column != columns_.end() && column->property == k;
+            const auto value = static_cast<float>(cursor_.scalar(p.type) * (kept ? column->scale : 1));
             const bool isNormal = p.role >= PlyRole::nx && p.role <= PlyRole::nz, isTexture = p.role >= PlyRole::u;
-            if (p.role == PlyRole::none || (isNormal && !header_.normals) || (isTexture && !header_.uvs)) continue;
+            if ((p.role == PlyRole::none && !kept) || (isNormal && !header_.normals) || (isTexture && !header_.uvs))
+                continue;
             if (!std::isfinite(value))
                 cursor_.fail(fmt::format("`{}` of vertex {} is not finite", p.name.substr(0, 40), i));
-            store(p.role, value);
+            if (kept)
+                (column++)->attribute.values.push_back(value);
+            else
+                store(p.role, value);
         }
     }
 }
@@ -147,6 +193,7 @@ CageFile PlyParser::parseCage() {
 
 MeshFile PlyParser::parse() {
     read();
+    keepAttributes();
     std::size_t next = 0;
     for (std::uint32_t size : faceSizes_) {
         if (!addPolygon(file_.mesh, std::span(corners_).subspan(next, size)))

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace abbe {
 
@@ -106,6 +108,10 @@ class Shape {
     virtual void parametrize(const RawHit&, const Ray&, SurfaceHit&) const {}
     // Whether uv are texture coordinates of the whole shape.
     virtual bool hasTextureCoordinates() const { return true; }
+    // The attribute of that name at a hit of this shape, found by part, element and barycentric; nothing if it has
+    // none. A single channel is repeated.
+    virtual std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const { return std::nullopt; }
+    virtual std::vector<std::string_view> attributeNames() const { return {}; }
     // Whether some of its faces have a material of their own that looks at textures.
     virtual bool usesTextures() const { return false; }
 

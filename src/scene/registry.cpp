@@ -34,6 +34,7 @@
 #include "scene/shape_parametric.h"
 #include "scene/shape_subdivision.h"
 #include "scene/shape_types.h"
+#include "textures/attribute_texture.h"
 #include "textures/checker_texture.h"
 #include "textures/image_texture.h"
 #include "textures/noise_texture.h"
@@ -134,6 +135,7 @@ constexpr TextureEntry kTextures[] = {
     {checkerTextureType, pattern<CheckerTexture, CheckerTextureParams>},
     {rampTextureType, makeRamp},
     {triplanarTextureType, pattern<TriplanarTexture, TriplanarTextureParams>},
+    {attributeTextureType, pattern<AttributeTexture, AttributeTextureParams>},
     {productTextureType, pattern<ProductTexture, ProductTextureParams>},
 };
 

@@ -178,6 +178,7 @@ class SceneBuilder final : public schema::Resolver {
     bool prepareTexture(std::uint32_t, TextureUse, Span user);
     void askTextures(std::uint32_t material); // of a material that is part of another one
     void checkTextures(const LoadedShape&, const Shape&);
+    void checkAttributes(std::uint32_t texture, Span asker, const LoadedShape&, const Shape&);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);

@@ -1,5 +1,7 @@
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
+#include "schema/suggest.h"
+#include "textures/attribute_texture.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -83,6 +85,20 @@ void SceneBuilder::askTextures(std::uint32_t material) {
         openAskers_.back().insert(openAskers_.back().end(), found->second.begin(), found->second.end());
 }
 
+// Every attribute that a texture asks for, directly or in its parts.
+void SceneBuilder::checkAttributes(std::uint32_t texture, Span asker, const LoadedShape& loaded, const Shape& shape) {
+    if (const auto* const attribute = dynamic_cast<const AttributeTexture*>(textures_[texture].get())) {
+        const auto names = shape.attributeNames();
+        if (std::ranges::find(names, attribute->name()) != names.end()) return;
+        auto& d = diagnostics_.error("E0734", asker, fmt::format("the shape has no attribute `{}`", attribute->name()),
+                                     "this texture");
+        d.related.push_back({loaded.definition->span, "on this shape"});
+        d.help = names.empty() ? "attributes are the vertex properties of a PLY file"
+                               : "its attributes are " + schema::quotedList(names);
+    }
+    for (const auto& [part, asNumber] : textureParts_[texture].parts) checkAttributes(part, asker, loaded, shape);
+}
+
 // Images need texture coordinates; boxes have some on every face.
 void SceneBuilder::checkTextures(const LoadedShape& loaded, const Shape& shape) {
     const bool coordinates = shape.hasTextureCoordinates() || loaded.definition->type->name == "box";
@@ -90,6 +106,7 @@ void SceneBuilder::checkTextures(const LoadedShape& loaded, const Shape& shape) 
         const auto found = material.valid() ? textureAskers_.find(material.index) : textureAskers_.end();
         if (found == textureAskers_.end()) return;
         for (const TextureAsker& asker : found->second) {
+            checkAttributes(asker.texture, asker.span, loaded, shape);
             if (coordinates || !textures_[asker.texture]->needsUv()) continue;
             auto& d = diagnostics_.error("E0733", asker.span,
                                          "a texture over uv is on a shape without texture coordinates", "this texture");

@@ -1,0 +1,120 @@
+// Textures of a scene: cycles and excess, texture coordinates, attributes, what sticks to a shape, what is kept.
+#include "render/material.h"
+#include "render/texture_query.h"
+#include "scene_test_fixture.h"
+
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <unistd.h>
+
+using namespace abbe;
+using namespace abbe::test;
+
+namespace {
+
+const std::string kQuad = "shape quad { size 2 2; material m }\n";
+
+// The reflectance at a hit, at 550 nm, by the weight of a sample.
+float reflectanceAt(const WorldHit& hit) {
+    Arena arena;
+    const Bsdf* bsdf = hit.hit.material->bsdf(hit.hit, Wavelengths::single(550), arena);
+    const auto sample = bsdf->sample({0, 0, 1}, 0, {0.3f, 0.4f}, Transport::radiance);
+    return sample ? sample->weight[0] : -1;
+}
+
+struct PlyFile {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / fmt::format("abbe_textures_{}.ply", ::getpid());
+    explicit PlyFile(std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
+    ~PlyFile() { std::filesystem::remove(path); }
+};
+
+} // namespace
+
+TEST_CASE("textures within textures: cycles, depth and number are limited") {
+    CHECK(codes(build("texture a checker { even b }\ntexture b checker { odd a }\n"
+                      "material m diffuse { reflectance a }\n" +
+                      kQuad)) == "E0731");
+    CHECK(codes(build("texture a product { first a; second 0.5 }\nmaterial m diffuse { reflectance a }\n" + kQuad)) ==
+          "E0731");
+    std::string chain = "texture t0 checker\n", wide = chain;
+    for (int i = 1; i < 40; ++i) chain += fmt::format("texture t{} checker {{ even t{} }}\n", i, i - 1);
+    CHECK(codes(build(chain + "material m diffuse { reflectance t39 }\n" + kQuad)) == "E0732");
+    for (int i = 1; i < 20; ++i) wide += fmt::format("texture t{0} checker {{ even t{1}; odd t{1} }}\n", i, i - 1);
+    CHECK(codes(build(wide + "material m diffuse { reflectance t19 }\n" + kQuad)).starts_with("E0732"));
+    CHECK(codes(build("texture r ramp { stop 1 0.5; stop 0 0.2 }\nmaterial m diffuse { reflectance r }\n" + kQuad)) ==
+          "E0735");
+}
+
+TEST_CASE("textures over uv need texture coordinates, also inside of other textures; boxes have them") {
+    const std::string triangle = "{ points 0 0 0  1 0 0  0 1 0; faces { - 0 1 2 }; material m }\n";
+    const std::string over = "material m diffuse { reflectance product { first noise; second checker } }\n";
+    const TestScene bad = build(over + "shape mesh " + triangle);
+    CHECK(codes(bad) == "E0733");
+    CHECK(bad.diagnostics().all()[0].related.size() == 1);
+    CHECK(codes(build("material m diffuse { reflectance noise }\nshape mesh " + triangle)).empty());
+    CHECK(codes(build("material m diffuse { reflectance triplanar { map checker } }\nshape mesh " + triangle)).empty());
+    CHECK(codes(build(over + "shape box { material m }\nshape sphere { material m }\n")).empty());
+}
+
+TEST_CASE("coloured parts of numbers are warned of; effects are noted") {
+    const TestScene scene =
+        build("material m conductor { index metal Al; roughness checker { even rgb 0.1 0.5 0.2; odd 0.3 } }\n" + kQuad);
+    CHECK(codes(scene) == "W0730");
+    CHECK(scene.scene().effects.has(Effect::textures));
+    CHECK(!build("material m diffuse { reflectance 0.4 }\n" + kQuad).scene().effects.has(Effect::textures));
+}
+
+TEST_CASE("patterns stick to their shapes, whatever places these") {
+    const std::string material = "material m diffuse { reflectance ramp { over x; stop -1 0; stop 1 1 } }\n";
+    const std::string shape = "shape quad { size 2 2; material m; transform { scale 0.5; rotate z 90 deg } }\n";
+    const std::string bare = "shape quad { size 2 2; material m }\n";
+    // x of the shape's own space runs upwards after the turn.
+    const auto check = [&](const std::string& body, double x, double y, double wanted) {
+        CAPTURE(body);
+        const TestScene scene = build(material + body);
+        REQUIRE(codes(scene).empty());
+        const WorldHit hit = trace(scene, {x, y, 3}, {0, 0, -1});
+        REQUIRE(hit.met);
+        CHECK(reflectanceAt(hit) == doctest::Approx(wanted).epsilon(1e-4));
+    };
+    check(bare, 0.5, 0.1, 0.75);
+    check(shape, 0.1, 0.25, 0.75);
+    check("group { transform { translate 0 1 0; scale 2 1 1 }\n" + shape + "}\n", 0.1, 1.25, 0.75);
+    check("object o {\n" + bare + "}\ninstance o { transform { scale -1 1 1; translate 0.2 0 0 } }\n", -0.3, 0.1, 0.75);
+    check("object o {\n" + shape + "}\ninstance o { transform { translate 0.2 0 0; scale 3 1 1 } }\n", 0.3, 0.25, 0.75);
+    check("shape quad { size 2 2; material m; transform { at 0 s { scale 0.5 }; at 1 s { scale 0.5; translate 9 0 0 } "
+          "} }\n"
+          "camera { from 0 0 5; look-at 0 0 0; shutter 0.001 s }\n",
+          0.25, 0.1, 0.75);
+}
+
+TEST_CASE("attributes: properties of PLY vertices, interpolated, as colours and as numbers") {
+    const PlyFile file("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float wear\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                       "-1 -1 0 51 51 51 0\n1 -1 0 255 255 255 0.25\n1 1 0 255 255 255 1\n-1 1 0 51 51 51 0.5\n"
+                       "4 0 1 2 3\n");
+    const std::string mesh = fmt::format("shape mesh \"{}\" {{ material m }}\n", file.path.string());
+    const auto at = [&](const std::string& texture, double x, double y) {
+        const TestScene scene = build("material m diffuse { reflectance " + texture + " }\n" + mesh);
+        REQUIRE(codes(scene).empty());
+        const WorldHit hit = trace(scene, {x, y, 3}, {0, 0, -1});
+        REQUIRE(hit.met);
+        return reflectanceAt(hit);
+    };
+    CHECK(at("attribute \"color\"", -0.999999, 0) == doctest::Approx(0.2).epsilon(1e-3));
+    CHECK(at("attribute \"color\"", 0, 0) == doctest::Approx(0.6).epsilon(1e-3));
+    CHECK(at("attribute \"color\" { encoding srgb }", 0.999999, 0) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(at("attribute \"color\" { encoding srgb }", -0.999999, 0) == doctest::Approx(0.0331).epsilon(1e-2));
+    CHECK(at("ramp { input attribute \"wear\"; stop 0 0; stop 1 1 }", 0, -1) == doctest::Approx(0.125).epsilon(1e-3));
+    CHECK(at("ramp { input attribute \"wear\"; stop 0 0; stop 1 1 }", 0.999999, 0) ==
+          doctest::Approx(0.625).epsilon(1e-3));
+
+    const TestScene missing = build("material m diffuse { reflectance attribute \"dirt\" }\n" + mesh);
+    CHECK(codes(missing) == "E0734");
+    CHECK(missing.diagnostics().all()[0].help == "its attributes are `color` and `wear`");
+    CHECK(codes(build("material m diffuse { reflectance checker { even attribute \"color\" } }\n" + kQuad)) == "E0734");
+}
