@@ -97,7 +97,8 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
 void SceneBuilder::noteEffects(BuiltScene& built) {
     for (const auto& [index, span] : materialAskers_) {
         if (!usedMaterials_.contains(index)) continue; // what no shape shows asks for nothing
-        const Effects needs = materials_[index]->needs();
+        Effects needs = materials_[index]->needs();
+        if (materials_[index]->usesTextures()) needs |= Effect::textures;
         built.scene.effects |= needs;
         if (needs.has(Effect::dispersion))
             built.scene.reasons.push_back({Effect::dispersion, span, "its refractive index varies with wavelength"});
