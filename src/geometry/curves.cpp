@@ -164,9 +164,16 @@ void Curves::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) con
     const double segments = (strandFirst_[strand + 1] - first - needed) / pointStep(data_.basis) + 1;
     const double before = (primitive - first) / pointStep(data_.basis);
     const double u = std::clamp(static_cast<double>(hit.uv.x) * segments - before, 0.0, 1.0);
-    const Vec3d along = segment.derivative(u) * segments;
+    // A tube is longer on the outside of its bends.
+    Vec3d along = segment.derivative(u);
+    const double speed = length(along);
+    if (data_.form == CurveForm::round && speed > 0) {
+        const Vec3d out = Vec3d(hit.p) - segment.position(u);
+        const double bend = dot(out, segment.secondDerivative(u)) / (speed * speed), r = length(out);
+        along = along * std::max(1 - bend, 0.0) + (r > 0 ? out * (segment.radiusDerivative(u) / r) : Vec3d());
+    }
     const Vec3d side = cross(Vec3d(hit.shading.x), Vec3d(hit.ng));
-    hit.dpdu = Vec3(along);
+    hit.dpdu = Vec3(along * segments);
     hit.dpdv = Vec3(side * (-2 * segment.radius(u)));
     if (data_.later.empty()) return;
     const Vec3d moved = CurveSegment(data_.basis, &data_.points[primitive]).position(u) - segment.position(u);

@@ -11,8 +11,7 @@ std::pair<Vec3d, Vec3d> axesAfter(const Transform& place, Vec3d normal) {
     const auto& a = place.a; // normals went by A⁻ᵀ; they go back by Aᵀ
     const Vec3d own = normalize(Vec3d(a[0][0] * normal.x + a[1][0] * normal.y + a[2][0] * normal.z,
                                       a[0][1] * normal.x + a[1][1] * normal.y + a[2][1] * normal.z,
-                                      a[0][2] * normal.x + a[1][2] * normal.y + a[2][2] * normal.z)) *
-                      (place.determinant() < 0 ? -1.0 : 1.0);
+                                      a[0][2] * normal.x + a[1][2] * normal.y + a[2][2] * normal.z));
     const Vec3d guess(Frame::fromNormal(Vec3(own)).x);
     const Vec3d x = normalize(guess - own * dot(guess, own));
     return {place.vector(x), place.vector(cross(own, x))};

@@ -213,7 +213,7 @@ TEST_CASE("a turned shape keeps its texture") {
                 const Ray there{Vec3(place.point(origin)), Vec3(normalize(place.vector(target - origin)))};
                 if (!plain->intersect(ray, a) || !placed->intersect(there, b)) continue;
                 ++met;
-                CHECK(length(a.local - b.local) < 1e-5f);
+                CHECK(length(a.local - b.local) < 3e-5f * (1 + length(a.local)));
                 CHECK(std::abs(dot(a.localNormal, b.localNormal)) > 0.9999f);
                 CHECK(b.localScale == doctest::Approx(1 / scale));
                 CHECK(std::abs(turned(a.uv.x - b.uv.x)) < 1e-4f);
