@@ -59,6 +59,7 @@ float turned(float d) { return d > 0.5f ? d - 1 : d < -0.5f ? d + 1 : d; }
 
 struct Differences {
     int compared = 0, wrong = 0;
+    double tooFar[2] = {}; // mean of how much a step along an axis exceeds 1
 };
 
 // Moves the ray a little along dp/du, or dp/dv, and sees how uv change. `across`: also for v.
@@ -66,6 +67,7 @@ Differences differences(const Shape& shape, const Transform* instance, bool acro
     const auto scene = sceneOf(shape, instance);
     Random random(3);
     Differences result;
+    int counts[2] = {};
     for (int i = 0; i < 3000; ++i) {
         const Vec3d target = around(random) * (0.5 * reach), origin = normalize(around(random)) * (4 * reach);
         const Ray ray{Vec3(origin), Vec3(normalize(target - origin)), kInfinity, 0.4f};
@@ -86,14 +88,18 @@ Differences differences(const Shape& shape, const Transform* instance, bool acro
                 continue;
             if (dot(other.ng, hit.ng) < 0.999f) continue; // around an edge
             ++result.compared;
+            ++counts[axis];
             const float du = turned(other.uv.x - hit.uv.x) / step, dv = turned(other.uv.y - hit.uv.y) / step;
             const float wantedU = axis == 0 ? 1.f : 0.f, wantedV = axis == 0 ? 0.f : 1.f;
+            const double excess = static_cast<double>(axis == 0 ? du : dv) - 1;
+            if (std::abs(excess) < 0.02) result.tooFar[axis] += excess;
             // A coordinate that should not change counts by how far the point goes with it.
             const float size = length(by), offU = (du - wantedU) * length(hit.dpdu),
                         offV = (dv - wantedV) * length(hit.dpdv);
             if (!(std::abs(offU) < 0.02f * size && (!across || std::abs(offV) < 0.02f * size))) ++result.wrong;
         }
     }
+    for (int axis = 0; axis < 2; ++axis) result.tooFar[axis] /= std::max(counts[axis], 1);
     return result;
 }
 
@@ -103,6 +109,8 @@ void check(const Shape& shape, bool across = true, double reach = 1.5) {
         const Differences d = differences(shape, instance, across, reach);
         CHECK(d.compared > 300);
         CHECK(d.wrong <= d.compared / 100); // points near a pole, or met twice
+        CHECK(std::abs(d.tooFar[0]) < 0.002);
+        CHECK(std::abs(d.tooFar[1]) < 0.002);
     }
 }
 
