@@ -114,6 +114,10 @@ void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray&
     hit.local = Vec3(own.map.point(Vec3d(hit.local)));
     hit.localNormal = Vec3(normalize(own.map.normal(Vec3d(hit.shading.z))));
     hit.localScale = own.scale;
+    const auto& a = own.map.a;
+    hit.localX = Vec3(Vec3d(a[0][0], a[0][1], a[0][2]));
+    hit.localY = Vec3(Vec3d(a[1][0], a[1][1], a[1][2]));
+    hit.localZ = Vec3(Vec3d(a[2][0], a[2][1], a[2][2]));
 }
 
 void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw, Path path, const Ray& ray,

@@ -128,6 +128,13 @@ void Instance::parametrizationToRender(SurfaceHit& hit) const {
     hit.dpdu = Vec3(objectToRender_.vector(Vec3d(hit.dpdu)));
     hit.dpdv = Vec3(objectToRender_.vector(Vec3d(hit.dpdv)));
     hit.localScale *= static_cast<float>(std::cbrt(std::abs(renderToObject_.determinant())));
+    const auto& a = renderToObject_.a; // gradients go by the transpose of the inverse
+    for (Vec3* const gradient : {&hit.localX, &hit.localY, &hit.localZ}) {
+        const Vec3d g(*gradient);
+        *gradient =
+            Vec3(Vec3d(a[0][0] * g.x + a[1][0] * g.y + a[2][0] * g.z, a[0][1] * g.x + a[1][1] * g.y + a[2][1] * g.z,
+                       a[0][2] * g.x + a[1][2] * g.y + a[2][2] * g.z));
+    }
 }
 
 Bounds3 Instance::toRender(const Bounds3& b) const { return Placement(objectToRender_).toOuter(b); }

@@ -77,7 +77,7 @@ class Instance {
     Ray toObject(const Ray&) const;
     // From object to render space: point, error bound, normals, frame. Outward normals stay outward.
     void toRender(SurfaceHit&) const;
-    // The same for dpdu, dpdv and localScale.
+    // The same for what SurfaceHit says of the parametrisation.
     void parametrizationToRender(SurfaceHit&) const;
     Bounds3 toRender(const Bounds3&) const;
 

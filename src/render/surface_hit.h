@@ -31,7 +31,7 @@ struct SurfaceHit {
     Vec3 local;      // p in the shape's own space, before its transform, m
     Vec3 localX{1, 0, 0}, localY{0, 1, 0}, localZ{0, 0, 1}; // gradient of each coordinate of `local`, render space
     Vec3 localNormal;                                       // the shading normal there, unit
-    float localScale = 1; // m there per m of render space, in the mean over directions
+    float localScale = 1;                // m there per m of render space, in the mean over directions
     const Shape* shape = nullptr;        // whose attributes `part`, `primitive` and `barycentric` find
     std::uint32_t part = 0, element = 0; // as in RawHit: the sink's call, and the primitive in it
     Vec2 barycentric;

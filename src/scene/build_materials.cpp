@@ -33,12 +33,18 @@ schema::Reference SceneBuilder::materialReference(const Definition& d) {
         return {};
     }
     openMaterials_.push_back(&d);
+    openAskers_.emplace_back();
     MadeMaterial made = makeMaterial(d.type->name, bindInto, {materials_, d, diagnostics_});
+    auto askers = std::move(openAskers_.back());
+    openAskers_.pop_back();
     openMaterials_.pop_back();
     if (!made.material) return {};
     if (made.inside) made.material = translucent(std::move(made.material), *made.inside, d);
     auto material = dressed(std::move(made.material), made.dress, d);
-    return material ? schema::Reference{keepMaterial(std::move(material), d.span)} : schema::Reference{};
+    if (!material) return {};
+    const schema::Reference kept{keepMaterial(std::move(material), d.span)};
+    if (!askers.empty()) textureAskers_.emplace(kept.index, std::move(askers));
+    return kept;
 }
 
 // The surface of a translucent solid and what is inside.
