@@ -128,7 +128,7 @@ std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams& pa
         return std::make_unique<DiffuseBoundary>(params.ior->at(587.6), params.roughness);
     DielectricParams dielectric;
     dielectric.ior = params.ior;
-    dielectric.roughness = params.roughness;
+    dielectric.roughness.value = params.roughness;
     return makeDielectric(dielectric);
 }
 
