@@ -14,7 +14,7 @@ using namespace test;
 const ConstantCurve kOne(1), kNone(1.00000001), kMiddle(0.4);
 
 const Material& base(int which) {
-    static const auto white = makeDiffuse({&kOne}), grey = makeDiffuse({&flat(0.2)});
+    static const auto white = makeDiffuse({{&kOne, nullptr, {}}}), grey = makeDiffuse({{&flat(0.2), nullptr, {}}});
     static const BsdfUnderTest metal = conductor(0, 3, 0.5f), copper = conductor(0.2, 3, 0.3f),
                                mirror = conductor(0, 3, 0);
     return *(which == 0   ? white.get()

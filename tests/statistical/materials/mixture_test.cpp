@@ -13,12 +13,12 @@ namespace {
 using namespace test;
 
 const Material& matte() {
-    static const auto m = makeDiffuse({&flat(0.2)});
+    static const auto m = makeDiffuse({{&flat(0.2), nullptr, {}}});
     return *m;
 }
 const Material& white() {
     static const ConstantCurve one(1);
-    static const auto m = makeDiffuse({&one});
+    static const auto m = makeDiffuse({{&one, nullptr, {}}});
     return *m;
 }
 const Material& glass(float roughness) {

@@ -73,7 +73,7 @@ TEST_CASE("transmission-weight 1 is the dielectric, from both sides") {
 TEST_CASE("specular-weight 0 is matte: Lambert's law at roughness 0") {
     OpenPbrParams p;
     p.specularWeight = number(0), p.baseColor = color(flat(0.2));
-    CHECK(difference(openPbr(p, "openpbr"), {"diffuse", makeDiffuse({&flat(0.2)}), 1.f}, false) < 1e-5);
+    CHECK(difference(openPbr(p, "openpbr"), {"diffuse", makeDiffuse({{&flat(0.2), nullptr, {}}}), 1.f}, false) < 1e-5);
 }
 
 // Each parameter on its way to where it has no effect any more.
