@@ -42,7 +42,7 @@ class Dielectric final : public Material {
     ConstantCurve crown_{1.5}; // of the default
     const Curve* ior_;
     NumberInput roughness_;
-    Ggx ggx_; // unless it is textured
+    Ggx ggx_;                 // unless it is textured
     const Curve* absorption_; // null: clear
     std::unique_ptr<const Curve> attenuation_;
 };

@@ -252,9 +252,9 @@ template <typename Params, typename Member> class Field {
         info_.name = name;
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
         info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
-        info_.repeats =
-            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>> ||
-            std::is_same_v<Member, std::vector<SpectrumStop>>;
+        info_.repeats = std::is_same_v<Member, std::vector<SharpRow>> ||
+                        std::is_same_v<Member, std::vector<WeightedReference>> ||
+                        std::is_same_v<Member, std::vector<SpectrumStop>>;
         if constexpr (requires(Member m) { m.emplace_back().time; })
             info_.append = [member](void* params, double time, Span span) -> void* {
                 auto& moment = (static_cast<Params*>(params)->*member).emplace_back();

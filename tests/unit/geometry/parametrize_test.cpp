@@ -263,7 +263,7 @@ TEST_CASE("nobody asks for the parametrisation of plain materials; faces may ask
         builder.addShape(shape, {.material = &plain});
         SurfaceHit hit;
         REQUIRE(builder.build()->intersect({{0.1f, 0.2f, 2}, {0, 0, -1}}, hit));
-        return hit.shape == &shape;
+        return lengthSquared(hit.dpdu) > 0;
     };
     CHECK(!asked(Mesh(wavy(true))));
     const std::size_t faces = wavy(true).triangles.size() + wavy(true).quads.size();

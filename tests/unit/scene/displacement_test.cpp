@@ -64,7 +64,7 @@ TEST_CASE("displacement scene: mistakes have a code and a place") {
     CHECK(codes(build(square("displacement 0.1 px { map noise }\n"))) == "E0302");
     CHECK(codes(build(square("displacement 0.1 { map image \"nowhere.exr\" }\n"))) == "E0401");
     CHECK(codes(build(square("displacement 0.1 { map noise { scale 0 } }\n"))) == "E0303");
-    CHECK(codes(build("texture t image\n")) == "E0207");
+    CHECK(codes(build("texture t image\n")) == "W0201 E0207"); // and nothing uses it
     CHECK(codes(build("texture t\n")) == "E0211");
     const auto mesh = build("shape mesh { " + kSquare + "displacement 0.1 { map noise }\n}\n");
     CHECK(codes(mesh) == "E0201");
