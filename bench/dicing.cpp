@@ -4,8 +4,8 @@
 #include "geometry/embree_scene.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
-#include "textures/image_texture.h"
 #include "textures/noise_texture.h"
+#include "textures/spline_image.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -73,14 +73,24 @@ void measure(const std::string& name, const SubdivisionCage& cage, double level,
 }
 
 // Every face has the whole image; heights without meaning.
-ImageTexture image(int size) {
-    ImagePixels pixels;
-    pixels.width = pixels.height = size;
-    pixels.channels = 1;
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(size * size); ++i)
-        pixels.values.push_back(static_cast<float>(i % 1009 * 7919 % 1009) / 1009.f);
-    return ImageTexture(std::move(pixels), Wrap::periodic);
-}
+class Heights final : public Texture {
+  public:
+    explicit Heights(int size) : image_(pixels(size), Wrap::periodic) {}
+    int channels() const override { return 1; }
+    bool needsUv() const override { return true; }
+    TextureJet jet(const TexturePoint& p, int channels) const noexcept override { return image_.jet(p, channels); }
+
+  private:
+    static ImagePixels pixels(int size) {
+        ImagePixels pixels;
+        pixels.width = pixels.height = size;
+        pixels.channels = 1;
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(size * size); ++i)
+            pixels.values.push_back(static_cast<float>(i % 1009 * 7919 % 1009) / 1009.f);
+        return pixels;
+    }
+    SplineImage image_;
+};
 
 } // namespace
 
@@ -95,7 +105,7 @@ int main(int argc, char** argv) {
     measure("fine cage with triangles", torus(256, 128, true), level - 1);
     NoiseTextureParams params;
     const NoiseTexture noise(params);
-    const ImageTexture pixels = image(2048);
+    const Heights pixels(2048);
     const Displacement byNoise{Displacement::Space::normal, 0.05, 0.5, &noise};
     const Displacement byImage{Displacement::Space::normal, 0.02, 0.5, &pixels};
     measure("regular torus, noise of 4 octaves", torus(64, 32, false), level + 1, &byNoise);

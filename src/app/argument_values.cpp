@@ -42,6 +42,17 @@ std::optional<double> readQuantity(std::string_view text, schema::Dimension dime
     return value * found->scale;
 }
 
+std::optional<double> readMebibytes(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc()) return std::nullopt;
+    std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+    while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
+    if (unit == "GiB") value *= 1024;
+    if (!(unit.empty() || unit == "MiB" || unit == "GiB") || !(value >= 16 && value <= 1e9)) return std::nullopt;
+    return value;
+}
+
 std::string shellQuoted(std::string_view argument) {
     constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=:,./@%";
     if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) return std::string(argument);

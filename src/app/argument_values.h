@@ -17,6 +17,9 @@ std::optional<Vec2i> readPixel(std::string_view text);
 // "45min", "0.5 %", "90": in SI units; a bare number is already in them.
 std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension);
 
+// "512MiB", "4 GiB", "512": in MiB; at least 16.
+std::optional<double> readMebibytes(std::string_view text);
+
 // The argument as a shell would need it.
 std::string shellQuoted(std::string_view argument);
 

@@ -203,6 +203,8 @@ void Reader::addGoals(CLI::App* c) {
                 const auto value = readQuantity(text, schema::Dimension::fraction);
                 return value && *value >= 0 && *value <= 1 ? value : std::nullopt;
             });
+    addRead(c, "--texture-cache", b.textureCache, "SIZE", "Most memory for tiles of image textures: 512MiB, 4GiB",
+            "an amount of memory such as 512MiB, 16MiB or more", readMebibytes);
     addRead(c, "--time", b.timeLimit, "TIME", "Stop after this time: 90, 45min, 2h", "a time such as 45min",
             [](const std::string& text) -> std::optional<double> {
                 const auto value = readQuantity(text, schema::Dimension::time);

@@ -153,6 +153,7 @@ ExitCode RenderRun::renderPixel() {
                                      image.b[0], statistics.samplesPerPixel));
     Diagnostics warnings;
     warnOfDroppedSamples(statistics, warnings);
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     report_->diagnostics(warnings, loaded_->sources);
     return ExitCode::done;
 }
@@ -193,6 +194,7 @@ void RenderRun::write(const PixelFilm& film) {
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     warnOfBlackImage(image, warnings);
     report_->diagnostics(warnings, loaded_->sources);
     summary_.warnings += warnings.warningCount();

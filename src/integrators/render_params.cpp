@@ -36,6 +36,12 @@ TypeInfo renderType() {
                     .byDefault("0 s")
                     .doc("Wall-clock time after which to stop; 0: none.")
                     .example("time-limit 45 min"),
+                field(FieldType::number, "texture-cache", &P::textureCache)
+                    .range(16, 1e9)
+                    .byDefault("2048")
+                    .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
+                    .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
+                    .example("texture-cache 512"),
                 field(FieldType::integer, "max-depth", &P::maxDepth)
                     .range(0, 100000)
                     .byDefault("0")

@@ -12,8 +12,9 @@ struct RenderParams {
     std::int64_t seed = 0;
     std::int64_t maxDepth = 0; // 0: no limit
     std::int64_t replicates = 2;
-    double noise = 0;     // relative error to stop at; 0: none
-    double timeLimit = 0; // s; 0: none
+    double noise = 0;           // relative error to stop at; 0: none
+    double timeLimit = 0;       // s; 0: none
+    double textureCache = 2048; // MiB
     schema::Choice sampler{"sobol", {}};
     schema::Choice strategy{"mis", {}};
 };

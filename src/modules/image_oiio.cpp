@@ -1,43 +1,110 @@
-// The module behind textures/image_module.h, on OpenImageIO.
-#include "textures/image_module.h"
+// The module behind textures/image_module.h, on OpenImageIO: headers, and whole images.
+#include "modules/image_faults.h"
 
-#include <OpenImageIO/imageio.h>
-#include <exception>
-#include <string>
+namespace abbe_images {
 
-namespace {
-
-// Empty, or why the image cannot be used.
-std::string read(const char* path, int mostChannels, const AbbeImageSink& sink) {
-    const auto file = OIIO::ImageInput::open(path);
-    if (!file) return OIIO::geterror();
-    const OIIO::ImageSpec& spec = file->spec();
+std::string unusable(const OIIO::ImageSpec& spec) {
     if (spec.deep) return "it holds deep samples, not pixels";
     if (spec.depth > 1) return "it holds a volume";
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return "it has no pixels";
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height)
         return "only a part of the picture is in it (its data window is not its display window)";
-    const int channels = spec.nchannels >= 3 && mostChannels >= 3 ? 3 : 1;
+    return {};
+}
+
+namespace {
+
+// Empty, or why the image cannot be used.
+std::string read(const char* path, int mostChannels, const AbbeImageSink& sink) {
+    const OIIO::ImageSpec hints = asStored();
+    const auto file = OIIO::ImageInput::open(path, &hints);
+    if (!file) return OIIO::geterror();
+    const OIIO::ImageSpec& spec = file->spec();
+    if (std::string reason = unusable(spec); !reason.empty()) return reason;
+    const int channels = mostChannels >= 3 ? usedChannels(spec) : 1;
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     float* const pixels = sink.begin(sink.user, spec.width, spec.height, channels, space.c_str());
     if (!pixels) return "it does not fit into memory";
     if (file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels)) return {};
-    const std::string reason = file->geterror();
-    return reason.empty() ? "its pixels cannot be read" : reason;
+    return orElse(file->geterror(), "its pixels cannot be read");
 }
+
+std::int32_t readImage(const char* path, std::int32_t mostChannels, const AbbeImageSink* sink) {
+    AbbeImageFault fault;
+    if (guarded(&fault, [&] { return read(path, mostChannels, *sink); })) return 1;
+    sink->fail(sink->user, fault.reason);
+    return 0;
+}
+
+std::int32_t typeOf(const OIIO::ImageSpec& spec) {
+    switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+    case OIIO::TypeDesc::INT8:
+        return abbeTexel8;
+    case OIIO::TypeDesc::UINT16:
+    case OIIO::TypeDesc::INT16:
+        return abbeTexel16;
+    case OIIO::TypeDesc::HALF:
+        return abbeTexelHalf;
+    default:
+        return abbeTexelFloat;
+    }
+}
+
+bool hasAllLevels(OIIO::ImageInput& file) {
+    const OIIO::ImageSpec first = file.spec();
+    if (first.tile_width < 1) return false;
+    int level = 0;
+    OIIO::ImageSpec last = first;
+    for (OIIO::ImageSpec s = file.spec_dimensions(0, 1); s.width > 0 && level < 64;
+         s = file.spec_dimensions(0, level + 1)) {
+        last = s;
+        ++level;
+    }
+    return last.width == 1 && last.height == 1;
+}
+
+std::string describe(const char* path, AbbeImageInfo& info) {
+    const OIIO::ImageSpec hints = asStored();
+    const auto file = OIIO::ImageInput::open(path, &hints);
+    if (!file) return OIIO::geterror();
+    const OIIO::ImageSpec spec = file->spec();
+    if (std::string reason = unusable(spec); !reason.empty()) return reason;
+    info = {};
+    info.width = spec.width;
+    info.height = spec.height;
+    info.channels = usedChannels(spec);
+    info.type = typeOf(spec);
+    info.isTexture = hasAllLevels(*file);
+    const OIIO::ParamValue* const primaries =
+        spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+    info.chromatic = primaries != nullptr;
+    if (primaries) std::copy_n(static_cast<const float*>(primaries->data()), 8, info.chromaticities);
+    copyText(info.colorSpace,
+             orElse(spec.get_string_attribute("colorInteropID"), spec.get_string_attribute("oiio:ColorSpace").c_str()));
+    return {};
+}
+
+std::int32_t describeImage(const char* path, AbbeImageInfo* info, AbbeImageFault* fault) {
+    return guarded(fault, [&] { return describe(path, *info); });
+}
+
+constexpr AbbeImageModule kModule = {kAbbeImageModuleVersion,
+                                     readImage,
+                                     describeImage,
+                                     convert,
+                                     openSystem,
+                                     closeSystem,
+                                     openTexture,
+                                     lookup,
+                                     lookupFault,
+                                     statistics};
 
 } // namespace
 
-extern "C" __attribute__((visibility("default"))) int abbeReadImage(const char* path, int mostChannels,
-                                                                    const AbbeImageSink* sink) {
-    std::string fault;
-    try {
-        fault = read(path, mostChannels, *sink);
-    } catch (const std::exception& e) {
-        fault = e.what();
-    }
-    if (fault.empty()) return 1;
-    sink->fail(sink->user, fault.c_str());
-    return 0;
+} // namespace abbe_images
+
+extern "C" __attribute__((visibility("default"))) const AbbeImageModule* abbeImageModule() {
+    return &abbe_images::kModule;
 }

@@ -71,6 +71,8 @@ class Texture {
     virtual Spectrum spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
         return Spectrum(std::clamp(value(query).x, 0.f, 1.f));
     }
+    // What went wrong in lookups since it was made, as warnings; called after rendering.
+    virtual void reportLookups(Diagnostics&) const {}
     // False if uv lies where the texture has nothing to show: in a tile without a file.
     virtual bool covers(Vec2 uv) const noexcept {
         static_cast<void>(uv);

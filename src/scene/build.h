@@ -20,10 +20,11 @@ struct BuildOptions {
     std::optional<Vec2i> size; // film size in pixels
     std::optional<std::int64_t> samples;
     std::optional<std::int64_t> seed;
-    std::optional<double> noise;     // relative
-    std::optional<double> timeLimit; // s
-    std::string strategy, sampler;   // words of `render`; empty: the scene's
-    bool geometry = true;            // false: check only; no acceleration structure is built
+    std::optional<double> noise;        // relative
+    std::optional<double> timeLimit;    // s
+    std::optional<double> textureCache; // MiB
+    std::string strategy, sampler;      // words of `render`; empty: the scene's
+    bool geometry = true;               // false: check only; no acceleration structure is built
 };
 
 // Facts for `abbe info` and the summary of a render.

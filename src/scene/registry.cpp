@@ -111,20 +111,23 @@ constexpr MaterialEntry kMaterials[] = {
 
 struct TextureEntry {
     schema::TypeInfo (*type)();
-    std::unique_ptr<Texture> (*make)(const BindParams&, Diagnostics&);
+    std::unique_ptr<Texture> (*make)(const BindParams&, const std::shared_ptr<TextureStore>&, Diagnostics&);
 };
 
-std::unique_ptr<Texture> makeImage(const BindParams& bind, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeImage(const BindParams& bind, const std::shared_ptr<TextureStore>& store,
+                                   Diagnostics& diagnostics) {
     ImageTextureParams params;
-    return bind(&params) ? makeImageTexture(params, diagnostics) : nullptr;
+    return bind(&params) ? makeImageTexture(params, store, diagnostics) : nullptr;
 }
 
-std::unique_ptr<Texture> makeRamp(const BindParams& bind, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeRamp(const BindParams& bind, const std::shared_ptr<TextureStore>&,
+                                  Diagnostics& diagnostics) {
     RampTextureParams params;
     return bind(&params) ? makeRampTexture(params, diagnostics) : nullptr;
 }
 
-template <typename T, typename Params> std::unique_ptr<Texture> pattern(const BindParams& bind, Diagnostics&) {
+template <typename T, typename Params>
+std::unique_ptr<Texture> pattern(const BindParams& bind, const std::shared_ptr<TextureStore>&, Diagnostics&) {
     Params params;
     return bind(&params) ? std::make_unique<T>(params) : nullptr;
 }
@@ -192,9 +195,10 @@ MadeMaterial makeMaterial(std::string_view type, const BindParams& bind, const M
     return {};
 }
 
-std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams& bind, Diagnostics& diagnostics) {
+std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams& bind,
+                                     const std::shared_ptr<TextureStore>& store, Diagnostics& diagnostics) {
     for (const TextureEntry& entry : kTextures)
-        if (entry.type().name == type) return entry.make(bind, diagnostics);
+        if (entry.type().name == type) return entry.make(bind, store, diagnostics);
     ABBE_CHECK(!"a registered texture type");
     return nullptr;
 }

@@ -8,6 +8,7 @@
 #include "scene/material_dress.h"
 #include "scene/material_parts.h"
 #include "schema/type.h"
+#include "textures/texture_store.h"
 
 #include <functional>
 #include <memory>
@@ -32,7 +33,8 @@ struct MadeMaterial {
 MadeMaterial makeMaterial(std::string_view type, const BindParams&, const MaterialParts&);
 
 // A texture of a registered type from bound parameters, or null after an error. Requires a name out of the table.
-std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams&, Diagnostics&);
+std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams&, const std::shared_ptr<TextureStore>&,
+                                     Diagnostics&);
 
 // A camera of a registered type from bound parameters, or nothing after an error. Requires a name out of the table.
 std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams&, const CameraContext&, Diagnostics&);

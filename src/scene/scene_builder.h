@@ -18,6 +18,7 @@
 #include "scene/curve_library.h"
 #include "scene/instances_type.h"
 #include "scene/shape_types.h"
+#include "textures/texture_store.h"
 #include "volumes/voxel_grid.h"
 
 #include <map>
@@ -173,6 +174,7 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
     // textures.cpp
     schema::Reference textureReference(const Definition&, Diagnostics&);
+    const std::shared_ptr<TextureStore>& textureStore(); // made with the first call
     // Null for none, or after an error at `user`.
     const Texture* textureFor(schema::Reference, TextureUse, Span user);
     bool prepareTexture(std::uint32_t, TextureUse, Span user);
@@ -266,6 +268,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<const Definition*> openMaterials_;                        // being made
     std::unordered_map<const Definition*, schema::Reference> references_; // of what has a name
     std::vector<std::unique_ptr<Texture>> textures_;
+    std::shared_ptr<TextureStore> textureStore_;
     struct TextureParts {
         std::uint32_t size = 1; // how many textures it asks at most, itself included
         // The textures that it is made of, and whether as numbers whatever it is asked for itself.

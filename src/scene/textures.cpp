@@ -51,7 +51,7 @@ schema::Reference SceneBuilder::textureReference(const Definition& definition, D
         return {};
     }
     openTextures_.push_back({&definition, {}});
-    auto made = makeTexture(definition.type->name, bindInto, diagnostics);
+    auto made = makeTexture(definition.type->name, bindInto, textureStore(), diagnostics);
     TextureParts parts = std::move(openTextures_.back().made);
     openTextures_.pop_back();
     if (!made) return {};
@@ -116,6 +116,16 @@ void SceneBuilder::checkTextures(const LoadedShape& loaded, const Shape& shape) 
     };
     check(loaded.common.material);
     for (const schema::GroupReference& group : loaded.common.groupMaterials) check(group.reference);
+}
+
+const std::shared_ptr<TextureStore>& SceneBuilder::textureStore() {
+    if (!textureStore_) {
+        TextureStoreSettings settings;
+        settings.bytes = static_cast<std::int64_t>(built_->render.textureCache * 1048576);
+        settings.open = options_.geometry;
+        textureStore_ = std::make_shared<TextureStore>(std::move(settings));
+    }
+    return textureStore_;
 }
 
 } // namespace abbe

@@ -1,7 +1,5 @@
 #include "textures/image_file.h"
 
-#include "textures/image_module.h"
-
 #include <dlfcn.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -25,14 +23,14 @@ std::filesystem::path findModule() {
                                      kModule, program.string()));
 }
 
-AbbeReadImage loadModule() {
+const AbbeImageModule* loadModule() {
     // Never closed: its libraries hold threads of their own. A second call finds it loaded.
     void* const module = dlopen(findModule().c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!module) throw ImageFileError(fmt::format("the module for image textures cannot be loaded: {}", dlerror()));
-    void* const function = dlsym(module, kAbbeReadImage);
-    if (!function)
-        throw ImageFileError(fmt::format("the module for image textures is of another version: {}", dlerror()));
-    return reinterpret_cast<AbbeReadImage>(function);
+    const auto get = reinterpret_cast<AbbeGetImageModule>(dlsym(module, kAbbeGetImageModule));
+    if (!get || get()->version != kAbbeImageModuleVersion)
+        throw ImageFileError("the module for image textures is of another version than the program");
+    return get();
 }
 
 struct Reading {
@@ -62,13 +60,25 @@ void fail(void* user, const char* reason) { static_cast<Reading*>(user)->fault =
 
 } // namespace
 
+const AbbeImageModule& imageModule() {
+    static const AbbeImageModule* const module = loadModule();
+    return *module;
+}
+
 ImagePixels readImageFile(const std::string& path) {
     Reading reading;
     const AbbeImageSink sink{&reading, begin, fail};
-    const bool good = loadModule()(path.c_str(), 3, &sink);
+    const bool good = imageModule().read(path.c_str(), 3, &sink);
     if (reading.outOfMemory) throw std::bad_alloc();
     if (!good) throw ImageFileError(reading.fault.empty() ? "it cannot be read" : reading.fault);
     return std::move(reading.image);
+}
+
+AbbeImageInfo describeImageFile(const std::string& path) {
+    AbbeImageInfo info{};
+    AbbeImageFault fault{};
+    if (!imageModule().describe(path.c_str(), &info, &fault)) throw ImageFileError(fault.reason);
+    return info;
 }
 
 } // namespace abbe

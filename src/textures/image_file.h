@@ -1,5 +1,7 @@
-// Image files of any format that OpenImageIO reads, as float pixels.
+// Image files of any format that OpenImageIO reads: their headers, and whole images as float pixels.
 #pragma once
+
+#include "textures/image_module.h"
 
 #include <stdexcept>
 #include <string>
@@ -18,8 +20,10 @@ struct ImageFileError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Loads the module that reads images with the first call; it then stays. Throws ImageFileError, or std::bad_alloc if
-// the pixels do not fit into memory.
+// Everywhere here: loads the module that reads images with the first call; it then stays. Throws ImageFileError.
+const AbbeImageModule& imageModule();
+// Also throws std::bad_alloc if the pixels do not fit into memory.
 ImagePixels readImageFile(const std::string& path);
+AbbeImageInfo describeImageFile(const std::string& path);
 
 } // namespace abbe

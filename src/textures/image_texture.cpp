@@ -1,128 +1,156 @@
 #include "textures/image_texture.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
 
 namespace abbe {
 
 namespace {
 
-// The four weights of a uniform cubic B-spline at t in [0, 1), and their derivatives.
-struct Spline {
-    float weight[4], slope[4];
-    explicit Spline(float t) {
-        const float s = 1 - t;
-        weight[0] = s * s * s / 6;
-        weight[1] = (4 - 3 * t * t * (2 - t)) / 6;
-        weight[2] = (4 - 3 * s * s * (2 - s)) / 6;
-        weight[3] = t * t * t / 6;
-        slope[0] = -s * s / 2;
-        slope[1] = t * (1.5f * t - 2);
-        slope[2] = s * (2 - 1.5f * s);
-        slope[3] = t * t / 2;
-    }
-};
-
-// The texel that stands for index i, or -1 for black.
-std::int64_t wrapped(std::int64_t i, std::int64_t n, Wrap wrap) {
-    if (i >= 0 && i < n) return i;
-    switch (wrap) {
-    case Wrap::clamp:
-        return i < 0 ? 0 : n - 1;
-    case Wrap::black:
-        return -1;
-    case Wrap::periodic: {
-        const std::int64_t k = i % n;
-        return k < 0 ? k + n : k;
-    }
-    case Wrap::mirror: {
-        std::int64_t k = i % (2 * n);
-        if (k < 0) k += 2 * n;
-        return k < n ? k : 2 * n - 1 - k;
-    }
-    }
-    return -1;
-}
-
-// Four texels in a row around coordinate x (in texels) with their weights.
-struct Taps {
-    Spline spline;
-    std::int64_t texel[4];
-    Taps(double x, int n, Wrap wrap) : Taps(std::floor(x), x, n, wrap) {}
-
-  private:
-    Taps(double whole, double x, int n, Wrap wrap) : spline(static_cast<float>(x - whole)) {
-        for (int k = 0; k < 4; ++k) texel[k] = wrapped(static_cast<std::int64_t>(whole) - 1 + k, n, wrap);
-    }
-};
-
 constexpr double kFarthest = 1e12; // texture coordinates beyond have no fraction of a texel left
-
-double tame(float x) { return std::abs(x) < kFarthest ? static_cast<double>(x) : 0; }
 
 int tileNumber(double u, double v) { return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v); }
 
-} // namespace
-
-ImageTexture::ImageTexture(ImagePixels image, Wrap wrap) : wrap_(wrap), channels_(image.channels) {
-    tiles_.emplace(1001, std::move(image));
+// Brings a coordinate near the unit square, where floats are fine, without changing what is seen there.
+double reduced(double x, Wrap wrap) {
+    switch (wrap) {
+    case Wrap::periodic:
+        return x - std::floor(x);
+    case Wrap::mirror:
+        return x - 2 * std::floor(x / 2);
+    case Wrap::clamp:
+    case Wrap::black:
+        return std::clamp(x, -4.0, 5.0); // farther than any footprint reaches back
+    }
+    return x;
 }
 
-ImageTexture::ImageTexture(std::map<int, ImagePixels> tiles)
-    : tiles_(std::move(tiles)), tiled_(true), wrap_(Wrap::clamp) {
-    channels_ = 3;
-    for (const auto& [number, image] : tiles_) channels_ = std::min(channels_, image.channels);
+// Half axes of the footprint become whole widths; those that are wider than the picture see all of it anyway.
+Vec2 width(Vec2 halfAxis) {
+    constexpr float kHuge = 1e18f; // whose square is finite
+    const auto tame = [](float x) { return x == x ? std::clamp(x, -kHuge, kHuge) : 0; };
+    const Vec2 d{tame(halfAxis.x), tame(halfAxis.y)};
+    const float length = std::sqrt(d.x * d.x + d.y * d.y);
+    return d * (length > 1 ? 2 / length : 2);
+}
+
+AbbeWrap moduleWrap(Wrap wrap) {
+    switch (wrap) {
+    case Wrap::periodic:
+        return abbeWrapPeriodic;
+    case Wrap::clamp:
+        return abbeWrapClamp;
+    case Wrap::mirror:
+        return abbeWrapMirror;
+    case Wrap::black:
+        return abbeWrapBlack;
+    }
+    return abbeWrapBlack;
+}
+
+bool finite(const float* x, int n) {
+    for (int i = 0; i < n; ++i)
+        if (!std::isfinite(x[i])) return false;
+    return true;
+}
+
+} // namespace
+
+ImageTexture::ImageTexture(std::map<int, ImageTile> tiles, bool tiled, Wrap wrap, ImageEncoding encoding,
+                           schema::Text asked, std::shared_ptr<TextureStore> store)
+    : tiles_(std::move(tiles)), tiled_(tiled), wrap_(tiled ? Wrap::clamp : wrap), encoding_(encoding),
+      asked_(std::move(asked)), store_(std::move(store)) {
+    for (const auto& [number, tile] : tiles_) channels_ = std::min(channels_, static_cast<int>(tile.info.channels));
 }
 
 bool ImageTexture::covers(Vec2 uv) const noexcept {
-    const double u = std::floor(tame(uv.x)), v = std::floor(tame(uv.y));
-    return !tiled_ || (u >= 0 && u < 10 && v >= 0 && v < 100 && tiles_.contains(tileNumber(u, v)));
-}
-
-// The tile of a point, and its coordinates in it. On the border between two tiles the face decides.
-const ImagePixels* ImageTexture::tileOf(const TexturePoint& point, double& u, double& v) const noexcept {
-    u = tame(point.uv.x);
-    v = tame(point.uv.y);
-    if (!tiled_) return &tiles_.begin()->second;
-    const auto column = [](double x, float home) {
-        const double nearest = std::round(x);
-        return std::abs(x - nearest) < 1e-4 ? std::clamp(std::floor(tame(home)), nearest - 1, nearest) : std::floor(x);
-    };
-    const double i = column(u, point.home.x), j = column(v, point.home.y);
-    if (!(i >= 0 && i < 10 && j >= 0 && j < 100)) return nullptr;
-    const auto found = tiles_.find(tileNumber(i, j));
-    if (found == tiles_.end()) return nullptr;
-    u -= i;
-    v -= j;
-    return &found->second;
+    if (!tiled_) return true;
+    const double u = std::floor(static_cast<double>(uv.x)), v = std::floor(static_cast<double>(uv.y));
+    return u >= 0 && u < 10 && v >= 0 && v < 100 && tiles_.contains(tileNumber(u, v));
 }
 
 TextureJet ImageTexture::jet(const TexturePoint& point, int channels) const noexcept {
-    TextureJet result;
-    double u = 0, v = 0;
-    const ImagePixels* const tile = tileOf(point, u, v);
-    if (!tile) return result;
-    const Taps x(u * tile->width - 0.5, tile->width, wrap_), y((1 - v) * tile->height - 0.5, tile->height, wrap_);
-    float value[3] = {}, byX[3] = {}, byY[3] = {};
-    for (int j = 0; j < 4; ++j) {
-        if (y.texel[j] < 0) continue;
-        const float* const row = tile->values.data() + y.texel[j] * tile->width * tile->channels;
-        for (int c = 0; c < channels; ++c) {
-            float sum = 0, slope = 0;
-            for (int i = 0; i < 4; ++i) {
-                if (x.texel[i] < 0) continue;
-                const float texel = row[x.texel[i] * tile->channels + c];
-                sum += x.spline.weight[i] * texel;
-                slope += x.spline.slope[i] * texel;
-            }
-            value[c] += y.spline.weight[j] * sum;
-            byX[c] += y.spline.weight[j] * slope;
-            byY[c] += y.spline.slope[j] * sum;
+    return heights_ ? heights_->jet(point, channels) : TextureJet{};
+}
+
+// The tile of a point, and its coordinates in it. What lies exactly on the upper border of a tile belongs to it if
+// there is no other.
+const ImageTile* ImageTexture::tileOf(double& u, double& v) const noexcept {
+    if (!tiled_) return &tiles_.begin()->second;
+    const double column = std::floor(u), row = std::floor(v);
+    const int left = column == u ? 1 : 0, below = row == v ? 1 : 0;
+    for (int j = 0; j <= below; ++j)
+        for (int i = 0; i <= left; ++i) {
+            const double x = column - i, y = row - j;
+            if (!(x >= 0 && x < 10 && y >= 0 && y < 100)) continue;
+            const auto found = tiles_.find(tileNumber(x, y));
+            if (found == tiles_.end()) continue;
+            u -= x;
+            v -= y;
+            return &found->second;
         }
+    return nullptr;
+}
+
+Vec3 ImageTexture::value(const TextureQuery& query) const noexcept {
+    double u = static_cast<double>(query.uv.x), v = static_cast<double>(query.uv.y);
+    if (!(std::abs(u) < kFarthest && std::abs(v) < kFarthest)) {
+        faults_.add(LookupFaults::coordinates);
+        u = v = 0;
     }
-    result.value = {value[0], value[1], value[2]};
-    result.byUv[0] = Vec3{byX[0], byX[1], byX[2]} * static_cast<float>(tile->width);
-    result.byUv[1] = Vec3{byY[0], byY[1], byY[2]} * -static_cast<float>(tile->height);
-    return result;
+    const ImageTile* const tile = tileOf(u, v);
+    if (!tile || !tile->handle) {
+        faults_.add(LookupFaults::missingTile);
+        return {};
+    }
+    const Vec2 du = width(query.du), dv = width(query.dv);
+    const AbbeTextureLookup lookup{static_cast<float>(reduced(u, wrap_)),
+                                   static_cast<float>(1 - reduced(v, wrap_)),
+                                   du.x,
+                                   -du.y,
+                                   dv.x,
+                                   -dv.y,
+                                   moduleWrap(wrap_),
+                                   channels_};
+    float texel[3] = {};
+    if (!store_->lookup(tile->handle, lookup, texel)) {
+        faults_.add(LookupFaults::unreadable);
+        if (faults_.first()) {
+            faults_.say(store_->lookupFault());
+            forgetTextureFile(tile->opened, store_->settings().directory);
+        }
+        return {};
+    }
+    if (!finite(texel, channels_)) {
+        faults_.add(LookupFaults::notFinite);
+        return {};
+    }
+    if (tile->stored)
+        for (float& x : texel) x = static_cast<float>(encoding_.encoding->toLinear(static_cast<double>(x)));
+    return channels_ == 1 ? Vec3(texel[0], texel[0], texel[0]) : Vec3(texel[0], texel[1], texel[2]);
+}
+
+Spectrum ImageTexture::spectrum(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    const Vec3 rgb = value(query);
+    if (channels_ == 1 || !upsampling_) return Spectrum(std::clamp(rgb.x, 0.f, 1.f));
+    return upsampling_->lookup(rgb).at(lambda);
+}
+
+void ImageTexture::reportLookups(Diagnostics& diagnostics) const {
+    const std::string name = std::filesystem::path(asked_.value).filename().string();
+    const auto warn = [&](LookupFaults::Kind kind, const char* what) {
+        if (const std::uint64_t n = faults_.count(kind))
+            return &diagnostics.warning("W0457", asked_.span, fmt::format("{} lookups in `{}` {}", n, name, what),
+                                        "black there");
+        return static_cast<Diagnostic*>(nullptr);
+    };
+    warn(LookupFaults::coordinates, "had texture coordinates that are infinite or not a number");
+    if (Diagnostic* d = warn(LookupFaults::missingTile, "fell into tiles that have no file"))
+        d->help = "give every tile that the shape's texture coordinates reach a file";
+    if (Diagnostic* d = warn(LookupFaults::unreadable, "failed, because the file could not be read"))
+        if (const std::string why = faults_.example(); !why.empty()) d->notes.push_back(why);
+    warn(LookupFaults::notFinite, "met values that are infinite or not a number");
 }
 
 } // namespace abbe

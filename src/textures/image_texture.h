@@ -4,10 +4,13 @@
 #include "base/diagnostic.h"
 #include "render/texture.h"
 #include "schema/type.h"
-#include "textures/image_file.h"
+#include "textures/lookup_faults.h"
+#include "textures/spline_image.h"
+#include "textures/texture_store.h"
 
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace abbe {
 
@@ -16,35 +19,66 @@ struct ImageTextureParams {
     schema::Choice wrap;
 };
 
-// What lies outside the unit square of texture coordinates.
-enum class Wrap : std::uint8_t { periodic, clamp, mirror, black };
+// One picture: what its header says, and where the texture system has it.
+struct ImageTile {
+    std::string path;
+    AbbeImageInfo info{};
+    std::string opened;     // the file behind `handle`
+    void* handle = nullptr; // null until prepared for shading
+    bool stored = false;    // its values are decoded after filtering
+};
 
-// Uniform cubic B-splines with the texels as control points: twice continuously differentiable, so that displaced
-// normals and their highlights are smooth, and never outside the range of the texels. The price is a blur of 0.58
-// texels (standard deviation); Catmull-Rom would interpolate, but its second derivative jumps and it overshoots.
-// Texel centres lie at half-integers; v = 0 is the lower edge.
+// How the values of a picture are to be read.
+struct ImageEncoding {
+    const ColorEncoding* encoding;
+    bool said = false;    // by the scene or by a tag, rather than guessed from the type of the file
+    bool inScene = false; // by the scene
+};
+
+// For shading, pictures stay on disk and are filtered by the texture system; for displacement they are in memory
+// whole. A texture does what it was prepared for. v = 0 is the lower edge. Tiles never wrap, and lookups do not
+// reach across their borders.
 class ImageTexture final : public Texture {
   public:
-    ImageTexture(ImagePixels, Wrap);
-    // Tiles by number: 1001 + column + 10 row, as floor(u) and floor(v) count. Lookups near a border stay in the tile.
-    explicit ImageTexture(std::map<int, ImagePixels> tiles);
+    // Tiles by number: 1001 + column + 10 row, as floor(u) and floor(v) count; a picture alone is 1001.
+    ImageTexture(std::map<int, ImageTile>, bool tiled, Wrap, ImageEncoding, schema::Text asked,
+                 std::shared_ptr<TextureStore>);
 
     int channels() const override { return channels_; }
     bool needsUv() const override { return true; }
+    const RgbSpace* rgbSpace() const override { return encoding_.encoding->space; }
+    bool prepare(TextureUse, Span user, Diagnostics&) override;
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
+    Vec3 value(const TextureQuery&) const noexcept override;
+    Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
     bool covers(Vec2 uv) const noexcept override;
+    void reportLookups(Diagnostics&) const override;
 
   private:
-    const ImagePixels* tileOf(const TexturePoint&, double& u, double& v) const noexcept;
+    const ImageTile* tileOf(double& u, double& v) const noexcept;
+    // image_prepare.cpp
+    void warnOfUse(TextureUse, Span user, Diagnostics&);
+    bool prepareHeights(Diagnostics&);
+    bool prepareShading(TextureUse, Diagnostics&);
+    void openTile(ImageTile&, Diagnostics&);
+    void warnOfReflectances(Diagnostics&);
 
-    std::map<int, ImagePixels> tiles_; // 1001 alone unless tiled_
-    bool tiled_ = false;
-    Wrap wrap_ = Wrap::periodic;
-    int channels_ = 1;
+    std::map<int, ImageTile> tiles_;
+    bool tiled_;
+    Wrap wrap_;
+    int channels_ = 3;
+    ImageEncoding encoding_;
+    schema::Text asked_;
+    std::shared_ptr<TextureStore> store_;
+    const UpsamplingTable* upsampling_ = nullptr;
+    std::optional<SplineImage> heights_;
+    bool warned_ = false; // of its use
+    TexelCounts counts_;  // of all tiles, until reported
+    mutable LookupFaults faults_;
 };
 
 schema::TypeInfo imageTextureType();
-// Reads the files; null after an error.
-std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams&, Diagnostics&);
+// Reads the headers of the files; null after an error.
+std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams&, std::shared_ptr<TextureStore>, Diagnostics&);
 
 } // namespace abbe

@@ -1,6 +1,6 @@
 #include "textures/image_texture.h"
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -12,42 +12,52 @@ namespace {
 
 constexpr std::string_view kTilePattern = "<UDIM>";
 
-bool keyGiven(const Text& text, std::string_view key) {
+std::string_view spaceKey(const Text& text) {
     for (const auto& [name, value] : text.keys)
-        if (name == key) return true;
-    return false;
+        if (name == "space") return value;
+    return {};
 }
 
-// Light is stored in these with a curve, or relative to primaries: not what a height or a direction is.
-bool isColor(const std::string& space) {
-    return !space.empty() && space != "Linear" && space != "linear" && space != "lin_srgb" && space != "scene_linear" &&
-           space != "data" && space != "raw" && space != "Raw" && space != "Utility - Raw";
+// As the scene may name them: encodings, the linear spaces of the rest of the language, and what they stand for.
+std::vector<std::string_view> spaceNames() {
+    std::vector<std::string_view> names = colorEncodingNames();
+    for (const std::string_view name : rgbSpaceNames())
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    names.push_back("unknown");
+    return names;
 }
 
-std::optional<ImagePixels> load(const std::string& path, const Text& asked, Diagnostics& diagnostics) {
-    const std::string name = std::filesystem::path(path).filename().string();
-    try {
-        ImagePixels image = readImageFile(path);
-        std::size_t bad = 0;
-        for (const float x : image.values) bad += !std::isfinite(x);
-        if (bad > 0) {
-            diagnostics.error("E0451", asked.span,
-                              fmt::format("{} values of `{}` are infinite or not a number", bad, name),
-                              "cannot be a texture");
-            return std::nullopt;
-        }
-        if (isColor(image.colorSpace) && !keyGiven(asked, "space"))
-            diagnostics
-                .warning("W0450", asked.span, fmt::format("`{}` is tagged as `{}`, a colour", name, image.colorSpace),
-                         "its stored values are used as they are")
-                .help = "write `space=data` behind the name if they are heights or directions";
-        return image;
-    } catch (const ImageFileError& e) {
-        diagnostics.error("E0402", asked.span, fmt::format("`{}`: {}", name, e.what()), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", asked.span, fmt::format("`{}` does not fit into memory", name));
+const ColorEncoding* encodingOfTag(std::string_view tag) {
+    // What OpenImageIO calls the curve of BT.709; pictures that claim it are viewed as sRGB.
+    if (tag == "Rec709") return findColorEncoding("srgb_rec709_scene");
+    return findColorEncoding(tag);
+}
+
+// By what the scene says, else by the file's tag, else by its type.
+ImageEncoding encodingOf(const AbbeImageInfo& info, const Text& asked, Diagnostics& diagnostics) {
+    if (const std::string_view space = spaceKey(asked); !space.empty() && space != "unknown")
+        return {findColorEncoding(space), true, true};
+    const bool integers = info.type == abbeTexel8 || info.type == abbeTexel16;
+    const std::string_view tag = info.colorSpace;
+    const ColorEncoding* const tagged = tag.empty() ? nullptr : encodingOfTag(tag);
+    const ColorEncoding* guessed = findColorEncoding(integers ? "srgb_rec709_scene" : "lin_rec709_scene");
+    const float* const c = info.chromaticities;
+    if (info.chromatic && (tagged ? tagged->curve == TransferCurve::linear && tagged->space : !integers)) {
+        const auto at = [&](int i) { return Chromaticity{static_cast<double>(c[i]), static_cast<double>(c[i + 1])}; };
+        if (const ColorEncoding* const exact = findColorEncoding(at(0), at(2), at(4), at(6))) return {exact, true};
+        diagnostics
+            .warning("W0456", asked.span, "the primaries of the picture belong to no known colour space",
+                     fmt::format("taken as {}", guessed->name))
+            .help = "`space=` names the colour space";
+        return {guessed};
     }
-    return std::nullopt;
+    if (tagged) return {tagged, true};
+    if (!tag.empty())
+        diagnostics
+            .warning("W0456", asked.span, fmt::format("the picture is tagged as `{}`, which is not known", tag),
+                     fmt::format("taken as {}", guessed->name))
+            .help = "`space=` names the colour space";
+    return {guessed};
 }
 
 // Every file of the pattern whose number is 1001 … 1999.
@@ -80,9 +90,12 @@ TypeInfo imageTextureType() {
             .required()
             .tiles()
             .synonyms({"filename", "path", "map"})
-            .key({"space", {"data"}, "What the values are: `data` for heights, directions and the like."})
+            .key({"space", spaceNames(),
+                  "How the values are stored: a colour space, or `data` for heights, directions, a roughness and the "
+                  "like. When absent the file's tag, else `srgb_rec709_scene` for integers, `lin_rec709_scene` for "
+                  "floats."})
             .doc("Image in any usual format; `<UDIM>` in its name stands for the tile numbers from 1001.")
-            .example("file \"bark.exr\" space=data"),
+            .example("file \"bark.exr\" space=lin_rec709_scene"),
         field<P, Choice>(FieldType::choice, "wrap", &P::wrap)
             .choices({"periodic", "clamp", "mirror", "black"})
             .byDefault("periodic")
@@ -92,24 +105,47 @@ TypeInfo imageTextureType() {
     };
     return {Kind::texture,
             "image",
-            "Image over the texture coordinates, smoothly interpolated.",
+            "Image over the texture coordinates, filtered.",
             "texture bark image \"bark.exr\" space=data",
             false,
             std::move(fields)};
 }
 
-std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams& p, Diagnostics& diagnostics) {
-    if (p.file.value.find(kTilePattern) == std::string::npos) {
-        auto image = load(p.file.value, p.file, diagnostics);
-        return image ? std::make_unique<ImageTexture>(std::move(*image), wrapOf(p.wrap)) : nullptr;
+std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams& p, std::shared_ptr<TextureStore> store,
+                                          Diagnostics& diagnostics) {
+    const bool tiled = p.file.value.find(kTilePattern) != std::string::npos;
+    std::map<int, std::string> files;
+    if (tiled)
+        files = tileFiles(p.file.value);
+    else
+        files.emplace(1001, p.file.value);
+    std::map<int, ImageTile> tiles;
+    for (auto& [number, path] : files) {
+        try {
+            ImageTile& tile = tiles[number];
+            tile.info = describeImageFile(path);
+            tile.path = std::move(path);
+        } catch (const ImageFileError& e) {
+            const std::string name = std::filesystem::path(path).filename().string();
+            diagnostics.error("E0402", p.file.span, fmt::format("`{}`: {}", name, e.what()), "cannot be read");
+            return nullptr;
+        }
     }
-    std::map<int, ImagePixels> tiles;
-    for (const auto& [number, path] : tileFiles(p.file.value)) {
-        auto image = load(path, p.file, diagnostics);
-        if (!image) return nullptr;
-        tiles.emplace(number, std::move(*image));
+    if (tiles.empty()) return nullptr; // reported with the name
+    const ImageEncoding encoding = encodingOf(tiles.begin()->second.info, p.file, diagnostics);
+    for (const auto& [number, tile] : tiles) {
+        Diagnostics repeated; // of the first tile
+        const ImageEncoding other = encodingOf(tile.info, p.file, repeated);
+        if (other.encoding == encoding.encoding) continue;
+        diagnostics
+            .error("E0452", p.file.span,
+                   fmt::format("tile {} is stored as `{}`, tile {} as `{}`", tiles.begin()->first,
+                               encoding.encoding->name, number, other.encoding->name),
+                   "tiles differ in their colour space")
+            .help = "`space=` says how all of them are to be read";
+        return nullptr;
     }
-    return tiles.empty() ? nullptr : std::make_unique<ImageTexture>(std::move(tiles));
+    return std::make_unique<ImageTexture>(std::move(tiles), tiled, wrapOf(p.wrap), encoding, p.file, std::move(store));
 }
 
 } // namespace abbe

@@ -19,6 +19,10 @@ TEST_CASE("quantities") {
     CHECK(*readQuantity("90", Dimension::time) == 90);
     CHECK(*readQuantity("45min", Dimension::time) == 2700);
     CHECK(*readQuantity("45 min", Dimension::time) == 2700);
+    CHECK(*readMebibytes("512MiB") == 512);
+    CHECK(*readMebibytes("4 GiB") == 4096);
+    CHECK(*readMebibytes("16") == 16);
+    for (const char* bad : {"", "MiB", "8", "1 KiB", "512MiBs", "nan", "-20"}) CHECK(!readMebibytes(bad));
     CHECK(*readQuantity("0.5%", Dimension::fraction) == doctest::Approx(0.005));
     CHECK(*readQuantity("0.005", Dimension::fraction) == 0.005);
     for (const char* wrong : {"", "min", "3 kg", "3 m", "1e999", "nan", "inf", "3 min x"})
