@@ -9,6 +9,7 @@ namespace abbe {
 namespace {
 
 constexpr double kFarthest = 1e12; // texture coordinates beyond have no fraction of a texel left
+constexpr float kHuge = 1e18f;     // its square is finite
 
 int tileNumber(double u, double v) { return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v); }
 
@@ -28,8 +29,7 @@ double reduced(double x, Wrap wrap) {
 
 // Half axes of the footprint become whole widths; those that are wider than the picture see all of it anyway.
 Vec2 width(Vec2 halfAxis) {
-    constexpr float kHuge = 1e18f; // whose square is finite
-    const auto tame = [](float x) { return x == x ? std::clamp(x, -kHuge, kHuge) : 0; };
+    const auto tame = [](float x) { return std::isnan(x) ? 0 : std::min(std::max(x, -kHuge), kHuge); };
     const Vec2 d{tame(halfAxis.x), tame(halfAxis.y)};
     const float length = std::sqrt(d.x * d.x + d.y * d.y);
     return d * (length > 1 ? 2 / length : 2);
