@@ -114,9 +114,10 @@ Vec3 ImageTexture::value(const TextureQuery& query) const noexcept {
                                    moduleWrap(wrap_),
                                    channels_};
     float texel[3] = {};
-    if (!store_->lookup(tile->handle, lookup, texel)) {
-        faults_.add(LookupFaults::unreadable);
-        if (faults_.first()) {
+    // After a fault OpenImageIO takes the tile for good the next time it is asked for: nothing of the file is used.
+    if (faults_.unreadable() || !store_->lookup(tile->handle, lookup, texel)) {
+        faults_.add(LookupFaults::failedRead);
+        if (faults_.firstUnreadable()) {
             faults_.say(store_->lookupFault());
             forgetTextureFile(tile->opened, store_->settings().directory);
         }
@@ -148,7 +149,7 @@ void ImageTexture::reportLookups(Diagnostics& diagnostics) const {
     warn(LookupFaults::coordinates, "had texture coordinates that are infinite or not a number");
     if (Diagnostic* d = warn(LookupFaults::missingTile, "fell into tiles that have no file"))
         d->help = "give every tile that the shape's texture coordinates reach a file";
-    if (Diagnostic* d = warn(LookupFaults::unreadable, "failed, because the file could not be read"))
+    if (Diagnostic* d = warn(LookupFaults::failedRead, "failed, because the file could not be read"))
         if (const std::string why = faults_.example(); !why.empty()) d->notes.push_back(why);
     warn(LookupFaults::notFinite, "met values that are infinite or not a number");
 }

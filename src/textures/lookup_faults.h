@@ -11,12 +11,13 @@ namespace abbe {
 // Counts from many threads; nothing happens to it as long as all is well.
 class LookupFaults {
   public:
-    enum Kind { coordinates, missingTile, unreadable, notFinite };
+    enum Kind { coordinates, missingTile, failedRead, notFinite };
 
     void add(Kind kind) noexcept { counts_[kind].fetch_add(1, std::memory_order_relaxed); }
     std::uint64_t count(Kind kind) const noexcept { return counts_[kind].load(std::memory_order_relaxed); }
-    // True for the first caller alone, who is to say more.
-    bool first() noexcept { return !said_.exchange(true, std::memory_order_relaxed); }
+    bool unreadable() const noexcept { return unreadable_.load(std::memory_order_relaxed); }
+    // True for the first caller alone, who is to say why.
+    bool firstUnreadable() noexcept { return !unreadable_.exchange(true, std::memory_order_relaxed); }
     void say(std::string text) {
         const std::lock_guard lock(mutex_);
         example_ = std::move(text);
@@ -28,7 +29,7 @@ class LookupFaults {
 
   private:
     std::atomic<std::uint64_t> counts_[4] = {};
-    std::atomic<bool> said_ = false;
+    std::atomic<bool> unreadable_ = false;
     mutable std::mutex mutex_;
     std::string example_; // why tiles could not be read
 };
