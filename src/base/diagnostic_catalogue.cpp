@@ -205,6 +205,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
+    {"W0740", "a dark light", "The light states an amount of 0, or what it is made of has no area. It is seen as black and never chosen when light is looked for."},
 };
 // clang-format on
 

@@ -24,6 +24,9 @@ class Disk final : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    EmitterPart emitterPart(std::uint32_t) const override {
+        return {.box = bounds(), .area = area(), .axis = Vec3(z_), .cosNormals = 1};
+    }
     double area() const override { return kPiD * radius_ * radius_; }
     // Uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

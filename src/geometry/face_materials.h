@@ -34,6 +34,8 @@ class FaceMaterials final : public Shape {
     std::vector<std::string_view> attributeNames() const override { return shape_->attributeNames(); }
     bool usesTextures() const override;
     double area() const override { return shape_->area(); }
+    std::uint32_t emitterParts() const override { return shape_->emitterParts(); }
+    EmitterPart emitterPart(std::uint32_t i) const override { return shape_->emitterPart(i); }
     std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const override {
         return shape_->sample(from, part, u);
     }

@@ -129,36 +129,71 @@ std::vector<std::string_view> Mesh::attributeNames() const {
     return names;
 }
 
-void Mesh::weighByArea() const {
-    std::vector<double> areas(triangleCount());
-    for (std::uint64_t i = 0; i < triangleCount(); ++i) {
-        const auto [a, b, c] = triangle(i);
-        const auto& p = data_.positions;
-        areas[i] = 0.5 * length(triangleCross(Vec3d(p[a]), Vec3d(p[b]), Vec3d(p[c])));
-    }
-    byArea_.emplace(areas);
+double Mesh::triangleArea(std::uint64_t i) const {
+    const auto [a, b, c] = triangle(i);
+    const auto& p = data_.positions;
+    return 0.5 * length(triangleCross(Vec3d(p[a]), Vec3d(p[b]), Vec3d(p[c])));
 }
 
-std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+std::uint32_t Mesh::emitterParts() const {
+    return lone_ ? 1 : static_cast<std::uint32_t>(data_.triangles.size() + data_.quads.size());
+}
+
+// The triangles of a polygon: the first, and how many.
+std::pair<std::uint64_t, int> Mesh::trianglesOf(std::uint32_t primitive) const {
+    const std::uint64_t triangles = data_.triangles.size();
+    if (primitive < triangles) return {primitive, 1};
+    return {triangles + 2 * (primitive - triangles), 2};
+}
+
+double Mesh::partArea(std::uint32_t primitive) const {
+    const auto [first, count] = trianglesOf(primitive);
+    return triangleArea(first) + (count > 1 ? triangleArea(first + 1) : 0);
+}
+
+EmitterPart Mesh::emitterPart(std::uint32_t i) const {
+    const auto [first, count] = trianglesOf(i);
+    EmitterPart part{.box = {}, .area = partArea(i), .axis = faceNormals_[first], .cosNormals = 1};
+    for (int k = 0; k < count; ++k)
+        for (const std::uint32_t v : triangle(first + k)) part.box.add(data_.positions[v]);
+    // Between the normals of the halves of a quad, each half the angle away. They do not count where they are empty.
+    if (count > 1 && triangleArea(first) > 0 && triangleArea(first + 1) > 0) {
+        const Vec3 sum = faceNormals_[first] + faceNormals_[first + 1];
+        if (lengthSquared(sum) > 1e-6f) part.axis = normalize(sum);
+        part.cosNormals = std::min(dot(part.axis, faceNormals_[first]), dot(part.axis, faceNormals_[first + 1]));
+    } else if (count > 1 && !(triangleArea(first) > 0)) {
+        part.axis = faceNormals_[first + 1];
+    }
+    return part;
+}
+
+std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t part, Vec2 u) const {
     if (lone_) return lone_->sample(from, 0, u);
-    if (!(area_ > 0)) return std::nullopt;
-    std::call_once(byAreaOnce_, [this] { weighByArea(); });
-    const BinSample bin = byArea_->sample(u.x);
-    const Vec2 b = squareToTriangle({bin.offset, u.y});
-    const auto [i0, i1, i2] = triangle(bin.index);
+    auto [i, count] = trianglesOf(part);
+    const double area = partArea(part);
+    if (!(area > 0)) return std::nullopt;
+    if (count > 1) {
+        const auto first = static_cast<float>(triangleArea(i) / area);
+        const bool second = !(u.x < first);
+        u.x = std::min(second ? (u.x - first) / (1 - first) : u.x / first, kOneMinusEpsilon);
+        i += second;
+    }
+    const Vec2 b = squareToTriangle(u);
+    const auto [i0, i1, i2] = triangle(i);
     const auto& p = data_.positions;
     Vec3 point, pError;
     trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, point, pError);
-    const Vec3 ng = faceNormals_[bin.index];
-    const float pdf = areaToSolidAngle(static_cast<float>(1 / area_), point - from.p, ng);
+    const Vec3 ng = faceNormals_[i];
+    const float pdf = areaToSolidAngle(static_cast<float>(1 / area), point - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, point, pError, ng, pdf);
 }
 
 float Mesh::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     if (lone_) return lone_->pdfSolidAngle(from, hit);
-    if (!(area_ > 0)) return 0;
-    return areaToSolidAngle(static_cast<float>(1 / area_), hit.p - from.p, hit.ng);
+    const double area = partArea(hit.primitive);
+    if (!(area > 0)) return 0;
+    return areaToSolidAngle(static_cast<float>(1 / area), hit.p - from.p, hit.ng);
 }
 
 } // namespace abbe

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "geometry/quad.h"
-#include "math/distribution_1d.h"
 #include "math/mesh_data.h"
 #include "render/shape.h"
 
 #include <memory>
-#include <mutex>
+#include <utility>
 
 namespace abbe {
 
@@ -39,16 +38,20 @@ class Mesh final : public Shape {
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;
     double area() const override { return area_; }
-    // Uniform per area over all faces; a lone quad as Quad does.
+    std::uint32_t emitterParts() const override;
+    EmitterPart emitterPart(std::uint32_t) const override;
+    // Uniform per area over a polygon; a lone quad as Quad does.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 
   private:
     std::uint64_t triangleCount() const { return data_.triangles.size() + 2 * data_.quads.size(); }
     std::array<std::uint32_t, 3> triangle(std::uint64_t) const; // quads count as two
+    double triangleArea(std::uint64_t) const;
+    std::pair<std::uint64_t, int> trianglesOf(std::uint32_t primitive) const;
+    double partArea(std::uint32_t primitive) const;
     void shade(const MeshCorners&, SurfaceHit&) const;
     void countNormals();
-    void weighByArea() const;
 
     MeshData data_;
     std::vector<Vec3> faceNormals_; // per triangle, then two per quad
@@ -57,9 +60,6 @@ class Mesh final : public Shape {
     double area_ = 0;
     bool mirrored_;
     std::unique_ptr<const Quad> lone_; // the mesh itself if it is a single quad
-    // Over the triangles, by area: made when an emitter first asks, because most meshes never emit.
-    mutable std::once_flag byAreaOnce_;
-    mutable std::optional<Distribution1D> byArea_;
 };
 
 } // namespace abbe

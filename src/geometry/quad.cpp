@@ -3,6 +3,7 @@
 #include "geometry/mesh_corners.h"
 #include "geometry/spherical_rectangle.h"
 #include "geometry/surface_math.h"
+#include "math/bilinear_density.h"
 #include "math/warp.h"
 
 namespace abbe {
@@ -25,6 +26,25 @@ template <typename Rectangle> std::optional<SphericalRectangle> sphericalView(co
     const SphericalRectangle view(x - w, y - h, x + w, y + h, z);
     if (!(view.solidAngle() > kSmallestSolidAngle)) return std::nullopt;
     return view;
+}
+
+// Cosines at the receiver over the rectangle, as a bilinear density over the square that is sampled into it
+// [Hart2020]; nothing if the rectangle is behind the horizon. The least corner keeps a share, because some of what lies
+// between a corner below the horizon and one above it is seen.
+template <typename Rectangle> std::optional<BilinearDensity> cosineDensity(const Rectangle& r, const Receiver& from) {
+    constexpr float kLeastShare = 0.01f;
+    const Vec3 d = r.centre - from.p, x = r.x * (0.5f * r.width), y = r.y * (0.5f * r.height);
+    BilinearDensity density{};
+    float most = 0;
+    for (int i = 0; i < 4; ++i) {
+        const Vec3 corner = d + (i & 1 ? x : -x) + (i & 2 ? y : -y);
+        const float height = dot(corner, from.n);
+        density.corner[i] = height > 0 ? height / length(corner) : 0;
+        most = std::max(most, density.corner[i]);
+    }
+    if (!(most > 0)) return std::nullopt;
+    for (float& c : density.corner) c = std::max(c, kLeastShare * most);
+    return density;
 }
 
 } // namespace
@@ -77,6 +97,17 @@ Bounds3 Quad::bounds() const {
     return b;
 }
 
+EmitterPart Quad::emitterPart(std::uint32_t) const {
+    const Vec3 a = halves_[0].frame.z, b = halves_[1].frame.z;
+    const bool first = firstHalf_ > 0, second = firstHalf_ < 1; // not empty
+    EmitterPart part{.box = bounds(), .area = area_, .axis = first ? a : b, .cosNormals = 1};
+    if (first && second) {
+        if (lengthSquared(a + b) > 1e-6f) part.axis = normalize(a + b);
+        part.cosNormals = std::min(dot(part.axis, a), dot(part.axis, b));
+    }
+    return part;
+}
+
 void Quad::commit(GeometrySink& sink) const {
     static constexpr std::array<std::array<std::uint32_t, 4>, 1> index{{{0, 1, 2, 3}}};
     sink.quads(std::span(corners_).first<4>(), index);
@@ -117,10 +148,17 @@ std::optional<ShapeSample> Quad::sample(const Receiver& from, std::uint32_t, Vec
         const Rectangle& r = *rectangle_;
         ng = r.z;
         if (const auto view = sphericalView(r, from.p)) {
+            float pdf = 1 / view->solidAngle();
+            if (from.oneSided()) {
+                const auto density = cosineDensity(r, from);
+                if (!density) return std::nullopt;
+                u = density->sample(u);
+                pdf *= density->pdf(u);
+            }
             const Vec2 q = view->sample(u);
             const Vec3 d = r.centre - from.p;
             p = r.centre + r.x * (q.x - dot(d, r.x)) + r.y * (q.y - dot(d, r.y));
-            return std::optional<ShapeSample>(std::in_place, p, pError_, ng, 1 / view->solidAngle());
+            return std::optional<ShapeSample>(std::in_place, p, pError_, ng, pdf);
         }
         p = halves_[0].corner + halves_[0].edgeS * u.x + halves_[0].edgeT * u.y;
     } else {
@@ -132,8 +170,16 @@ std::optional<ShapeSample> Quad::sample(const Receiver& from, std::uint32_t, Vec
 }
 
 float Quad::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
-    if (rectangle_)
-        if (const auto view = sphericalView(*rectangle_, from.p)) return 1 / view->solidAngle();
+    if (rectangle_) {
+        const Rectangle& r = *rectangle_;
+        if (const auto view = sphericalView(r, from.p)) {
+            if (!from.oneSided()) return 1 / view->solidAngle();
+            const auto density = cosineDensity(r, from);
+            if (!density) return 0;
+            const Vec3 d = hit.p - from.p;
+            return density->pdf(view->inverse({dot(d, r.x), dot(d, r.y)})) / view->solidAngle();
+        }
+    }
     return areaToSolidAngle(pdfArea_, hit.p - from.p, hit.ng);
 }
 

@@ -19,7 +19,9 @@ class Quad final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     double area() const override { return area_; }
-    // Rectangles seen large: uniform per solid angle; everything else: uniform per area.
+    EmitterPart emitterPart(std::uint32_t) const override;
+    // Rectangles seen large: uniform per solid angle, or, for receivers lit from one side, about in proportion to the
+    // cosine there; everything else: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 

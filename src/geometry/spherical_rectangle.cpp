@@ -89,4 +89,13 @@ Vec2 SphericalRectangle::sample(Vec2 u) const {
     return {x, std::clamp(y, y0_, y1_)};
 }
 
+// The first coordinate is the share of the solid angle on this side of x.
+Vec2 SphericalRectangle::inverse(Vec2 point) const {
+    const SphericalRectangle before(x0_, y0_, point.x, y1_, z_);
+    const float d2 = std::fma(point.x, point.x, z_ * z_);
+    const auto height = [d2](float y) { return y / std::sqrt(std::fma(y, y, d2)); };
+    const float h0 = height(y0_), h1 = height(y1_), h = height(point.y);
+    return {std::clamp(before.solidAngle() / solidAngle_, 0.f, 1.f), std::clamp((h - h0) / (h1 - h0), 0.f, 1.f)};
+}
+
 } // namespace abbe

@@ -18,6 +18,8 @@ class SphericalRectangle {
     float solidAngle() const { return solidAngle_; }
     // (x, y) on the rectangle, uniform per solid angle. Requires solidAngle() > 0.
     Vec2 sample(Vec2 u) const;
+    // The u that samples a point of the rectangle, to about 1e-6 sr over the solid angle.
+    Vec2 inverse(Vec2 point) const;
 
   private:
     float x0_, y0_, x1_, y1_, z_;

@@ -45,8 +45,8 @@ std::vector<PixelBounds> makeTiles(PixelBounds b) {
     return tiles;
 }
 
-bool drawsChoices(const Scene& scene) {
-    return scene.lights.size() > 1 || scene.camera->usesLens() ||
+bool drawsChoices(const Scene& scene, const LightSampler& lights) {
+    return lights.needsChoice() || scene.camera->usesLens() ||
            std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
 }
 
@@ -56,8 +56,8 @@ class RenderJob {
     RenderJob(const Kernel& kernel, const Scene& scene, Film& film, const RenderSettings& settings,
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
-          lights_(scene.lights), context_{scene, lights_, settings, drawsChoices(scene)}, roulette_(film.bounds()),
-          tiles_(makeTiles(film.bounds())) {
+          lights_(scene.lights, settings.lightChoice), context_{scene, lights_, settings, drawsChoices(scene, lights_)},
+          roulette_(film.bounds()), tiles_(makeTiles(film.bounds())) {
         const auto replicates = static_cast<std::uint32_t>(film.replicates());
         perReplicate_ = std::max<std::uint32_t>(1, (settings.samples + replicates - 1) / replicates);
         statistics_.kernel = kernel.name;

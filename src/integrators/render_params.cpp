@@ -68,6 +68,12 @@ TypeInfo renderType() {
                     .byDefault("mis")
                     .doc("How light is found: by both techniques, or by one alone, for comparison.")
                     .example("strategy mis"),
+                field(FieldType::choice, "light-choice", &P::lightChoice)
+                    .choices({"tree", "power"})
+                    .byDefault("tree")
+                    .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
+                    .doc("Which light is asked: by what it may give to each place, or by its power, for comparison.")
+                    .example("light-choice tree"),
             }};
 }
 
@@ -83,6 +89,8 @@ RenderSettings renderSettings(const RenderParams& p) {
     s.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
                  : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
                                              : Strategy::mis;
+    s.lightChoice =
+        p.lightChoice.word == "power" ? RenderSettings::LightChoice::power : RenderSettings::LightChoice::tree;
     return s;
 }
 

@@ -17,6 +17,7 @@ struct RenderParams {
     double textureCache = 2048; // MiB
     schema::Choice sampler{"sobol", {}};
     schema::Choice strategy{"mis", {}};
+    schema::Choice lightChoice{"tree", {}};
 };
 
 schema::TypeInfo renderType();

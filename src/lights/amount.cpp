@@ -36,6 +36,8 @@ double radiantIntegral(const Curve& curve) {
 
 double luminousIntegral(const Curve& curve) { return kLuminousEfficacy * kYIntegral * integrate(curve).y; }
 
+double visibleIntegral(const Curve& curve) { return luminousIntegral(curve) / 683 + 0.05 * radiantIntegral(curve); }
+
 std::optional<double> scaleFor(const schema::Quantity& quantity, const Curve& shape, double factor) {
     const double integral = isLuminous(quantity.dimension) ? luminousIntegral(shape) : radiantIntegral(shape);
     // A spectrum that is almost all invisible could need a scale beyond float.

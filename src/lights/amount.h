@@ -45,6 +45,9 @@ double radiantIntegral(const Curve&);
 // 683 lm/W ∫ s(λ) ȳ(λ) dλ.
 double luminousIntegral(const Curve&);
 
+// What lights are chosen by (Light::visiblePower): ∫ s(λ) (ȳ(λ) + 1/20) dλ.
+double visibleIntegral(const Curve&);
+
 // The k for which `factor` times the integral of k s(λ) — radiant or luminous, as the quantity's dimension says — is
 // the quantity. Nothing if the spectrum has no such light.
 // Requires: factor > 0.

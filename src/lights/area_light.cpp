@@ -9,8 +9,20 @@ namespace abbe {
 AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
     : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), twoSided_(twoSided) {
     const double area = shape.area();
-    power_ =
-        std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiantIntegral(*radiance.curve) * radiance.scale : 0;
+    const double spread = std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiance.scale : 0;
+    power_ = spread * radiantIntegral(*radiance.curve);
+    visiblePower_ = spread * visibleIntegral(*radiance.curve);
+}
+
+std::optional<LightBounds> AreaLight::bounds(std::uint32_t part) const {
+    if (!(power_ > 0)) return std::nullopt;
+    const EmitterPart p = shape_.emitterPart(part);
+    return LightBounds{.box = p.box,
+                       .axis = p.axis,
+                       .cosNormals = p.cosNormals,
+                       .cosEmission = 0,
+                       .twoSided = twoSided_,
+                       .power = static_cast<float>(visiblePower_ * p.area / shape_.area())};
 }
 
 std::optional<LightSample> AreaLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,

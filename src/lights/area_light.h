@@ -16,6 +16,9 @@ class AreaLight : public Light {
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
+    double visiblePower() const override { return visiblePower_; }
+    std::uint32_t parts() const override { return shape_.emitterParts(); }
+    std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     // Nothing for shapes without an end.
@@ -36,7 +39,7 @@ class AreaLight : public Light {
     const Shape& shape_;
     Vec3 centre_;
     ScaledCurve radiance_;
-    double power_;
+    double power_, visiblePower_;
     bool twoSided_;
 };
 

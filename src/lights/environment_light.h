@@ -47,6 +47,8 @@ class EnvironmentLight final : public Light {
                      bool compensated);
 
     void commit(const Bounds3&) override;
+    // Between that of an even sky, a quarter, and that of a sun, all of it; daylight's share of visible light.
+    double irradiance() const override { return 0.4 * 0.5 * fluence_; }
     double power() const override { return power_; } // 0: all texels are black, and the light must be left out
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,

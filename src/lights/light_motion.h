@@ -3,6 +3,7 @@
 
 #include "math/interval.h"
 #include "math/keyed_transform.h"
+#include "render/light_bounds.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
 
@@ -29,6 +30,9 @@ class LightMotion {
     // Whether a light can follow this motion: it keeps its shape and does not turn inside out. Looked for at 65 times.
     static bool keepsShape(const Motion& fromRest, Interval shutter);
 
+    // What bounds a light at all times, from what bounds it at rest; nothing where that cannot be known. The power is
+    // that at rest.
+    std::optional<LightBounds> swept(const LightBounds& rest) const;
     // At a Ray::time; nothing where the scale comes so near to 0 that there is no way back.
     std::optional<LightPose> at(float time) const;
 

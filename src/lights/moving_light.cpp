@@ -28,6 +28,16 @@ ShapeSample toRender(const LightPose& pose, const ShapeSample& s) {
 
 } // namespace
 
+std::optional<LightBounds> MovingLight::bounds(std::uint32_t part) const {
+    const auto rest = atRest_->bounds(part);
+    return rest ? motion_.swept(*rest) : rest;
+}
+
+std::optional<LightBounds> MovingAreaLight::bounds(std::uint32_t part) const {
+    const auto rest = AreaLight::bounds(part);
+    return rest ? motion_.swept(*rest) : rest;
+}
+
 std::optional<LightSample> MovingLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
                                                const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);

@@ -14,6 +14,10 @@ class MovingLight final : public Light {
 
     void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
     double power() const override { return atRest_->power(); }
+    double visiblePower() const override { return atRest_->visiblePower(); }
+    double irradiance() const override { return atRest_->irradiance(); }
+    std::uint32_t parts() const override { return atRest_->parts(); }
+    std::optional<LightBounds> bounds(std::uint32_t part) const override;
     bool infinite() const override { return atRest_->infinite(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
@@ -38,6 +42,7 @@ class MovingAreaLight final : public AreaLight {
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float time) const noexcept override;
+    std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:

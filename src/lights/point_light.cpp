@@ -30,7 +30,8 @@ schema::TypeInfo pointLightType() {
 
 PointLight::PointLight(Vec3 position, ScaledCurve intensity)
     : position_(position), intensity_(intensity),
-      power_(4 * kPiD * radiantIntegral(*intensity.curve) * intensity.scale) {}
+      power_(4 * kPiD * radiantIntegral(*intensity.curve) * intensity.scale),
+      visiblePower_(4 * kPiD * visibleIntegral(*intensity.curve) * intensity.scale) {}
 
 std::optional<LightSample> PointLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
                                               float) const noexcept {

@@ -22,6 +22,10 @@ class PointLight final : public Light {
     PointLight(Vec3 position, ScaledCurve intensity);
 
     double power() const override { return power_; }
+    double visiblePower() const override { return visiblePower_; }
+    std::optional<LightBounds> bounds(std::uint32_t) const override {
+        return LightBounds{.box = {position_, position_}, .power = static_cast<float>(visiblePower_)};
+    }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
@@ -35,7 +39,7 @@ class PointLight final : public Light {
   private:
     Vec3 position_;
     ScaledCurve intensity_;
-    double power_;
+    double power_, visiblePower_;
 };
 
 // Null after an error.

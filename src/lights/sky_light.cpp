@@ -27,6 +27,7 @@ schema::TypeInfo skyLightType() {
 
 SkyLight::SkyLight(ScaledCurve radiance)
     : radiance_(radiance), radiant_(radiantIntegral(*radiance.curve) * radiance.scale), power_(0) {
+    irradiance_ = kPiD * visibleIntegral(*radiance.curve) * radiance.scale;
     commit(Bounds3{});
 }
 

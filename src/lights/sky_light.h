@@ -23,6 +23,7 @@ class SkyLight final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
+    double irradiance() const override { return irradiance_; }
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -33,7 +34,8 @@ class SkyLight final : public Light {
 
   private:
     ScaledCurve radiance_;
-    double radiant_; // W·m⁻²·sr⁻¹
+    double radiant_;    // W·m⁻²·sr⁻¹
+    double irradiance_; // as Light has it
     double power_;
 };
 

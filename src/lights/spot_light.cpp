@@ -70,7 +70,8 @@ schema::TypeInfo spotLightType() {
 SpotLight::SpotLight(Vec3 position, Vec3 axis, double innerHalfAngle, double outerHalfAngle, ScaledCurve intensity)
     : position_(position), axis_(axis), innerOneMinusCos_(static_cast<float>(oneMinusCosine(innerHalfAngle))),
       outerOneMinusCos_(static_cast<float>(oneMinusCosine(outerHalfAngle))), intensity_(intensity),
-      power_(solidAngle(innerHalfAngle, outerHalfAngle) * radiantIntegral(*intensity.curve) * intensity.scale) {}
+      power_(solidAngle(innerHalfAngle, outerHalfAngle) * radiantIntegral(*intensity.curve) * intensity.scale),
+      visiblePower_(solidAngle(innerHalfAngle, outerHalfAngle) * visibleIntegral(*intensity.curve) * intensity.scale) {}
 
 double SpotLight::solidAngle(double innerHalfAngle, double outerHalfAngle) {
     // The falloff is a cubic step in cos θ, whose mean is 1/2.

@@ -30,6 +30,14 @@ class SpotLight final : public Light {
     static double solidAngle(double innerHalfAngle, double outerHalfAngle);
 
     double power() const override { return power_; }
+    double visiblePower() const override { return visiblePower_; }
+    std::optional<LightBounds> bounds(std::uint32_t) const override {
+        return LightBounds{.box = {position_, position_},
+                           .axis = axis_,
+                           .cosNormals = 1,
+                           .cosEmission = 1 - outerOneMinusCos_,
+                           .power = static_cast<float>(visiblePower_)};
+    }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     // The part of the ray within the cone.
@@ -46,7 +54,7 @@ class SpotLight final : public Light {
     float innerOneMinusCos_;
     float outerOneMinusCos_;
     ScaledCurve intensity_;
-    double power_;
+    double power_, visiblePower_;
 };
 
 // Null after an error.

@@ -72,7 +72,8 @@ schema::TypeInfo sunLightType() {
 
 SunLight::SunLight(Vec3d direction, double halfAngle, ScaledCurve irradiance)
     : frame_(Frame::fromNormal(Vec3(normalize(direction)))), delta_(halfAngle < kSmallestHalfAngle),
-      irradiance_(radiantIntegral(*irradiance.curve) * irradiance.scale) {
+      irradiance_(radiantIntegral(*irradiance.curve) * irradiance.scale),
+      visibleIrradiance_(visibleIntegral(*irradiance.curve) * irradiance.scale) {
     // 1 - cos by the half-angle formula, in double: no cancellation for small disks.
     const double oneMinusCosine = 2 * square(std::sin(halfAngle / 2));
     oneMinusCos_ = delta_ ? 0 : static_cast<float>(oneMinusCosine);

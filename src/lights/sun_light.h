@@ -32,6 +32,7 @@ class SunLight final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
+    double irradiance() const override { return visibleIrradiance_; }
     bool infinite() const override { return !delta_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -49,6 +50,7 @@ class SunLight final : public Light {
     float pdf_;            // 1/sr
     ScaledCurve radiance_; // irradiance for a delta light
     double irradiance_;    // W/m²
+    double visibleIrradiance_;
     double power_;
 };
 

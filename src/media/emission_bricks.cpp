@@ -130,6 +130,15 @@ BrickSampler::BrickSampler(const BrickBounds& bricks) : bricks_(&bricks) {
     centre_ = weighted / total;
 }
 
+Bounds3d BrickSampler::bounds() const {
+    Bounds3d b;
+    for (const Cell& cell : cells_) {
+        b.add(Vec3d(cell.corner));
+        b.add(Vec3d(cell.corner + Vec3i(cell.size, cell.size, cell.size)));
+    }
+    return b;
+}
+
 Vec3d BrickSampler::sample(Vec2 u) const noexcept {
     // Three coordinates and a choice out of two numbers of 24 bits: what their digits do not give comes from a hash.
     const std::uint64_t bits =

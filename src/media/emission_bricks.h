@@ -1,6 +1,7 @@
 // Where a volume shines, and how brightly.
 #pragma once
 
+#include "math/bounds.h"
 #include "media/emission_fields.h"
 #include "volumes/brick_bounds.h"
 
@@ -26,6 +27,8 @@ class BrickSampler {
     double density(Vec3 p) const noexcept { return static_cast<double>(bricks_->at(p).mean) * perMean_; }
     // Mean of the points.
     Vec3d centre() const { return centre_; }
+    // Holds all points.
+    Bounds3d bounds() const;
 
   private:
     struct Cell {

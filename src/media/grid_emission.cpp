@@ -43,6 +43,16 @@ GridEmission::GridEmission(const EmissionFields& fields) : fields_(fields) {
     centre_ = Vec3(grid.toRender().point(sampler_->centre()));
 }
 
+Bounds3 GridEmission::bounds() const {
+    const Bounds3d b = sampler_->bounds();
+    Bounds3 result;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner(i & 1 ? b.upper.x : b.lower.x, i & 2 ? b.upper.y : b.lower.y, i & 4 ? b.upper.z : b.lower.z);
+        result.add(Vec3(fields_.amount.field->toRender().point(corner)));
+    }
+    return result;
+}
+
 EmissionWalk* GridEmission::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
     return space.make<GridEmissionWalk>(fields_, bricks_, ray, tMax);
 }

@@ -22,6 +22,8 @@ class GridEmission final : public MediumEmission {
     Spectrum emitted(Vec3 p, float time, const Wavelengths&) const noexcept; // W·m⁻³·sr⁻¹·nm⁻¹
     double power() const { return power_; } // W, of which it may absorb some itself; about right
     Vec3 centre() const { return centre_; }
+    // Of all points that it samples. Requires !dark().
+    Bounds3 bounds() const;
 
   private:
     double estimatePower(const GlowTable&) const;

@@ -12,6 +12,11 @@ class VolumeLight final : public Light {
     explicit VolumeLight(const GridEmission& emission) : emission_(emission) {}
 
     double power() const override { return emission_.power(); }
+    // A flame's: most of what it gives off is red.
+    double visiblePower() const override { return 0.15 * power(); }
+    std::optional<LightBounds> bounds(std::uint32_t) const override {
+        return LightBounds{.box = emission_.bounds(), .power = static_cast<float>(visiblePower())};
+    }
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{emission_.centre(), 0, tMax};
     }

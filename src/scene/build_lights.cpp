@@ -26,6 +26,7 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
 
 void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     if (!light) return;
+    if (!(light->power() > 0)) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
     lights_.push_back(std::move(light));
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }

@@ -8,6 +8,7 @@
 #include "lights/area_light.h"
 #include "spectrum/sampled_curve.h"
 #include "support/statistics.h"
+#include "support/whole_emitter.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -101,7 +102,8 @@ MeshData cube() {
 }
 
 TEST_CASE("irradiance of a mesh: a cube that shows two faces") {
-    const Mesh mesh(cube());
+    const Mesh cubeMesh(cube());
+    const test::WholeEmitter mesh(cubeMesh);
     const AreaLight light(mesh, {&kUnit, 1}, false);
     CHECK(light.power() == doctest::Approx(kPiD * 24 * 470).epsilon(1e-5));
     const Vec3d from{4, 3, 0}, n = normalize(Vec3d{-4, -3, 0});
@@ -163,7 +165,8 @@ TEST_CASE("samples are what rays meet") {
     const Quad quad({-1, 2, -1}, {2, 2, -1}, {2, 2, 1}, {-1, 2, 1});
     const Sphere sphere({0, 2, 0}, 0.5);
     const Disk disk({0, 2, 0}, {0.2, -1, 0.1}, 0.7);
-    const Mesh mesh(cube());
+    const Mesh cubeMesh(cube());
+    const test::WholeEmitter mesh(cubeMesh);
     const std::vector<Vec3> places = {{0, -3, 0},  {5, -2, 3},    {0.1f, -1.5f, 0.2f},
                                       {-3, 10, 1}, {100, 3, -80}, {3e4f, -6e4f, 2e4f}};
     for (const Shape* shape : {static_cast<const Shape*>(&quad), static_cast<const Shape*>(&sphere),
@@ -179,7 +182,8 @@ TEST_CASE("on, behind, inside and at the corners of a light everything is finite
     const Quad quad({-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1});
     const Sphere sphere({0, 0, 0}, 1);
     const Disk disk({0, 0, 0}, {0, -1, 0}, 1);
-    const Mesh mesh(cube());
+    const Mesh cubeMesh(cube());
+    const test::WholeEmitter mesh(cubeMesh);
     std::vector<Vec3> places = {{0, 1e-20f, 0},      {0, -1e-7f, 0},     {1, -1e-6f, 1},    {1e-30f, 1, 0},
                                 {0, 0.99999994f, 0}, {0, 1.0000001f, 0}, {1e15f, 1e15f, 0}, {2, 0, 0}};
     for (int x = -2; x <= 2; ++x)

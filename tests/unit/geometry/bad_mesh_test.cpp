@@ -69,7 +69,8 @@ int shootAt(const Mesh& mesh, Random& random) {
             CHECK(dot(hit.shading.z, hit.ng) >= 0);
         }
         scene->occluded({at - way * reach, way});
-        if (const auto s = mesh.sample(middle + way * reach, 0, {random.uniform(), random.uniform()}))
+        if (const auto s = mesh.sample(middle + way * reach, random.bits() % mesh.emitterParts(),
+                                       {random.uniform(), random.uniform()}))
             CHECK((isFinite(s->p) && s->pdfSolidAngle > 0));
     }
     return met;

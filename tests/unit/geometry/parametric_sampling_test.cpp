@@ -5,6 +5,7 @@
 #include "geometry/torus.h"
 #include "shape_test_support.h"
 #include "support/jacobian.h"
+#include "support/whole_emitter.h"
 
 #include <doctest/doctest.h>
 #include <string>
@@ -33,7 +34,8 @@ std::vector<Case> cases() {
     add("truncated cone", [](const Transform& t) { return std::make_unique<Frustum>(0.4, 1, 0.7, true, t); });
     add("torus", [](const Transform& t) { return std::make_unique<Torus>(1, 0.35, t); });
     add("horn torus", [](const Transform& t) { return std::make_unique<Torus>(0.7, 0.7, t); });
-    list.push_back({"box", std::make_unique<Mesh>(boxMesh({-1, -0.5, 0}, {1, 0.5, 0.3}))});
+    list.push_back(
+        {"box", std::make_unique<WholeEmitter>(std::make_unique<Mesh>(boxMesh({-1, -0.5, 0}, {1, 0.5, 0.3})))});
     return list;
 }
 

@@ -6,6 +6,7 @@
 #include "geometry/transformed.h"
 #include "shape_test_support.h"
 #include "support/jacobian.h"
+#include "support/whole_emitter.h"
 
 #include <doctest/doctest.h>
 
@@ -50,7 +51,8 @@ std::vector<Case> cases() {
         {{3, 1, 1}, {0.3f, 0.1f, 0.2f}, {-1, 4, 0}});
     add("ellipse", std::make_unique<Transformed>(std::make_unique<Disk>(Vec3d(0, 0, 0), Vec3d(0, 1, 1), 1.0), squash),
         {{1, 2, 1}, {-2, 0.5f, 1}});
-    add("mesh", std::make_unique<Mesh>(roof()), {{0.2f, 3, 0.5f}, {0.1f, 0.3f, 0.1f}, {4, 1, 2}});
+    add("mesh", std::make_unique<WholeEmitter>(std::make_unique<Mesh>(roof())),
+        {{0.2f, 3, 0.5f}, {0.1f, 0.3f, 0.1f}, {4, 1, 2}});
     MeshData lone;
     lone.positions = {{-1, 0, -2}, {1, 0, -2}, {1, 0, 2}, {-1, 0, 2}};
     lone.quads = {{0, 1, 2, 3}};

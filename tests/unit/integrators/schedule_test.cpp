@@ -1,6 +1,5 @@
-// Passes, Russian roulette's reference, and the choice of a light.
+// Passes, and Russian roulette's reference.
 #include "film/pixel_film.h"
-#include "integrators/light_sampler.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/roulette.h"
 #include "support/chi_square.h"
@@ -15,31 +14,6 @@ PixelFilm filmOf(int width, int height, const std::function<double(int, int)>& l
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) film.add(x, y, 0, Xyz{0, 4 * luminance(x, y), 0}, 4);
     return film;
-}
-
-class TestLight final : public Light {
-  public:
-    explicit TestLight(double power, bool infinite = false) : power_(power), infinite_(infinite) {}
-    double power() const override { return power_; }
-    bool infinite() const override { return infinite_; }
-    std::optional<LightSample> sample(const Receiver&, std::uint32_t, Vec2, const Wavelengths&,
-                                      float) const noexcept override {
-        return std::nullopt;
-    }
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return {}; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return {}; }
-    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
-
-  private:
-    double power_;
-    bool infinite_;
-};
-
-std::vector<std::unique_ptr<const Light>> lightsOf(std::initializer_list<double> powers) {
-    std::vector<std::unique_ptr<const Light>> lights;
-    for (const double p : powers) lights.push_back(std::make_unique<TestLight>(p, lights.size() == 1));
-    return lights;
 }
 
 } // namespace
@@ -119,46 +93,6 @@ TEST_CASE("roulette: a crop is indexed from its own corner") {
     CHECK(reference.scale(100, 50) ==
           doctest::Approx(2 / (RouletteReference::kThreshold * 2.2))); // the median, at the edge
     CHECK(reference.scale(109, 59) == doctest::Approx(2 / (RouletteReference::kThreshold * 3)));
-}
-
-TEST_CASE("light choice: probabilities sum to one, and are those of the picks") {
-    for (const auto& powers :
-         {std::initializer_list<double>{1}, {3, 1}, {0, 0, 0}, {1000, 1, 0, 20, 5, 5, 1e-9, 300}}) {
-        const auto lights = lightsOf(powers);
-        const LightSampler sampler(lights);
-        double sum = 0, total = 0;
-        for (const double p : powers) total += p;
-        for (const auto& light : lights) {
-            const double p = sampler.probability(light.get(), 0, Vec3());
-            const double n = static_cast<double>(lights.size());
-            CHECK(p == doctest::Approx(0.5 / n + 0.5 * (total > 0 ? light->power() / total : 1 / n)));
-            CHECK(p > 0); // a light without power by the books may still shine
-            sum += p;
-        }
-        CHECK(sum == doctest::Approx(1).epsilon(1e-6));
-        CHECK(sampler.needsChoice() == (lights.size() > 1));
-        CHECK(sampler.infinite().size() == (lights.size() > 1 ? 1 : 0));
-
-        constexpr int picks = 200000;
-        std::vector<double> observed(lights.size(), 0), expected;
-        Random random(7);
-        for (int i = 0; i < picks; ++i) {
-            const PickedLight picked = sampler.pick(random.uniform(), Vec3());
-            CHECK_UNARY(picked.probability == sampler.probability(picked.light, picked.part, Vec3()));
-            for (std::size_t k = 0; k < lights.size(); ++k) observed[k] += lights[k].get() == picked.light;
-        }
-        for (const auto& light : lights)
-            expected.push_back(picks * static_cast<double>(sampler.probability(light.get(), 0, Vec3())));
-        if (lights.size() > 1) CHECK(chiSquareTest(observed, expected).pValue > 1e-4);
-        CHECK(sampler.pick(0, Vec3()).light == lights.front().get());
-        CHECK(sampler.pick(kOneMinusEpsilon, Vec3()).light == lights.back().get());
-    }
-}
-
-TEST_CASE("light choice: lights of other scenes, and no lights at all") {
-    const auto lights = lightsOf({1, 2}), others = lightsOf({1});
-    CHECK(LightSampler(lights).probability(others.front().get(), 0, Vec3()) == 0);
-    CHECK(LightSampler({}).empty());
 }
 
 } // namespace abbe::test

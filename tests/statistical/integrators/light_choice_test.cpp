@@ -1,0 +1,141 @@
+// Many lights: the choice by the tree against the choice by power, and against scattering alone (T3.1).
+#include "support/scene_test.h"
+#include "support/scene_test_compare.h"
+#include "support/statistics.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+constexpr const char* kRoom = R"(scene 1
+film { size 24 24; filter box 0.5 }
+camera { from 0 2 9; look-at 0 1 0; fov 40 deg }
+shape floor quad { points -5 0 5  5 0 5  5 0 -5  -5 0 -5; material diffuse { reflectance 0.6 } }
+shape back quad { points -5 0 -5  5 0 -5  5 4 -5  -5 4 -5; material conductor { index metal Al; roughness 0.4 } }
+shape ball sphere { center -1.5 0.9 0; radius 0.9; material dielectric { ior 1.5; roughness 0.3 } }
+shape block sphere { center 1.5 0.9 0; radius 0.9; material diffuse { reflectance 0.8 } }
+)";
+
+// Of all kinds and sizes, in no order. `bare`: also those that nothing but choosing them finds.
+std::string randomLights(int count, bool bare, std::uint64_t seed) {
+    Random random(seed);
+    const auto u = [&random](double a, double b) { return a + (b - a) * static_cast<double>(random.uniform()); };
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+        const double x = u(-4.5, 4.5), y = u(0.3, 4), z = u(-4.5, 3), w = std::pow(10, u(-1.5, 0.5));
+        const double s = u(0.02, 0.2), t = u(0.02, 0.2);
+        switch ((bare ? 0 : 2) + static_cast<int>(random.bits() % (bare ? 4 : 2))) {
+        case 0:
+            text += fmt::format("light point {{ position {} {} {}; power {} W }}\n", x, y, z, w);
+            break;
+        case 1:
+            text += fmt::format("light spot {{ position {} {} {}; toward {} {} {}; angle {} deg; power {} W }}\n", x, y,
+                                z, u(-1, 1), u(-1, 1), u(-1, 1), u(20, 200), w);
+            break;
+        case 2:
+            text += fmt::format("light sphere {{ center {} {} {}; radius {}; power {} W }}\n", x, y, z, s, w);
+            break;
+        default:
+            text += fmt::format("light quad {{ points {} {} {}  {} {} {}  {} {} {}  {} {} {}; power {} W; {} }}\n", x,
+                                y, z, x + s, y, z, x + s, y + t, z + s, x, y + t, z + s, w,
+                                random.bits() % 2 ? "two-sided #true" : "");
+        }
+    }
+    // A bent strip of triangles and quads under the ceiling.
+    text += "light mesh { points { ";
+    for (int i = 0; i <= 20; ++i)
+        text += fmt::format("- {} {} -2; - {} {} -1.6; ", 0.3 * i - 3, 3.4 + 0.3 * (i % 3), 0.3 * i - 3,
+                            3.3 + 0.3 * (i % 2));
+    text += "}; faces { ";
+    for (int i = 0; i < 20; ++i) {
+        const int a = 2 * i;
+        text += i % 2 ? fmt::format("- {} {} {} {}; ", a, a + 2, a + 3, a + 1)
+                      : fmt::format("- {} {} {}; - {} {} {}; ", a, a + 2, a + 1, a + 1, a + 2, a + 3);
+    }
+    return text + "}; power 5 W }\n";
+}
+
+TestImage renderBy(const TestScene& scene, RenderSettings::LightChoice choice, std::uint32_t samples,
+                   std::uint64_t seed, RenderSettings::Strategy strategy = RenderSettings::Strategy::mis) {
+    RenderSettings settings = scene.settings();
+    settings.lightChoice = choice;
+    settings.samples = nightly() ? 8 * samples : samples;
+    settings.maxDepth = 2;
+    settings.seed = seed;
+    settings.strategy = strategy;
+    return render(scene, settings);
+}
+
+// Mean square relative error of the pixels' means, by the replicates.
+double spread(const TestImage& image) {
+    double sum = 0, mean = 0;
+    const PixelBounds b = image.film.bounds();
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x) {
+            const Estimate e = image.film.tile({x, y, x + 1, y + 1}, Channel::y);
+            sum += e.variance;
+            mean += e.mean;
+        }
+    return sum / square(mean);
+}
+
+using enum RenderSettings::LightChoice;
+
+} // namespace
+
+TEST_CASE("a thousand lights of all kinds: by the tree as by power, with less noise (T3.1)") {
+    const auto scene = TestScene::parse(kRoom + randomLights(1000, true, 4));
+    const TestImage byTree = renderBy(scene, tree, 128, 1), byPower = renderBy(scene, power, 512, 2);
+    checkSame(compareImages(byTree.film, byPower.film), 0.02);
+    const double gain = 4 * spread(byPower) / spread(byTree);
+    MESSAGE("variance per sample: ", gain, " times that of the tree");
+    CHECK(gain > 3);
+}
+
+TEST_CASE("emitters, a sun and a sky: the tree's choice against scattering alone") {
+    const auto scene =
+        TestScene::parse(kRoom + randomLights(40, false, 5) +
+                         "light sun { elevation 40 deg; angular-diameter 20 deg; irradiance 0.2 W-per-m2 "
+                         "}\nlight sky { luminance 3 nits }\n");
+    using enum RenderSettings::Strategy;
+    const TestImage both = renderBy(scene, tree, 256, 1), lights = renderBy(scene, tree, 256, 2, lightsOnly);
+    const TestImage bsdf = renderBy(scene, tree, 1024, 3, bsdfOnly);
+    checkSame(compareImages(both.film, lights.film), 0.02);
+    checkSame(compareImages(both.film, bsdf.film), 0.03);
+}
+
+TEST_CASE("lights in fog: the choice along the ray and the choice where it scatters make one picture") {
+    const auto scene = TestScene::parse(kRoom + randomLights(12, true, 6) +
+                                        "volume air atmosphere { extinction 0.05 per-m; albedo 1 }\n");
+    const TestImage byTree = renderBy(scene, tree, 256, 1), byPower = renderBy(scene, power, 512, 2);
+    checkSame(compareImages(byTree.film, byPower.film), 0.03);
+}
+
+TEST_CASE("moving lamps are chosen wherever they are") {
+    const auto scene = TestScene::parse(
+        std::string(kRoom).replace(std::string(kRoom).find("from 0 2 9"), 0, "shutter 1 s; ") +
+        "light quad { points -0.3 0 0.3  -0.3 0 -0.3  0.3 0 -0.3  0.3 0 0.3; power 10 W\n"
+        "  transform { at 0 s { translate -3 1.5 1 }; at 1 s { rotate z 100 deg; translate 3 3 -2 } } }\n"
+        "light sphere { center 0 3 0; radius 0.1; power 3 W }\nlight spot { position 0 3 2; toward 0 -1 0; power 3 W\n"
+        "  transform { at 0 s { translate -2 0 0 }; at 1 s { translate 2 0 0 } } }\n");
+    const TestImage byTree = renderBy(scene, tree, 1024, 1), byPower = renderBy(scene, power, 1024, 2);
+    checkSame(compareImages(byTree.film, byPower.film), 0.02);
+}
+
+// docs/hard_cases.md, case 35.
+TEST_CASE("dark lights are told of, left out, and do no harm") {
+    const auto scene =
+        TestScene::parse(std::string(kRoom) + "light point { position 0 3 0; power 0 W }\n"
+                                              "light sphere { center 0 3 0; radius 0.2; luminance 0 nits }\n"
+                                              "light point { position 0 3 2; power 3 W }\n");
+    CHECK(scene.report().find("W0740") != std::string::npos);
+    const auto alone = TestScene::parse(
+        std::string(kRoom) + "shape sphere { center 0 3 0; radius 0.2; material diffuse { reflectance 0 } }\n"
+                             "light point { position 0 3 2; power 3 W }\n");
+    const TestImage a = renderBy(scene, tree, 64, 1), b = renderBy(alone, tree, 64, 1);
+    checkSame(compareImages(a.film, b.film), 0.02);
+}
+
+} // namespace abbe::test

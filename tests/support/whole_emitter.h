@@ -1,0 +1,52 @@
+// A shape that is sampled part by part, as one that is sampled as a whole.
+#pragma once
+
+#include "math/distribution_1d.h"
+#include "render/shape.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace abbe::test {
+
+// Parts are chosen by area.
+class WholeEmitter final : public Shape {
+  public:
+    explicit WholeEmitter(std::unique_ptr<const Shape> shape)
+        : owned_(std::move(shape)), shape_(*owned_), byArea_(areas(shape_)) {}
+    // Refers to the shape.
+    explicit WholeEmitter(const Shape& shape) : shape_(shape), byArea_(areas(shape_)) {}
+
+    Bounds3 bounds() const override { return shape_.bounds(); }
+    void commit(GeometrySink& sink) const override { shape_.commit(sink); }
+    std::optional<RawHit> intersect(const Ray& ray) const override { return shape_.intersect(ray); }
+    void surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const override { shape_.surface(raw, ray, hit); }
+    double area() const override { return shape_.area(); }
+    std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t, Vec2 u) const override {
+        const BinSample bin = byArea_.sample(u.x);
+        auto s = shape_.sample(from, static_cast<std::uint32_t>(bin.index), {bin.offset, u.y});
+        if (s) s->pdfSolidAngle *= static_cast<float>(share(bin.index));
+        return s;
+    }
+    float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const override {
+        return shape_.pdfSolidAngle(from, hit) *
+               static_cast<float>(share(shape_.emitterParts() > 1 ? hit.primitive : 0));
+    }
+
+  private:
+    static std::vector<double> areas(const Shape& shape) {
+        std::vector<double> result;
+        for (std::uint32_t i = 0; i < shape.emitterParts(); ++i) result.push_back(shape.emitterPart(i).area);
+        return result;
+    }
+    double share(std::size_t part) const {
+        return shape_.emitterPart(static_cast<std::uint32_t>(part)).area / shape_.area();
+    }
+
+    std::unique_ptr<const Shape> owned_;
+    const Shape& shape_;
+    Distribution1D byArea_;
+};
+
+} // namespace abbe::test
