@@ -94,6 +94,8 @@ template <EffectBits E> class TileKernel {
         const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
         const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
+        const Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
+        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
         radiance_ = Spectrum(0.f);
         maySubtract_ = false;
         if (!(camera.weight > 0)) return {};

@@ -18,6 +18,7 @@ class AreaLight : public Light {
     double power() const override { return power_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
+    const Curve* powerShape() const override { return radiance_.curve; }
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;

@@ -83,7 +83,12 @@ EnvironmentLight::EnvironmentLight(EnvironmentImage image, std::unique_ptr<const
                                    const Transform& toRender, bool compensated)
     : image_(std::move(image)), upsampling_(std::move(upsampling)), scale_(static_cast<float>(scale)),
       axes_(imageAxes(toRender)), rowCosine_(rowCosines(image_.height)), distribution_(density(compensated)),
-      fluence_(integratedRadiance() * scale), power_(0) {
+      fluence_(0), power_(0) {
+    const Vec3d total = integratedRadiance();
+    if (const double most = maxComponent(total); most > 0) {
+        powerShape_ = std::make_unique<SampledCurve>(emittedCurve(*upsampling_, Vec3(total / most)));
+        fluence_ = most * radiantIntegral(*powerShape_) * scale;
+    }
     commit(Bounds3{});
 }
 
@@ -144,16 +149,14 @@ Distribution2D EnvironmentLight::density(bool compensated) const {
     return {weights(0), static_cast<std::size_t>(image_.width)};
 }
 
-double EnvironmentLight::integratedRadiance() const {
+Vec3d EnvironmentLight::integratedRadiance() const {
     Vec3d total;
     for (int row = 0; row < image_.height; ++row) {
         Vec3d rowSum;
         for (int column = 0; column < image_.width; ++column) rowSum += cellMean(column, row);
         total += rowSum * cellSolidAngle(row);
     }
-    const double most = maxComponent(total);
-    if (!(most > 0)) return 0;
-    return most * radiantIntegral(emittedCurve(*upsampling_, Vec3(total / most)));
+    return total;
 }
 
 Vec2 EnvironmentLight::imagePoint(Vec3 local) const noexcept {

@@ -48,6 +48,7 @@ class EnvironmentLight final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; } // 0: all texels are black, and the light must be left out
+    const Curve* powerShape() const override { return powerShape_.get(); }
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -63,7 +64,7 @@ class EnvironmentLight final : public Light {
     Distribution2D density(bool compensated) const;
     double cellSolidAngle(int row) const noexcept;
     Vec3d cellMean(int column, int row) const noexcept;
-    double integratedRadiance() const; // ∫∫ L dω dλ for a scale of 1, W/m²
+    Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
 
     EnvironmentImage image_;
     std::unique_ptr<const RgbRadiance> upsampling_;
@@ -71,7 +72,8 @@ class EnvironmentLight final : public Light {
     Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
     std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
     Distribution2D distribution_;
-    double fluence_; // ∫∫ L dω dλ, W/m²
+    std::unique_ptr<const Curve> powerShape_; // null where all is black
+    double fluence_;                          // ∫∫ L dω dλ, W/m²
     double power_;
 };
 

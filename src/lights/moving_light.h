@@ -14,6 +14,7 @@ class MovingLight final : public Light {
 
     void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
     double power() const override { return atRest_->power(); }
+    const Curve* powerShape() const override { return atRest_->powerShape(); }
     bool infinite() const override { return atRest_->infinite(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;

@@ -24,6 +24,7 @@ class PointLight final : public Light {
     double power() const override { return power_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
+    const Curve* powerShape() const override { return intensity_.curve; }
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }

@@ -23,6 +23,7 @@ class SkyLight final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
+    const Curve* powerShape() const override { return radiance_.curve; }
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;

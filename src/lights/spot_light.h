@@ -32,6 +32,7 @@ class SpotLight final : public Light {
     double power() const override { return power_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
+    const Curve* powerShape() const override { return intensity_.curve; }
     // The part of the ray within the cone.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }

@@ -32,6 +32,7 @@ class SunLight final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
+    const Curve* powerShape() const override { return radiance_.curve; }
     bool infinite() const override { return !delta_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
