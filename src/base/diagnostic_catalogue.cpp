@@ -175,6 +175,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0734", "a missing attribute", "A texture `attribute` is in the material of a shape that has no values of that name at its vertices. Meshes from PLY files have those of their vertex properties; `red`, `green` and `blue` are `color` together. Subdivision surfaces and shapes that deform keep none."},
     {"E0735", "stops out of order", "The stops of a ramp are written in the order of their positions. Two at the same position make a step."},
     {"E0736", "a texture that cannot be heights", "A displacement needs a texture whose slope follows from the place alone: `noise`, `image`, `ramp`. `triplanar` follows the normal, and an `attribute` has values at vertices only."},
+    {"E0750", "the sun is not above the horizon", "`light daylight` is a model of the day: it has no twilight and no night. Give the sun an `elevation` above 0 deg, or a `toward` that points down."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},

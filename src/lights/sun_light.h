@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "lights/sun_direction.h"
 #include "math/frame.h"
 #include "render/light.h"
 
@@ -10,11 +11,7 @@
 
 namespace abbe {
 
-// Without `toward`, `elevation` and `azimuth`: 45° high in the south-east.
-struct SunLightParams : AmountParams {
-    std::optional<Vec3d> toward;                // direction in which the light travels
-    std::optional<double> elevation;            // rad above the horizon
-    std::optional<double> azimuth;              // rad clockwise from north, seen from above
+struct SunLightParams : AmountParams, SunPlace {
     double angularDiameter = 0.53 * kPiD / 180; // rad
     KeyedTransform transform;                   // light to parent; only its rotation matters
 };

@@ -1,6 +1,7 @@
 #include "io/image.h"
 #include "io/io_error.h"
 #include "lights/area_light.h"
+#include "lights/daylight_light.h"
 #include "lights/environment_light.h"
 #include "lights/moving_light.h"
 #include "lights/point_light.h"
@@ -53,6 +54,16 @@ void SceneBuilder::placeBareLight(const Definition& d, const Place& place, Make 
     addLight(inMotion(make(*params, context, diagnostics_), context), d);
 }
 
+void SceneBuilder::placeDaylight(const Definition& d, const Place& place) {
+    const auto params = bound<DaylightParams>(d);
+    if (!params) return;
+    LightContext context = lightContext(d, place.motion);
+    std::optional<LightMotion> motion;
+    if (!lightMotion(within(place.motion, params->transform), d.span, motion)) return;
+    if (motion) context.motion = &*motion;
+    for (auto& light : makeDaylight(*params, context, diagnostics_)) addLight(inMotion(std::move(light), context), d);
+}
+
 void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     if (place.object) {
         place.object->unshared.push_back(&d);
@@ -69,6 +80,8 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     } else if (type == "sky") {
         if (const auto p = bound<SkyLightParams>(d))
             addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d);
+    } else if (type == "daylight") {
+        placeDaylight(d, place);
     } else if (type == "environment") {
         placeBareLight<EnvironmentLightParams>(d, place,
                                                [this](const EnvironmentLightParams& p, const LightContext& context,

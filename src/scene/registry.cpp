@@ -8,6 +8,7 @@
 #include "film/film_params.h"
 #include "integrators/render_params.h"
 #include "lights/area_light_types.h"
+#include "lights/daylight_light.h"
 #include "lights/environment_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
@@ -162,7 +163,7 @@ constexpr CameraEntry kCameras[] = {
 constexpr schema::TypeInfo (*kOthers[])() = {
     quadType,      sphereType,           diskType,      planeType,      meshType,      lightQuadType,
     lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType, sunLightType,
-    skyLightType,  environmentLightType, instancesType, filmType,       renderType,
+    skyLightType,  environmentLightType, instancesType, filmType,       renderType,    daylightType,
 };
 
 } // namespace

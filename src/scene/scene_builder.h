@@ -246,6 +246,7 @@ class SceneBuilder final : public schema::Resolver {
 
     // build_lights.cpp
     void placeLight(const Definition&, const Place&);
+    void placeDaylight(const Definition&, const Place&);
     void placeAreaLight(const Definition&, const Place&);
     template <typename P, typename Make> void placeBareLight(const Definition&, const Place&, Make);
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
