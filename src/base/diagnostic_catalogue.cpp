@@ -176,6 +176,8 @@ constexpr CodeInfo kCodes[] = {
     {"E0735", "stops out of order", "The stops of a ramp are written in the order of their positions. Two at the same position make a step."},
     {"E0736", "a texture that cannot be heights", "A displacement needs a texture whose slope follows from the place alone: `noise`, `image`, `ramp`. `triplanar` follows the normal, and an `attribute` has values at vertices only."},
     {"E0750", "the sun is not above the horizon", "`light daylight` is a model of the day: it has no twilight and no night. Give the sun an `elevation` above 0 deg, or a `toward` that points down."},
+    {"E0751", "a dark lamp with a power", "The photometric file says that the lamp sends no light in any direction; nothing scales that to a power."},
+    {"E0752", "the photometric file cannot be used", "An IES file (LM-63) of photometric type C is needed: `TILT=NONE` or `INCLUDE`, then its numbers. The message names the line of the file."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
@@ -197,7 +199,9 @@ constexpr CodeInfo kCodes[] = {
     // E07: materials and the library
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
+    {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some liquids and stones are both: `material preset milk; interior preset milk` are the surface and what is below it."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
+    {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
 };
 // clang-format on
 

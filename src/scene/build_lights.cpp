@@ -1,8 +1,10 @@
+#include "io/ies.h"
 #include "io/image.h"
 #include "io/io_error.h"
 #include "lights/area_light.h"
 #include "lights/daylight_light.h"
 #include "lights/environment_light.h"
+#include "lights/ies_light.h"
 #include "lights/moving_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
@@ -80,6 +82,10 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     } else if (type == "sky") {
         if (const auto p = bound<SkyLightParams>(d))
             addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d);
+    } else if (type == "ies") {
+        placeBareLight<IesLightParams>(
+            d, place,
+            [this](const IesLightParams& p, const LightContext& context, Diagnostics&) { return makeIes(p, context); });
     } else if (type == "daylight") {
         placeDaylight(d, place);
     } else if (type == "environment") {
@@ -88,6 +94,17 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
                                                       Diagnostics&) { return makeEnvironment(p, context); });
     } else {
         placeAreaLight(d, place);
+    }
+}
+
+std::unique_ptr<Light> SceneBuilder::makeIes(const IesLightParams& params, const LightContext& context) {
+    try {
+        auto light = makeIesLight(params, readIes(params.file.value), context, diagnostics_);
+        built_->facts.files.push_back(params.file.value);
+        return light;
+    } catch (const IoError& e) {
+        diagnostics_.error("E0752", params.file.span, e.what(), "cannot be read");
+        return nullptr;
     }
 }
 

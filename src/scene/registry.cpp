@@ -10,6 +10,7 @@
 #include "lights/area_light_types.h"
 #include "lights/daylight_light.h"
 #include "lights/environment_light.h"
+#include "lights/ies_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
@@ -161,9 +162,9 @@ constexpr CameraEntry kCameras[] = {
 };
 
 constexpr schema::TypeInfo (*kOthers[])() = {
-    quadType,      sphereType,           diskType,      planeType,      meshType,      lightQuadType,
-    lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType, sunLightType,
-    skyLightType,  environmentLightType, instancesType, filmType,       renderType,    daylightType,
+    quadType,        sphereType,    diskType,       planeType,     meshType,     lightQuadType, lightDiskType,
+    lightSphereType, lightMeshType, pointLightType, spotLightType, sunLightType, skyLightType,  environmentLightType,
+    instancesType,   filmType,      renderType,     daylightType,  iesLightType,
 };
 
 } // namespace

@@ -27,6 +27,7 @@
 namespace abbe {
 
 struct CurvesParams;
+struct IesLightParams;
 struct GridExtras;
 struct LoadedCage;
 struct BumpMap;
@@ -246,6 +247,7 @@ class SceneBuilder final : public schema::Resolver {
 
     // build_lights.cpp
     void placeLight(const Definition&, const Place&);
+    std::unique_ptr<Light> makeIes(const IesLightParams&, const LightContext&);
     void placeDaylight(const Definition&, const Place&);
     void placeAreaLight(const Definition&, const Place&);
     template <typename P, typename Make> void placeBareLight(const Definition&, const Place&, Make);
