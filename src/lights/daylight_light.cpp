@@ -136,7 +136,8 @@ Distribution2D DaylightSky::density() const {
     return {weights, kColumns};
 }
 
-std::optional<LightSample> DaylightSky::sample(Vec3, Vec2 u, const Wavelengths& lambda, float) const noexcept {
+std::optional<LightSample> DaylightSky::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+                                               float) const noexcept {
     const CellSample cell = distribution_.sample(u);
     const Vec3 local = direction(static_cast<double>(cell.column) + static_cast<double>(cell.offset.x),
                                  static_cast<double>(cell.row) + static_cast<double>(cell.offset.y));

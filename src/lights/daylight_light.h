@@ -59,9 +59,10 @@ class DaylightSky final : public Light {
     double power() const override { return power_; }
     const Curve* powerShape() const override { return totals_.fluence.get(); }
     bool infinite() const override { return true; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(Vec3 w, float) const noexcept override;
 

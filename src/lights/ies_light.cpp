@@ -139,8 +139,9 @@ IesLight::IesLight(Vec3 position, const Frame& axes, IesProfile profile, ScaledC
     : position_(position), axes_(axes), profile_(std::move(profile)), perCandela_(perCandela),
       power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale) {}
 
-std::optional<LightSample> IesLight::sample(Vec3 from, Vec2, const Wavelengths& lambda, float) const noexcept {
-    const Vec3 offset = position_ - from;
+std::optional<LightSample> IesLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
+                                            float) const noexcept {
+    const Vec3 offset = position_ - from.p;
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
     const float distance = std::sqrt(d2);

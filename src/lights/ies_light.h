@@ -48,12 +48,13 @@ class IesLight final : public Light {
 
     double power() const override { return power_; }
     const Curve* powerShape() const override { return perCandela_.curve; }
-    std::optional<LightSample> sample(Vec3 from, Vec2 u, const Wavelengths&, float) const noexcept override;
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(Vec3, const SurfaceHit&, float) const noexcept override { return 0; }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
     float pdfEscaped(Vec3, float) const noexcept override { return 0; }
 

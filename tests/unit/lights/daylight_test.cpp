@@ -128,8 +128,8 @@ TEST_CASE("every direction of every sky is finite and not negative; the horizon 
             CHECK(std::isfinite(sky.power()));
             test::Random random(3);
             for (int i = 0; i < 500; ++i) {
-                const auto s =
-                    sky.sample({}, {random.uniform(), random.uniform()}, Wavelengths::sample(random.uniform()), 0);
+                const auto s = sky.sample(Vec3{}, 0, {random.uniform(), random.uniform()},
+                                          Wavelengths::sample(random.uniform()), 0);
                 REQUIRE(s);
                 CHECK(allFinite(s->radiance));
                 for (int lane = 0; lane < kLanes; ++lane) CHECK(s->radiance[lane] >= 0);
@@ -160,7 +160,7 @@ TEST_CASE("directions of the sky follow their density, and the density its lumin
     test::Random random(5);
     test::Moments weight;
     for (int i = 0; i < samples; ++i) {
-        const auto s = sky.sample({}, {random.uniform(), random.uniform()}, Wavelengths::single(555), 0);
+        const auto s = sky.sample(Vec3{}, 0, {random.uniform(), random.uniform()}, Wavelengths::single(555), 0);
         const Vec3 local = axes.toLocal(s->wi);
         double turn = std::atan2(local.y, local.x) / (2 * kPiD);
         turn = turn < 0 ? turn + 1 : turn;

@@ -80,20 +80,21 @@ TEST_CASE("a lamp that points down, seen from above, counts its planes counter-c
         REQUIRE(light);
         CHECK(light->power() == doctest::Approx(470));
         const Wavelengths at = Wavelengths::single(550);
-        const auto radiance = [&](Vec3 from) { return light->sample(from, {}, at, 0)->radiance[0]; };
+        const auto radiance = [&](Vec3 from) { return light->sample(from, 0, {}, at, 0)->radiance[0]; };
         // The plane of 90° is a quarter turn counter-clockwise from +x.
         const Vec3 ninety = zUp ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
         CHECK(radiance(ninety) > 5 * radiance(-ninety));
         CHECK(radiance(ninety) > 5 * radiance({1, 0, 0}));
         params.turn = kPiD / 2;
         const auto turned = makeIesLight(params, table(360, PlaneSymmetry::none, bright), context, diagnostics);
-        CHECK(turned->sample({-1, 0, 0}, {}, at, 0)->radiance[0] == doctest::Approx(radiance(ninety)).epsilon(1e-5));
+        CHECK(turned->sample(Vec3{-1, 0, 0}, 0, {}, at, 0)->radiance[0] ==
+              doctest::Approx(radiance(ninety)).epsilon(1e-5));
         params.turn = 0;
         params.toward = Vec3d{0.3, -0.5, 0.2};
         const auto tilted = makeIesLight(params, table(0, PlaneSymmetry::axial, cosineLamp), context, diagnostics);
         const Vec3 axis = normalize(Vec3{0.3f, -0.5f, 0.2f});
-        CHECK(tilted->sample(axis, {}, at, 0)->radiance[0] == doctest::Approx(1 / kPiD).epsilon(1e-3));
-        CHECK_FALSE(tilted->sample(-axis, {}, at, 0));
+        CHECK(tilted->sample(axis, 0, {}, at, 0)->radiance[0] == doctest::Approx(1 / kPiD).epsilon(1e-3));
+        CHECK_FALSE(tilted->sample(-axis, 0, {}, at, 0));
     }
 }
 
