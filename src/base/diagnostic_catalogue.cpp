@@ -178,6 +178,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0750", "the sun is not above the horizon", "`light daylight` is a model of the day: it has no twilight and no night. Give the sun an `elevation` above 0 deg, or a `toward` that points down."},
     {"E0751", "a dark lamp with a power", "The photometric file says that the lamp sends no light in any direction; nothing scales that to a power."},
     {"E0752", "the photometric file cannot be used", "An IES file (LM-63) of photometric type C is needed: `TILT=NONE` or `INCLUDE`, then its numbers. The message names the line of the file."},
+    {"E0753", "a portal is no rectangle", "`portals` of an environment lists the four corners of each window in order around it, counter-clockwise seen from inside the room; a window is a flat rectangle."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does. Heights and directions are numbers, and the stored values are used as they are. `space=data` behind the name says that this is meant."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero, so it lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
@@ -202,6 +203,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some liquids and stones are both: `material preset milk; interior preset milk` are the surface and what is below it."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
     {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
+    {"W0751", "a dark light", "The amount of the light is 0, so it lights nothing. Remove it, or state how much it emits."},
 };
 // clang-format on
 

@@ -24,7 +24,7 @@ class AreaLight : public Light {
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   protected:
     const Shape& shape() const { return shape_; }

@@ -151,7 +151,7 @@ Spectrum DaylightSky::escaped(Vec3 w, const Wavelengths& lambda, float) const no
     return local.z > 0 ? model_.radiance(local, lambda) : totals_.ground->at(lambda);
 }
 
-float DaylightSky::pdfEscaped(Vec3 w, float) const noexcept {
+float DaylightSky::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept {
     const Vec3 local = axes_.toLocal(w);
     const float turn = std::atan2(local.y, local.x) * (0.5f * kInvPi);
     const int column = static_cast<int>((turn < 0 ? turn + 1 : turn) * kColumns);

@@ -64,7 +64,7 @@ class DaylightSky final : public Light {
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
-    float pdfEscaped(Vec3 w, float) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
 
   private:
     struct Totals {

@@ -21,7 +21,7 @@ class MovingLight final : public Light {
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
-    float pdfEscaped(Vec3 w, float time) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:

@@ -30,7 +30,7 @@ class SkyLight final : public Light {
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths& lambda, float) const noexcept override { return radiance_.at(lambda); }
-    float pdfEscaped(Vec3, float) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override;
 
   private:
     ScaledCurve radiance_;

@@ -76,7 +76,7 @@ Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexc
     return !delta_ && inside(w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-float SunLight::pdfEscaped(Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
+float SunLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
 
 std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {

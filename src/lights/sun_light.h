@@ -36,7 +36,7 @@ class SunLight final : public Light {
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
-    float pdfEscaped(Vec3 w, float) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
 
   private:
     bool inside(Vec3 w) const noexcept;

@@ -72,9 +72,10 @@ class Light {
     virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
     virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept = 0;
 
-    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and its density.
+    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and the density
+    // with which sample(from, 0, ·) makes that direction.
     virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
-    virtual float pdfEscaped(Vec3 w, float time) const noexcept = 0;
+    virtual float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept = 0;
 };
 
 } // namespace abbe

@@ -29,6 +29,7 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
 
 void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     if (!light) return;
+    if (!(light->power() > 0)) diagnostics_.warning("W0751", d.span, "this light is dark", "its amount is 0");
     lights_.push_back(std::move(light));
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }

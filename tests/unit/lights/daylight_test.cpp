@@ -134,7 +134,7 @@ TEST_CASE("every direction of every sky is finite and not negative; the horizon 
                 CHECK(allFinite(s->radiance));
                 for (int lane = 0; lane < kLanes; ++lane) CHECK(s->radiance[lane] >= 0);
                 CHECK(s->pdfSolidAngle > 0);
-                CHECK(sky.pdfEscaped(s->wi, 0) > 0);
+                CHECK(sky.pdfEscaped(Vec3{}, s->wi, 0) > 0);
             }
         }
 }
@@ -153,7 +153,7 @@ TEST_CASE("directions of the sky follow their density, and the density its lumin
                              phi = 2 * kPiD * (c + (i % 4 + 0.5) / 4) / columns;
                 const double s = std::sqrt(1 - z * z);
                 const Vec3 w = axes.toWorld(Vec3(Vec3d{s * std::cos(phi), s * std::sin(phi), z}));
-                sum += sky.pdfEscaped(w, 0) / 16;
+                sum += sky.pdfEscaped(Vec3{}, w, 0) / 16;
             }
             expected.push_back(sum * samples * 4 * kPiD / (rows * columns));
         }
