@@ -15,7 +15,7 @@ const std::array<Vec3d, 4> kWindow{Vec3d{-1, 0, 2}, {-1, 1.5, 2}, {1, 1.5, 2}, {
 double bright(Vec3 w) {
     return 0.2 + std::max(0.f, w.x) + 20 * std::exp(-80 * lengthSquared(w - normalize(Vec3{0.3f, 0.2f, 1})));
 }
-const Vec3 kPlaces[] = {{0, 0.5f, 0}, {3, -1, 1.9f}, {-0.5f, 1, -8}, {0, 0.7f, 1.999f}, {40, 30, -50}};
+const Vec3 kPlaces[] = {{0, 0.5f, 0}, {3, -1, 1.9f}, {-0.5f, 1, -8}, {0, 0.7f, 1.8f}, {40, 30, -50}};
 
 } // namespace
 
