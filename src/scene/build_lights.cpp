@@ -34,8 +34,23 @@ void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
 
+// The shape's own emission, or else that of its material; no curve for none.
+ScaledCurve SceneBuilder::emissionOf(const LoadedShape& shape) {
+    if (shape.common.emission) return {shape.common.emission, 1};
+    const Material* material = materialOf(shape.common);
+    const SurfaceEmission own = material ? material->emission() : SurfaceEmission{};
+    if (!(own.luminance > 0)) return {};
+    const Curve* color = own.color ? own.color : curves_.daylight();
+    const auto scale = scaleFor({own.luminance, schema::Dimension::luminance, {}}, *color, 1);
+    if (!scale) {
+        diagnostics_.error("E0343", shape.definition->span, "the emission of its material has a colour without light");
+        return {};
+    }
+    return {color, *scale};
+}
+
 const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender) {
-    const ScaledCurve radiance{shape.common.emission, 1};
+    const ScaledCurve radiance = emissionOf(shape);
     std::optional<LightMotion> motion;
     if (!radiance.curve || !lightMotion(toRender, shape.definition->span, motion)) return nullptr;
     if (motion)

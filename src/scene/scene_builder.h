@@ -4,6 +4,7 @@
 #include "cameras/camera_params.h"
 #include "geometry/embree_scene.h"
 #include "geometry/subdivision_surface.h"
+#include "lights/amount.h"
 #include "lights/area_light_types.h"
 #include "lights/environment_light.h"
 #include "lights/light_context.h"
@@ -254,6 +255,7 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
     void addLight(std::unique_ptr<Light>, const Definition&);
+    ScaledCurve emissionOf(const LoadedShape&);
     const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender);
     LightContext lightContext(const Definition&, const Motion& toRender);
 
