@@ -1,5 +1,6 @@
 // Environments through windows: the image with portals is that without, and has less noise; turned environments.
 #include "io/exr_writer.h"
+#include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
 #include <doctest/doctest.h>
