@@ -1,7 +1,6 @@
 #include "scene/build.h"
 
 #include "lights/emitted_spectrum.h"
-#include "scene/planned_types.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "spectrum/observer.h"
