@@ -91,11 +91,9 @@ template <EffectBits E> class TileKernel {
         const FilterSample filter = film_.filter(sampler_.film());
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
-        const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
+        const Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
         const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
-        const Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
-        const CameraRay camera = context_.scene.camera->ray({place, sampler_.lens(), sampler_.time(), lambda.nm[0]});
         radiance_ = Spectrum(0.f);
         maySubtract_ = false;
         if (!(camera.weight > 0)) return {};
