@@ -200,7 +200,6 @@ constexpr CodeInfo kCodes[] = {
     // E07: materials and the library
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
-    {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some liquids and stones are both: `material preset milk; interior preset milk` are the surface and what is below it."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
     {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
     {"W0751", "a dark light", "The amount of the light is 0, so it lights nothing. Remove it, or state how much it emits."},
