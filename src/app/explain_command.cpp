@@ -54,6 +54,10 @@ void explainEffects(const LoadedScene& loaded, const BuiltScene& built, std::str
             if (reason.effect == e.effect) text += fmt::format("    {}: {}\n", place(loaded, reason.asker), reason.why);
     }
     if (built.scene.effects.empty()) text += "  none beyond reflection and refraction at surfaces\n";
+    text += fmt::format("Wavelengths of paths: {}\n",
+                        built.scene.wavelengths.followsLights()
+                            ? "drawn as the lights of the scene emit, because lines or narrow bands dominate"
+                            : "drawn from the smooth density of the eye, because the light is smooth in wavelength");
     std::string off;
     for (const EffectText& e : kEffects)
         if (!built.scene.effects.has(e.effect)) off += fmt::format("  {}: {}\n", e.name, e.whyOff);

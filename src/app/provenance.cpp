@@ -61,6 +61,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
     text("abbe.effects", effectNames(p.built->scene.effects));
     text("abbe.kernel", statistics.kernel);
+    text("abbe.wavelengths", p.built->scene.wavelengths.followsLights() ? "lights" : "sech2");
     real("abbe.noise", p.noise);
     real("abbe.seconds", p.seconds);
     real("abbe.coreSeconds", statistics.coreSeconds);

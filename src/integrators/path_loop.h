@@ -275,7 +275,8 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
         if (!path_.delta && strategy == Strategy::mis)
-            lightPdf = context_.lights.probability(light, 0, path_.from) * light->pdfEscaped(direction, path_.time);
+            lightPdf = context_.lights.probability(light, 0, path_.from) *
+                       light->pdfEscaped(path_.from, direction, path_.time);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
         path_.radiance = fma(path_.beta * scatteringWeight(lightPdf), arriving, path_.radiance);
     }

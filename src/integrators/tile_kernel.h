@@ -91,7 +91,7 @@ template <EffectBits E> class TileKernel {
         const FilterSample filter = film_.filter(sampler_.film());
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
-        const Wavelengths lambda = Wavelengths::sample(sampler_.wavelength());
+        const Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
         const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
         radiance_ = Spectrum(0.f);

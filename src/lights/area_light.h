@@ -21,12 +21,13 @@ class AreaLight : public Light {
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
+    const Curve* powerShape() const override { return radiance_.curve; }
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   protected:
     const Shape& shape() const { return shape_; }

@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "lights/portal.h"
 #include "math/distribution_2d.h"
 #include "math/frame.h"
 #include "render/light.h"
@@ -32,6 +33,7 @@ struct EnvironmentLightParams {
     schema::Text image;                        // resolved path; key `space`
     std::optional<schema::Quantity> luminance; // cd/m² of a texel of (1, 1, 1); default: 683 ∫ȳ dλ = 72 983
     double exposure = 0;                       // stops, on top of that
+    std::vector<Vec3d> portals;                // four corners of each, in the space of the light's parent
     KeyedTransform transform;                  // light to parent; a rotation, mirrored or not, and a uniform scale
 };
 
@@ -40,40 +42,57 @@ schema::TypeInfo environmentLightType();
 // Radiance is interpolated bilinearly between the centres of the texels, in RGB, and upsampled after.
 class EnvironmentLight final : public Light {
   public:
+    static constexpr std::size_t kMaxPortals = 32;
+
     // `compensated` takes the mean radiance off the sampling density [Karlik2019]: better, but only right beside BSDF
     // sampling, as dim directions are then never sampled from here. `toRender` turns the image's axes (+y its zenith)
     // into render space; its matrix is orthogonal. Requires: a checked image, scale >= 0.
     EnvironmentLight(EnvironmentImage, std::unique_ptr<const RgbRadiance>, double scale, const Transform& toRender,
                      bool compensated);
 
+    // From now on only directions through these windows are sampled, where any can be seen: the same holds as for
+    // `compensated`. Before the light is used.
+    void lookThrough(std::vector<Portal> portals) { portals_ = std::move(portals); }
+    double luminance(Vec3 w) const noexcept; // up to a factor, > 0 wherever there is light
+
     void commit(const Bounds3&) override;
     // Between that of an even sky, a quarter, and that of a sun, all of it; daylight's share of visible light.
     double irradiance() const override { return 0.4 * 0.5 * fluence_; }
     double power() const override { return power_; } // 0: all texels are black, and the light must be left out
+    const Curve* powerShape() const override { return powerShape_.get(); }
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
-    float pdfEscaped(Vec3 w, float) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
 
   private:
+    // The portals that a receiver sees, and how they are sampled together.
+    struct Seen;
+    Seen seen(const Receiver&) const noexcept;
+    float pdfPortals(const Seen&, Vec3 w) const noexcept;
+    float pdfImage(Vec3 w) const noexcept;
+    std::optional<LightSample> samplePortals(const Receiver&, Vec2 u, const Wavelengths&) const noexcept;
     Vec2 imagePoint(Vec3 local) const noexcept;
     Vec3 texel(int column, int row) const noexcept;
     Vec3 lookup(Vec2 point) const noexcept;
     Distribution2D density(bool compensated) const;
     double cellSolidAngle(int row) const noexcept;
     Vec3d cellMean(int column, int row) const noexcept;
-    double integratedRadiance() const; // ∫∫ L dω dλ for a scale of 1, W/m²
+    Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
 
     EnvironmentImage image_;
     std::unique_ptr<const RgbRadiance> upsampling_;
     float scale_;
     Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
     std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
+    Vec3d channelWeights_;          // of luminance()
     Distribution2D distribution_;
-    double fluence_; // ∫∫ L dω dλ, W/m²
+    std::vector<Portal> portals_;
+    std::unique_ptr<const Curve> powerShape_; // null where all is black
+    double fluence_;                          // ∫∫ L dω dλ, W/m²
     double power_;
 };
 

@@ -58,9 +58,9 @@ Spectrum MovingLight::escaped(Vec3 w, const Wavelengths& lambda, float time) con
     return pose ? atRest_->escaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), lambda, time) : Spectrum(0.f);
 }
 
-float MovingLight::pdfEscaped(Vec3 w, float time) const noexcept {
+float MovingLight::pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept {
     const auto pose = motion_.at(time);
-    return pose ? atRest_->pdfEscaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
+    return pose ? atRest_->pdfEscaped(pose->rest(from), Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
 }
 
 std::optional<LightReach> MovingLight::reach(const Ray& ray, float tMax) const noexcept {

@@ -18,13 +18,14 @@ class MovingLight final : public Light {
     double irradiance() const override { return atRest_->irradiance(); }
     std::uint32_t parts() const override { return atRest_->parts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
+    const Curve* powerShape() const override { return atRest_->powerShape(); }
     bool infinite() const override { return atRest_->infinite(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
-    float pdfEscaped(Vec3 w, float time) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
   private:

@@ -39,7 +39,7 @@ std::optional<LightSample> SkyLight::sample(const Receiver&, std::uint32_t, Vec2
                                       kSpherePdf);
 }
 
-float SkyLight::pdfEscaped(Vec3, float) const noexcept { return kSpherePdf; }
+float SkyLight::pdfEscaped(const Receiver&, Vec3, float) const noexcept { return kSpherePdf; }
 
 std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {

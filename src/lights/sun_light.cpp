@@ -16,41 +16,16 @@ constexpr AmountFields kSunAmounts =
     AmountFields(AmountField::irradiance) | AmountField::luminance | AmountField::radiance;
 constexpr double kDefaultIrradiance = 100000; // lx: the sun in a clear sky
 
-// Towards the sun, in the axes of the file: north is -z and east +x, or north +y where z is up.
-Vec3d sunDirection(const SunLightParams& params, bool zUp) {
-    if (params.toward) return -*params.toward;
-    const double elevation = params.elevation.value_or(45 * kDegree), azimuth = params.azimuth.value_or(135 * kDegree);
-    const double east = std::cos(elevation) * std::sin(azimuth), north = std::cos(elevation) * std::cos(azimuth);
-    const double up = std::sin(elevation);
-    return zUp ? Vec3d{east, north, up} : Vec3d{east, up, -north};
-}
-
 std::vector<schema::FieldInfo> directionFields() {
-    return {schema::field(FieldType::vector3, "toward", &SunLightParams::toward)
-                .group("direction")
-                .doc("Direction in which the light travels, of any length.")
-                .example("toward 1 -2 0")
-                .synonyms({"direction", "to"}),
-            schema::field(FieldType::quantity, "elevation", &SunLightParams::elevation)
-                .unit({Dimension::angle})
-                .range(-90 * kDegree, 90 * kDegree)
-                .doc("Height above the horizon. Default: 45 deg.")
-                .example("elevation 30 deg")
-                .synonyms({"altitude", "sun-elevation"}),
-            schema::field(FieldType::quantity, "azimuth", &SunLightParams::azimuth)
-                .unit({Dimension::angle})
-                .range(-360 * kDegree, 360 * kDegree)
-                .doc("Clockwise from north, seen from above. North is -z (+y in a z-up scene), east is +x; the sun at "
-                     "90 deg stands in the east. Default: 135 deg.")
-                .example("azimuth 240 deg")
-                .synonyms({"sun-azimuth", "rotation"}),
-            schema::field(FieldType::quantity, "angular-diameter", &SunLightParams::angularDiameter)
-                .unit({Dimension::angle})
-                .byDefault("0.53 deg")
-                .range(0, 180 * kDegree)
-                .doc("Full angle of the disk; below 0.001 deg the light comes from a single direction.")
-                .example("angular-diameter 2 deg")
-                .synonyms({"angle", "size"})};
+    std::vector<schema::FieldInfo> fields = sunPlaceFields<SunLightParams>();
+    fields.push_back(schema::field(FieldType::quantity, "angular-diameter", &SunLightParams::angularDiameter)
+                         .unit({Dimension::angle})
+                         .byDefault("0.53 deg")
+                         .range(0, 180 * kDegree)
+                         .doc("Full angle of the disk; below 0.001 deg the light comes from a single direction.")
+                         .example("angular-diameter 2 deg")
+                         .synonyms({"angle", "size"}));
+    return fields;
 }
 
 } // namespace
@@ -102,20 +77,17 @@ Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexc
     return !delta_ && inside(w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-float SunLight::pdfEscaped(Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
+float SunLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
 
 std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {
-    if (params.toward && (params.elevation || params.azimuth)) {
-        diagnostics.error("E0346", context.span, "the sun's direction is stated twice",
-                          "keep `toward`, or `elevation` and `azimuth`");
-        return nullptr;
-    }
+    const auto place = sunDirection(params, context.zUp, context.span, diagnostics);
+    if (!place) return nullptr;
     const Transform toRender = params.transform.at(context.time).then(context.toRender);
-    const Vec3d direction = toRender.vector(sunDirection(params, context.zUp));
+    const Vec3d direction = toRender.vector(*place);
     const double norm = length(direction);
     if (!(norm > 0 && std::isfinite(norm))) {
-        diagnostics.error("E0344", context.span, "the sun has no direction", "`toward` is zero");
+        diagnostics.error("E0344", context.span, "the sun has no direction", "its transform leaves none");
         return nullptr;
     }
     const double halfAngle = params.angularDiameter / 2;

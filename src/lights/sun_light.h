@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "lights/sun_direction.h"
 #include "math/frame.h"
 #include "render/light.h"
 
@@ -10,11 +11,7 @@
 
 namespace abbe {
 
-// Without `toward`, `elevation` and `azimuth`: 45° high in the south-east.
-struct SunLightParams : AmountParams {
-    std::optional<Vec3d> toward;                // direction in which the light travels
-    std::optional<double> elevation;            // rad above the horizon
-    std::optional<double> azimuth;              // rad clockwise from north, seen from above
+struct SunLightParams : AmountParams, SunPlace {
     double angularDiameter = 0.53 * kPiD / 180; // rad
     KeyedTransform transform;                   // light to parent; only its rotation matters
 };
@@ -33,13 +30,14 @@ class SunLight final : public Light {
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
     double irradiance() const override { return visibleIrradiance_; }
+    const Curve* powerShape() const override { return radiance_.curve; }
     bool infinite() const override { return !delta_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
-    float pdfEscaped(Vec3 w, float) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
 
   private:
     bool inside(Vec3 w) const noexcept;

@@ -27,7 +27,7 @@ class VolumeLight final : public Light {
     Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(Vec3, float) const noexcept override { return 0; }
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   private:
     const GridEmission& emission_;

@@ -54,6 +54,8 @@ class Light {
     virtual std::optional<LightBounds> bounds(std::uint32_t /*part*/) const { return std::nullopt; }
     // The part whose surface was hit.
     std::uint32_t partOf(const SurfaceHit& hit) const { return parts() > 1 ? hit.primitive : 0; }
+    // Shape of the spectrum of that power, of any scale; null if the light cannot tell.
+    virtual const Curve* powerShape() const { return nullptr; }
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
     // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
@@ -70,9 +72,10 @@ class Light {
     virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
     virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept = 0;
 
-    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and its density.
+    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and the density
+    // with which sample(from, 0, ·) makes that direction.
     virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
-    virtual float pdfEscaped(Vec3 w, float time) const noexcept = 0;
+    virtual float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept = 0;
 };
 
 } // namespace abbe

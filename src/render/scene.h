@@ -9,6 +9,7 @@
 #include "render/medium.h"
 #include "render/shape.h"
 #include "render/texture.h"
+#include "spectrum/wavelength_density.h"
 
 #include <memory>
 #include <vector>
@@ -29,6 +30,7 @@ struct Scene {
                              // partly open, or lies hidden in a dielectric
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
+    WavelengthDensity wavelengths; // of paths
     Effects effects;
     std::vector<EffectReason> reasons;
     Vec3d origin; // world position of the origin of render space

@@ -1,5 +1,6 @@
 #include "scene/build.h"
 
+#include "lights/emitted_spectrum.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "spectrum/observer.h"
@@ -125,6 +126,7 @@ void SceneBuilder::finish(BuiltScene& built) {
     if (!(emitted > 0) && !diagnostics_.hasErrors())
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";
+    built.scene.wavelengths = WavelengthDensity::bestFor(emittedSpectrum(lights_));
     noteEffects(built);
     noteMedia(built.scene);
     if (options_.geometry && !diagnostics_.hasErrors()) {

@@ -1,7 +1,10 @@
+#include "io/ies.h"
 #include "io/image.h"
 #include "io/io_error.h"
 #include "lights/area_light.h"
+#include "lights/daylight_light.h"
 #include "lights/environment_light.h"
+#include "lights/ies_light.h"
 #include "lights/moving_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
@@ -31,8 +34,23 @@ void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
 
+// The shape's own emission, or else that of its material; no curve for none.
+ScaledCurve SceneBuilder::emissionOf(const LoadedShape& shape) {
+    if (shape.common.emission) return {shape.common.emission, 1};
+    const Material* material = materialOf(shape.common);
+    const SurfaceEmission own = material ? material->emission() : SurfaceEmission{};
+    if (!(own.luminance > 0)) return {};
+    const Curve* color = own.color ? own.color : curves_.daylight();
+    const auto scale = scaleFor({own.luminance, schema::Dimension::luminance, {}}, *color, 1);
+    if (!scale) {
+        diagnostics_.error("E0343", shape.definition->span, "the emission of its material has a colour without light");
+        return {};
+    }
+    return {color, *scale};
+}
+
 const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender) {
-    const ScaledCurve radiance{shape.common.emission, 1};
+    const ScaledCurve radiance = emissionOf(shape);
     std::optional<LightMotion> motion;
     if (!radiance.curve || !lightMotion(toRender, shape.definition->span, motion)) return nullptr;
     if (motion)
@@ -54,6 +72,16 @@ void SceneBuilder::placeBareLight(const Definition& d, const Place& place, Make 
     addLight(inMotion(make(*params, context, diagnostics_), context), d);
 }
 
+void SceneBuilder::placeDaylight(const Definition& d, const Place& place) {
+    const auto params = bound<DaylightParams>(d);
+    if (!params) return;
+    LightContext context = lightContext(d, place.motion);
+    std::optional<LightMotion> motion;
+    if (!lightMotion(within(place.motion, params->transform), d.span, motion)) return;
+    if (motion) context.motion = &*motion;
+    for (auto& light : makeDaylight(*params, context, diagnostics_)) addLight(inMotion(std::move(light), context), d);
+}
+
 void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     if (place.object) {
         place.object->unshared.push_back(&d);
@@ -70,12 +98,29 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     } else if (type == "sky") {
         if (const auto p = bound<SkyLightParams>(d))
             addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d);
+    } else if (type == "ies") {
+        placeBareLight<IesLightParams>(
+            d, place,
+            [this](const IesLightParams& p, const LightContext& context, Diagnostics&) { return makeIes(p, context); });
+    } else if (type == "daylight") {
+        placeDaylight(d, place);
     } else if (type == "environment") {
         placeBareLight<EnvironmentLightParams>(d, place,
                                                [this](const EnvironmentLightParams& p, const LightContext& context,
                                                       Diagnostics&) { return makeEnvironment(p, context); });
     } else {
         placeAreaLight(d, place);
+    }
+}
+
+std::unique_ptr<Light> SceneBuilder::makeIes(const IesLightParams& params, const LightContext& context) {
+    try {
+        auto light = makeIesLight(params, readIes(params.file.value), context, diagnostics_);
+        built_->facts.files.push_back(params.file.value);
+        return light;
+    } catch (const IoError& e) {
+        diagnostics_.error("E0752", params.file.span, e.what(), "cannot be read");
+        return nullptr;
     }
 }
 

@@ -85,7 +85,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             auto placed = inner(t);
             return placed ? withFaceMaterials(shape, std::move(placed)) : nullptr;
         };
-    if (shape.sound && shape.infinite && shape.common.emission) {
+    if (shape.sound && shape.infinite && emissionOf(shape).curve) {
         diagnostics_.error("E0606", d.span, "an infinite plane cannot emit", "give it an end: use a quad or a disk");
         shape.sound = false;
     }
@@ -136,7 +136,7 @@ void SceneBuilder::countShape(const LoadedShape& shape) {
 void SceneBuilder::placeShape(const Definition& d, const Place& outer) {
     LoadedShape& loaded = loadedShape(d);
     if (!loaded.sound) return;
-    if (outer.object && (loaded.common.emission || loaded.infinite)) {
+    if (outer.object && (loaded.infinite || emissionOf(loaded).curve)) {
         outer.object->unshared.push_back(&d);
         outer.object->unsharedPlace.push_back(outer.motion);
         return;

@@ -8,7 +8,9 @@
 #include "film/film_params.h"
 #include "integrators/render_params.h"
 #include "lights/area_light_types.h"
+#include "lights/daylight_light.h"
 #include "lights/environment_light.h"
+#include "lights/ies_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
@@ -163,9 +165,9 @@ constexpr CameraEntry kCameras[] = {
 };
 
 constexpr schema::TypeInfo (*kOthers[])() = {
-    quadType,      sphereType,           diskType,      planeType,      meshType,      lightQuadType,
-    lightDiskType, lightSphereType,      lightMeshType, pointLightType, spotLightType, sunLightType,
-    skyLightType,  environmentLightType, instancesType, filmType,       renderType,
+    quadType,        sphereType,    diskType,       planeType,     meshType,     lightQuadType, lightDiskType,
+    lightSphereType, lightMeshType, pointLightType, spotLightType, sunLightType, skyLightType,  environmentLightType,
+    instancesType,   filmType,      renderType,     daylightType,  iesLightType,
 };
 
 } // namespace

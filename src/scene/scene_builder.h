@@ -4,6 +4,7 @@
 #include "cameras/camera_params.h"
 #include "geometry/embree_scene.h"
 #include "geometry/subdivision_surface.h"
+#include "lights/amount.h"
 #include "lights/area_light_types.h"
 #include "lights/environment_light.h"
 #include "lights/light_context.h"
@@ -28,6 +29,7 @@
 namespace abbe {
 
 struct CurvesParams;
+struct IesLightParams;
 struct GridExtras;
 struct LoadedCage;
 struct BumpMap;
@@ -248,11 +250,14 @@ class SceneBuilder final : public schema::Resolver {
 
     // build_lights.cpp
     void placeLight(const Definition&, const Place&);
+    std::unique_ptr<Light> makeIes(const IesLightParams&, const LightContext&);
+    void placeDaylight(const Definition&, const Place&);
     void placeAreaLight(const Definition&, const Place&);
     template <typename P, typename Make> void placeBareLight(const Definition&, const Place&, Make);
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
     void addLight(std::unique_ptr<Light>, const Definition&);
+    ScaledCurve emissionOf(const LoadedShape&);
     const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender);
     LightContext lightContext(const Definition&, const Motion& toRender);
 

@@ -41,7 +41,7 @@ test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int w
         for (int c = 0; c < columns; ++c) {
             const double theta = kPiD * (r + 0.5) / rows, phi = 2 * kPiD * (c + 0.5) / columns - kPiD;
             const Vec3d local{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-            expected.push_back(light.pdfEscaped(Vec3(turn.vector(local)), 0) * solidAngle(r) * samples);
+            expected.push_back(light.pdfEscaped(Vec3{}, Vec3(turn.vector(local)), 0) * solidAngle(r) * samples);
         }
     const Transform back = turn.inverse().value();
     test::Random random(seed);
@@ -77,7 +77,7 @@ TEST_CASE("sun: directions are uniform over the disk") {
         int outside = 0;
         for (int i = 0; i < samples; ++i) {
             const auto s = sun.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0);
-            outside += sun.pdfEscaped(s->wi, 0) == 0;
+            outside += sun.pdfEscaped(Vec3{}, s->wi, 0) == 0;
             const Vec3d w = normalize(Vec3d(s->wi));
             const double sine = std::hypot(w.x, w.y), h = sine * sine / (1 + w.z); // 1 - cos
             const int r = std::min(static_cast<int>(h / (2 * square(std::sin(half / 2))) * n), n - 1);

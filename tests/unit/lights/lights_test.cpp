@@ -196,11 +196,11 @@ TEST_CASE("sampled directions of the sun lie in its disk with its radiance") {
         const auto s = sun.sample(Vec3(), 0, {random.uniform() * 0.999f, random.uniform()}, w, 0);
         REQUIRE(s);
         CHECK(sun.escaped(s->wi, w, 0)[3] == s->radiance[3]);
-        CHECK(sun.pdfEscaped(s->wi, 0) == s->pdfSolidAngle);
+        CHECK(sun.pdfEscaped(Vec3{}, s->wi, 0) == s->pdfSolidAngle);
         sum += Vec3d(s->wi);
     }
     CHECK(length(normalize(sum) - normalize(Vec3d{1, 2, 3})) < 1e-4);
-    CHECK(sun.pdfEscaped({0, 1, 0}, 0) == 0);
+    CHECK(sun.pdfEscaped(Vec3{}, {0, 1, 0}, 0) == 0);
 }
 
 TEST_CASE("a sun without diameter is a direction") {

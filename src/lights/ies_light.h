@@ -1,0 +1,72 @@
+// A lamp as its maker measured it: light from one point, by direction.
+#pragma once
+
+#include "lights/amount.h"
+#include "lights/light_context.h"
+#include "math/frame.h"
+#include "math/intensity_table.h"
+#include "render/light.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Without `power`: the intensities of the file.
+struct IesLightParams : AmountParams {
+    schema::Text file;
+    Vec3d position;
+    std::optional<Vec3d> lookAt; // a point on the axis
+    std::optional<Vec3d> toward; // or its direction; without both: down
+    double turn = 0;             // rad about the axis
+    KeyedTransform transform;    // light to parent
+};
+
+schema::TypeInfo iesLightType();
+
+// Intensity linear in both angles between those of the table.
+class IesProfile {
+  public:
+    // Requires: a table as parseIes() makes them.
+    explicit IesProfile(IntensityTable);
+
+    // cd at the angle from the axis, 0 … π, and about it, any, rad.
+    double candela(double fromAxis, double about) const noexcept;
+    double lumens() const { return lumens_; } // ∫ I dω, exact for the interpolation
+
+  private:
+    double integrate() const;
+    IntensityTable table_;
+    double lumens_;
+};
+
+class IesLight final : public Light {
+  public:
+    // `axes`: z is the axis (down for most lamps), x the plane of 0°; right-handed angles are seen from above, looking
+    // along z. Spectral intensity is that of the profile in cd times `perCandela`, W·sr⁻¹·nm⁻¹; the curve outlives the
+    // light.
+    IesLight(Vec3 position, const Frame& axes, IesProfile, ScaledCurve perCandela);
+
+    double power() const override { return power_; }
+    const Curve* powerShape() const override { return perCandela_.curve; }
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float) const noexcept override;
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
+        return LightReach{position_, 0, tMax};
+    }
+    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
+
+  private:
+    Vec3 position_;
+    Frame axes_;
+    IesProfile profile_;
+    ScaledCurve perCandela_;
+    double power_;
+};
+
+// Null after an error, and for a table without light, which is a warning unless a `power` is asked of it.
+std::unique_ptr<Light> makeIesLight(const IesLightParams&, IntensityTable, const LightContext&, Diagnostics&);
+
+} // namespace abbe

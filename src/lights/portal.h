@@ -1,0 +1,52 @@
+// Windows through which an environment lights a room, and directions through them in proportion to what is seen there.
+#pragma once
+
+#include "math/frame.h"
+#include "render/receiver.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace abbe {
+
+// A rectangular opening. The environment is tabulated over the two angles of a direction against the opening's axes,
+// in which any receiver sees the opening as a rectangle: a summed-area table then samples just what is seen through it
+// [Bitterli2015]. Render space; immutable, thread-safe.
+class Portal {
+  public:
+    // Corners in order around it, counter-clockwise seen from the room. `luminance` is asked for unit directions that
+    // leave the room, about 2 million times. Requires: a rectangle (isRectangle), finite luminance >= 0.
+    Portal(const std::array<Vec3d, 4>& corners, const std::function<double(Vec3)>& luminance);
+    static bool isRectangle(const std::array<Vec3d, 4>& corners);
+
+    // What a receiver sees of it: bounds of the two angles, from 0 to 1 as the table has them, and the table's weight.
+    struct View {
+        double a0, a1, b0, b1;
+        double weight; // > 0
+    };
+    // Nothing from outside of the room, and where it is too narrow to be told from nothing.
+    std::optional<View> view(const Receiver&) const noexcept;
+
+    // A direction and its density over solid angle; u in [0, 1)².
+    struct Sample {
+        Vec3 w;
+        float pdf;
+    };
+    Sample sample(const View&, Vec2 u) const noexcept;
+    float pdf(const View&, Vec3 w) const noexcept; // 0 where w misses the opening
+
+  private:
+    static constexpr int kSize = 512; // cells along each angle
+    double sum(double a, double b) const noexcept;
+    double weight(double a0, double a1, double b0, double b1) const noexcept;
+    double density(const View&, double a, double b) const noexcept; // over the two angles
+
+    Frame frame_; // z leaves the room
+    Vec3 centre_;
+    double halfWidth_, halfHeight_;
+    std::vector<double> table_; // sums over all cells below, (kSize + 1)²
+};
+
+} // namespace abbe

@@ -1,0 +1,172 @@
+#include "spectrum/wavelength_density.h"
+
+#include "base/check.h"
+#include "spectrum/color_space.h"
+#include "spectrum/observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kCells = WavelengthDensity::kNodes - 1;
+constexpr double kLightShare = 0.9;
+// Weights of single lanes stay bounded where the eye sees next to nothing.
+constexpr double kLeastSensitivity = 1e-3; // of the largest
+constexpr double kWorthATable = 0.7;       // half the variance
+
+double nanometres(int node) { return static_cast<double>(kMinWavelength) + node; }
+
+std::vector<double> sensitivity() {
+    std::vector<double> norms;
+    double most = 0;
+    for (int i = 0; i <= kCells; ++i) {
+        const Wavelengths w = Wavelengths::single(static_cast<float>(nanometres(i)));
+        norms.push_back(length(toRgb(Xyz{xbar(w)[0], ybar(w)[0], zbar(w)[0]}, rgb::ap0)));
+        most = std::max(most, norms.back());
+    }
+    for (double& n : norms) n = std::max(n, kLeastSensitivity * most);
+    return norms;
+}
+
+// What surfaces and several bounces make of a spectrum: even, with edges, narrow, and the fourth power of a red. None
+// is black: what is left of a light that a surface swallows must not decide.
+double reflectance(int kind, double nm) {
+    const double red = 1 / (1 + std::exp((590 - nm) / 12));
+    switch (kind) {
+    case 0:
+        return 1;
+    case 1:
+        return nm < 580 ? 0.05 : 0.9;
+    case 2:
+        return nm < 500 ? 0.9 : 0.05;
+    case 3:
+        return nm > 500 && nm < 580 ? 0.8 : 0.05;
+    case 4:
+        return 0.02 + 0.88 * red * red * red * red;
+    default:
+        return 0.1 + 0.8 * std::exp(-0.5 * std::pow((nm - 540) / 30, 2));
+    }
+}
+constexpr int kReflectances = 6;
+
+// The table that SampledCurve would read: linear between the nodes.
+Spectrum lookup(std::span<const double> nodes, const Wavelengths& w) {
+    Spectrum result;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const auto i = static_cast<std::size_t>(w.cell[lane]);
+        result.v[lane] = static_cast<float>(std::lerp(nodes[i], nodes[i + 1], static_cast<double>(w.fraction[lane])));
+    }
+    return result;
+}
+
+// Variance of a vector over its squared mean.
+class RelativeVariance {
+  public:
+    void add(Vec3d v) {
+        ++count_;
+        sum_ += v;
+        squares_ += dot(v, v);
+    }
+    double value() const {
+        const Vec3d mean = sum_ * (1 / count_);
+        const double square = dot(mean, mean);
+        return square > 0 ? std::max(0.0, squares_ / count_ / square - 1) : 0;
+    }
+
+  private:
+    Vec3d sum_;
+    double squares_ = 0, count_ = 0;
+};
+
+} // namespace
+
+WavelengthDensity WavelengthDensity::following(std::span<const double> power) {
+    ABBE_CHECK(power.size() == kNodes);
+    double mean = 0;
+    for (const double p : power) mean += p / kNodes;
+    ABBE_CHECK(mean > 0 && std::isfinite(mean));
+    std::vector<double> weight = sensitivity();
+    double total = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) weight[i] *= kLightShare * power[i] / mean + (1 - kLightShare);
+    for (std::size_t i = 0; i < kCells; ++i) total += 0.5 * (weight[i] + weight[i + 1]);
+    auto table = std::make_shared<Table>();
+    double below = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        table->density[i] = static_cast<float>(weight[i] / total);
+        table->cumulative[i] = static_cast<float>(below / total);
+        if (i + 1 < kNodes) below += 0.5 * (weight[i] + weight[i + 1]);
+    }
+    table->cumulative.back() = 1;
+    for (std::size_t i = 0; i < table->guide.size(); ++i) {
+        const auto above = std::upper_bound(table->cumulative.begin(), table->cumulative.end() - 1,
+                                            static_cast<float>(i) / static_cast<float>(table->guide.size() - 1));
+        table->guide[i] = static_cast<std::uint16_t>(above - table->cumulative.begin() - 1);
+    }
+    WavelengthDensity result;
+    result.table_ = std::move(table);
+    return result;
+}
+
+WavelengthDensity WavelengthDensity::bestFor(std::span<const double> power) {
+    if (std::all_of(power.begin(), power.end(), [](double p) { return p == 0; })) return {};
+    WavelengthDensity table = following(power);
+    const WavelengthDensity smooth;
+    return table.noise(power) < kWorthATable * smooth.noise(power) ? table : smooth;
+}
+
+Wavelengths WavelengthDensity::tabulated(float u) const {
+    const Table& t = *table_;
+    Spectrum nm;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        float q = u + 0.125f * static_cast<float>(lane);
+        q = q >= 1 ? q - 1 : q;
+        std::size_t i = t.guide[static_cast<std::size_t>(q * static_cast<float>(t.guide.size() - 1))];
+        while (i + 1 < kCells && t.cumulative[i + 1] <= q) ++i;
+        // Within the cell a t + (b - a) t² / 2 = r, in the form that survives a = b.
+        const float a = t.density[i], b = t.density[i + 1], r = std::max(q - t.cumulative[i], 0.f);
+        const float x = 2 * r / (a + std::sqrt(std::max(a * a + 2 * (b - a) * r, 0.f)));
+        nm.v[lane] = kMinWavelength + static_cast<float>(i) + std::min(x, 1.f);
+    }
+    Wavelengths w = Wavelengths::at(min(nm, Spectrum(kMaxWavelength)), Spectrum(1.f));
+    // At the wavelength as it was rounded, so that light and density are read at the same place.
+    const Int8 next = w.cell + 1;
+    const Spectrum a(_mm256_i32gather_ps(t.density.data(), reinterpret_cast<__m256i>(w.cell), 4));
+    const Spectrum b(_mm256_i32gather_ps(t.density.data(), reinterpret_cast<__m256i>(next), 4));
+    w.pdf = fma(b - a, w.fraction, a);
+    return w;
+}
+
+double WavelengthDensity::pdf(double nm) const {
+    const double x = std::clamp(nm - static_cast<double>(kMinWavelength), 0.0, static_cast<double>(kCells));
+    if (!table_) return 0.0039398042 / std::pow(std::cosh(0.0072 * (nm - 538)), 2);
+    const auto i = std::min(static_cast<std::size_t>(x), static_cast<std::size_t>(kCells) - 1);
+    return std::lerp(static_cast<double>(table_->density[i]), static_cast<double>(table_->density[i + 1]),
+                     x - static_cast<double>(i));
+}
+
+double WavelengthDensity::noise(std::span<const double> power) const {
+    ABBE_CHECK(power.size() == kNodes);
+    constexpr int samples = 1024;
+    const double most = *std::max_element(power.begin(), power.end());
+    if (!(most > 0)) return 0;
+    std::vector<std::vector<double>> reflected(kReflectances);
+    for (int k = 0; k < kReflectances; ++k)
+        for (int i = 0; i <= kCells; ++i)
+            reflected[static_cast<std::size_t>(k)].push_back(power[static_cast<std::size_t>(i)] / most *
+                                                             reflectance(k, nanometres(i)));
+    std::array<RelativeVariance, kReflectances> variance;
+    for (int s = 0; s < samples; ++s) {
+        // The rotations make the set of wavelengths periodic.
+        const Wavelengths w = sample((static_cast<float>(s) + 0.5f) / static_cast<float>(kLanes * samples));
+        for (std::size_t k = 0; k < kReflectances; ++k)
+            variance[k].add(toRgb(toXyz(lookup(reflected[k], w), w), rgb::ap0));
+    }
+    double sum = 0;
+    for (const RelativeVariance& v : variance) sum += v.value();
+    return std::sqrt(sum / kReflectances);
+}
+
+} // namespace abbe

@@ -1,0 +1,101 @@
+// Environments through windows: the image with portals is that without, and has less noise; turned environments.
+#include "io/exr_writer.h"
+#include "support/scene_test.h"
+#include "support/scene_test_compare.h"
+
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace abbe::test {
+namespace {
+
+// A bright blue sky with a sun of a few texels, and a dark ground.
+std::string skyFile(int width, int height) {
+    const auto path = std::filesystem::temp_directory_path() / fmt::format("abbe_portal_{}.exr", getpid());
+    std::vector<float> r, g, b;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool sun = std::abs(x - width / 2) < 2 && std::abs(y - height / 4) < 2, sky = y < height / 2;
+            r.push_back(sun ? 900.f : sky ? 0.6f : 0.1f);
+            g.push_back(sun ? 800.f : sky ? 0.8f : 0.1f);
+            b.push_back(sun ? 600.f : sky ? 1.2f + 0.01f * static_cast<float>(x) : 0.05f);
+        }
+    const PixelWindow window{0, 0, width, height};
+    writeExr(path.string(), {.window = window,
+                             .display = window,
+                             .r = r,
+                             .g = g,
+                             .b = b,
+                             .chromaticities = Chromaticities::of(rgb::rec709)});
+    return path.string();
+}
+
+// A room of 5 by 3 by 6 metres with a window of 2 by 1.2 in one wall.
+std::string room(const std::string& environment) {
+    const auto quad = [](const char* points) {
+        return fmt::format("shape quad {{ points {}; material diffuse {{ reflectance 0.5 }} }}\n", points);
+    };
+    return "scene 1\nfilm { size 16 12; filter box 0.5 }\ncamera { from -1.8 1.7 2.6; look-at 0.8 0.6 -1; fov 60 deg "
+           "}\n" +
+           environment + quad("-2.5 0 3  2.5 0 3  2.5 0 -3  -2.5 0 -3") +
+           quad("-2.5 3 -3  2.5 3 -3  2.5 3 3  -2.5 3 3") + quad("-2.5 0 3  -2.5 0 -3  -2.5 3 -3  -2.5 3 3") +
+           quad("2.5 0 -3  2.5 0 3  2.5 3 3  2.5 3 -3") + quad("2.5 0 3  -2.5 0 3  -2.5 3 3  2.5 3 3") +
+           quad("-2.5 0 -3  2.5 0 -3  2.5 1 -3  -2.5 1 -3") + quad("-2.5 2.2 -3  2.5 2.2 -3  2.5 3 -3  -2.5 3 -3") +
+           quad("-2.5 1 -3  -1 1 -3  -1 2.2 -3  -2.5 2.2 -3") + quad("1 1 -3  2.5 1 -3  2.5 2.2 -3  1 2.2 -3");
+}
+
+double meanVariance(const RecordingFilm& film) {
+    double sum = 0;
+    const PixelBounds b = film.bounds();
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x) sum += film.pixel(x, y).variance;
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("a room lit through a window: the same image with portals, and less noise") {
+    const std::string file = skyFile(64, 32);
+    const std::string portal = "portals { - -1 1 -3; - 1 1 -3; - 1 2.2 -3; - -1 2.2 -3 } ";
+    const TestScene with = TestScene::parse(room("light environment \"" + file + "\" { " + portal + "}\n"));
+    const TestScene without = TestScene::parse(room("light environment \"" + file + "\"\n"));
+    const TestImage a = render(with, nightly() ? 8192 : 1024, 3), b = render(without, nightly() ? 32768 : 4096, 4);
+    for (const Channel channel : {Channel::x, Channel::y, Channel::z})
+        checkSame(compareImages(a.film, b.film, channel), 0.05);
+    const double gain = 4 * meanVariance(b.film) / meanVariance(a.film);
+    MESSAGE("variance without portals over that with them, at equal samples: " << gain);
+    CHECK(gain > 2);
+    // Half of the window alone, and one that is no window: still the same image.
+    const std::string odd = "portals { - -1 1 -3; - 0 1 -3; - 0 2.2 -3; - -1 2.2 -3; "
+                            "- 2.5 0 -1; - 2.5 0 1; - 2.5 1 1; - 2.5 1 -1 } ";
+    const TestScene partly = TestScene::parse(room("light environment \"" + file + "\" { " + odd + "}\n"));
+    const TestImage c = render(partly, nightly() ? 32768 : 4096, 5);
+    checkSame(compareImages(c.film, b.film, Channel::y), 0.05);
+    std::filesystem::remove(file);
+}
+
+// Hard case 33: the pole and the seam of the image may lie anywhere.
+TEST_CASE("an environment turned seven ways lights a turned scene alike") {
+    const std::string file = skyFile(48, 24);
+    const char* turns[] = {"rotate x 0 deg",   "rotate x 90 deg",  "rotate z 90 deg", "rotate y 180 deg",
+                           "rotate x 180 deg", "rotate z -90 deg", "rotate x 37 deg"};
+    std::vector<TestImage> images;
+    for (const char* turn : turns)
+        images.push_back(render(
+            TestScene::parse(fmt::format("scene 1\nfilm {{ size 12 12; filter box 0.5 }}\n"
+                                         "camera {{ transform {{ translate 0 0 4; {0} }}; fov 20 deg }}\n"
+                                         "light environment \"{1}\" {{ transform {{ {0} }} }}\n"
+                                         "shape sphere {{ radius 0.5; material diffuse {{ reflectance 0.7 }} }}\n",
+                                         turn, file)),
+            1024, 7 + images.size()));
+    for (std::size_t i = 1; i < images.size(); ++i) {
+        CAPTURE(turns[i]);
+        for (const Channel channel : {Channel::x, Channel::y, Channel::z})
+            checkSame(compareImages(images[i].film, images[0].film, channel), 0.02);
+    }
+    std::filesystem::remove(file);
+}
+
+} // namespace abbe::test

@@ -1,0 +1,150 @@
+#include "spectrum/emission_curves.h"
+#include "spectrum/named_spectra.h"
+#include "spectrum/observer.h"
+#include "spectrum/sampled_curve.h"
+#include "spectrum/wavelength_density.h"
+#include "support/chi_square.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+using namespace abbe;
+
+namespace {
+
+std::vector<double> nodes(const Curve& c) {
+    std::vector<double> values;
+    for (int i = 0; i < WavelengthDensity::kNodes; ++i) values.push_back(c.at(360.0 + i));
+    return values;
+}
+std::vector<double> illuminant(std::string_view name) { return nodes(*illuminantCurve(findIlluminant(name).value())); }
+std::vector<double> line(double nm) { return nodes(*lineCurve(nm)); }
+std::vector<double> band(double middle, double width) {
+    return nodes(SampledCurve([=](double nm) { return std::exp(-0.5 * square((nm - middle) / width)); }));
+}
+
+// Lights at both ends of what there is.
+std::vector<std::vector<double>> lights() {
+    return {illuminant("FL11"), illuminant("sodium-low-pressure"), line(632.8), line(360), line(830), band(470, 5),
+            illuminant("D65"),  std::vector<double>(471, 1)};
+}
+
+} // namespace
+
+// Hard case 46.
+TEST_CASE("tabulated wavelengths: the density is nowhere 0 and integrates to one") {
+    for (const auto& power : lights()) {
+        const WavelengthDensity density = WavelengthDensity::following(power);
+        double sum = 0, least = 1;
+        for (int i = 0; i < 470; ++i) // linear in each nanometre
+            sum += 0.5 * (density.pdf(360 + i) + density.pdf(361 + i));
+        for (int i = 0; i <= 4700; ++i) least = std::min(least, density.pdf(360 + 0.1 * i));
+        CHECK(sum == doctest::Approx(1).epsilon(1e-6));
+        CHECK(least > 1e-8);
+    }
+}
+
+TEST_CASE("tabulated wavelengths are quantiles of their density, and carry it") {
+    for (const auto& power : lights()) {
+        const WavelengthDensity density = WavelengthDensity::following(power);
+        std::vector<double> cumulative{0};
+        for (int i = 0; i < 470; ++i)
+            cumulative.push_back(cumulative.back() + 0.5 * (density.pdf(360 + i) + density.pdf(361 + i)));
+        for (int i = 0; i < 4000; ++i) {
+            const float u = (static_cast<float>(i) + 0.37f) / 4000;
+            const Wavelengths w = density.sample(u);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                REQUIRE(w.nm[lane] >= 360);
+                REQUIRE(w.nm[lane] <= 830);
+                const auto cell = static_cast<std::size_t>(w.cell[lane]);
+                const double f = w.fraction[lane], a = density.pdf(360.0 + w.cell[lane]);
+                const double below = cumulative[cell] + f * 0.5 * (a + density.pdf(w.nm[lane]));
+                const double gap = std::abs(below - std::fmod(static_cast<double>(u) + lane / 8.0, 1.0));
+                // A wavelength is rounded to 6e-5 nm, a quantile to 6e-8.
+                REQUIRE(std::min(gap, 1 - gap) < 3e-7 + 1e-4 * density.pdf(w.nm[lane]));
+                REQUIRE(w.pdf[lane] == doctest::Approx(density.pdf(w.nm[lane])).epsilon(1e-5));
+            }
+        }
+    }
+}
+
+TEST_CASE("tabulated wavelengths follow their density: χ² over tenths of nanometres") {
+    for (const auto& power : lights()) {
+        const WavelengthDensity density = WavelengthDensity::following(power);
+        const int samples = test::chiSquareSamples();
+        std::vector<double> observed(4700), expected;
+        for (int i = 0; i < 4700; ++i) // linear in each
+            expected.push_back(0.1 * samples * density.pdf(360 + 0.1 * i + 0.05));
+        test::Random random(11);
+        for (int i = 0; i < samples; ++i) {
+            const Wavelengths w = density.sample(random.uniform());
+            const int lane = i % kLanes; // one of each path: they depend on each other
+            const int bin = w.cell[lane] * 10 + static_cast<int>(w.fraction[lane] * 10);
+            ++observed[static_cast<std::size_t>(std::min(bin, 4699))];
+        }
+        CHECK(test::chiSquareTest(observed, expected).pValue > 1e-4);
+    }
+}
+
+// What is rendered does not depend on the density: an equal-energy white, and the lights themselves.
+TEST_CASE("colours are the same whatever the density") {
+    constexpr int n = 1 << 16;
+    for (const auto& power : lights()) {
+        const WavelengthDensity density = WavelengthDensity::following(power);
+        const SampledCurve light([&](double nm) { return power[static_cast<std::size_t>(nm - 360)]; });
+        Xyz white, lit;
+        for (int i = 0; i < n; ++i) { // a period of the rotations
+            const Wavelengths w = density.sample((static_cast<float>(i) + 0.5f) / (8 * n));
+            white += toXyz(Spectrum(1.f), w) * (1.0 / n);
+            lit += toXyz(light.at(w), w) * (1.0 / n);
+        }
+        const Xyz e = integrate(ConstantCurve(1)), l = integrate(light);
+        for (const auto& [got, want] : {std::pair{white, e}, {lit, l}}) {
+            CHECK(got.x == doctest::Approx(want.x).epsilon(1e-4));
+            CHECK(got.y == doctest::Approx(want.y).epsilon(1e-4));
+            CHECK(got.z == doctest::Approx(want.z).epsilon(1e-4).scale(std::max(want.y, 1e-3)));
+        }
+    }
+}
+
+TEST_CASE("the smooth density stays that of Wavelengths::sample, bit for bit") {
+    const WavelengthDensity density = WavelengthDensity::bestFor(illuminant("D65"));
+    for (int i = 0; i < 1000; ++i) {
+        const float u = static_cast<float>(i) / 1000;
+        const Wavelengths a = density.sample(u), b = Wavelengths::sample(u);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            REQUIRE(a.nm[lane] == b.nm[lane]);
+            REQUIRE(a.pdf[lane] == b.pdf[lane]);
+            REQUIRE(density.pdf(a.nm[lane]) == doctest::Approx(a.pdf[lane]).epsilon(1e-4));
+        }
+    }
+    CHECK_FALSE(WavelengthDensity::bestFor(std::vector<double>(471, 0)).followsLights());
+}
+
+// The choice, and what it is worth: docs/performance.md has the table.
+TEST_CASE("lines and narrow bands get a table, smooth lights do not") {
+    struct Case {
+        std::string name;
+        std::vector<double> power;
+        bool table;
+        double atMost; // noise with what is chosen
+    };
+    std::vector<Case> cases;
+    for (const char* name : {"D65", "A", "E", "LED-B1", "LED-V1", "LED-phosphor-YAG", "xenon-projector"})
+        cases.push_back({name, illuminant(name), false, 0.19});
+    for (const char* name : {"FL2", "FL11", "FL12", "LED-RGB1", "mercury", "sodium-low-pressure"})
+        cases.push_back({name, illuminant(name), true, 0.17});
+    for (const double kelvin : {1500., 2700., 10000.})
+        cases.push_back({fmt::format("blackbody {}", kelvin), nodes(*blackbodyCurve(kelvin)), false, 0.12});
+    for (const double nm : {450., 532., 632.8}) cases.push_back({fmt::format("line {}", nm), line(nm), true, 0.07});
+    cases.push_back({"band 550 5", band(550, 5), true, 0.07});
+    for (const Case& c : cases) {
+        CAPTURE(c.name);
+        const WavelengthDensity best = WavelengthDensity::bestFor(c.power);
+        CHECK(best.followsLights() == c.table);
+        CHECK(best.noise(c.power) < c.atMost);
+        MESSAGE(fmt::format("{:20} sech² {:.3f}  table {:.3f}", c.name, WavelengthDensity().noise(c.power),
+                            WavelengthDensity::following(c.power).noise(c.power)));
+    }
+}
