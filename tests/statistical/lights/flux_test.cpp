@@ -108,9 +108,9 @@ TEST_CASE("amounts that make no light are reported where they stand") {
     const auto report = [](const std::string& light) {
         return TestScene::parse("scene 1\ncamera { }\nlight point { power 1 W }\n" + light + "\n").report();
     };
-    CHECK(report("light point { power 0 lm }").find("4:1: warning[W0751]") != std::string::npos);
-    CHECK(report("light quad { luminance 0 nits }").find("4:1: warning[W0751]") != std::string::npos);
-    CHECK(report("light sky { radiance 0 }").find("4:1: warning[W0751]") != std::string::npos);
+    CHECK(report("light point { power 0 lm }").find("4:1: warning[W0740]") != std::string::npos);
+    CHECK(report("light quad { luminance 0 nits }").find("4:1: warning[W0740]") != std::string::npos);
+    CHECK(report("light sky { radiance 0 }").find("4:1: warning[W0740]") != std::string::npos);
     CHECK(report("light point { power 800 lm; color table 400 0  700 0 }").find("4:15: error[E0343]") !=
           std::string::npos);
     CHECK(report("light point { power 1 lm }").empty());

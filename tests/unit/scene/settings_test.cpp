@@ -103,7 +103,7 @@ TEST_CASE("camera: the middle of the film looks at the target, for any film") {
 TEST_CASE("light: none at all is an error, light that is black too") {
     const std::string sphere = "shape sphere { radius 1 }\n";
     CHECK(codes(TestScene::parse(kEye + sphere)) == "E0610");
-    CHECK(codes(TestScene::parse(kEye + sphere + "light sky { radiance 0 }")) == "W0751 E0610");
+    CHECK(codes(TestScene::parse(kEye + sphere + "light sky { radiance 0 }")) == "W0740 E0610");
     CHECK(codes(TestScene::parse(kEye + "shape sphere { radius 1; emission 2 }")) == "");
 }
 
