@@ -37,8 +37,9 @@ double CheckerTexture::oddShare(const TextureQuery& q) const {
     if (!solid_)
         return 0.5 -
                0.5 * balance(q.uv.x, boxHalfWidth(q.du.x, q.dv.x)) * balance(q.uv.y, boxHalfWidth(q.du.y, q.dv.y));
-    const double half = boxHalfWidth(q.radius, 0);
-    return 0.5 - 0.5 * balance(q.position.x, half) * balance(q.position.y, half) * balance(q.position.z, half);
+    return 0.5 - 0.5 * balance(q.position.x, boxHalfWidth(q, q.normal.x)) *
+                     balance(q.position.y, boxHalfWidth(q, q.normal.y)) *
+                     balance(q.position.z, boxHalfWidth(q, q.normal.z));
 }
 
 TextureJet CheckerTexture::jet(const TexturePoint& point, int channels) const noexcept {

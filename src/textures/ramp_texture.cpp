@@ -57,9 +57,18 @@ template <typename Add> void RampTexture::mean(const TextureQuery& q, Add add) c
     case Over::input:
         t = static_cast<double>(input_->value(q).x);
         break;
-    default:
-        t = static_cast<double>(over_ == Over::x ? q.position.x : over_ == Over::y ? q.position.y : q.position.z);
-        half = boxHalfWidth(q.radius, 0);
+    case Over::x:
+        t = static_cast<double>(q.position.x);
+        half = boxHalfWidth(q, q.normal.x);
+        break;
+    case Over::y:
+        t = static_cast<double>(q.position.y);
+        half = boxHalfWidth(q, q.normal.y);
+        break;
+    case Over::z:
+        t = static_cast<double>(q.position.z);
+        half = boxHalfWidth(q, q.normal.z);
+        break;
     }
     // A point is a very short interval.
     half = std::max(half, 1e-9 * std::max(1e-6, std::abs(t)));

@@ -39,4 +39,9 @@ inline double boxHalfWidth(float major, float minor) {
     return std::sqrt(0.75 * (square(static_cast<double>(major)) + square(static_cast<double>(minor))));
 }
 
+// The same for a coordinate in space: the footprint is a disk across the normal.
+inline double boxHalfWidth(const TextureQuery& q, float normalAlongAxis) {
+    return boxHalfWidth(q.radius * safeSqrt(1 - normalAlongAxis * normalAlongAxis), 0);
+}
+
 } // namespace abbe

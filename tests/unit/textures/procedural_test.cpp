@@ -89,6 +89,11 @@ TEST_CASE("checker: the mean over the footprint, from a point to far away") {
     TextureQuery q = at({}, {0.02f, 0.3f, 0.7f});
     q.radius = 30;
     CHECK(cubes.value(q).x == doctest::Approx(0.4).epsilon(1e-3));
+    // A floor near the side of cubes shows their squares: no part of the footprint is above or below it.
+    q = at({}, {0.05f, 0.001f, 0.05f});
+    q.normal = {0, 1, 0};
+    q.radius = 0.02f;
+    CHECK(cubes.value(q).x == doctest::Approx(0.1));
 }
 
 TEST_CASE("checker: texture coordinates of a million, and no number at all (cases 45 and 77)") {
