@@ -1,6 +1,7 @@
 // The light of a clear or hazy day, in absolute units: sky, ground below it, and the sun.
 #pragma once
 
+#include "lights/amount.h"
 #include "lights/light_context.h"
 #include "lights/preetham_sky.h"
 #include "lights/sun_direction.h"
@@ -57,6 +58,8 @@ class DaylightSky final : public Light {
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
+    // As if it came from one half of all directions, from all of it alike.
+    double irradiance() const override { return visibleIntegral(*totals_.fluence) / 2; }
     const Curve* powerShape() const override { return totals_.fluence.get(); }
     bool infinite() const override { return true; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,

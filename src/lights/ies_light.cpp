@@ -137,7 +137,8 @@ double IesProfile::integrate() const {
 
 IesLight::IesLight(Vec3 position, const Frame& axes, IesProfile profile, ScaledCurve perCandela)
     : position_(position), axes_(axes), profile_(std::move(profile)), perCandela_(perCandela),
-      power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale) {}
+      power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale),
+      visiblePower_(profile_.lumens() * visibleIntegral(*perCandela.curve) * perCandela.scale) {}
 
 std::optional<LightSample> IesLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
                                             float) const noexcept {

@@ -47,6 +47,10 @@ class IesLight final : public Light {
     IesLight(Vec3 position, const Frame& axes, IesProfile, ScaledCurve perCandela);
 
     double power() const override { return power_; }
+    double visiblePower() const override { return visiblePower_; }
+    std::optional<LightBounds> bounds(std::uint32_t) const override {
+        return LightBounds{.box = {position_, position_}, .power = static_cast<float>(visiblePower_)};
+    }
     const Curve* powerShape() const override { return perCandela_.curve; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -63,7 +67,7 @@ class IesLight final : public Light {
     Frame axes_;
     IesProfile profile_;
     ScaledCurve perCandela_;
-    double power_;
+    double power_, visiblePower_;
 };
 
 // Null after an error, and for a table without light, which is a warning unless a `power` is asked of it.

@@ -46,7 +46,7 @@ void checkStrategies(const SmokeScene& smoke, std::uint32_t samples, double reso
                 CHECK(images.back().statistics.cappedPaths == 0);
                 CHECK(images.back().statistics.dropped == std::array<std::uint64_t, 3>{});
             }
-            const std::string kernel = coloured ? "absorption+dispersion+media" : "absorption+media";
+            const std::string kernel = coloured ? "all" : "absorption+textures+interfaces+media";
             CHECK(images[0].statistics.kernel == kernel);
             for (const Channel channel : {Channel::x, Channel::y, Channel::z})
                 for (const std::size_t other : {1u, 2u})

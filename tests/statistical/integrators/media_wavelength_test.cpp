@@ -19,8 +19,8 @@ void checkWavelengths(const std::string& text, double resolution) {
     INFO(text);
     const TestScene scene = TestScene::parse(kHeader + text);
     const TestImage hero = render(scene, nightly() ? 16384 : 1024);
-    CHECK(hero.statistics.kernel == "absorption+dispersion+media");
-    constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media).bits();
+    CHECK(hero.statistics.kernel == "all");
+    constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media | Effect::interfaces).bits();
     const RecordingFilm single =
         renderPaths<kGrey>(scene, {.samples = nightly() ? 4096u : 256u, .seed = 77, .wavelengths = oneWavelength});
     for (const Channel channel : {Channel::x, Channel::y, Channel::z})

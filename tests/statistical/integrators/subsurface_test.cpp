@@ -77,7 +77,7 @@ TEST_CASE("subsurface: eight wavelengths to a path agree with one, where red goe
             "mean-free-path table 400 5  550 12  700 60 cm; anisotropy 0.3; ior 1.4; boundary " +
             boundary + " } }\n");
         const TestImage hero = render(scene, nightly() ? 8192 : 1024);
-        constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media).bits();
+        constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media | Effect::interfaces).bits();
         const RecordingFilm single = renderPaths<kGrey>(
             scene, {.samples = nightly() ? 16384u : 4096u, .seed = 77, .wavelengths = oneWavelength});
         for (const Channel channel : {Channel::x, Channel::y, Channel::z})
