@@ -5,6 +5,7 @@
 #include "geometry/quad.h"
 #include "geometry/sphere.h"
 #include "geometry/transformed.h"
+#include "support/numbered_materials.h"
 #include "support/statistics.h"
 #include "test_meshes.h"
 
@@ -15,7 +16,6 @@ using namespace abbe::test;
 
 namespace {
 
-const Material* material(std::uintptr_t i) { return reinterpret_cast<const Material*>(16 * i); }
 const Light* light(std::uintptr_t i) { return reinterpret_cast<const Light*>(16 * i); }
 
 Ray ray(Vec3 origin, Vec3 direction) { return {origin, normalize(direction)}; }

@@ -3,6 +3,7 @@
 #include "geometry/instance_table.h"
 #include "geometry/mesh.h"
 #include "geometry/sphere.h"
+#include "support/numbered_materials.h"
 #include "support/statistics.h"
 #include "test_meshes.h"
 
@@ -12,8 +13,6 @@ using namespace abbe;
 using namespace abbe::test;
 
 namespace {
-
-const Material* material(std::uintptr_t i) { return reinterpret_cast<const Material*>(16 * i); }
 
 Vec3d around(Random& random) {
     return Vec3d(random.uniformDouble(), random.uniformDouble(), random.uniformDouble()) * 2 - Vec3d(1, 1, 1);

@@ -122,7 +122,8 @@ double integralOfPdf(const EnvironmentLight& sky) {
             const double theta = kPiD * (i + 0.5) / n, phi = 2 * kPiD * (j + 0.5) / n;
             const Vec3 w{static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)),
                          static_cast<float>(std::sin(theta) * std::sin(phi))};
-            sum += sky.pdfEscaped(Vec3{}, w, 0) * (std::cos(kPiD * i / n) - std::cos(kPiD * (i + 1) / n)) * 2 * kPiD / n;
+            sum +=
+                sky.pdfEscaped(Vec3{}, w, 0) * (std::cos(kPiD * i / n) - std::cos(kPiD * (i + 1) / n)) * 2 * kPiD / n;
         }
     return sum;
 }
