@@ -106,6 +106,8 @@ void SceneBuilder::noteEffects(BuiltScene& built) {
             built.scene.reasons.push_back({Effect::dispersion, span, "its refractive index varies with wavelength"});
         if (needs.has(Effect::textures))
             built.scene.reasons.push_back({Effect::textures, span, "it looks at a texture"});
+        if (materials_[index]->mayBeOpen())
+            built.scene.reasons.push_back({Effect::interfaces, span, "light goes through its openings"});
         if (needs.has(Effect::absorption))
             built.scene.reasons.push_back({Effect::absorption, span, "light is absorbed inside it"});
     }

@@ -53,6 +53,14 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
     const ScaledCurve radiance = emissionOf(shape);
     std::optional<LightMotion> motion;
     if (!radiance.curve || !lightMotion(toRender, shape.definition->span, motion)) return nullptr;
+    // A light that is sampled would shine from its holes, too.
+    if (const Material* material = materialOf(shape.common); material && material->mayBeOpen()) {
+        diagnostics_
+            .error("E0754", shape.definition->span, "a shape that shines has a material with holes",
+                   "its `opacity` is below 1")
+            .help = "take the opacity off, or put the light behind a shape with holes";
+        return nullptr;
+    }
     if (motion)
         lights_.push_back(std::make_unique<MovingAreaLight>(placed, radiance, false, std::move(*motion)));
     else

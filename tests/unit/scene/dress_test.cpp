@@ -157,6 +157,7 @@ TEST_CASE("what a material cannot wear is said where it stands") {
     CHECK(codes(build(sphere("diffuse { priority 2 }"))) == "E0721");
     CHECK(codes(build(sphere("diffuse { priority 2.5 }"))) == "E0305");
     CHECK(codes(build(sphere("boundary { opacity 0.5 }"))) == "E0201");
+    CHECK(codes(build("shape sphere { emission 3; material diffuse { opacity 0.5 } }\n")) == "E0754");
 }
 
 } // namespace abbe::test
