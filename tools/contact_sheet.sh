@@ -38,7 +38,7 @@ for name in "${names[@]}"; do
     scene=$work/$name.scene picture=$work/$name.exr
     pictures+=("$picture")
     [[ ! -e $picture ]] || continue
-    edits=(-e "s/^param preset .*/param preset $name/")
+    edits=(-e "s/^material ball .*/material ball preset $name/")
     if grep -qxF -- "$name" <<<"$hair"; then
         # A ball of fur in the place of the ball; the ring shows nothing of hair.
         fur="shape ball curves \"$root/scenes/hair-ball/hair.ply\" { material ball; transform { scale 3.09e-4; translate 0 6.3 0 } }"

@@ -45,9 +45,11 @@ Made by `abbe explain library > docs/materials_library.md`; the definitions are 
 
     material ring preset gold
     material worn preset gold { roughness 0.4 }
-    shape drink sphere { radius 3 cm; material preset milk; interior preset milk }
+    shape bust mesh "bust.obj" { material preset marble }
+    shape drink mesh "drink.obj" { material dielectric { ior 0.882 }; interior preset milk }
 
-What the block says replaces what the library says. Where the table has a medium, the material is its surface: a shape takes both.
+What the block says replaces what the library says. Materials are complete. Where the table has a medium, too, that is what the
+material has inside, for the `interior` of a shape with a surface of its own: milk in a glass.
 `abbe explain presets` lists them, `abbe explain gold` shows one with its figures. Where no measurement is named, the
 figures are approximate, and say so.
 

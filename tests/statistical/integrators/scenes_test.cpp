@@ -32,7 +32,8 @@ TestImage renderScene(const fs::path& path, const char* strategy, std::uint64_t 
 bool smallLights(const TestScene& scene) {
     const auto& lights = scene.built().facts.lightList;
     return std::any_of(lights.begin(), lights.end(), [](const auto& light) {
-        return light.type == "point" || light.type == "spot" || light.type == "sun";
+        return light.type == "point" || light.type == "spot" || light.type == "sun" ||
+               light.type == "daylight" || light.type == "ies";
     });
 }
 

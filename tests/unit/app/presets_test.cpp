@@ -98,10 +98,11 @@ TEST_CASE("what the scene says wins") {
 }
 
 TEST_CASE("in slots, and for media") {
-    const Loaded l("shape sphere { material preset milk; interior preset milk }\n"
+    const Loaded l("shape cup sphere { center 9 0 0; material preset milk }\nshape sphere { material boundary; "
+                   "interior preset milk }\n"
                    "medium thin preset milk { scattering 20 per-m }\n"
                    "shape ball sphere { center 3 0 0; material preset gold { roughness 0 }; }\n"
-                   "shape drop sphere { center 6 0 0; material preset milk; interior thin }",
+                   "shape drop sphere { center 6 0 0; material preset water; interior thin }",
                    true);
     INFO(l.human());
     CHECK(l.diagnostics.all().empty());
@@ -149,12 +150,13 @@ TEST_CASE("every preset builds without a word, and says what it is and where its
         CHECK(preset.doc.ends_with('.'));
         CHECK(preset.source.ends_with('.'));
         const std::string name(preset.name);
-        const bool medium = empty.types.presets()->find(schema::Kind::medium, name) != nullptr;
-        const Loaded l("shape sphere { material preset " + name + (medium ? "; interior preset " + name : "") + " }",
+        const bool material = preset.kind == schema::Kind::material;
+        const Loaded l("shape sphere { material " +
+                           (material ? "preset " + name : "boundary; interior preset " + name) + " }",
                        true);
         INFO(l.human());
         CHECK(l.diagnostics.all().empty());
-        // A medium has its surface under the same name.
+        // Behind every medium is a material of the name.
         CHECK(empty.types.presets()->find(schema::Kind::material, name));
     }
     CHECK(materials >= 60);
