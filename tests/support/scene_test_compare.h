@@ -12,7 +12,7 @@ namespace abbe::test {
 // Probability of an error of the first kind of each check below. All seeds are fixed: a test fails always or never.
 inline constexpr double kImageLevel = 1e-4;
 // Relative differences that rounding in single precision explains; added to every error bar.
-inline constexpr double kRounding = 5e-6;
+inline constexpr double kRounding = 1e-5;
 
 // Student's t of one tile, as the probability of a smaller one: uniform on [0, 1] if the means are equal.
 struct TileTest {

@@ -23,7 +23,7 @@ TestScene stripes(const std::string& glass) {
 void checkWavelengths(const std::string& glass) {
     INFO(std::string(glass));
     const TestScene scene = stripes(glass);
-    const TestImage hero = render(scene, nightly() ? 8192 : 1024);
+    const TestImage hero = render(scene, nightly() ? 8192 : 1024, 3);
     CHECK(hero.statistics.kernel == "absorption+dispersion");
     constexpr EffectBits kAbsorptionOnly = static_cast<EffectBits>(Effect::absorption);
     const RecordingFilm single = renderPaths<kAbsorptionOnly>(
