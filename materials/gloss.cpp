@@ -1,5 +1,6 @@
 #include "materials/gloss.h"
 
+#include "base/parallel.h"
 #include "materials/fresnel.h"
 #include "materials/ggx_albedo.h"
 
@@ -7,38 +8,64 @@
 
 namespace abbe {
 
-Gloss::Gloss(double ior, float roughness)
-    : ior_(static_cast<float>(ior)), ggx_(Ggx::fromRoughness(roughness, 0)), absent_(std::abs(ior_ - 1) < 1e-6f) {
-    if (absent_) return;
+GlossTable::GlossTable(double ior, float roughness) {
+    const Gloss gloss(static_cast<float>(ior), roughness);
     constexpr int kSide = 48; // points in each dimension of the sampler's square: error below 1e-4
-    if (!smooth())
-        for (int i = 0; i < kNodes; ++i) {
-            const double root = std::max(i, 1) / (kNodes - 1.0), mu = root * root;
-            const Vec3 wo(Vec3d{std::sqrt((1 - mu) * (1 + mu)), 0, mu});
-            double sum = 0;
-            for (int k = 0; k < kSide * kSide; ++k) {
-                const Vec2 u{(static_cast<float>(k % kSide) + 0.5f) / kSide,
-                             (static_cast<float>(k / kSide) + 0.5f) / kSide};
-                if (const auto wi = sample(wo, u)) sum += static_cast<double>(weight(wo, *wi));
-            }
-            albedo_[static_cast<std::size_t>(i)] = static_cast<float>(sum / (kSide * kSide));
+    for (int i = 0; i < kNodes; ++i) {
+        const double root = (gloss.smooth() ? i : std::max(i, 1)) / (kNodes - 1.0), mu = root * root;
+        float& albedo = albedo_[static_cast<std::size_t>(i)];
+        if (gloss.smooth()) {
+            albedo = fresnelDielectric(static_cast<float>(mu), gloss.ior_);
+            continue;
         }
+        const Vec3 wo(Vec3d{std::sqrt((1 - mu) * (1 + mu)), 0, mu});
+        double sum = 0;
+        for (int k = 0; k < kSide * kSide; ++k) {
+            const Vec2 u{(static_cast<float>(k % kSide) + 0.5f) / kSide,
+                         (static_cast<float>(k / kSide) + 0.5f) / kSide};
+            if (const auto wi = gloss.sample(wo, u)) sum += static_cast<double>(gloss.weight(wo, *wi));
+        }
+        albedo = static_cast<float>(sum / (kSide * kSide));
+    }
     constexpr int kCosines = 1000;
     double mean = 0;
     for (int i = 0; i < kCosines; ++i) {
         const float mu = (static_cast<float>(i) + 0.5f) / kCosines;
-        mean += static_cast<double>(2 * mu * albedo(mu)) / kCosines;
+        mean += static_cast<double>(2 * mu * (gloss.smooth() ? fresnelDielectric(mu, gloss.ior_) : at(mu))) / kCosines;
     }
-    meanAlbedo_ = static_cast<float>(mean);
+    mean_ = static_cast<float>(mean);
+}
+
+GlossRange::GlossRange(double ior, const schema::TexturedNumber& roughness)
+    : ior_(static_cast<float>(ior)), roughness_(roughness, 0, 1) {
+    if (std::abs(ior_ - 1) < 1e-6f) return;
+    if (!textured()) {
+        tables_.emplace_back(ior, static_cast<float>(roughness.value));
+        return;
+    }
+    tables_.resize(kRoughnesses, GlossTable(ior, 0));
+    parallelFor(kRoughnesses - 1, [&](std::size_t i) {
+        tables_[i + 1] = GlossTable(ior, static_cast<float>(i + 1) / (kRoughnesses - 1));
+    });
+}
+
+Gloss GlossRange::of(float roughness) const {
+    Gloss gloss(ior_, roughness);
+    if (tables_.empty()) return gloss;
+    gloss.below_ = gloss.above_ = tables_.data();
+    if (tables_.size() == 1) return gloss;
+    const float x = roughness * (kRoughnesses - 1);
+    const int i = std::min(static_cast<int>(x), kRoughnesses - 2);
+    gloss.below_ += i;
+    gloss.above_ += i + 1;
+    gloss.between_ = x - static_cast<float>(i);
+    return gloss;
 }
 
 float Gloss::albedo(float mu) const {
-    if (absent_) return 0;
+    if (absent()) return 0;
     if (smooth()) return fresnelDielectric(std::min(mu, 1.f), ior_);
-    const float x = std::sqrt(std::clamp(mu, 0.f, 1.f)) * (kNodes - 1);
-    const int i = std::min(static_cast<int>(x), kNodes - 2);
-    const auto at = [this](int k) { return albedo_[static_cast<std::size_t>(k)]; };
-    return at(i) + (at(i + 1) - at(i)) * (x - static_cast<float>(i));
+    return lerp(below_->at(mu), above_->at(mu));
 }
 
 float Gloss::lossless(float mu) const { return 1 / ggxAlbedo(mu, ggx_.alphaX(), ior_); }
@@ -49,13 +76,13 @@ float Gloss::reflectance(Vec3 wo, Vec3 wi) const {
 }
 
 Gloss::Value Gloss::eval(Vec3 wo, Vec3 wi) const {
-    if (absent_ || !(wo.z > 0 && wi.z > 0)) return {};
+    if (!(wo.z > 0 && wi.z > 0)) return {};
     const float d = ggx_.D(normalize(wo + wi));
     return {reflectance(wo, wi) * (0.25f * d * ggx_.maskingOverCosine(wo, wi)), ggx_.boundedReflection(wo) * d};
 }
 
 std::optional<Vec3> Gloss::sample(Vec3 wo, Vec2 u) const {
-    if (absent_ || !(wo.z > 0)) return std::nullopt;
+    if (!(wo.z > 0)) return std::nullopt;
     const Vec3 wi = reflect(wo, ggx_.sampleBounded(wo, u));
     return wi.z > 0 ? std::optional(wi) : std::nullopt;
 }

@@ -9,6 +9,8 @@
 namespace abbe {
 namespace {
 
+constexpr float kThickest = 100; // of thickness-scale
+
 // What the coat must know of its base.
 struct BaseLook {
     Spectrum albedo{0.f};
@@ -119,7 +121,7 @@ class LayeredBsdf final : public Bsdf {
         return exp(depth_ * -length) * darkened * through;
     }
 
-    const Gloss& gloss_;
+    Gloss gloss_;
     const Bsdf& base_;
     Spectrum depth_; // optical, for the way in and out
     float darkening_;
@@ -129,29 +131,35 @@ class LayeredBsdf final : public Bsdf {
 class Layered final : public Material {
   public:
     Layered(const LayeredParams& params, const Material& base)
-        : base_(base), gloss_(params.ior->at(587.6), params.roughness), tint_(params.tint),
+        : base_(base), gloss_(params.ior->at(587.6), params.roughness), tint_(params.tint, 1),
           absorption_(params.absorption), thickness_(static_cast<float>(params.thickness)),
-          darkening_(static_cast<float>(params.darkening)) {}
+          scale_(params.thicknessScale, 0, kThickest), darkening_(params.darkening, 0, 1) {}
 
     Effects needs() const override { return base_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
-        return arena.make<LayeredBsdf>(gloss_, partBsdf(base_, hit, lambda, arena), depth(lambda), darkening_);
+        return arena.make<LayeredBsdf>(gloss_.at(hit), partBsdf(base_, hit, lambda, arena), depth(hit, lambda),
+                                       darkening_.at(hit));
     }
-    bool usesTextures() const override { return base_.usesTextures(); }
+    bool usesTextures() const override {
+        return base_.usesTextures() || gloss_.textured() || tint_.textured() || scale_.textured() ||
+               darkening_.textured();
+    }
     bool mayBeOpen() const override { return base_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override { return base_.opacity(hit); }
 
   private:
-    Spectrum depth(const Wavelengths& lambda) const {
-        if (absorption_) return absorption_->at(lambda) * (2 * thickness_);
-        if (!tint_) return Spectrum(0.f);
-        return log(max(tint_->at(lambda), Spectrum(1e-6f))) * -1.f; // black counts as 1e-6
+    Spectrum depth(const SurfaceHit& hit, const Wavelengths& lambda) const {
+        if (absorption_) return absorption_->at(lambda) * (2 * thickness_ * scale_.at(hit));
+        if (tint_.absent()) return Spectrum(0.f);
+        return log(max(tint_.at(hit, lambda), Spectrum(1e-6f))) * -scale_.at(hit); // black counts as 1e-6
     }
 
     const Material& base_;
-    Gloss gloss_;
-    const Curve *tint_, *absorption_;
-    float thickness_, darkening_;
+    GlossRange gloss_;
+    SpectrumInput tint_;
+    const Curve* absorption_;
+    float thickness_;
+    NumberInput scale_, darkening_;
 };
 
 } // namespace
@@ -206,6 +214,13 @@ schema::TypeInfo layeredType() {
                     .synonyms({"depth"})
                     .doc("Thickness of the coat, for its absorption.")
                     .example("thickness 50 um"),
+                field(FieldType::number, "thickness-scale", &P::thicknessScale)
+                    .unit({Dimension::none, Dimension::fraction})
+                    .range(0, static_cast<double>(kThickest))
+                    .byDefault("1")
+                    .synonyms({"coat_thickness"})
+                    .doc("Factor on the thickness, for absorption or tint: a texture lets lacquer pool and wear off.")
+                    .example("thickness-scale ramp { input noise { scale 5 cm }; stop 0.4 0.2; stop 0.6 2 }"),
                 field(FieldType::number, "darkening", &P::darkening)
                     .unit({Dimension::none, Dimension::fraction})
                     .range(0, 1)

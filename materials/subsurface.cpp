@@ -53,19 +53,20 @@ class DiffuseBoundaryBsdf final : public Bsdf {
         return std::optional<BsdfSample>(std::in_place, *wi, Spectrum(gloss_.weight(wo, *wi) / reflected),
                                          gloss_.eval(wo, *wi).pdf * reflected, Lobes(Lobe::glossy) | Lobe::reflection);
     }
-    const Gloss& gloss_;
+    Gloss gloss_;
 };
 
 class DiffuseBoundary final : public Material {
   public:
-    DiffuseBoundary(double ior, float roughness) : gloss_(ior, roughness) {}
+    DiffuseBoundary(double ior, const schema::TexturedNumber& roughness) : gloss_(ior, roughness) {}
 
-    const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena& arena) const noexcept override {
-        return arena.make<DiffuseBoundaryBsdf>(gloss_);
+    const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths&, Arena& arena) const noexcept override {
+        return arena.make<DiffuseBoundaryBsdf>(gloss_.at(hit));
     }
+    bool usesTextures() const override { return gloss_.textured(); }
 
   private:
-    Gloss gloss_;
+    GlossRange gloss_;
 };
 
 } // namespace
@@ -128,7 +129,7 @@ std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams& pa
         return std::make_unique<DiffuseBoundary>(params.ior->at(587.6), params.roughness);
     DielectricParams dielectric;
     dielectric.ior = params.ior;
-    dielectric.roughness.value = params.roughness;
+    dielectric.roughness = params.roughness;
     return makeDielectric(dielectric);
 }
 

@@ -14,13 +14,13 @@ struct SubsurfaceParams {
     const Curve* meanFreePath = nullptr; // m; set
     double anisotropy = 0;
     const Curve* ior = nullptr; // set
-    float roughness = 0.3f;
+    schema::TexturedNumber roughness{0.3, nullptr, {}};
     schema::Choice boundary{"dielectric", {}};
 };
 
 schema::TypeInfo subsurfaceType();
-// The surface alone; its inside is makeSubsurfaceInside(reflectance, meanFreePath, anisotropy). The curves must outlive
-// it.
+// The surface alone; its inside is makeSubsurfaceInside(reflectance, meanFreePath, anisotropy). Curves and textures
+// must outlive it.
 std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams&);
 
 } // namespace abbe

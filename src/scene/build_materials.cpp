@@ -42,6 +42,8 @@ schema::Reference SceneBuilder::materialReference(const Definition& d) {
     if (made.inside) made.material = translucent(std::move(made.material), *made.inside, d);
     auto material = dressed(std::move(made.material), made.dress, d);
     if (!material) return {};
+    if (made.dress.normal) askers.push_back({made.dress.normal->reference.index, made.dress.normal->span});
+    if (made.dress.bump) askers.push_back({made.dress.bumpMap.index, made.dress.bump->span});
     const schema::Reference kept{keepMaterial(std::move(material), d.span)};
     if (!askers.empty()) textureAskers_.emplace(kept.index, std::move(askers));
     return kept;

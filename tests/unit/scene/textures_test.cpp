@@ -55,6 +55,15 @@ TEST_CASE("textures over uv need texture coordinates, also inside of other textu
     CHECK(codes(bad) == "E0733");
     CHECK(bad.diagnostics().all()[0].related.size() == 1);
     CHECK(codes(build("material m diffuse { reflectance noise }\nshape mesh " + triangle)).empty());
+    for (const char* dress : {"normal checker", "bump 1 mm { map ramp { stop 0 0; stop 1 1 } }", "opacity checker"}) {
+        const std::string material = fmt::format("material m diffuse {{ {} }}\n", dress);
+        CHECK(codes(build(material + "shape mesh " + triangle)) == "E0733");
+        CHECK(codes(build("material n mix { first diffuse { " + std::string(dress) +
+                          " }; second diffuse }\nmaterial m two-sided { front n; back n }\nshape mesh " + triangle)) ==
+              "E0733 E0733");
+        CHECK(codes(build(material + kQuad)).empty());
+    }
+    CHECK(codes(build("material m diffuse { bump 1 mm { map noise } }\nshape mesh " + triangle)).empty());
     CHECK(codes(build("material m diffuse { reflectance triplanar { map checker } }\nshape mesh " + triangle)).empty());
     CHECK(codes(build(over + "shape box { material m }\nshape sphere { material m }\n")).empty());
 }
