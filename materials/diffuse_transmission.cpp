@@ -63,7 +63,7 @@ class DiffuseTransmission final : public Material {
 
 } // namespace
 
-bool checkParams(const DiffuseTransmissionParams& p, Diagnostics& diagnostics) {
+bool checkParams(const DiffuseTransmissionParams& p, const schema::PlaceOf& placeOf, Diagnostics& diagnostics) {
     if (p.reflectance.texture || p.transmittance.texture) return true;
     const auto value = [](const Curve* curve, double nm) { return curve ? curve->at(nm) : kDefault; };
     double most = 0, where = 0;
@@ -72,10 +72,9 @@ bool checkParams(const DiffuseTransmissionParams& p, Diagnostics& diagnostics) {
         if (both > most) most = both, where = nm;
     }
     if (most <= 1 + 1e-5) return true; // curves are held in single precision
-    const Span span = p.transmittance.curve ? p.transmittance.span : p.reflectance.span;
     diagnostics
-        .error("E0710", span, "reflectance and transmittance together exceed 1",
-               fmt::format("{:.3f} at {} nm", most, where))
+        .error("E0710", placeOf(p.transmittance.curve ? "transmittance" : "reflectance"),
+               "reflectance and transmittance together exceed 1", fmt::format("{:.3f} at {} nm", most, where))
         .help =
         p.reflectance.curve && p.transmittance.curve
             ? "scale one of them: what is reflected is not transmitted"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/material.h"
+#include "schema/place_of.h"
 #include "schema/type.h"
 
 #include <memory>
@@ -16,7 +17,7 @@ struct DiffuseTransmissionParams {
 
 schema::TypeInfo diffuseTransmissionType();
 // False, with a diagnostic, if the two together give back more light than arrives. Of textures nothing is known here.
-bool checkParams(const DiffuseTransmissionParams&, Diagnostics&);
+bool checkParams(const DiffuseTransmissionParams&, const schema::PlaceOf&, Diagnostics&);
 // Curves and textures must outlive the material.
 std::unique_ptr<const Material> makeDiffuseTransmission(const DiffuseTransmissionParams&);
 

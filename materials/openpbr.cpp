@@ -2,6 +2,7 @@
 
 #include "materials/attenuation_curve.h"
 #include "materials/openpbr_bsdf.h"
+#include "materials/openpbr_inside.h"
 #include "render/surface_input.h"
 #include "spectrum/cauchy_curve.h"
 #include "spectrum/sampled_curve.h"
@@ -17,6 +18,8 @@ CauchyCurve cauchyOf(double index, double abbeNumber) {
     const double b = (index - 1) / (abbeNumber * (1 / (f * f) - 1 / (c * c)));
     return {index - b / (d * d), b};
 }
+
+constexpr double kMostAnisotropic = 0.99; // as in `material subsurface`
 
 bool isWhite(const schema::TexturedSpectrum& s) {
     return !s.texture && (!s.curve || (s.curve->minimum() == 1 && s.curve->maximum() == 1));
@@ -50,6 +53,7 @@ class OpenPbr final : public Material {
     ConstantCurve plainIor_{1.5};
     const Curve* ior_; // never null
     std::optional<AttenuationCurve> attenuation_;
+    bool filled_; // with the medium of the subsurface part
     float coatReturns_;
     std::optional<StretchedLobe> stretched_, stretchedCoat_;
 };
@@ -64,13 +68,14 @@ OpenPbr::OpenPbr(const OpenPbrParams& p)
       fuzzWeight_(p.fuzzWeight, 0, 1), fuzzRoughness_(p.fuzzRoughness, 0, 1), thinFilmWeight_(p.thinFilmWeight, 0, 1),
       baseColor_(p.baseColor, 0.8f), specularColor_(p.specularColor, 1), transmissionColor_(p.transmissionColor, 1),
       subsurfaceColor_(p.subsurfaceColor, 0.8f), coatColor_(p.coatColor, 1), fuzzColor_(p.fuzzColor, 1),
-      ior_(p.specularIor ? p.specularIor : &plainIor_),
+      ior_(p.specularIor ? p.specularIor : &plainIor_), filled_(hasSubsurfaceInside(p)),
       coatReturns_(static_cast<float>(1 - (1 - hemisphericalReflectance(p.coatIor)) / (p.coatIor * p.coatIor))) {
     if (p.transmissionDispersionScale > 0) {
         cauchy_.emplace(cauchyOf(ior_->at(587.6), p.transmissionDispersionAbbeNumber / p.transmissionDispersionScale));
         ior_ = &*cauchy_;
     }
-    if (refracts() && p.transmissionDepth > 0 && p.transmissionColor.curve && !isWhite(p.transmissionColor))
+    if (refracts() && !hasScatteringGlass(p) && p.transmissionDepth > 0 && p.transmissionColor.curve &&
+        !isWhite(p.transmissionColor))
         attenuation_.emplace(*p.transmissionColor.curve, p.transmissionDepth);
     const auto constant = [](const NumberInput& n) { return !n.textured(); };
     if (constant(specularRoughness_) && constant(specularRoughnessAnisotropy_) && constant(coatWeight_) &&
@@ -156,7 +161,8 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
         .transmission = transmission,
         .subsurface = subsurfaceWeight_.at(hit),
         .thinWalled = p_.geometryThinWalled,
-        .forward = static_cast<float>(0.5 * (1 + p_.subsurfaceScatterAnisotropy)),
+        .filled = filled_,
+        .forward = filled_ ? 1 : static_cast<float>(0.5 * (1 + p_.subsurfaceScatterAnisotropy)),
         .base = baseColor_.at(hit, lambda) * baseWeight_.at(hit),
         .under = subsurfaceColor_.at(hit, lambda),
         .tint = specularColor_.at(hit, lambda),
@@ -182,23 +188,31 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
 
 } // namespace
 
-bool checkParams(const OpenPbrParams& p, Diagnostics& diagnostics) {
+bool checkParams(const OpenPbrParams& p, const schema::PlaceOf& placeOf, Diagnostics& diagnostics) {
     const std::size_t before = diagnostics.errorCount();
-    if (!p.geometryThinWalled && (p.subsurfaceWeight.texture || p.subsurfaceWeight.value > 0))
-        diagnostics
-            .error("E0700", p.subsurfaceWeight.span, "`subsurface-weight` needs `geometry-thin-walled on`",
-                   "light under the surface of a solid")
-            .help = "leave `subsurface-weight` out, or use `material subsurface` for solids";
+    const auto error = [&](const char* code, std::string_view property, const char* message, const char* label,
+                           const char* help) {
+        diagnostics.error(code, placeOf(property), message, label).help = help;
+    };
+    const bool filled = hasSubsurfaceInside(p);
+    if (filled && (p.transmissionWeight.texture || p.transmissionWeight.value > 0))
+        error("E0700", "transmission-weight", "a solid is filled with two things",
+              "glass, and the medium of `subsurface-weight`",
+              "leave one of the weights out; milky glass is `transmission-weight 1` with `transmission-scatter`");
+    if (filled && std::abs(p.subsurfaceScatterAnisotropy) > kMostAnisotropic)
+        error("E0703", "subsurface-scatter-anisotropy", "light is never turned aside",
+              "in a solid, this lies between -0.99 and 0.99", "0.9 is strongly forward");
     if (p.transmissionDispersionScale > 0 && p.specularIor && !p.specularIor->isConstant())
-        diagnostics
-            .error("E0701", p.transmissionColor.span, "the dispersion is stated twice",
-                   "`specular-ior` varies with wavelength, and `transmission-dispersion-scale` is above 0")
-            .help = "leave one of them out";
+        error("E0701", "transmission-dispersion-scale", "the dispersion is stated twice",
+              "`specular-ior` varies with wavelength already", "leave one of them out");
     if (!p.geometryThinWalled && p.transmissionDepth > 0 && p.transmissionColor.texture)
-        diagnostics
-            .error("E0702", p.transmissionColor.span, "the colour of an inside cannot be a texture",
-                   "`transmission-depth` is above 0")
-            .help = "leave `transmission-depth` out to tint at the surface, or give one colour";
+        error("E0702", "transmission-color", "the colour of an inside cannot be a texture",
+              "`transmission-depth` is above 0",
+              "leave `transmission-depth` out to tint at the surface, or give one colour");
+    if (filled && p.subsurfaceColor.texture)
+        error("E0702", "subsurface-color", "the colour of an inside cannot be a texture",
+              "light that enters here comes out elsewhere",
+              "give one colour; `subsurface-weight` and `base-color` may be textures");
     return diagnostics.errorCount() == before;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "render/material.h"
+#include "schema/place_of.h"
 #include "schema/type.h"
 
 #include <memory>
@@ -27,13 +28,17 @@ struct OpenPbrParams {
     const Curve* specularIor = nullptr; // null: 1.5
 
     Number transmissionWeight{0, nullptr, {}};
-    Color transmissionColor;      // null: 1
-    double transmissionDepth = 0; // m
+    Color transmissionColor;                    // null: 1
+    double transmissionDepth = 0;               // m
+    const Curve* transmissionScatter = nullptr; // null: 0
+    double transmissionScatterAnisotropy = 0;
     double transmissionDispersionScale = 0;
     double transmissionDispersionAbbeNumber = 20;
 
     Number subsurfaceWeight{0, nullptr, {}};
-    Color subsurfaceColor; // null: 0.8
+    Color subsurfaceColor;                        // null: 0.8
+    double subsurfaceRadius = 1e-3;               // m
+    const Curve* subsurfaceRadiusScale = nullptr; // null: 1
     double subsurfaceScatterAnisotropy = 0;
 
     Number coatWeight{0, nullptr, {}};
@@ -59,8 +64,8 @@ struct OpenPbrParams {
 
 schema::TypeInfo openPbrType();
 // Reports what no single property can say wrong; false if it did.
-bool checkParams(const OpenPbrParams&, Diagnostics&);
-// The curves and textures must outlive the material.
+bool checkParams(const OpenPbrParams&, const schema::PlaceOf&, Diagnostics&);
+// The surface alone; what fills solids is insideOf() in openpbr_inside.h. The curves and textures must outlive it.
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams&);
 
 } // namespace abbe

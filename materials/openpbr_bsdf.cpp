@@ -41,8 +41,8 @@ Lobes OpenPbrBsdf::lobes() const noexcept {
     const bool sheet = point_.thinWalled && point_.transmission > 0 && point_.metalness < 1;
     if (smooth_ || (coat && point_.coat.smooth()) || (sheet && point_.sheet.smooth())) result |= Lobe::delta;
     if (!smooth_ || (coat && !point_.coat.smooth()) || (sheet && !point_.sheet.smooth())) result |= Lobe::glossy;
-    if (opaque || point_.fuzz > 0) result |= Lobe::diffuse;
-    if (refracts() || sheet || (opaque && point_.subsurface > 0)) result |= Lobe::transmission;
+    if (opaque || point_.filled || point_.fuzz > 0) result |= Lobe::diffuse;
+    if (refracts() || sheet || point_.filled || (opaque && point_.subsurface > 0)) result |= Lobe::transmission;
     if (refracts() && disperses_) result |= Lobe::dispersive;
     return result;
 }
@@ -86,12 +86,14 @@ float OpenPbrBsdf::reflectionShare(const Facet& f) const {
 
 BsdfEval OpenPbrBsdf::eval(Vec3 wo, Vec3 wi, Transport transport) const noexcept {
     if (!(wo.z != 0 && wi.z != 0)) return {};
+    if (point_.filled && wo.z < 0) return leaving(wi);
     return evalFrom(view(wo), wo.z < 0 ? flipped(wi) : wi, transport);
 }
 
 BsdfEval OpenPbrBsdf::evalFrom(const View& v, Vec3 wi, Transport transport) const {
     LaneEval lanes = wi.z > 0            ? reflection(v, wi)
                      : point_.thinWalled ? sheetTransmission(v, flipped(wi))
+                     : point_.filled     ? entering(v, flipped(wi))
                                          : refraction(v, wi, transport);
     if (!(wi.z < 0 && disperses_ && refracts())) return {lanes.fcos, lanes.pdf[0]};
     // The hero alone may be unable to refract this way; see materials/dielectric_bsdf.cpp.
@@ -131,7 +133,8 @@ OpenPbrBsdf::LaneEval OpenPbrBsdf::reflection(const View& v, Vec3 wi) const {
         const float plastic = (1 - point_.metalness) * (1 - point_.transmission), s = point_.subsurface;
         Spectrum matte(0.f);
         if (s < 1) matte = EonDiffuse(point_.base, point_.diffuseRoughness)(v.wo, wi) * (1 - s);
-        if (s > 0) matte += EonDiffuse(point_.under, point_.diffuseRoughness)(v.wo, wi) * (s * (1 - point_.forward));
+        const float back = s * (1 - point_.forward);
+        if (back > 0) matte += EonDiffuse(point_.under, point_.diffuseRoughness)(v.wo, wi) * back;
         f += pass.opaque * v.below * matte * (plastic * wi.z);
         pdf += v.pick[kDiffuse] * cosineHemispherePdf(wi.z);
     }
@@ -156,6 +159,21 @@ OpenPbrBsdf::LaneEval OpenPbrBsdf::sheetTransmission(const View& v, Vec3 wi) con
         pdf += v.pick[kDiffuseThrough] * cosineHemispherePdf(wi.z);
     }
     return {f, Spectrum(pdf)};
+}
+
+// Into the medium of the subsurface part, whose walk gives it its colour; wi is turned to the side of wo.
+OpenPbrBsdf::LaneEval OpenPbrBsdf::entering(const View& v, Vec3 wi) const {
+    const float density = cosineHemispherePdf(wi.z);
+    const float share = (1 - point_.metalness) * (1 - point_.transmission) * point_.subsurface;
+    return {passing(v, 1, false).opaque * v.below * (share * density), Spectrum(v.pick[kDiffuseThrough] * density)};
+}
+
+// Out of that medium. Light enters evenly under the gloss and leaves evenly and whole, so that none is lost
+// [Kulla2017]; of the layers it meets what the coat absorbs.
+BsdfEval OpenPbrBsdf::leaving(Vec3 wi) const {
+    if (!(wi.z > 0)) return {};
+    const float density = cosineHemispherePdf(wi.z);
+    return {(coatAbsorbs_ ? leavingCoat(wi.z) : kOne) * density, density};
 }
 
 // Value and density per lane, each off its own microfacet [Walter2007]; see RoughDielectricBsdf::transmission.
@@ -195,6 +213,13 @@ Spectrum OpenPbrBsdf::leavingCoat(float cosI) const {
 
 std::optional<BsdfSample> OpenPbrBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Transport transport) const noexcept {
     if (wo.z == 0) return std::nullopt;
+    if (point_.filled && wo.z < 0) {
+        const Vec3 wi = squareToCosineHemisphere(u);
+        const float density = cosineHemispherePdf(wi.z);
+        if (!(density > 0)) return std::nullopt;
+        return std::optional<BsdfSample>(std::in_place, wi, coatAbsorbs_ ? leavingCoat(wi.z) : kOne, density,
+                                         Lobes(Lobe::diffuse) | Lobe::transmission);
+    }
     const View v = view(wo);
     int choice = -1;
     float rest = uLobe;

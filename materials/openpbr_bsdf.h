@@ -18,7 +18,8 @@ namespace abbe {
 struct OpenPbrPoint {
     float metalness, transmission, subsurface; // shares, 0 … 1
     bool thinWalled;
-    float forward;    // thin-walled subsurface: share of the light that is scattered through
+    bool filled;      // with the medium of the subsurface part: light from within leaves whole and evenly
+    float forward;    // share of subsurface light that goes through: scattered by a thin wall, into what is filled
     Spectrum base;    // colour of the diffuse base
     Spectrum under;   // colour of the subsurface part
     Spectrum tint;    // of the dielectric's reflection
@@ -83,6 +84,8 @@ class OpenPbrBsdf final : public Bsdf {
     BsdfEval evalFrom(const View&, Vec3 wi, Transport) const;
     LaneEval reflection(const View&, Vec3 wi) const;
     LaneEval sheetTransmission(const View&, Vec3 wi) const;
+    LaneEval entering(const View&, Vec3 wi) const;
+    BsdfEval leaving(Vec3 wi) const;
     LaneEval refraction(const View&, Vec3 wi, Transport) const;
     std::optional<BsdfSample> sampleSmooth(const View&, Choice, float uLobe, Transport) const;
     std::optional<Vec3> direction(const View&, Choice, float uLobe, Vec2 u) const;

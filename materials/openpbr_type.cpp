@@ -108,6 +108,19 @@ std::vector<FieldInfo> transmissionFields() {
             .range(0, 1e9)
             .byDefault("0 m")
             .synonyms({"transmission_depth", "attenuation_distance", "attenuationDistance", "at_distance"}),
+        field(FieldType::spectrum, "transmission-scatter", &P::transmissionScatter)
+            .doc("What the inside scatters, milky glass or juice: its coefficient is this over transmission-depth.")
+            .example("transmission-scatter rgb 0.4 0.3 0.2")
+            .role(SpectrumRole::albedo)
+            .range(0, 1)
+            .byDefault("0")
+            .synonyms({"transmission_scatter", "transmissionScatter", "scatter_color"}),
+        field(FieldType::number, "transmission-scatter-anisotropy", &P::transmissionScatterAnisotropy)
+            .doc("Mean cosine of that scattering: 0 is even, towards 1 forward.")
+            .example("transmission-scatter-anisotropy 0.8")
+            .range(-0.99, 0.99)
+            .byDefault("0")
+            .synonyms({"transmission_scatter_anisotropy", "scatter_anisotropy"}),
         field(FieldType::number, "transmission-dispersion-scale", &P::transmissionDispersionScale)
             .doc("Divides the Abbe number: 0 has no dispersion, 1 has that of the number.")
             .example("transmission-dispersion-scale 1")
@@ -125,26 +138,42 @@ std::vector<FieldInfo> transmissionFields() {
 }
 
 std::vector<FieldInfo> subsurfaceFields() {
-    return {field(FieldType::number, "subsurface-weight", &P::subsurfaceWeight)
-                .doc("Share of the matte base that scatters light through itself; so far for thin walls only.")
-                .example("subsurface-weight 1")
-                .unit({Dimension::none, Dimension::fraction})
-                .range(0, 1)
-                .byDefault("0")
-                .synonyms({"subsurface_weight", "subsurface", "sss_weight"}),
-            field(FieldType::spectrum, "subsurface-color", &P::subsurfaceColor)
-                .doc("Colour of the subsurface part: the share of the light that it scatters.")
-                .example("subsurface-color rgb 0.8 0.5 0.4")
-                .role(SpectrumRole::albedo)
-                .range(0, 1)
-                .byDefault("0.8")
-                .synonyms({"subsurface_color", "subsurfaceColor", "sss_color"}),
-            field(FieldType::number, "subsurface-scatter-anisotropy", &P::subsurfaceScatterAnisotropy)
-                .doc("Thin walls: towards 1 the light goes through, towards -1 it is sent back, at 0 half of each.")
-                .example("subsurface-scatter-anisotropy 0.3")
-                .range(-1, 1)
-                .byDefault("0")
-                .synonyms({"subsurface_scatter_anisotropy", "subsurface_anisotropy", "g"})};
+    return {
+        field(FieldType::number, "subsurface-weight", &P::subsurfaceWeight)
+            .doc("Share of the matte base that scatters light under its surface.")
+            .example("subsurface-weight 1")
+            .unit({Dimension::none, Dimension::fraction})
+            .range(0, 1)
+            .byDefault("0")
+            .synonyms({"subsurface_weight", "subsurface", "sss_weight"}),
+        field(FieldType::spectrum, "subsurface-color", &P::subsurfaceColor)
+            .doc("Colour of the subsurface part: the share of the light that it scatters.")
+            .example("subsurface-color rgb 0.8 0.5 0.4")
+            .role(SpectrumRole::albedo)
+            .range(0, 1)
+            .byDefault("0.8")
+            .synonyms({"subsurface_color", "subsurfaceColor", "sss_color"}),
+        field(FieldType::quantity, "subsurface-radius", &P::subsurfaceRadius)
+            .doc("Mean distance between two collisions under the surface of a solid; times subsurface-radius-scale.")
+            .example("subsurface-radius 2 mm")
+            .unit({Dimension::length})
+            .range(1e-9, 1e9)
+            .byDefault("1 mm")
+            .synonyms({"subsurface_radius", "sss_radius", "mean-free-path", "mfp", "scattering_distance"}),
+        field(FieldType::spectrum, "subsurface-radius-scale", &P::subsurfaceRadiusScale)
+            .doc("Factor of subsurface-radius for each wavelength: how much farther red goes than blue.")
+            .example("subsurface-radius-scale rgb 1 0.35 0.17")
+            .role(SpectrumRole::albedo)
+            .range(0, 1)
+            .byDefault("rgb 1 0.5 0.25")
+            .synonyms({"subsurface_radius_scale", "subsurfaceRadiusScale", "sss_scale"}),
+        field(FieldType::number, "subsurface-scatter-anisotropy", &P::subsurfaceScatterAnisotropy)
+            .doc(
+                "Mean cosine of a collision. Thin walls: towards 1 the light goes through, towards -1 it is sent back.")
+            .example("subsurface-scatter-anisotropy 0.3")
+            .range(-1, 1)
+            .byDefault("0")
+            .synonyms({"subsurface_scatter_anisotropy", "subsurface_anisotropy", "g"})};
 }
 
 std::vector<FieldInfo> coatFields() {

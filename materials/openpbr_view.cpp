@@ -145,7 +145,7 @@ void OpenPbrBsdf::choose(View& v) const {
     const Spectrum matte = pass.opaque * v.below * plastic;
     const float back = point_.subsurface * (1 - point_.forward), through = point_.subsurface * point_.forward;
     v.pick[kDiffuse] = mean(matte * (point_.base * (1 - point_.subsurface) + point_.under * back));
-    v.pick[kDiffuseThrough] = mean(matte * point_.under * through);
+    v.pick[kDiffuseThrough] = mean(matte * (point_.filled ? kOne : point_.under) * through);
     float total = 0;
     for (const float p : v.pick) total += p;
     if (total > 0)

@@ -133,4 +133,8 @@ std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams& pa
     return makeDielectric(dielectric);
 }
 
+std::optional<SubsurfaceInside> insideOf(const SubsurfaceParams& params) {
+    return makeSubsurfaceInside(*params.reflectance, *params.meanFreePath, params.anisotropy);
+}
+
 } // namespace abbe

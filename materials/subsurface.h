@@ -6,6 +6,7 @@
 #include "schema/type.h"
 
 #include <memory>
+#include <optional>
 
 namespace abbe {
 
@@ -19,8 +20,8 @@ struct SubsurfaceParams {
 };
 
 schema::TypeInfo subsurfaceType();
-// The surface alone; its inside is makeSubsurfaceInside(reflectance, meanFreePath, anisotropy). Curves and textures
-// must outlive it.
+// The surface alone, and what is inside. Curves and textures must outlive either.
 std::unique_ptr<const Material> makeSubsurfaceSurface(const SubsurfaceParams&);
+std::optional<SubsurfaceInside> insideOf(const SubsurfaceParams&);
 
 } // namespace abbe

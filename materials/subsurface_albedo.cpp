@@ -22,12 +22,12 @@ class InvertedAlbedo final : public Curve {
     double g_;
 };
 
-// 1/m from m.
+// 1/m from m, and a factor of that.
 class Reciprocal final : public Curve {
   public:
-    explicit Reciprocal(const Curve& length) : length_(length) {}
+    Reciprocal(const Curve& length, double scale) : length_(length), scale_(scale) {}
     Spectrum at(const Wavelengths& w) const override {
-        return Spectrum(1.f) / max(length_.at(w), Spectrum(static_cast<float>(kShortest)));
+        return Spectrum(1.f) / max(length_.at(w) * static_cast<float>(scale_), Spectrum(static_cast<float>(kShortest)));
     }
     double at(double nm) const override { return of(length_.at(nm)); }
     bool isConstant() const override { return length_.isConstant(); }
@@ -36,14 +36,15 @@ class Reciprocal final : public Curve {
 
   private:
     static constexpr double kShortest = 1e-9; // an rgb value may come to nothing between its primaries
-    static double of(double length) { return 1 / std::max(length, kShortest); }
+    double of(double length) const { return 1 / std::max(length * scale_, kShortest); }
     const Curve& length_;
+    double scale_;
 };
 
 } // namespace
 
-SubsurfaceInside makeSubsurfaceInside(const Curve& color, const Curve& meanFreePath, double anisotropy) {
-    return {std::make_shared<Reciprocal>(meanFreePath), std::make_shared<InvertedAlbedo>(color, anisotropy),
+SubsurfaceInside makeSubsurfaceInside(const Curve& color, const Curve& meanFreePath, double anisotropy, double scale) {
+    return {std::make_shared<Reciprocal>(meanFreePath, scale), std::make_shared<InvertedAlbedo>(color, anisotropy),
             anisotropy};
 }
 

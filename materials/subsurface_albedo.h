@@ -31,7 +31,8 @@ struct SubsurfaceInside {
 };
 
 // `color`: 0 … 1, of the light sent back by a deep layer in diffuse light, without what an interface reflects.
-// `meanFreePath`: m, between collisions, scattering and absorption alike. Both must outlive it.
-SubsurfaceInside makeSubsurfaceInside(const Curve& color, const Curve& meanFreePath, double anisotropy);
+// `scale · meanFreePath`: m, between collisions, scattering and absorption alike. Both must outlive it.
+SubsurfaceInside makeSubsurfaceInside(const Curve& color, const Curve& meanFreePath, double anisotropy,
+                                      double scale = 1);
 
 } // namespace abbe

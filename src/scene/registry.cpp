@@ -22,6 +22,7 @@
 #include "materials/diffuse_transmission.h"
 #include "materials/hair.h"
 #include "materials/openpbr.h"
+#include "materials/openpbr_inside.h"
 #include "materials/sheen.h"
 #include "materials/subsurface.h"
 #include "materials/thin_dielectric.h"
@@ -58,14 +59,17 @@ struct MaterialEntry {
     MaterialMaker maker;
 };
 
-// What no single property can say wrong, `bool checkParams(const Params&, Diagnostics&)` does, if there is one.
+// What no single property can say wrong, `checkParams(const Params&, const PlaceOf&, Diagnostics&)` does, and what
+// fills shapes, `insideOf(const Params&)`, where there are such.
 template <typename Params, auto make>
 MadeMaterial made(const BindParams& bind, [[maybe_unused]] const MaterialParts& parts) {
     WithDress<Params> params;
     if (!bind(&params)) return {};
     const Params& own = params;
-    if constexpr (requires { checkParams(own, parts.diagnostics); })
-        if (!checkParams(own, parts.diagnostics)) return {};
+    const schema::PlaceOf where = [&](std::string_view property) { return placeOf(parts.definition, property); };
+    if constexpr (requires { checkParams(own, where, parts.diagnostics); })
+        if (!checkParams(own, where, parts.diagnostics)) return {};
+    if constexpr (requires { insideOf(own); }) return {make(params), params.dress, insideOf(own)};
     return {make(params), params.dress, {}};
 }
 template <typename Params, auto make> constexpr MaterialMaker bound{made<Params, make>, addDress<Params>};
@@ -77,14 +81,6 @@ template <typename Params, auto make> MadeMaterial madeOf(const BindParams& bind
     return {make(params, parts), params.dress, {}};
 }
 template <typename Params, auto make> constexpr MaterialMaker composed{madeOf<Params, make>, addDress<Params>};
-
-MadeMaterial madeSubsurface(const BindParams& bind, const MaterialParts&) {
-    WithDress<SubsurfaceParams> params;
-    if (!bind(&params)) return {};
-    return {makeSubsurfaceSurface(params), params.dress,
-            makeSubsurfaceInside(*params.reflectance, *params.meanFreePath, params.anisotropy)};
-}
-constexpr MaterialMaker kSubsurface{madeSubsurface, addDress<SubsurfaceParams>};
 
 // What is no surface wears nothing.
 template <typename Params, auto make> MadeMaterial madeBare(const BindParams& bind, const MaterialParts&) {
@@ -99,7 +95,7 @@ constexpr MaterialEntry kMaterials[] = {
     {diffuseType, bound<DiffuseParams, makeDiffuse>},
     {conductorType, bound<ConductorParams, makeConductor>},
     {dielectricType, bound<DielectricParams, makeDielectric>},
-    {subsurfaceType, kSubsurface},
+    {subsurfaceType, bound<SubsurfaceParams, makeSubsurfaceSurface>},
     {mixMaterialType, composed<MixParams, makeMixOf>},
     {twoSidedType, composed<TwoSidedParams, makeTwoSidedOf>},
     {layeredType, composed<LayeredParams, makeLayeredOf>},

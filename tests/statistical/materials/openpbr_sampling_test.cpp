@@ -48,6 +48,12 @@ const Structure kStructures[] = {
          p.transmissionWeight = number(0.5), p.transmissionColor = color(flat(0.2));
          p.specularRoughness = number(0.6);
      }},
+    {"skin",
+     [](OpenPbrParams& p) {
+         p.subsurfaceWeight = number(0.7), p.coatWeight = number(0.5), p.coatRoughness = number(0.3);
+         p.coatColor = color(flat(0.2)), p.specularRoughness = number(0.4), p.fuzzWeight = number(0.3);
+         p.baseMetalness = number(0.1);
+     }},
     {"everything",
      [](OpenPbrParams& p) {
          p.baseMetalness = number(0.3), p.transmissionWeight = number(0.5), p.coatWeight = number(0.6);

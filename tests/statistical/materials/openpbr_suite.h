@@ -68,6 +68,8 @@ struct RandomOpenPbr {
         if (p.geometryThinWalled) {
             p.subsurfaceWeight = weight();
             p.subsurfaceScatterAnisotropy = 2 * random.uniformDouble() - 1;
+        } else if (opaque) {
+            p.subsurfaceWeight = weight();
         }
         if (stretched) {
             p.specularRoughnessAnisotropy = number(0.9 * random.uniformDouble());
