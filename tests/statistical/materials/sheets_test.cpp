@@ -130,7 +130,8 @@ TEST_CASE("diffuse-transmission: E0710 where a sheet would give back more than i
         params.reflectance.curve = r;
         params.transmittance.curve = t;
         Diagnostics diagnostics;
-        const bool sound = checkParams(params, [](std::string_view) { return Span{}; }, diagnostics);
+        const bool sound = checkParams(
+            params, [](std::string_view) { return Span{}; }, diagnostics);
         CHECK(sound == !diagnostics.hasErrors());
         return diagnostics.hasErrors() ? diagnostics.all().front().code : std::string();
     };
