@@ -1,3 +1,3 @@
-// The main of every test executable: doctest, with flush-to-zero as in the render threads.
+// The main program of every test.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
