@@ -91,16 +91,17 @@ class Conductor final : public Material {
         if (!ggx_.smooth() && ggx_.alphaX() != ggx_.alphaY()) stretched_.emplace(ggx_.alphaX(), ggx_.alphaY());
     }
 
-    Effects needs() const override { return usesTextures() ? Effects(Effect::textures) : Effects(); }
-
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
-        const Spectrum n = n_.at(wavelengths), k = k_.at(wavelengths), tint = tint_.at(hit, wavelengths);
+        const Spectrum outside = hit.outside ? hit.outside->at(wavelengths) : Spectrum(1.f);
+        const Spectrum n = n_.at(wavelengths) / outside, k = k_.at(wavelengths) / outside;
+        const Spectrum tint = tint_.at(hit, wavelengths);
         const Ggx ggx = shaped_ ? Ggx::fromRoughness(roughness_.at(hit), anisotropy_.at(hit)) : ggx_;
         if (ggx.smooth()) return arena.make<SmoothConductorBsdf>(n, k, tint);
         return arena.make<RoughConductorBsdf>(n, k, tint, ggx, stretched_ ? &*stretched_ : nullptr);
     }
 
     bool usesTextures() const override { return shaped_ || tint_.textured(); }
+    bool seesOutside() const override { return true; }
 
   private:
     const Curve &n_, &k_;

@@ -22,7 +22,6 @@ class Dielectric final : public Material {
         Effects effects;
         if (!ior_->isConstant()) effects |= Effect::dispersion;
         if (absorption_) effects |= Effect::absorption;
-        if (usesTextures()) effects |= Effect::textures;
         return effects;
     }
 

@@ -20,11 +20,7 @@ class Mix final : public Material {
     Mix(const MixParams& params, const Material& first, const Material& second)
         : first_(first), second_(second), inside_(hasInside(second) ? second : first), amount_(params.amount, 0, 1) {}
 
-    Effects needs() const override {
-        Effects effects = first_.needs() | second_.needs();
-        if (amount_.textured()) effects |= Effect::textures;
-        return effects;
-    }
+    Effects needs() const override { return first_.needs() | second_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         const Shares s = shares(hit);
         // Of what meets the surface at all.
@@ -44,6 +40,7 @@ class Mix final : public Material {
     }
     const Curve* ior() const override { return inside_.ior(); }
     int priority() const override { return inside_.priority(); }
+    bool seesOutside() const override { return first_.seesOutside() || second_.seesOutside(); }
 
   private:
     struct Shares {

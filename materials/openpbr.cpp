@@ -33,6 +33,7 @@ class OpenPbr final : public Material {
     const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept override;
     const Curve* absorption() const override { return attenuation_ ? &*attenuation_ : nullptr; }
     const Curve* ior() const override { return refracts() ? ior_ : nullptr; }
+    bool seesOutside() const override { return true; }
     SurfaceEmission emission() const override { return {p_.emissionLuminance, p_.emissionColor, nullptr}; }
     bool usesTextures() const override;
 

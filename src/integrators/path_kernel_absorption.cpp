@@ -2,8 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileAbsorption(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<static_cast<EffectBits>(Effect::absorption)>(context, film, job).run();
-}
+template TileResult renderTile<kAbsorptionKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

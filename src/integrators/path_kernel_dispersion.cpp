@@ -2,8 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileDispersion(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<(Effects(Effect::absorption) | Effect::dispersion).bits()>(context, film, job).run();
-}
+template TileResult renderTile<kDispersionKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

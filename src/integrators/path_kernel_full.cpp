@@ -2,8 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileFull(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<kAllEffects.bits()>(context, film, job).run();
-}
+template TileResult renderTile<kFullKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

@@ -2,9 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileInterfaces(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<(Effects(Effect::absorption) | Effect::textures | Effect::interfaces).bits()>(context, film, job)
-        .run();
-}
+template TileResult renderTile<kInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

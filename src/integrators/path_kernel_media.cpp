@@ -2,10 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileMedia(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<(Effects(Effect::absorption) | Effect::textures | Effect::interfaces | Effect::media).bits()>(
-               context, film, job)
-        .run();
-}
+template TileResult renderTile<kMediaKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

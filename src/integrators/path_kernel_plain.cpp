@@ -2,8 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTilePlain(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<0>(context, film, job).run();
-}
+template TileResult renderTile<kPlainKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

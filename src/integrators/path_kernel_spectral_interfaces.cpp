@@ -2,10 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileSpectralInterfaces(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<(Effects(Effect::absorption) | Effect::textures | Effect::interfaces | Effect::dispersion)
-                          .bits()>(context, film, job)
-        .run();
-}
+template TileResult renderTile<kSpectralInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

@@ -2,8 +2,6 @@
 
 namespace abbe {
 
-TileResult renderTileTextures(const PathContext& context, Film& film, const TileJob& job) {
-    return TileKernel<Effects(Effect::textures).bits()>(context, film, job).run();
-}
+template TileResult renderTile<kTexturesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

@@ -57,6 +57,7 @@ float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nest
         nested.here = nested.beyond;
         return 1;
     }
+    hit.outside = nested.here.ior();
     nested.beyond = nested.here;
     nested.beyond.cross(hit, ray.direction);
     return open;

@@ -19,16 +19,19 @@ struct Kernel {
     const char* name;
     TileFunction render;
 };
-constexpr Effects kSurfaces = Effects(Effect::absorption) | Effect::textures | Effect::interfaces;
+template <EffectBits E> constexpr Kernel kernel(const char* name) {
+    return {Effects::fromBits(E), name, renderTile<E>};
+}
+// The cheapest first.
 constexpr Kernel kKernels[] = {
-    {{}, "plain", renderTilePlain},
-    {Effect::textures, "textures", renderTileTextures},
-    {Effect::absorption, "absorption", renderTileAbsorption},
-    {kSurfaces, "absorption+textures+interfaces", renderTileInterfaces},
-    {Effects(Effect::absorption) | Effect::dispersion, "absorption+dispersion", renderTileDispersion},
-    {kSurfaces | Effect::dispersion, "absorption+textures+interfaces+dispersion", renderTileSpectralInterfaces},
-    {kSurfaces | Effect::media, "absorption+textures+interfaces+media", renderTileMedia},
-    {kAllEffects, "all", renderTileFull},
+    kernel<kPlainKernel.bits()>("plain"),
+    kernel<kTexturesKernel.bits()>("textures"),
+    kernel<kAbsorptionKernel.bits()>("absorption"),
+    kernel<kInterfacesKernel.bits()>("absorption+textures+interfaces"),
+    kernel<kDispersionKernel.bits()>("absorption+dispersion"),
+    kernel<kSpectralInterfacesKernel.bits()>("absorption+textures+interfaces+dispersion"),
+    kernel<kMediaKernel.bits()>("absorption+textures+interfaces+media"),
+    kernel<kFullKernel.bits()>("all"),
 };
 
 double threadSeconds() {

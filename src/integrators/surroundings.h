@@ -36,11 +36,7 @@ class Surroundings {
         return (!after || step(after->interior(), true)) && fits;
     }
 
-    bool contains(const Material* dielectric) const {
-        for (int i = 0; i < dielectrics_.size(); ++i)
-            if (dielectrics_[i] == dielectric) return true;
-        return false;
-    }
+    bool contains(const Material* dielectric) const { return dielectrics_.contains(dielectric); }
     // What fills the space here; null: air.
     const Material* filling() const { return dielectrics_.top(); }
     // Refractive index here; null: air, 1.

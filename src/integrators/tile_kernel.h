@@ -150,15 +150,27 @@ template <EffectBits E> class TileKernel {
 };
 
 using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);
+template <EffectBits E> TileResult renderTile(const PathContext& context, Film& film, const TileJob& job) {
+    return TileKernel<E>(context, film, job).run();
+}
 
-// Supersets of each other, one translation unit each (path_kernel_*.cpp). All are always built, so that none rots.
-TileResult renderTilePlain(const PathContext&, Film&, const TileJob&);
-TileResult renderTileTextures(const PathContext&, Film&, const TileJob&);
-TileResult renderTileAbsorption(const PathContext&, Film&, const TileJob&);
-TileResult renderTileInterfaces(const PathContext&, Film&, const TileJob&);
-TileResult renderTileDispersion(const PathContext&, Film&, const TileJob&);
-TileResult renderTileSpectralInterfaces(const PathContext&, Film&, const TileJob&);
-TileResult renderTileMedia(const PathContext&, Film&, const TileJob&);
-TileResult renderTileFull(const PathContext&, Film&, const TileJob&);
+// The sets of effects that have a kernel of their own, one translation unit each (path_kernel_*.cpp). All are always
+// built, so that none rots.
+inline constexpr Effects kPlainKernel;
+inline constexpr Effects kTexturesKernel = Effect::textures;
+inline constexpr Effects kAbsorptionKernel = Effect::absorption;
+inline constexpr Effects kInterfacesKernel = kAbsorptionKernel | Effect::textures | Effect::interfaces;
+inline constexpr Effects kDispersionKernel = kAbsorptionKernel | Effect::dispersion;
+inline constexpr Effects kSpectralInterfacesKernel = kInterfacesKernel | Effect::dispersion;
+inline constexpr Effects kMediaKernel = kInterfacesKernel | Effect::media;
+inline constexpr Effects kFullKernel = kAllEffects;
+extern template TileResult renderTile<kPlainKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kTexturesKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kAbsorptionKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kDispersionKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kSpectralInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kMediaKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kFullKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

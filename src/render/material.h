@@ -23,7 +23,7 @@ struct SurfaceEmission {
 class Material {
   public:
     virtual ~Material() = default;
-    // Read once, when the scene is built.
+    // Read once, when the scene is built. Effect::textures need not be named: it follows from usesTextures().
     virtual Effects needs() const { return {}; }
     // The scattering at a point; made in the arena. Never null.
     virtual const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept = 0;
@@ -49,6 +49,8 @@ class Material {
     // priority fills the space; among equals the one entered later.
     virtual const Curve* ior() const { return nullptr; }
     virtual int priority() const { return 0; }
+    // Whether bsdf() looks at SurfaceHit::outside: the surface looks otherwise in water.
+    virtual bool seesOutside() const { return ior() != nullptr; }
     // Read once, when the scene is built.
     virtual SurfaceEmission emission() const { return {}; }
 };

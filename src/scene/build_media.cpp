@@ -115,22 +115,26 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
     return materials_[*index].get();
 }
 
-void SceneBuilder::noteFilled(const Material& material, const Bounds3& box, bool repeated) {
-    if (material.ior() || material.interior()) filledShapes_.push_back({box, &material, repeated});
+void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated) {
+    if (material.interior() || material.seesOutside()) placedShapes_.push_back({box, &material, repeated});
 }
 
-// By their boxes: what is apart for certain need not be followed from one into the other.
-bool SceneBuilder::dielectricsMayOverlap() const {
-    constexpr std::size_t kMany = 300; // not worth the pairs
-    std::vector<const FilledShape*> dielectrics;
-    for (const FilledShape& shape : filledShapes_)
-        if (shape.material->ior()) dielectrics.push_back(&shape);
-    if (dielectrics.size() > kMany) return true;
-    for (std::size_t i = 0; i < dielectrics.size(); ++i) {
-        if (dielectrics[i]->repeated) return true;
-        for (std::size_t j = 0; j < i; ++j)
-            if (dielectrics[i]->box.overlaps(dielectrics[j]->box)) return true;
+// Whether any shape to which it matters may be in another's dielectric: those that are dielectrics themselves, or all
+// others. By their boxes: what is apart for certain need not be followed from one into the other.
+bool SceneBuilder::mayLieInDielectric(bool dielectrics) const {
+    constexpr std::size_t kManyPairs = 100'000; // not worth the time
+    std::vector<const PlacedShape*> outer, inner;
+    for (const PlacedShape& shape : placedShapes_) {
+        const bool isDielectric = shape.material->ior() != nullptr;
+        if (isDielectric) outer.push_back(&shape);
+        if (isDielectric == dielectrics && shape.material->seesOutside()) inner.push_back(&shape);
     }
+    if (outer.size() * inner.size() > kManyPairs) return true;
+    const auto meet = [](const PlacedShape* a, const PlacedShape* b) {
+        return a == b ? a->repeated : a->box.overlaps(b->box);
+    };
+    for (const PlacedShape* a : outer)
+        if (std::ranges::any_of(inner, [&](const PlacedShape* b) { return meet(a, b); })) return true;
     return false;
 }
 
@@ -147,12 +151,14 @@ void SceneBuilder::noteMedia(Scene& scene) {
         note(*medium, span, "this volume");
         scene.openMedia.push_back(medium);
     }
-    for (const FilledShape& shape : filledShapes_) scene.filled.push_back(shape.box);
-    scene.nested = dielectricsMayOverlap();
-    if (scene.nested) {
-        scene.effects |= Effect::interfaces;
-        scene.reasons.push_back({Effect::interfaces, {}, "dielectrics touch or may lie in one another"});
-    }
+    for (const PlacedShape& shape : placedShapes_)
+        if (shape.material->ior() || shape.material->interior()) scene.filled.push_back(shape.box);
+    scene.nested = mayLieInDielectric(true);
+    const bool immersed = mayLieInDielectric(false);
+    if (scene.nested) scene.reasons.push_back({Effect::interfaces, {}, "dielectrics touch or may lie in one another"});
+    if (immersed)
+        scene.reasons.push_back({Effect::interfaces, {}, "what may lie in a dielectric looks otherwise there"});
+    if (scene.nested || immersed) scene.effects |= Effect::interfaces;
     scene.boundaries = scene.nested;
     for (const std::uint32_t index : usedMaterials_)
         scene.boundaries |= materials_[index]->isBoundary() || materials_[index]->mayBeOpen();

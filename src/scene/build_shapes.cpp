@@ -163,7 +163,7 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
 
 void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {
     const Bounds3 box = shape.bounds();
-    noteFilled(*binding.material, place.into ? kEverything : box, place.object != nullptr);
+    notePlaced(*binding.material, place.into ? kEverything : box, place.object != nullptr);
     if (place.into) {
         place.into->shapes.emplace_back(&shape, binding);
         place.into->bounds.add(box);

@@ -45,7 +45,6 @@ Vec3 bumpedNormal(const BumpMap& map, const SurfaceHit& hit) {
 Effects DressedMaterial::needs() const {
     Effects effects = inner_.needs();
     if (mayBeOpen() || dress_.priority != 0) effects |= Effect::interfaces;
-    if (usesTextures()) effects |= Effect::textures;
     return effects;
 }
 

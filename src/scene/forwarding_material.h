@@ -25,6 +25,7 @@ class ForwardingMaterial : public Material {
     float opacity(const SurfaceHit& hit) const noexcept override { return inner_.opacity(hit); }
     const Curve* ior() const override { return inner_.ior(); }
     int priority() const override { return inner_.priority(); }
+    bool seesOutside() const override { return inner_.seesOutside(); }
     SurfaceEmission emission() const override { return inner_.emission(); }
 
   protected:

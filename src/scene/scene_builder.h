@@ -216,8 +216,8 @@ class SceneBuilder final : public schema::Resolver {
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteInterior(const Medium&);
     bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
-    void noteFilled(const Material&, const Bounds3&, bool repeated);
-    bool dielectricsMayOverlap() const;
+    void notePlaced(const Material&, const Bounds3&, bool repeated);
+    bool mayLieInDielectric(bool dielectrics) const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
 
@@ -300,12 +300,12 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<NoiseMedium*> noiseMedia_; // those of media_
     std::vector<Span> mediumSpans_;        // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
-    struct FilledShape {
+    struct PlacedShape {
         Bounds3 box; // render space; of what is placed in objects or moves: everything
         const Material* material;
         bool repeated; // in an object, of which there may be several
     };
-    std::vector<FilledShape> filledShapes_;
+    std::vector<PlacedShape> placedShapes_; // that a medium or a dielectric fills, or that look otherwise in one
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;

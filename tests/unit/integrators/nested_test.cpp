@@ -119,19 +119,53 @@ TEST_CASE("the list of dielectrics: priorities, equals, strangers, and no room")
     CHECK(entered == DielectricStack::kMax);
 }
 
+TEST_CASE("opaque surfaces in glass reflect as against glass") {
+    const auto seen = [](const char* material) {
+        return seenAlong(TestScene::parse(fmt::format(
+                             R"(scene 1
+camera {{ from 0 0 0.2; look-at 0 0 0 }}
+light sky {{ radiance 1 }}
+shape mesh {{ material dielectric {{ ior 1.5 }}; points {{ {} }}; faces {{ {} }} }}
+shape mesh {{ material {}; points {{ {} }}; faces {{ {} }} }}
+)",
+                             corners(0.012), box(0.012, false, 0), material, corners(0.01), box(0.01, false, 0))),
+                         {0.001f, 0.0007f, 0.2f}, {0, 0, -1});
+    };
+    const double outer = interfaceReflectance(1, 1.5);
+    const auto expected = [&](double inner) {
+        Stack stack;
+        stack.add(outer, 1 - outer);
+        stack.add(inner, 0);
+        return stack.r;
+    };
+    const auto check = [](const RayEstimate& e, double value) { CHECK(std::abs(e.mean - value) < 4 * e.error + 1e-5); };
+    check(seen("openpbr { base-weight 0; specular-ior 1.5; specular-roughness 0 }"), expected(0));
+    check(seen("openpbr { base-weight 0; specular-ior 1.8; specular-roughness 0 }"),
+          expected(interfaceReflectance(1.5, 1.8)));
+    check(seen("conductor { index { n 1.5; k 0 } }"), expected(0));
+    check(seen("conductor { index { n 0.3; k 3 } }"), expected((1.2 * 1.2 + 9) / (1.8 * 1.8 + 9)));
+    check(
+        seen("mix { amount 0.5; first conductor { index { n 1.5; k 0 } }; second conductor { index { n 1.5; k 0 } } }"),
+        expected(0));
+}
+
 TEST_CASE("dielectrics that are apart ask for nothing") {
-    const auto effects = [](const char* second) {
+    const auto asks = [](const char* place, const char* material) {
         const TestScene scene = TestScene::parse(fmt::format(R"(scene 1
 camera {{ from 0 0 9; look-at 0 0 0 }}
 light sky {{ radiance 1 }}
 shape sphere {{ material dielectric {{ ior 1.5 }} }}
-shape sphere {{ {}; material dielectric {{ ior 1.33 }} }}
+shape sphere {{ center {} 0 0; material {} }}
 )",
-                                                             second));
-        return scene.scene().effects;
+                                                             place, material));
+        return scene.scene().effects.has(Effect::interfaces);
     };
-    CHECK(!effects("center 3 0 0").has(Effect::interfaces));
-    CHECK(effects("center 0.9 0 0").has(Effect::interfaces));
+    for (const char* material : {"dielectric { ior 1.33 }", "openpbr", "conductor { index metal Au }"}) {
+        CAPTURE(material);
+        CHECK(!asks("3", material));
+        CHECK(asks("0.9", material));
+    }
+    CHECK(!asks("0.9", "diffuse"));
 }
 
 } // namespace abbe::test
