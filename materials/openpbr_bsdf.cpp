@@ -239,7 +239,7 @@ std::optional<BsdfSample> OpenPbrBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Tran
         result = sampleSmooth(v, chosen, rest, transport);
     } else if (const auto wi = direction(v, chosen, rest, u)) {
         const BsdfEval e = evalFrom(v, *wi, transport);
-        if (!(e.pdfSolidAngle > 0)) return std::nullopt;
+        if (!(e.pdfSolidAngle > 1e-36f)) return std::nullopt; // below, its inverse overflows
         const bool through = wi->z < 0, refracted = through && refracts();
         Lobes lobe = Lobes(chosen >= kDiffuse || chosen == kFuzz ? Lobe::diffuse : Lobe::glossy) |
                      (through ? Lobe::transmission : Lobe::reflection);

@@ -35,16 +35,10 @@ void checkStrategies(const SmokeScene& smoke, std::uint32_t samples, double reso
     for (const bool coloured : {false, true})
         for (const bool inside : {false, true}) {
             INFO(coloured << " " << inside);
-            TestScene scene = TestScene::parse(smoke.text(coloured, inside));
-            RenderSettings settings = scene.settings();
-            settings.samples = samples;
-            std::vector<TestImage> images;
-            for (const Strategy strategy : {Strategy::mis, Strategy::lightsOnly, Strategy::bsdfOnly}) {
-                settings.strategy = strategy;
-                ++settings.seed;
-                images.push_back(render(scene, settings));
-                CHECK(images.back().statistics.cappedPaths == 0);
-                CHECK(images.back().statistics.dropped == std::array<std::uint64_t, 3>{});
+            const auto images = renderByEachStrategy(TestScene::parse(smoke.text(coloured, inside)), samples);
+            for (const TestImage& image : images) {
+                CHECK(image.statistics.cappedPaths == 0);
+                CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
             }
             const std::string kernel = coloured ? "all" : "absorption+textures+interfaces+media";
             CHECK(images[0].statistics.kernel == kernel);

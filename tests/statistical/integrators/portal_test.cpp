@@ -1,5 +1,5 @@
 // Environments through windows: the image with portals is that without, and has less noise; turned environments.
-#include "io/exr_writer.h"
+#include "support/environment_file.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -14,21 +14,11 @@ namespace {
 // A bright blue sky with a sun of a few texels, and a dark ground.
 std::string skyFile(int width, int height) {
     const auto path = std::filesystem::temp_directory_path() / fmt::format("abbe_portal_{}.exr", getpid());
-    std::vector<float> r, g, b;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const bool sun = std::abs(x - width / 2) < 2 && std::abs(y - height / 4) < 2, sky = y < height / 2;
-            r.push_back(sun ? 900.f : sky ? 0.6f : 0.1f);
-            g.push_back(sun ? 800.f : sky ? 0.8f : 0.1f);
-            b.push_back(sun ? 600.f : sky ? 1.2f + 0.01f * static_cast<float>(x) : 0.05f);
-        }
-    const PixelWindow window{0, 0, width, height};
-    writeExr(path.string(), {.window = window,
-                             .display = window,
-                             .r = r,
-                             .g = g,
-                             .b = b,
-                             .chromaticities = Chromaticities::of(rgb::rec709)});
+    writeEnvironment(path.string(), width, height, [&](int x, int y) -> std::array<float, 3> {
+        if (std::abs(x - width / 2) < 2 && std::abs(y - height / 4) < 2) return {900, 800, 600};
+        if (y < height / 2) return {0.6f, 0.8f, 1.2f + 0.01f * static_cast<float>(x)};
+        return {0.1f, 0.1f, 0.05f};
+    });
     return path.string();
 }
 

@@ -1,6 +1,6 @@
 // Next-event estimation alone, BSDF sampling alone and both together must make the same picture: three estimators that
 // share neither densities nor weights.
-#include "io/exr_writer.h"
+#include "support/environment_file.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -108,22 +108,10 @@ TEST_CASE("strategies: environment image") {
     // A dim gradient with one bright coloured patch, so that compensation takes most directions out of the sampler. The
     // eye looks down: what it sees of the image itself is the same with any strategy and would only dilute the test.
     const auto path = std::filesystem::temp_directory_path() / "abbe_strategy_environment.exr";
-    constexpr int width = 32, height = 16;
-    std::vector<float> r, g, b;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const bool bright = x >= 5 && x < 11 && y >= 3 && y < 7;
-            r.push_back(bright ? 9.f : 0.2f + 0.02f * static_cast<float>(y));
-            g.push_back(bright ? 7.f : 0.3f);
-            b.push_back(bright ? 2.f : 0.5f - 0.01f * static_cast<float>(x));
-        }
-    const PixelWindow window{0, 0, width, height};
-    writeExr(path.string(), {.window = window,
-                             .display = window,
-                             .r = r,
-                             .g = g,
-                             .b = b,
-                             .chromaticities = Chromaticities::of(rgb::rec709)});
+    writeEnvironment(path.string(), 32, 16, [](int x, int y) -> std::array<float, 3> {
+        if (x >= 5 && x < 11 && y >= 3 && y < 7) return {9, 7, 2};
+        return {0.2f + 0.02f * static_cast<float>(y), 0.3f, 0.5f - 0.01f * static_cast<float>(x)};
+    });
     const std::string text = fmt::format("camera {{ from 0 3 4; look-at 0 0.3 0; fov 32 deg }}\n"
                                          "light environment \"{}\"\n"
                                          "shape plane {{ material diffuse {{ reflectance 0.6 }} }}\n"

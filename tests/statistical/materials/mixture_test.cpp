@@ -3,6 +3,7 @@
 #include "materials/mix.h"
 #include "materials/mixed_bsdf.h"
 #include "materials/two_sided.h"
+#include "sphere_checks.h"
 #include "suite.h"
 
 #include <doctest/doctest.h>
@@ -53,62 +54,20 @@ std::vector<BsdfUnderTest> mixtures() {
     return all;
 }
 
-std::vector<Vec3> outgoing() {
-    std::vector<Vec3> result;
-    for (const double a : {0.0, 30.0, 65.0, 85.0})
-        result.push_back(directionAt(a)), result.push_back(mirrored(directionAt(a)));
-    return result;
-}
-
-bool mayScatter(const BsdfUnderTest& b, Vec3 wo, bool upper) { return b.eta != 0 || upper == (wo.z > 0); }
-
 } // namespace
 
 TEST_CASE("mixtures: chi-square of the samples") {
-    const auto all = mixtures();
-    const double level = sidak(1e-3, static_cast<int>(all.size()) * 16);
     Random random(111);
-    for (const BsdfUnderTest& b : all)
-        for (const Vec3 wo : outgoing())
-            for (const bool upper : {true, false}) {
-                if (!mayScatter(b, wo, upper)) continue;
-                const auto sample = [&]() -> std::optional<Vec3d> {
-                    const float uLobe = random.uniform();
-                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, Transport::radiance);
-                    return s ? std::optional(Vec3d(s->wi)) : std::nullopt;
-                };
-                const auto pdf = [&](Vec3d wi) {
-                    return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
-                };
-                const ChiSquareResult r = chiSquareDirections(cellsFor(b, wo, upper), sample, pdf, chiSquareSamples());
-                CHECK_MESSAGE(r.pValue > level, b.name, " wo.z ", wo.z, upper ? " up" : " down", ": chi2 ", r.statistic,
-                              " with ", r.degrees, " degrees");
-            }
+    checkChiSquare(mixtures(), random, chiSquareSamples(),
+                   [](const auto& b, Vec3 wo, bool upper) { return cellsFor(b, wo, upper); });
 }
 
 TEST_CASE("mixtures: sample() returns the weight and the densities that eval() gives, in every lane") {
     Random random(112);
     for (const BsdfUnderTest& b : mixtures())
-        for (const Vec3 wo : outgoing())
+        for (const Vec3 wo : aroundTheSphere())
             for (const Transport transport : {Transport::radiance, Transport::importance}) {
-                double worst = 0;
-                for (int i = 0; i < 4000; ++i) {
-                    const float uLobe = random.uniform();
-                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, transport);
-                    if (!s) continue;
-                    const BsdfEval e = b.bsdf->eval(wo, s->wi, transport);
-                    const float pdf = s->pdfSolidAngle;
-                    worst = std::max(worst, static_cast<double>(std::abs(e.pdfSolidAngle / pdf - 1)));
-                    for (int lane = 0; lane < kLanes; ++lane) {
-                        const float f = s->weight[lane] * pdf, q = s->pdfRatio[lane] * pdf;
-                        worst =
-                            std::max(worst, static_cast<double>(std::abs(e.fcos[lane] - f) / std::max(f, 1e-6f * pdf)));
-                        worst = std::max(worst, static_cast<double>(std::abs(e.pdfRatio[lane] * e.pdfSolidAngle - q) /
-                                                                    std::max(q, 1e-6f * pdf)));
-                    }
-                    CHECK(s->lobe.has(Lobe::reflection) == (s->wi.z * wo.z > 0));
-                    CHECK(b.bsdf->lobes().contains(s->lobe));
-                }
+                const double worst = sampleAgainstEval(*b.bsdf, wo, random, 4000, transport);
                 CHECK_MESSAGE(worst < 5e-4 + 4e-6 / std::abs(static_cast<double>(wo.z)), b.name, " wo.z ", wo.z, ": ",
                               worst);
             }
@@ -212,27 +171,7 @@ TEST_CASE("the number that chooses is even again after ten choices (case 37)") {
 }
 
 TEST_CASE("mixtures at every cosine and number are finite") {
-    constexpr float cosines[] = {1, 1e-3f, 1e-8f, 1e-20f, 1e-37f, 1e-38f, 0};
-    constexpr float numbers[] = {0, 1e-7f, 0.3f, 0.5f, 0.7f, kOneMinusEpsilon};
-    for (const BsdfUnderTest& b : mixtures()) {
-        bool good = true;
-        for (const float c : cosines)
-            for (const float side : {1.f, -1.f})
-                for (const float lobe : numbers)
-                    for (const float u : numbers)
-                        for (const float v : numbers) {
-                            const Vec3 wo{std::sqrt(1 - c * c), 0, side * c};
-                            for (const Vec3 wi : {wo, -wo, mirrored(wo), Vec3{0, u, v}}) {
-                                const BsdfEval e = b.bsdf->eval(wo, wi, Transport::radiance);
-                                good = good && allFinite(e.fcos) && allFinite(e.pdfRatio) && e.pdfSolidAngle >= 0;
-                            }
-                            const auto s = b.bsdf->sample(wo, lobe, {u, v}, Transport::importance);
-                            if (s)
-                                good = good && allFinite(s->weight) && allFinite(s->pdfRatio) && isFinite(s->wi) &&
-                                       s->pdfSolidAngle > 0 && std::isfinite(s->pdfSolidAngle);
-                        }
-        CHECK_MESSAGE(good, b.name);
-    }
+    for (const BsdfUnderTest& b : mixtures()) CHECK_MESSAGE(heaviestAtExtremes(*b.bsdf) < kInfinity, b.name);
 }
 
 TEST_CASE("the sides of a sheet are their materials, and the back sees itself as an outside") {

@@ -1,5 +1,6 @@
 // Samplers against their densities, and sample() against eval().
 #include "materials/fresnel.h"
+#include "sphere_checks.h"
 #include "suite.h"
 #include "support/jacobian.h"
 
@@ -10,49 +11,18 @@ namespace {
 
 using namespace test;
 
-constexpr double kAngles[] = {0, 30, 65, 85};
-
-// Every pair of side and angle that a scattering function must serve.
-std::vector<Vec3> outgoing() {
-    std::vector<Vec3> result;
-    for (const double a : kAngles) result.push_back(directionAt(a)), result.push_back(mirrored(directionAt(a)));
-    return result;
-}
-
 TEST_CASE("chi-square: samples fall where the density says") {
-    const std::vector<BsdfUnderTest> suite = roughSuite();
-    const double level = sidak(1e-3, static_cast<int>(suite.size()) * 16);
-    const int samples = chiSquareSamples();
     Random random(11);
-    for (const BsdfUnderTest& b : suite)
-        for (const Vec3 wo : outgoing())
-            for (const bool upper : {true, false}) {
-                if (b.eta == 0 && upper != (wo.z > 0)) continue; // opaque: nothing there, energy tests say so
-                const auto sample = [&]() -> std::optional<Vec3d> {
-                    const float uLobe = random.uniform();
-                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, Transport::radiance);
-                    return s ? std::optional(Vec3d(s->wi)) : std::nullopt;
-                };
-                const auto pdf = [&](Vec3d wi) {
-                    return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
-                };
-                const ChiSquareResult r = chiSquareDirections(cellsFor(b, wo, upper), sample, pdf, samples);
-                CHECK_MESSAGE(r.pValue > level, b.name, " wo.z ", wo.z, upper ? " up" : " down", ": chi2 ", r.statistic,
-                              " with ", r.degrees, " degrees");
-            }
+    checkChiSquare(roughSuite(), random, chiSquareSamples(),
+                   [](const auto& b, Vec3 wo, bool upper) { return cellsFor(b, wo, upper); });
 }
 
 TEST_CASE("the density integrates to one, with the share of rejected samples") {
+    const auto cells = [](const auto& b, Vec3 wo, bool upper) { return cellsFor(b, wo, upper); };
     for (const BsdfUnderTest& b : roughSuite())
-        for (const Vec3 wo : outgoing()) {
-            double total =
-                1 - meanOfSamples(*b.bsdf, wo, Transport::radiance, 100000, [](const BsdfSample&) { return 1; });
-            for (const bool upper : {true, false})
-                if (b.eta != 0 || upper == (wo.z > 0))
-                    total += cellsFor(b, wo, upper).integral([&](Vec3d wi) {
-                        return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
-                    });
-            CHECK_MESSAGE(std::abs(total - 1) < 1e-3, b.name, " wo.z ", wo.z, ": ", total);
+        for (const Vec3 wo : aroundTheSphere()) {
+            const double missing = missingDensity(b, wo, 100000, cells);
+            CHECK_MESSAGE(missing < 1e-3, b.name, " wo.z ", wo.z, ": ", missing);
         }
 }
 
@@ -67,32 +37,18 @@ double tolerance(const BsdfUnderTest& b, Vec3 wo) {
 TEST_CASE("sample() returns the weight and the density that eval() gives") {
     Random random(12);
     for (const BsdfUnderTest& b : roughSuite())
-        for (const Vec3 wo : outgoing())
+        for (const Vec3 wo : aroundTheSphere()) {
             for (const Transport transport : {Transport::radiance, Transport::importance}) {
-                double worst = 0;
-                bool labels = true;
-                for (int i = 0; i < 2000; ++i) {
-                    const float uLobe = random.uniform();
-                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, transport);
-                    if (!s) continue;
-                    const BsdfEval e = b.bsdf->eval(wo, s->wi, transport);
-                    worst = std::max(worst, static_cast<double>(std::abs(e.pdfSolidAngle / s->pdfSolidAngle - 1)));
-                    for (int lane = 0; lane < kLanes; ++lane) {
-                        const float f = s->weight[lane] * s->pdfSolidAngle, q = s->pdfRatio[lane] * s->pdfSolidAngle;
-                        const float scaleF = std::max(f, 1e-6f * s->pdfSolidAngle);
-                        const float scaleQ = std::max(q, 1e-6f * s->pdfSolidAngle);
-                        worst = std::max(worst, static_cast<double>(std::abs(e.fcos[lane] - f) / scaleF));
-                        worst = std::max(
-                            worst, static_cast<double>(std::abs(e.pdfRatio[lane] * e.pdfSolidAngle - q) / scaleQ));
-                    }
-                    const bool reflected = s->wi.z * wo.z > 0;
-                    labels = labels && s->lobe.has(Lobe::reflection) == reflected &&
-                             s->lobe.has(Lobe::transmission) == !reflected && b.bsdf->lobes().contains(s->lobe) &&
-                             (s->eta != 1) == (!reflected);
-                }
+                const double worst = sampleAgainstEval(*b.bsdf, wo, random, 2000, transport);
                 CHECK_MESSAGE(worst < tolerance(b, wo), b.name, " wo.z ", wo.z, ": ", worst);
-                CHECK_MESSAGE(labels, b.name);
             }
+            bool labels = true;
+            meanOfSamples(*b.bsdf, wo, Transport::radiance, 2000, [&](const BsdfSample& s) {
+                labels = labels && (s.eta != 1) == s.lobe.has(Lobe::transmission);
+                return 0;
+            });
+            CHECK_MESSAGE(labels, b.name);
+        }
 }
 
 // The map from numbers to directions spreads them as thinly as the density says. A rough interface takes a number for
@@ -100,7 +56,7 @@ TEST_CASE("sample() returns the weight and the density that eval() gives") {
 TEST_CASE("Jacobian of the sampling maps") {
     Random random(13);
     for (const BsdfUnderTest& b : roughSuite())
-        for (const Vec3 wo : outgoing())
+        for (const Vec3 wo : aroundTheSphere())
             for (const float uLobe : {0.f, kOneMinusEpsilon}) {
                 if (b.bsdf->lobes().has(Lobe::dispersive) || (b.eta == 0 && uLobe > 0)) continue;
                 const auto map = [&](Vec2 u) -> std::optional<Vec3> {

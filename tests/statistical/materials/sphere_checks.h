@@ -42,19 +42,62 @@ inline double chiSquareOfSphere(const Bsdf& bsdf, Vec3 wo, Vec3d centre, double 
     return chiSquareTest(observed, expected).pValue;
 }
 
-// Largest relative difference between sample() and eval().
-inline double sampleAgainstEval(const Bsdf& bsdf, Vec3 wo, Random& random, int samples = 2000) {
+// Whether light from wo may go to that side of the horizon; where it may not, energy tests say so.
+inline bool reaches(const BsdfUnderTest& b, Vec3 wo, bool upper) {
+    return b.bsdf->lobes().has(Lobe::transmission) || upper == (wo.z > 0);
+}
+
+// χ² of the samples from all around the sphere, on each side that they reach, counted in `cells(b, wo, upper)`.
+template <typename Cells>
+void checkChiSquare(const std::vector<BsdfUnderTest>& suite, Random& random, int samples, Cells&& cells) {
+    const double level = sidak(1e-3, static_cast<int>(suite.size()) * 16);
+    for (const BsdfUnderTest& b : suite)
+        for (const Vec3 wo : aroundTheSphere())
+            for (const bool upper : {true, false}) {
+                if (!reaches(b, wo, upper)) continue;
+                const auto sample = [&]() -> std::optional<Vec3d> {
+                    const float uLobe = random.uniform();
+                    const auto s = b.bsdf->sample(wo, uLobe, {random.uniform(), random.uniform()}, Transport::radiance);
+                    return s ? std::optional(Vec3d(s->wi)) : std::nullopt;
+                };
+                const auto pdf = [&](Vec3d wi) {
+                    return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
+                };
+                const ChiSquareResult r = chiSquareDirections(cells(b, wo, upper), sample, pdf, samples);
+                CHECK_MESSAGE(r.pValue > level, b.name, " wo.z ", wo.z, upper ? " up" : " down", ": chi2 ", r.statistic,
+                              " with ", r.degrees, " degrees");
+            }
+}
+
+// How far the density is from integrating to one, with the share of samples that are rejected.
+template <typename Cells> double missingDensity(const BsdfUnderTest& b, Vec3 wo, int samples, Cells&& cells) {
+    double total = -meanOfSamples(*b.bsdf, wo, Transport::radiance, samples, [](const BsdfSample&) { return 1; });
+    for (const bool upper : {true, false})
+        if (reaches(b, wo, upper))
+            total += cells(b, wo, upper).integral([&](Vec3d wi) {
+                return static_cast<double>(b.bsdf->eval(wo, Vec3(wi), Transport::radiance).pdfSolidAngle);
+            });
+    return std::abs(total);
+}
+
+// Largest relative difference between sample() and eval(), in every lane.
+inline double sampleAgainstEval(const Bsdf& bsdf, Vec3 wo, Random& random, int samples = 2000,
+                                Transport transport = Transport::radiance) {
     double worst = 0;
     for (int i = 0; i < samples; ++i) {
         const float lobe = random.uniform();
-        const auto s = bsdf.sample(wo, lobe, {random.uniform(), random.uniform()}, Transport::radiance);
+        const auto s = bsdf.sample(wo, lobe, {random.uniform(), random.uniform()}, transport);
         if (!s) continue;
-        const BsdfEval e = bsdf.eval(wo, s->wi, Transport::radiance);
-        worst = std::max(worst, static_cast<double>(std::abs(e.pdfSolidAngle / s->pdfSolidAngle - 1)));
+        const BsdfEval e = bsdf.eval(wo, s->wi, transport);
+        const float pdf = s->pdfSolidAngle;
+        const auto compare = [&](float evaluated, float sampled) {
+            worst =
+                std::max(worst, static_cast<double>(std::abs(evaluated - sampled) / std::max(sampled, 1e-6f * pdf)));
+        };
+        worst = std::max(worst, static_cast<double>(std::abs(e.pdfSolidAngle / pdf - 1)));
         for (int lane = 0; lane < kLanes; ++lane) {
-            const float f = s->weight[lane] * s->pdfSolidAngle;
-            worst = std::max(worst, static_cast<double>(std::abs(e.fcos[lane] - f)) /
-                                        static_cast<double>(std::max(f, 1e-6f * s->pdfSolidAngle)));
+            compare(e.fcos[lane], s->weight[lane] * pdf);
+            compare(e.pdfRatio[lane] * e.pdfSolidAngle, s->pdfRatio[lane] * pdf);
         }
         CHECK(bsdf.lobes().contains(s->lobe));
         CHECK(s->lobe.has(Lobe::reflection) == (s->wi.z * wo.z > 0));
@@ -79,7 +122,9 @@ inline float heaviestAtExtremes(const Bsdf& bsdf) {
     for (const Vec3 wo : directions) {
         for (const Vec3 wi : directions) {
             const BsdfEval e = bsdf.eval(wo, wi, Transport::radiance);
-            if (!allFinite(e.fcos) || !(e.pdfSolidAngle >= 0) || !std::isfinite(e.pdfSolidAngle)) return kInfinity;
+            if (!allFinite(e.fcos) || !allFinite(e.pdfRatio) || !(e.pdfSolidAngle >= 0) ||
+                !std::isfinite(e.pdfSolidAngle))
+                return kInfinity;
             for (int lane = 0; lane < kLanes; ++lane)
                 if (e.fcos[lane] < 0) return kInfinity;
         }
@@ -87,8 +132,9 @@ inline float heaviestAtExtremes(const Bsdf& bsdf) {
             for (const float u : numbers)
                 for (const float v : numbers)
                     if (const auto s = bsdf.sample(wo, lobe, {u, v}, Transport::radiance)) {
-                        if (!allFinite(s->weight) || !isFinite(s->wi) || !(s->pdfSolidAngle > 0) ||
-                            !std::isfinite(s->pdfSolidAngle) || std::abs(length(s->wi) - 1) > 1e-5f)
+                        if (!allFinite(s->weight) || !allFinite(s->pdfRatio) || !isFinite(s->wi) ||
+                            !(s->pdfSolidAngle > 0) || !std::isfinite(s->pdfSolidAngle) ||
+                            std::abs(length(s->wi) - 1) > 1e-5f)
                             return kInfinity;
                         heaviest = std::max(heaviest, maxLane(s->weight));
                     }
