@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "geometry/mesh_corners.h"
+#include "geometry/near_polygon.h"
 #include "geometry/surface_math.h"
 #include "math/warp.h"
 
@@ -11,6 +12,21 @@ namespace {
 
 Vec3 interpolate(const std::vector<Vec3>& v, std::uint32_t a, std::uint32_t b, std::uint32_t c, float s, float t) {
     return v[a] * (1 - s - t) + v[b] * s + v[c] * t;
+}
+
+// A polygon as seen from near, or nothing where sampling per area serves.
+std::optional<NearPolygon> nearPolygon(const MeshData& data, std::uint32_t part, const Receiver& from) {
+    const auto& p = data.positions;
+    if (part < data.triangles.size()) {
+        const auto& t = data.triangles[part];
+        const NearPolygon::Corners corners{p[t[0]], p[t[1]], p[t[2]]};
+        return NearPolygon::seen({&corners, 1}, from);
+    }
+    const auto& quad = data.quads[part - data.triangles.size()];
+    std::array<NearPolygon::Corners, 2> corners;
+    for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t i = 0; i < 3; ++i) corners[k][i] = p[quad[kQuadHalves[k][i]]];
+    return NearPolygon::seen(corners, from);
 }
 
 } // namespace
@@ -172,19 +188,30 @@ std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t part
     auto [i, count] = trianglesOf(part);
     const double area = partArea(part);
     if (!(area > 0)) return std::nullopt;
-    if (count > 1) {
-        const auto first = static_cast<float>(triangleArea(i) / area);
-        const bool second = !(u.x < first);
-        u.x = std::min(second ? (u.x - first) / (1 - first) : u.x / first, kOneMinusEpsilon);
-        i += second;
+    Vec2 b;
+    float pdf = 0;
+    const auto near = nearPolygon(data_, part, from);
+    if (near) {
+        const auto s = near->sample(u);
+        if (!s) return std::nullopt;
+        i += static_cast<std::uint64_t>(s->half);
+        b = s->weights;
+        pdf = s->pdf;
+    } else {
+        if (count > 1) {
+            const auto first = static_cast<float>(triangleArea(i) / area);
+            const bool second = !(u.x < first);
+            u.x = std::min(second ? (u.x - first) / (1 - first) : u.x / first, kOneMinusEpsilon);
+            i += second;
+        }
+        b = squareToTriangle(u);
     }
-    const Vec2 b = squareToTriangle(u);
     const auto [i0, i1, i2] = triangle(i);
     const auto& p = data_.positions;
     Vec3 point, pError;
     trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, point, pError);
     const Vec3 ng = faceNormals_[i];
-    const float pdf = areaToSolidAngle(static_cast<float>(1 / area), point - from.p, ng);
+    if (!near) pdf = areaToSolidAngle(static_cast<float>(1 / area), point - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, point, pError, ng, pdf);
 }
@@ -193,6 +220,7 @@ float Mesh::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     if (lone_) return lone_->pdfSolidAngle(from, hit);
     const double area = partArea(hit.primitive);
     if (!(area > 0)) return 0;
+    if (const auto near = nearPolygon(data_, hit.primitive, from)) return near->pdf(hit.p);
     return areaToSolidAngle(static_cast<float>(1 / area), hit.p - from.p, hit.ng);
 }
 

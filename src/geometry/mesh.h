@@ -40,7 +40,7 @@ class Mesh final : public Shape {
     double area() const override { return area_; }
     std::uint32_t emitterParts() const override;
     EmitterPart emitterPart(std::uint32_t) const override;
-    // Uniform per area over a polygon; a lone quad as Quad does.
+    // A lone quad as Quad does; polygons seen large as NearPolygon does, others uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
 

@@ -33,6 +33,7 @@ double shareOf(const Light& light, const std::optional<LightBounds>& part) {
 
 LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights,
                            RenderSettings::LightChoice choice) {
+    using enum RenderSettings::LightChoice;
     std::vector<LightBounds> near;
     std::vector<Source> far;
     std::vector<double> farAmounts;
@@ -43,13 +44,14 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
             const bool isNear = bounds && hasPlace(*bounds);
             placed_ |= isNear;
             const double amount = isNear ? static_cast<double>(bounds->power) : light->irradiance();
-            if (isNear && choice == RenderSettings::LightChoice::tree && amount > 0) {
+            if (isNear && choice == tree && amount > 0) {
                 near.push_back(*bounds);
                 lights_.push_back({light.get(), part});
             } else if (light->power() > 0 && (!isNear || amount > 0)) {
                 far.push_back({light.get(), part});
-                farAmounts.push_back(
-                    choice == RenderSettings::LightChoice::tree ? amount : light->power() * shareOf(*light, bounds));
+                farAmounts.push_back(choice == tree    ? amount
+                                     : choice == power ? light->power() * shareOf(*light, bounds)
+                                                       : 1);
             }
         }
     }

@@ -1,10 +1,13 @@
-// Choosing one of many lights by how much each may give to a place: a binary tree over their bounds [ContyEstevez2018].
+// Choosing one of many lights by how much each may give to a place: a tree over their bounds [ContyEstevez2018], of
+// eight branches, which are weighed at once.
 #pragma once
 
 #include "render/light_bounds.h"
 #include "render/ray.h"
 #include "render/receiver.h"
+#include "spectrum/spectrum.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,36 +35,40 @@ class LightTree {
 
     // Estimate of the irradiance of a receiver by all lights, W/m² as the lights' power.
     float irradiance(const Receiver&) const noexcept;
-    // Number of nodes from the root to the deepest light, less one.
+    // Number of nodes from the root to the deepest light.
     int depth() const { return depth_; }
 
   private:
-    // A subtree, bounded by a sphere and cones. Its children are neighbours.
-    struct alignas(64) Node {
-        Vec3 centre;
-        float radius2 = 0;
-        Vec3 axis;
-        float power = 0;
-        float cosNormals = -1, sinNormals = 0;
-        float cosEmission = 0;
-        bool twoSided = false, leaf = false;
-        std::uint32_t next = 0; // the first child, or the light
+    // Where a subtree or a light hangs.
+    struct Branch {
+        std::uint32_t node = 0;
+        std::uint32_t slot = 0;
     };
-    static_assert(sizeof(Node) == 64);
-    static void assign(Node&, const LightBounds&);
-    static float importance(const Node&, const Receiver&) noexcept;
+    // Up to eight subtrees or lights, each bounded by a sphere and cones; those that are not there have no power.
+    struct Node {
+        Float8 x{}, y{}, z{}, radius2{}, power{};
+        Float8 axisX{}, axisY{}, axisZ{}, cosNormals{}, sinNormals{}, cosEmission{};
+        Int8 twoSided{};
+        std::array<std::uint32_t, 8> next{}; // a node, or a light
+        Branch parent;
+        std::uint8_t lights = 0; // which of them are lights, as bits
+        bool directed = false;   // whether any has cones narrower than everything
+    };
     // Without the cones: a ray passes a light on both sides.
     struct Along {
         const Ray& ray;
         RayExtent extent;
     };
-    static float importance(const Node&, const Along&) noexcept;
-    template <typename Place> float firstShare(const Node& parent, const Place&) const noexcept;
+    static void assign(Node&, std::uint32_t slot, const LightBounds&);
+    static Spectrum importance(const Node&, const Receiver&) noexcept;
+    static Spectrum importance(const Node&, const Along&) noexcept;
+    // The probability of each branch.
+    template <typename Place> static Spectrum shares(const Node&, const Place&) noexcept;
     template <typename Place> Pick pickAt(double u, const Place&) const noexcept;
     template <typename Place> float probabilityAt(std::uint32_t light, const Place&) const noexcept;
 
     std::vector<Node> nodes_;
-    std::vector<std::uint64_t> trails_; // per light: the turns from the root, lowest bit first
+    std::vector<Branch> places_; // of the lights
     int depth_ = 0;
 };
 

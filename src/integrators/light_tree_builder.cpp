@@ -123,13 +123,34 @@ Builder::Builder(std::span<const LightBounds> lights) : lights_(lights), order_(
     std::iota(order_.begin(), order_.end(), 0u);
 }
 
-LightBounds Builder::bounds(std::uint32_t first, std::uint32_t count) const {
-    LightBounds b = lights_[order_[first]];
-    for (std::uint32_t i = 1; i < count; ++i) b = merged(b, lights_[order_[first + i]]);
-    return b;
+Run Builder::run(std::uint32_t first, std::uint32_t count, int depth) const {
+    Run r{first, count, depth, lights_[order_[first]]};
+    for (std::uint32_t i = 1; i < count; ++i) r.bounds = merged(r.bounds, lights_[order_[first + i]]);
+    return r;
 }
 
-std::uint32_t Builder::split(std::uint32_t first, std::uint32_t count, int depth) {
+// Again and again the dearest to look into; of lights in one place, which cost nothing, the most.
+std::vector<Run> Builder::branches(const Run& whole) {
+    std::vector<Run> runs{whole};
+    const auto dearer = [](const Run& a, const Run& b) {
+        if ((a.count > 1) != (b.count > 1)) return a.count > 1;
+        const double costA = cost(a.bounds), costB = cost(b.bounds);
+        return costA != costB ? costA > costB : a.count > b.count;
+    };
+    while (runs.size() < kBranches) {
+        const auto found = std::min_element(runs.begin(), runs.end(), dearer);
+        const Run dearest = *found;
+        if (dearest.count == 1) break;
+        const std::uint32_t left = split(dearest);
+        *found = run(dearest.first, left, dearest.depth + 1);
+        runs.push_back(run(dearest.first + left, dearest.count - left, dearest.depth + 1));
+    }
+    return runs;
+}
+
+std::uint32_t Builder::split(const Run& whole) {
+    const std::uint32_t first = whole.first, count = whole.count;
+    const int depth = whole.depth;
     const auto begin = order_.begin() + first, end = begin + count;
     const auto middle = [&](std::uint32_t i) { return lights_[i].box.centre(); };
     Bounds3 centres;

@@ -16,21 +16,33 @@ LightBounds merged(const LightBounds&, const LightBounds&);
 // [ContyEstevez2018, eq. 1].
 double cost(const LightBounds&);
 
+// Neighbours in the order of the leaves.
+struct Run {
+    std::uint32_t first = 0, count = 0;
+    int depth = 0; // how often divided
+    LightBounds bounds;
+};
+
 // Keeps the lights in the order of the tree's leaves, each subtree's together.
 class Builder {
   public:
-    // No light is deeper, whatever the lights: a trail of turns has 64 bits.
+    // No run is divided more often, whatever the lights.
     static constexpr int kMaxDepth = 64;
+    static constexpr std::size_t kBranches = 8;
 
+    // Requires at least one light.
     explicit Builder(std::span<const LightBounds>);
 
-    // Of a run of lights. Requires count > 0.
-    LightBounds bounds(std::uint32_t first, std::uint32_t count) const;
+    Run all() const { return run(0, static_cast<std::uint32_t>(order_.size()), 0); }
+    // Divides a run into eight, or into single lights if they are fewer, none empty.
+    std::vector<Run> branches(const Run&);
     std::uint32_t light(std::uint32_t i) const { return order_[i]; }
-    // Sorts a run of at least two into two and returns the size of the first, neither empty.
-    std::uint32_t split(std::uint32_t first, std::uint32_t count, int depth);
 
   private:
+    Run run(std::uint32_t first, std::uint32_t count, int depth) const;
+    // Sorts a run of at least two into two and returns the size of the first, neither empty.
+    std::uint32_t split(const Run&);
+
     std::span<const LightBounds> lights_;
     std::vector<std::uint32_t> order_;
 };

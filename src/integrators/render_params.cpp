@@ -69,12 +69,17 @@ TypeInfo renderType() {
                     .doc("How light is found: by both techniques, or by one alone, for comparison.")
                     .example("strategy mis"),
                 field(FieldType::choice, "light-choice", &P::lightChoice)
-                    .choices({"tree", "power"})
+                    .choices({"tree", "power", "uniform"})
                     .byDefault("tree")
                     .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
-                    .doc("Which light is asked: by what it may give to each place, or by its power, for comparison.")
+                    .doc("Which light is asked: by what it may give to each place; by power or evenly to compare.")
                     .example("light-choice tree"),
             }};
+}
+
+RenderSettings::LightChoice lightChoice(std::string_view word) {
+    using enum RenderSettings::LightChoice;
+    return word == "power" ? power : word == "uniform" ? uniform : tree;
 }
 
 RenderSettings renderSettings(const RenderParams& p) {
@@ -89,8 +94,7 @@ RenderSettings renderSettings(const RenderParams& p) {
     s.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
                  : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
                                              : Strategy::mis;
-    s.lightChoice =
-        p.lightChoice.word == "power" ? RenderSettings::LightChoice::power : RenderSettings::LightChoice::tree;
+    s.lightChoice = lightChoice(p.lightChoice.word);
     return s;
 }
 

@@ -22,5 +22,7 @@ struct RenderParams {
 
 schema::TypeInfo renderType();
 RenderSettings renderSettings(const RenderParams&);
+// By the words of `light-choice`; the tree for any other.
+RenderSettings::LightChoice lightChoice(std::string_view word);
 
 } // namespace abbe

@@ -23,8 +23,8 @@ struct RenderSettings {
     double timeLimit = 0;       // s; 0: none
     bool randomSampler = false; // plain random numbers instead of Owen-scrambled Sobol, for comparisons
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
-    // Which light is asked: by what it may give to the place, or by its power alone, for comparisons.
-    enum class LightChoice : std::uint8_t { tree, power } lightChoice = LightChoice::tree;
+    // Which light is asked: by what it may give to the place; by its power alone, or evenly, for comparisons.
+    enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
 };
 
 // Why samples were dropped.

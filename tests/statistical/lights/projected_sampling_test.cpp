@@ -1,5 +1,6 @@
-// Rectangles and spheres sampled for receivers that are lit from one side: densities over the directions, and what
-// they are good for.
+// Rectangles, spheres and polygons of meshes sampled for receivers, most of them lit from one side: densities over the
+// directions, and what they are good for.
+#include "geometry/mesh.h"
 #include "geometry/quad.h"
 #include "geometry/sphere.h"
 #include "support/chi_square.h"
@@ -34,6 +35,35 @@ std::optional<Vec3d> traceSphere(Vec3d o, Vec3d w) { // about (0, 2, 0), radius 
     if (!(q > 0)) return std::nullopt;
     const double t = b - std::sqrt(q);
     return t > 0 ? std::optional(o + w * t) : std::nullopt;
+}
+
+// Two triangles, the first of which is sampled, or two quads.
+Mesh meshOf(std::array<Vec3, 3> p) {
+    MeshData data;
+    data.positions = {p[0], p[1], p[2], p[2] + Vec3{9, 9, 9}, p[2] + Vec3{9, 9, 8}};
+    data.triangles = {{0, 1, 2}, {2, 3, 4}};
+    return Mesh(std::move(data));
+}
+Mesh meshOf(std::array<Vec3, 4> p) {
+    MeshData data;
+    data.positions = {p[0], p[1], p[2], p[3], p[0] + Vec3{9, 9, 9}, p[1] + Vec3{9, 9, 9}};
+    data.quads = {{0, 1, 2, 3}, {0, 1, 5, 4}};
+    return Mesh(std::move(data));
+}
+
+// The nearest point of the triangles in a direction.
+Trace traceTriangles(std::vector<std::array<Vec3, 3>> triangles) {
+    return [triangles](Vec3d o, Vec3d w) {
+        std::optional<Vec3d> found;
+        for (const auto& [p0, p1, p2] : triangles) {
+            const Vec3d a(p0), s = Vec3d(p1) - a, t = Vec3d(p2) - a, n = cross(s, t);
+            const double along = dot(a - o, n) / dot(w, n);
+            const Vec3d p = o + w * along, d = p - a;
+            const double x = dot(cross(d, t), n) / dot(n, n), y = dot(cross(s, d), n) / dot(n, n);
+            if (along > 0 && x >= 0 && y >= 0 && x + y <= 1) found = p;
+        }
+        return found;
+    };
 }
 
 // Chi-square over cells of the sphere of directions, the integral of the density, and that sample() and
@@ -120,6 +150,33 @@ TEST_CASE("sphere: sampled by the cosine at the receiver") {
     check(kSphere, traceSphere, {"both sides count", {{0, 0.5f, 0}, {1, 0, 0}, true}});
 }
 
+// docs/hard_cases.md, case 31.
+TEST_CASE("triangles of a mesh: sampled per solid angle and by the cosine") {
+    const std::array<Vec3, 3> flat{Vec3{-1, 1, -1}, Vec3{0.2f, 1, 1}, Vec3{1, 1, -1}};
+    const Mesh mesh = meshOf(flat);
+    const Trace trace = traceTriangles({flat});
+    check(mesh, trace, {"below, from everywhere", {Vec3{0, 0, 0}}});
+    check(mesh, trace, {"near an edge", {Vec3{0.4f, 0.7f, -0.9f}}});
+    check(mesh, trace, {"below, by the cosine", {{0, 0, 0}, {0, 1, 0}, false}});
+    check(mesh, trace, {"near a corner", {{0.9f, 0.7f, -0.9f}, normalize(Vec3{0.3f, 1, 0}), false}});
+    check(mesh, trace, {"cut by the horizon", {{0.1f, 0.5f, 0.1f}, normalize(Vec3{1, 0.1f, 0}), false}});
+    check(mesh, trace, {"beside it", {{1.4f, 0.3f, -0.5f}, {-1, 0, 0}, false}});
+    const std::array<Vec3, 3> sliver{Vec3{-3, 1, 0}, Vec3{3, 1, 0.3f}, Vec3{0, 1.2f, 0.5f}};
+    check(meshOf(sliver), traceTriangles({sliver}), {"a long one", {{0, 0, 0}, {0, 1, 0}, false}});
+}
+
+TEST_CASE("quads of a mesh: both halves sampled per solid angle and by the cosine") {
+    const std::array<Vec3, 4> flat{Vec3{-1, 1, -1}, Vec3{-1, 1, 0.5f}, Vec3{0.8f, 1, 1}, Vec3{1, 1, -0.6f}},
+        bent{Vec3{-1, 1, -1}, Vec3{-1, 1, 1}, Vec3{1, 1.3f, 1}, Vec3{1, 1, -1}};
+    for (const auto& q : {flat, bent}) {
+        const Mesh mesh = meshOf(q);
+        const Trace trace = traceTriangles({{q[0], q[1], q[3]}, {q[2], q[3], q[1]}});
+        check(mesh, trace, {"below, from everywhere", {Vec3{0, 0, 0}}});
+        check(mesh, trace, {"below, by the cosine", {{0.3f, 0.2f, 0}, normalize(Vec3{0.3f, 1, 0}), false}});
+        check(mesh, trace, {"cut by the horizon", {{0.1f, 0.5f, 0.1f}, normalize(Vec3{1, 0.1f, 0}), false}});
+    }
+}
+
 // What it is for: near a large light the cosine is all that varies.
 TEST_CASE("the spread of irradiance estimates falls by the cosine") {
     const auto moments = [](const Shape& shape, const Receiver& at, Vec3 n) {
@@ -143,6 +200,14 @@ TEST_CASE("the spread of irradiance estimates falls by the cosine") {
         const Moments with = moments(kQuad, at, at.n), without = moments(kQuad, at.p, at.n);
         CHECK(with.mean() == doctest::Approx(without.mean()).epsilon(0.01));
         MESSAGE("quad: variance ", with.variance() / without.variance());
+        CHECK(with.variance() < most * without.variance());
+    }
+    const Mesh mesh = meshOf(std::array{Vec3{-1, 1, -1}, Vec3{0.2f, 1, 1}, Vec3{1, 1, -1}});
+    for (const auto& [at, most] :
+         {Place{{{0.8f, 0.6f, -0.5f}, up, false}, 0.7}, Place{{{1.5f, 0.2f, 0}, {-1, 0, 0}, false}, 0.4}}) {
+        const Moments with = moments(mesh, at, at.n), without = moments(mesh, at.p, at.n);
+        CHECK(with.mean() == doctest::Approx(without.mean()).epsilon(0.01));
+        MESSAGE("triangle: variance ", with.variance() / without.variance());
         CHECK(with.variance() < most * without.variance());
     }
     for (const Vec3 p : {Vec3{0, 0.8f, 0}, Vec3{0.5f, 0.2f, 0}}) {
@@ -174,6 +239,8 @@ TEST_CASE("receivers in, on, above and far from a light do no harm") {
             CHECK_UNARY(isFinite(pdf) && pdf >= 0);
         }
     };
+    const Mesh mesh = meshOf(std::array{Vec3{-1, 1, -1}, Vec3{0.2f, 1, 1}, Vec3{1, 1, -1}});
+    const Mesh quads = meshOf(std::array{Vec3{-1, 1, -1}, Vec3{-1, 1, 1}, Vec3{1, 1, 1}, Vec3{1, 1, -1}});
     const float far = 1e7f;
     for (const Vec3 p : {Vec3{0, 1, 0}, Vec3{1, 1, 1}, Vec3{1, 1, 0}, Vec3{0, 2, 0}, Vec3{0, 1 - 1e-7f, 0},
                          Vec3{0, -far, 0}, Vec3{far, 1, 0}, Vec3{1, 2, 0}, Vec3{0, 3, 0}, Vec3{0, 1.0001f, 0}})
@@ -181,6 +248,8 @@ TEST_CASE("receivers in, on, above and far from a light do no harm") {
             for (const bool both : {false, true}) {
                 sound(kQuad, {p, n, both});
                 sound(kSphere, {p, n, both});
+                sound(mesh, {p, n, both});
+                sound(quads, {p, n, both});
             }
     // A tiny light, as wide as 1e-7 rad: its density is that of its solid angle.
     for (const double r : {1e-7, 1e-4, 1e-2}) {
