@@ -26,8 +26,8 @@ constexpr const char* kHall = R"(scene 1
 film {{ size {0} {0}; filter box 0.5 }}
 camera {{ from 0 1.7 9.5; look-at 0 1.4 0; fov 55 deg }}
 render {{ max-depth 16; replicates 1 }}
-material plaster diffuse {{ reflectance 0.6 }}
-shape box {{ size 20 5 20; transform {{ translate 0 2.5 0 }}; material plaster }}
+material plaster diffuse {{ reflectance 0.5 }}
+shape box {{ size 40 5 40; transform {{ translate 0 2.5 -9 }}; material plaster }}
 shape box {{ size 1.5 2.4 1.5; transform {{ rotate y 30 deg; translate -2.5 1.2 2 }}; material plaster }}
 shape box {{ size 1 1 1; transform {{ rotate y -20 deg; translate 2 0.5 4 }}; material plaster }}
 shape cylinder {{ radius 0.4; height 5; transform {{ translate 3.5 2.5 -1 }}; material plaster }}
@@ -44,7 +44,7 @@ std::string hall(int count, int size) {
     std::string text = fmt::format(kHall, size);
     const double r = 0.2 / std::cbrt(count);
     for (int i = 0; i < count; ++i) {
-        const double x = u(-9, 9), y = u(2.6, 4.7), z = u(-9, 8),
+        const double x = u(-19, 19), y = u(2.2, 4.7), z = u(-28, 8),
                      lumen = 20000 * power[static_cast<std::size_t>(i)] / all;
         if (i % 2)
             text += fmt::format("light sphere {{ center {} {} {}; radius {}; power {} lm }}\n", x, y, z, r, lumen);

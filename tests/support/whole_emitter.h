@@ -23,6 +23,8 @@ class WholeEmitter final : public Shape {
     std::optional<RawHit> intersect(const Ray& ray) const override { return shape_.intersect(ray); }
     void surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const override { shape_.surface(raw, ray, hit); }
     double area() const override { return shape_.area(); }
+    // Which part sample() takes for the first of its numbers: a point alone does not tell.
+    std::uint32_t partOf(float u) const { return static_cast<std::uint32_t>(byArea_.sample(u).index); }
     std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t, Vec2 u) const override {
         const BinSample bin = byArea_.sample(u.x);
         auto s = shape_.sample(from, static_cast<std::uint32_t>(bin.index), {bin.offset, u.y});

@@ -75,7 +75,8 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
     Random random(17);
     double total = 0;
     for (int i = 0; i < samples; ++i) {
-        const auto s = shape.sample(from, 0, {random.uniform(), random.uniform()});
+        const Vec2 u{random.uniform(), random.uniform()};
+        const auto s = shape.sample(from, 0, u);
         if (!s) continue;
         const Vec3d d = normalize(Vec3d(s->p) - Vec3d(from));
         const Vec2d q = directions.square(d);
@@ -87,6 +88,7 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
         SurfaceHit hit;
         hit.p = s->p;
         hit.ng = s->ng;
+        if (const auto* whole = dynamic_cast<const WholeEmitter*>(&shape)) hit.primitive = whole->partOf(u.x);
         const double ratio = static_cast<double>(shape.pdfSolidAngle(from, hit) / s->pdfSolidAngle);
         report.worstPdfRatio = std::max(report.worstPdfRatio, std::abs(ratio - 1));
     }
