@@ -4,14 +4,17 @@
 #include "materials/ggx.h"
 #include "materials/ggx_albedo.h"
 #include "materials/microfacet_cosines.h"
+#include "materials/stretched_interface.h"
 #include "materials/stretched_lobe.h"
 
 namespace abbe {
 
 class GgxLobe {
   public:
-    // `stretched`: of the same widths; null if both are the same. It must outlive the lobe.
-    explicit GgxLobe(Ggx ggx, const StretchedLobe* stretched = nullptr) : ggx_(ggx), stretched_(stretched) {}
+    // `stretched` and, for glass, `interface`: of the same widths; null if both widths are the same. They must outlive
+    // the lobe.
+    explicit GgxLobe(Ggx ggx, const StretchedLobe* stretched = nullptr, const StretchedInterface* interface = nullptr)
+        : ggx_(ggx), stretched_(stretched), interface_(interface) {}
 
     const Ggx& ggx() const { return ggx_; }
     bool smooth() const { return ggx_.smooth(); }
@@ -26,20 +29,29 @@ class GgxLobe {
         if (smooth()) return Spectrum(wo.z);
         return stretched_ ? stretched_->cosines(wo) : microfacetCosines(wo.z, width(wo));
     }
-    // See visibleCosines(); a stretched lobe is taken for its profile along wo.
-    Spectrum visible(Vec3 wo) const { return smooth() ? Spectrum(wo.z) : visibleCosines(wo.z, width(wo)); }
-    // Share that a clear interface of this shape reflects and transmits together; eta: far side over near side. The
-    // table knows round lobes: a stretched one is taken to lose what its profile along wo would.
-    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool varies) const {
+    // See visibleCosines().
+    Spectrum visible(Vec3 wo) const {
+        if (smooth()) return Spectrum(wo.z);
+        return stretched_ ? stretched_->visible(wo) : visibleCosines(wo.z, width(wo));
+    }
+    // Share that a clear interface of this shape reflects and transmits together; eta: far side over near side,
+    // `within` if that is outside. The table knows round lobes; a stretched one has its own table for one index, and
+    // changes with the index as its profile along wo does.
+    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool varies, bool within) const {
         if (smooth()) return Spectrum(1.f);
         const float alpha = width(wo);
-        if (!varies) return Spectrum(ggxAlbedo(wo.z, alpha, eta[0]));
+        float ratio = 1;
+        if (interface_) {
+            const float own = within ? 1 / interface_->eta() : interface_->eta();
+            if (!varies && eta[0] == own) return Spectrum((*interface_)(wo, within));
+            ratio = (*interface_)(wo, within) / ggxAlbedo(wo.z, alpha, own);
+        }
+        if (!varies) return Spectrum(std::min(1.f, ratio * ggxAlbedo(wo.z, alpha, eta[0])));
         Float8 result;
-        for (int i = 0; i < kLanes; ++i) result[i] = ggxAlbedo(wo.z, alpha, eta[i]);
+        for (int i = 0; i < kLanes; ++i) result[i] = std::min(1.f, ratio * ggxAlbedo(wo.z, alpha, eta[i]));
         return result;
     }
 
-  private:
     // α of the profile cut along wo.
     float width(Vec3 wo) const {
         const float sine2 = wo.x * wo.x + wo.y * wo.y;
@@ -48,8 +60,10 @@ class GgxLobe {
         return std::min(1.f, std::sqrt((square(ggx_.alphaX() * wo.x) + square(ggx_.alphaY() * wo.y)) / sine2));
     }
 
+  private:
     Ggx ggx_;
     const StretchedLobe* stretched_;
+    const StretchedInterface* interface_;
 };
 
 } // namespace abbe

@@ -57,6 +57,7 @@ class OpenPbr final : public Material {
     bool filled_; // with the medium of the subsurface part
     float coatReturns_;
     std::optional<StretchedLobe> stretched_, stretchedCoat_;
+    std::optional<StretchedInterface> stretchedGlass_;
 };
 
 OpenPbr::OpenPbr(const OpenPbrParams& p)
@@ -82,7 +83,12 @@ OpenPbr::OpenPbr(const OpenPbrParams& p)
     if (constant(specularRoughness_) && constant(specularRoughnessAnisotropy_) && constant(coatWeight_) &&
         constant(coatRoughness_)) {
         const Ggx ggx = Ggx::fromRoughness(coveredRoughness({}), specularRoughnessAnisotropy_.at({}));
-        if (!ggx.smooth() && ggx.alphaX() != ggx.alphaY()) stretched_.emplace(ggx.alphaX(), ggx.alphaY());
+        if (!ggx.smooth() && ggx.alphaX() != ggx.alphaY()) {
+            stretched_.emplace(ggx.alphaX(), ggx.alphaY());
+            const float weight = constant(specularWeight_) ? specularWeight_.at({}) : 1;
+            const OpenPbrDielectric glass({}, Spectrum(static_cast<float>(ior_->at(587.6))), weight);
+            if (refracts()) stretchedGlass_.emplace(ggx.alphaX(), ggx.alphaY(), glass.eta()[0]);
+        }
     }
     if (!coatWeight_.is(0) && constant(coatRoughness_) && constant(coatRoughnessAnisotropy_)) {
         const Ggx ggx = Ggx::fromRoughness(coatRoughness_.at({}), coatRoughnessAnisotropy_.at({}));
@@ -138,7 +144,7 @@ float OpenPbr::coveredRoughness(const SurfaceHit& hit) const {
 
 GgxLobe OpenPbr::specularLobe(const SurfaceHit& hit, float roughness) const {
     return GgxLobe(Ggx::fromRoughness(roughness, specularRoughnessAnisotropy_.at(hit)),
-                   stretched_ ? &*stretched_ : nullptr);
+                   stretched_ ? &*stretched_ : nullptr, stretchedGlass_ ? &*stretchedGlass_ : nullptr);
 }
 
 GgxLobe OpenPbr::coatLobe(const SurfaceHit& hit) const {

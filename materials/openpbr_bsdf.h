@@ -73,7 +73,7 @@ class OpenPbrBsdf final : public Bsdf {
     void viewDielectric(View&) const;
     void viewWithin(View&) const;
     template <typename Covered, typename Bare>
-    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, Covered&& covered, Bare&& bare) const;
+    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covered&& covered, Bare&& bare) const;
     void choose(View&) const;
     Spectrum opaqueAlbedo() const;
     struct Sheet {

@@ -78,8 +78,9 @@ class OpenPbrDielectric {
 
     // Mean over a lobe, see microfacetCosines(); `varies` if what is averaged differs between the lanes for reasons of
     // its own.
-    template <typename F> Spectrum meanOver(const Spectrum& cosines, F&& reflectanceAt, bool varies = false) const {
-        const Spectrum weights(kCosineWeights);
+    template <typename F>
+    Spectrum meanOver(const Spectrum& cosines, F&& reflectanceAt, bool varies = false,
+                      Spectrum weights = Spectrum(kCosineWeights)) const {
         if (!cover_.varies && !varies)
             return Spectrum(sum(reflectanceAt(cosines) * weights)); // the lanes take the eight points
         Spectrum result(0.f);

@@ -6,7 +6,49 @@
 namespace abbe {
 namespace {
 
-const Spectrum kOne(1.f);
+const Spectrum kOne(1.f), kNone(0.f), kMostFactor(1.5f);
+
+// Share of the light transmitted by a microfacet that no other one stops, about: of the microfacet in the plane of wo
+// and the normal, on the normal's side.
+class Escape {
+  public:
+    Escape(Vec3 wo, float alpha, Spectrum eta)
+        : mu_(wo.z), sine_(std::sqrt((1 - wo.z) * (1 + wo.z))), alpha2_(square(alpha)), stretch_(stretch(mu_)),
+          eta_(eta) {}
+
+    // c: cosine between wo and the microfacet.
+    Spectrum operator()(Spectrum c) const {
+        const Spectrum height = mu_ * c + sine_ * sqrt(max((kOne - c) * (kOne + c), kNone)); // z of the microfacet
+        const Spectrum g2 = (eta_ - kOne) * (eta_ + kOne) + c * c;
+        const Spectrum z = (mu_ - height * (c - sqrt(max(g2, kNone)))) / eta_; // of the direction, downwards
+        const Spectrum kept = (mu_ + stretch_) / (stretch_ + stretch(z) * mu_ / max(z, Spectrum(1e-6f))); // G2/G1
+        return select((g2.v > 0.f) & (z.v > 0.f), kept, kNone);
+    }
+
+  private:
+    Spectrum stretch(Spectrum z) const { return sqrt(fma(alpha2_, max((kOne - z) * (kOne + z), kNone), z * z)); }
+    Spectrum mu_, sine_, alpha2_, stretch_, eta_;
+};
+
+// Cosines at which a lobe meets its microfacets: at Gauss points, or at more of them from within a dense base, where
+// total reflection makes an edge.
+class Quantiles {
+  public:
+    Quantiles(Spectrum cosines, bool fine)
+        : count_(fine ? 4 : 1), weights_(fine ? Float8{} + 1.f / 32 : kCosineWeights) {
+        cosines_ = fine ? finerCosines(cosines) : std::array<Spectrum, 4>{cosines};
+    }
+    template <typename F> Spectrum mean(const OpenPbrDielectric& d, F&& f) const {
+        Spectrum sum(0.f);
+        for (std::size_t i = 0; i < count_; ++i) sum += d.meanOver(cosines_[i], f, false, weights_);
+        return sum;
+    }
+
+  private:
+    std::array<Spectrum, 4> cosines_;
+    std::size_t count_;
+    Spectrum weights_;
+};
 
 } // namespace
 
@@ -66,7 +108,7 @@ void OpenPbrBsdf::viewDielectric(View& v) const {
         return;
     }
     const auto bare = [&](Spectrum c) { return fresnelDielectric(c, d.eta()); };
-    v.scale = kOne / interfaceAlbedo(v.wo, d.eta(), reflectance, bare);
+    v.scale = kOne / interfaceAlbedo(v.wo, d.eta(), false, reflectance, bare);
     v.below = max(kOne - v.scale * mirror * mean, Spectrum(0.f));
 }
 
@@ -76,25 +118,29 @@ void OpenPbrBsdf::viewWithin(View& v) const {
     const auto covered = [&](Spectrum c) { return d.reflectanceWithin(c); };
     const auto bare = [&](Spectrum c) { return fresnelDielectric(c, eta); };
     v.below = kOne;
-    v.scale = kOne / interfaceAlbedo(v.wo, eta, covered, bare);
+    v.scale = kOne / interfaceAlbedo(v.wo, eta, true, covered, bare);
 }
 
-// What single scattering at the interface returns and transmits together. The tables know the bare interface; film and
-// coat change its reflectance, and with it either part.
+// What single scattering at the interface returns and transmits together. The tables know it of the bare interface.
+// Film and coat change the reflectance by some Δ: by its mean more light is reflected and less transmitted, and the sum
+// changes by as much as the one is stopped by other microfacets more often than the other.
 template <typename Covered, typename Bare>
-Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, Covered&& covered, Bare&& bare) const {
+Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covered&& covered, Bare&& bare) const {
     const OpenPbrDielectric& d = point_.dielectric;
     const GgxLobe& lobe = point_.specular;
-    const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_);
+    const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_, within);
     if (!d.covered() || lobe.smooth()) return pair;
-    const Spectrum cosines = lobe.cosines(wo), visible = lobe.visible(wo), mirror(lobe.mirrorAlbedo(wo));
-    // Near total reflection the tables may disagree in the last digits: no more is reflected than both parts together.
-    const Spectrum bareReflected = mirror * d.meanOver(cosines, bare);
-    const Spectrum share = min(pair / max(bareReflected, Spectrum(1e-6f)), kOne);
-    const Spectrum through = pair - bareReflected * share, reflected = mirror * d.meanOver(cosines, covered) * share;
-    const Spectrum less =
-        (kOne - d.meanOver(visible, covered)) / max(kOne - d.meanOver(visible, bare), Spectrum(1e-3f));
-    return fma(through, less, reflected);
+    const Escape escape(wo, lobe.width(wo), eta);
+    const auto more = [&](Spectrum c) { return covered(c) - bare(c); };
+    const Spectrum mirror(lobe.mirrorAlbedo(wo));
+    const Quantiles up(lobe.cosines(wo), within), down(lobe.visible(wo), within);
+    // How often transmitted light escapes is stated up to a factor, which the bare interface knows.
+    const Spectrum through = max(pair - mirror * up.mean(d, bare), kNone);
+    const Spectrum estimate = down.mean(d, [&](Spectrum c) { return (kOne - bare(c)) * escape(c); });
+    const Spectrum factor =
+        select(estimate.v > 1e-3f, min(through / max(estimate, Spectrum(1e-3f)), kMostFactor), kOne);
+    const Spectrum lost = down.mean(d, [&](Spectrum c) { return more(c) * escape(c); });
+    return min(max(pair + mirror * up.mean(d, more) - factor * lost, Spectrum(1e-3f)), kOne);
 }
 
 // The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is
@@ -103,8 +149,8 @@ void OpenPbrBsdf::viewCoat(View& v) const {
     const OpenPbrCover& cover = point_.cover;
     const auto reflectance = [&](Spectrum c) { return cover.coatReflectance(c); };
     const Spectrum mean = point_.dielectric.meanOver(point_.coat.cosines(v.wo), reflectance);
-    v.coatScale = kOne / point_.coat.interfaceAlbedo(v.wo, cover.coatEta,
-                                                     maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0);
+    v.coatScale = kOne / point_.coat.interfaceAlbedo(
+                             v.wo, cover.coatEta, maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0, false);
     const Spectrum albedo = min(v.coatScale * point_.coat.mirrorAlbedo(v.wo) * mean, kOne);
     v.pick[kCoat] = v.ground * cover.coat * abbe::mean(albedo);
     v.covered *= kOne - albedo;

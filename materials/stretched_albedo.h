@@ -2,9 +2,7 @@
 // of one width only.
 #pragma once
 
-#include "math/vec.h"
-
-#include <array>
+#include "materials/stretched_grid.h"
 
 namespace abbe {
 
@@ -16,18 +14,13 @@ class StretchedAlbedo {
     StretchedAlbedo(float alphaX, float alphaY);
 
     // Share of the light from wo (unit, wo.z >= 0) that leaves again after one bounce.
-    float operator()(Vec3 wo) const;
+    float operator()(Vec3 wo) const {
+        return grid_.at(table_, wo, [](float share) { return share; });
+    }
 
   private:
-    static constexpr int kAzimuths = 13, kMu = 65;
-    // Position along the azimuth in [0, 1]. The loss changes over the azimuth itself and, on strongly stretched
-    // surfaces, over the angle that the widths make of it: halfway between both, each has its nodes.
-    float azimuthPosition(Vec3 wo) const;
-    float widthTowards(Vec3 wo) const; // α of the profile cut along wo
-    float node(int azimuth, int mu) const { return table_[static_cast<std::size_t>(azimuth * kMu + mu)]; }
-
-    float alphaX_, alphaY_;
-    std::array<float, kAzimuths * kMu> table_{};
+    StretchedGrid grid_;
+    StretchedGrid::Table<float> table_;
 };
 
 } // namespace abbe

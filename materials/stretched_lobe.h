@@ -2,10 +2,9 @@
 // companion of ggxAlbedo and microfacetCosines, which know surfaces of one width only.
 #pragma once
 
-#include "math/vec.h"
+#include "materials/stretched_grid.h"
 #include "spectrum/spectrum.h"
 
-#include <array>
 #include <memory>
 
 namespace abbe {
@@ -20,26 +19,18 @@ class StretchedLobe {
     // As those of GgxLobe; wo unit, wo.z >= 0.
     float mirrorAlbedo(Vec3 wo) const;
     Spectrum cosines(Vec3 wo) const;
+    Spectrum visible(Vec3 wo) const;
 
   private:
-    static constexpr int kAzimuths = 13, kMu = 65;
     struct Node {
-        Spectrum offset; // (c - mu)/width at the Gauss points
+        Spectrum reflected, visible; // (c - mu)/width at the Gauss points
         float albedo = 0;
     };
-    struct Place {
-        int azimuth, mu;
-        float u, v; // within the cell
-    };
-    // Halfway between the azimuth itself and the angle that the widths make of it: both matter, see StretchedAlbedo.
-    float azimuthPosition(Vec3 wo) const;
-    float widthTowards(Vec3 wo) const; // α of the profile cut along wo
-    Place find(Vec3 wo) const;
-    const Node& node(int azimuth, int mu) const { return (*table_)[static_cast<std::size_t>(azimuth * kMu + mu)]; }
-    Node integrate(Vec3 wo) const;
+    Node integrate(const Ggx&, Vec3 wo) const;
+    Spectrum placed(Vec3 wo, Spectrum offset) const;
 
-    float alphaX_, alphaY_;
-    std::unique_ptr<std::array<Node, kAzimuths * kMu>> table_;
+    StretchedGrid grid_;
+    std::unique_ptr<StretchedGrid::Table<Node>> table_;
 };
 
 } // namespace abbe
