@@ -19,13 +19,14 @@ struct Furnace {
     int count = 0;
     std::string where, whereWithin;
 
-    void add(const OpenPbrParams& p, int samples) {
+    // `turned`: seen across what it is stretched along.
+    void add(const OpenPbrParams& p, int samples, bool turned = false) {
         const BsdfUnderTest b = openPbr(p, describe(p));
         for (const double degrees : {5.0, 40.0, 65.0, 80.0, 87.0}) {
-            note(std::abs(albedo(*b.bsdf, directionAt(degrees), samples) - 1), b.name, degrees, worst, where);
+            const Vec3 w = directionAt(degrees), wo = turned ? Vec3{w.y, w.x, w.z} : w;
+            note(std::abs(albedo(*b.bsdf, wo, samples) - 1), b.name, degrees, worst, where);
             if (b.eta > 0)
-                note(std::abs(albedo(*b.bsdf, mirrored(directionAt(degrees)), samples) - 1), b.name, degrees,
-                     worstWithin, whereWithin);
+                note(std::abs(albedo(*b.bsdf, mirrored(wo), samples) - 1), b.name, degrees, worstWithin, whereWithin);
         }
     }
     void report() const {
@@ -49,14 +50,13 @@ TEST_CASE("white furnace over the cube: opaque surfaces") {
     CHECK(furnace.sum / furnace.count < 0.001);
 }
 
-// From within, coats and films near the critical angle are interpolated less exactly.
 TEST_CASE("white furnace over the cube: translucent surfaces, from both sides") {
     RandomOpenPbr cube(2);
     Furnace furnace;
     for (int i = 0; i < 150; ++i) furnace.add(cube(false, true, false), 4000);
     furnace.report();
     CHECK(furnace.worst < 0.005);
-    CHECK(furnace.worstWithin < 0.015);
+    CHECK(furnace.worstWithin < 0.005);
     CHECK(furnace.sum / furnace.count < 0.001);
 }
 
@@ -66,6 +66,25 @@ TEST_CASE("white furnace over the cube: stretched highlights") {
     for (int i = 0; i < 20; ++i) furnace.add(cube(true, false, true), 4000);
     furnace.report();
     CHECK(furnace.worst < 0.005);
+}
+
+// The tables are made for these widths; film and coat are added as to round ones.
+TEST_CASE("white furnace: stretched rough glass, from both sides") {
+    RandomOpenPbr cube(5);
+    Furnace bare, covered;
+    for (int i = 0; i < 12; ++i) {
+        OpenPbrParams p = cube(false, false, true);
+        p.geometryThinWalled = false;
+        p.baseMetalness = p.subsurfaceWeight = number(0), p.transmissionWeight = number(1);
+        if (i % 3 > 0) p.coatWeight = p.thinFilmWeight = number(0);
+        (i % 3 > 0 ? bare : covered).add(p, 4000, i % 2);
+    }
+    bare.report();
+    covered.report();
+    CHECK(bare.worst < 0.005);
+    CHECK(bare.worstWithin < 0.01);
+    CHECK(covered.worst < 0.02);
+    CHECK(covered.worstWithin < 0.03);
 }
 
 TEST_CASE("no surface returns more than it receives, at any wavelength") {

@@ -4,6 +4,7 @@
 #include "materials/microfacet_cosines.h"
 #include "materials/openpbr_interface.h"
 #include "materials/stretched_albedo.h"
+#include "materials/stretched_interface.h"
 #include "materials/stretched_lobe.h"
 #include "support/microfacet_reference.h"
 #include "support/statistics.h"
@@ -56,8 +57,32 @@ TEST_CASE("stretched lobes: round ones as a special case, the mirror's albedo as
             const Spectrum eta(1.5f);
             CHECK(dot8(fresnelDielectric(round.cosines(wo), eta)) ==
                   doctest::Approx(dot8(fresnelDielectric(microfacetCosines(mu, 0.25f), eta))).epsilon(0.01));
+            CHECK(dot8(fresnelDielectric(round.visible(wo), eta)) ==
+                  doctest::Approx(dot8(fresnelDielectric(visibleCosines(mu, 0.25f), eta))).epsilon(0.01));
             CHECK(stretched.mirrorAlbedo(wo) == doctest::Approx(albedo(wo)).epsilon(1e-4));
         }
+}
+
+TEST_CASE("stretched interfaces: round ones as a special case") {
+    const StretchedInterface round(0.25f, 0.25f, 1.5f);
+    for (const float mu : {0.05f, 0.3f, 0.7f, 0.95f})
+        for (const float phi : {0.f, 0.7f, 1.5f}) {
+            const float r = std::sqrt(1 - mu * mu), x = r * std::cos(phi), y = r * std::sin(phi);
+            for (const bool within : {false, true})
+                CHECK(round({x, y, mu}, within) ==
+                      doctest::Approx(ggxAlbedo(mu, 0.25f, within ? 1 / 1.5f : 1.5f)).epsilon(4e-3));
+        }
+}
+
+TEST_CASE("the finer cosines go through those at the Gauss points") {
+    const test::GaussLegendre<8> rule; // of [-1, 1]
+    Spectrum cosines(0.f);
+    const auto quantile = [](double u) { return 0.1 + 0.8 * u * u * (1.5 - 0.5 * u); };
+    for (int i = 0; i < kLanes; ++i)
+        cosines.v[i] = static_cast<float>(quantile(rule.node[static_cast<std::size_t>(i)]));
+    const auto finer = finerCosines(cosines);
+    for (int i = 0; i < 32; ++i)
+        CHECK(finer[static_cast<std::size_t>(i / 8)][i % 8] == doctest::Approx(quantile((i + 0.5) / 32)).epsilon(1e-5));
 }
 
 TEST_CASE("hemispherical reflectance is the mean over the hemisphere") {
