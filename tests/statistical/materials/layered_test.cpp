@@ -129,7 +129,7 @@ TEST_CASE("a coat by textures is the coat by the same numbers") {
     plain.tint.curve = &whole, plain.thicknessScale.value = 0.5, plain.darkening.value = 0.3;
     half.tint.curve = &root, half.darkening.value = 0.3;
     const auto compare = [](const LayeredParams& a, const LayeredParams& b) {
-        for (const Vec3 wo : aroundTheSphere result())
+        for (const Vec3 wo : aroundTheSphere())
             CHECK(albedo(*coated("a", a, 1).bsdf, wo) ==
                   doctest::Approx(albedo(*coated("b", b, 1).bsdf, wo)).epsilon(1e-5));
     };
