@@ -34,7 +34,9 @@ class OpenPbr final : public Material {
     const Curve* absorption() const override { return attenuation_ ? &*attenuation_ : nullptr; }
     const Curve* ior() const override { return refracts() ? ior_ : nullptr; }
     bool seesOutside() const override { return true; }
-    SurfaceEmission emission() const override { return {p_.emissionLuminance, p_.emissionColor, nullptr}; }
+    SurfaceEmission emission() const override {
+        return {p_.emissionLuminance, p_.emissionColor.curve, p_.emissionColor.texture};
+    }
     bool usesTextures() const override;
 
   private:

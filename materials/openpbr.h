@@ -52,8 +52,8 @@ struct OpenPbrParams {
     Color fuzzColor; // null: 1
     Number fuzzRoughness{0.5, nullptr, {}};
 
-    double emissionLuminance = 0;         // cd/m²
-    const Curve* emissionColor = nullptr; // of any scale; null: D65
+    double emissionLuminance = 0;           // cd/m²
+    schema::TexturedSpectrum emissionColor; // a curve of any scale, or a factor of D65; neither: D65
 
     Number thinFilmWeight{0, nullptr, {}};
     double thinFilmThickness = 0.5e-6; // m

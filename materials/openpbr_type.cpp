@@ -277,7 +277,8 @@ std::vector<FieldInfo> emissionFields() {
                 .byDefault("0 nits")
                 .synonyms({"emission_luminance", "emission", "emission_weight", "emission_intensity"}),
             field(FieldType::spectrum, "emission-color", &P::emissionColor)
-                .doc("Colour of that light; only its shape counts. D65 when left out.")
+                .doc("Colour of that light; only its shape counts, or a texture, where 1 stands for D65 of the full "
+                     "luminance. D65 when left out.")
                 .example("emission-color rgb 1 0.5 0.2")
                 .role(SpectrumRole::shape)
                 .range(0, 1e12)

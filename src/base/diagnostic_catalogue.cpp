@@ -182,6 +182,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0752", "the photometric file cannot be used", "An IES file (LM-63) of photometric type C is needed: `TILT=NONE` or `INCLUDE`, then its numbers. The message names the line of the file."},
     {"E0753", "a portal is no rectangle", "`portals` of an environment lists the four corners of each window in order around it, counter-clockwise seen from inside the room; a window is a flat rectangle."},
     {"E0754", "a light with holes", "Light is asked of all points of a shape that shines, so its material cannot have an `opacity` below 1 (hair, whose tubes are open to the inside, cannot shine either)."},
+    {"E0755", "two textures of one light", "A light has one texture: the factor that `texture` names, or the picture or pattern that stands in the place of its `radiance`. A `product` multiplies two."},
     {"W0450", "a colour used as data", "The image file says that its values are colours in some encoding, as almost every 8-bit file does, or its type suggests it. Heights and directions, a roughness and the like are numbers. Displacement uses the stored values as they are; everything else gets linear values, decoded by the curve of the encoding. `space=data` behind the name says that the stored numbers are meant."},
     {"W0451", "data used as a colour", "`space=data` says that the values of the image are plain numbers, and here a colour is wanted. They are taken as linear colours with the primaries of Rec. 709. `space=` names the encoding that the picture was painted in."},
     {"W0452", "a texture cannot be kept", "Pictures are converted once into tiled files with mip levels, in a folder for caches: `abbe/textures` in XDG_CACHE_HOME or in `~/.cache`. Where that cannot be written, the picture itself is used: whole in memory, and filtered before its colours are decoded, which makes edges between bright and dark a little darker."},
@@ -211,7 +212,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
-    {"W0740", "a dark light", "The light states an amount of 0, or what it is made of has no area. It is seen as black and never chosen when light is looked for."},
+    {"W0740", "a dark light", "The light states an amount of 0, its texture is black, or what it is made of has no area. It is seen as black and never chosen when light is looked for."},
     {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
 };
 // clang-format on

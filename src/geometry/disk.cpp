@@ -75,6 +75,12 @@ void Disk::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const
     parametrizeDisk(dot(d, textureX_), dot(d, textureY_), radius_, textureX_, textureY_, hit);
 }
 
+std::optional<UvPoint> Disk::uvPoint(Vec2 uv) const {
+    const double r = radius_ * static_cast<double>(uv.x), turn = 2 * kPiD * static_cast<double>(uv.y);
+    const Vec3d p = centre_ + (textureX_ * std::cos(turn) + textureY_ * std::sin(turn)) * r;
+    return UvPoint{Vec3(p), analyticError(p, magnitude_), Vec3(z_), static_cast<float>(2 * kPiD * radius_ * r)};
+}
+
 std::optional<ShapeSample> Disk::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const Vec2 q = squareToDisk(u);
     const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));

@@ -31,6 +31,7 @@ class Disk final : public Shape {
     // Uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:
     Vec3d centre_, x_, y_, z_;

@@ -8,6 +8,7 @@
 #include "geometry/surface_math.h"
 #include "geometry/time_steps.h"
 #include "render/material.h"
+#include "render/own_space.h"
 
 #include <array>
 #include <atomic>
@@ -55,10 +56,6 @@ class EmbreeScene final : public Intersector {
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
-    struct OwnSpace {
-        Transform map; // from the coordinates of the shape
-        float scale;   // of lengths
-    };
     std::vector<OwnSpace> ownSpaces; // GeometryRecord::space
     std::vector<std::unique_ptr<const InstanceTable>> tables;
     Bounds3 bounds_;
@@ -110,14 +107,7 @@ void EmbreeScene::surface(const RTCHit& h, Path path, float distance, const Ray&
     hit.dpdu = hit.dpdv = {};
     hit.local = hit.p;
     record.shape->parametrize(raw, ray, hit);
-    const OwnSpace& own = ownSpaces[record.space];
-    hit.local = Vec3(own.map.point(Vec3d(hit.local)));
-    hit.localNormal = Vec3(normalize(own.map.normal(Vec3d(hit.shading.z))));
-    hit.localScale = own.scale;
-    const auto& a = own.map.a;
-    hit.localX = Vec3(Vec3d(a[0][0], a[0][1], a[0][2]));
-    hit.localY = Vec3(Vec3d(a[1][0], a[1][1], a[1][2]));
-    hit.localZ = Vec3(Vec3d(a[2][0], a[2][1], a[2][2]));
+    ownSpaces[record.space].complete(hit);
 }
 
 void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw, Path path, const Ray& ray,
@@ -335,8 +325,7 @@ void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& adde
         std::uint32_t space = GeometryRecord::kUntextured;
         if (binding.parametrized || shape->usesTextures() || (binding.material && binding.material->usesTextures())) {
             space = static_cast<std::uint32_t>(target.ownSpaces.size());
-            const Transform own = binding.toOwn.value_or(Transform{});
-            target.ownSpaces.push_back({own, static_cast<float>(std::cbrt(std::abs(own.determinant())))});
+            target.ownSpaces.emplace_back(binding.toOwn.value_or(Transform{}));
         }
         sink.add(*shape, binding.material, binding.light, space);
         if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());

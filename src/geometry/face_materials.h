@@ -42,6 +42,10 @@ class FaceMaterials final : public Shape {
     float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const override {
         return shape_->pdfSolidAngle(from, hit);
     }
+    std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray& ray) const override {
+        return shape_->locate(p, part, ray);
+    }
+    std::optional<UvPoint> uvPoint(Vec2 uv) const override { return shape_->uvPoint(uv); }
 
   private:
     std::unique_ptr<const Shape> shape_;

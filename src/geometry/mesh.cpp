@@ -224,4 +224,25 @@ float Mesh::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     return areaToSolidAngle(static_cast<float>(1 / area), hit.p - from.p, hit.ng);
 }
 
+std::optional<RawHit> Mesh::locate(Vec3 p, std::uint32_t part, const Ray& ray) const {
+    const auto triangles = static_cast<std::uint32_t>(data_.triangles.size());
+    if (lone_) return lone_->locate(p, 0, ray);
+    RawHit raw;
+    raw.part = part >= triangles && triangles > 0 ? 1 : 0;
+    raw.primitive = part >= triangles ? part - triangles : part;
+    const auto [first, count] = trianglesOf(part);
+    Vec2 q;
+    for (int i = 0; i < count; ++i) {
+        const auto [a, b, c] = triangle(first + static_cast<std::uint64_t>(i));
+        q = barycentrics(p, data_.positions[a], data_.positions[b], data_.positions[c]);
+        const bool inside = q.x + q.y <= 1; // NaN where it is empty
+        if (i == 1) q = {1 - q.x, 1 - q.y};
+        if (inside) break;
+    }
+    if (!std::isfinite(q.x) || !std::isfinite(q.y)) return std::nullopt;
+    raw.u = std::clamp(q.x, 0.f, 1.f);
+    raw.v = std::clamp(q.y, 0.f, 1.f);
+    return raw;
+}
+
 } // namespace abbe

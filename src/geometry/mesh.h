@@ -43,6 +43,7 @@ class Mesh final : public Shape {
     // A lone quad as Quad does; polygons seen large as NearPolygon does, others uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray&) const override;
 
   private:
     std::uint64_t triangleCount() const { return data_.triangles.size() + 2 * data_.quads.size(); }

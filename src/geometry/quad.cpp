@@ -142,6 +142,28 @@ void Quad::sampleArea(Vec2 u, Vec3& p, Vec3& ng) const {
     ng = half.frame.z;
 }
 
+std::optional<RawHit> Quad::locate(Vec3 p, std::uint32_t, const Ray&) const {
+    Vec2 q;
+    for (const bool second : {false, true}) {
+        const Half& half = halves_[second];
+        q = barycentrics(p, half.corner, half.corner + half.edgeS, half.corner + half.edgeT);
+        const bool inside = q.x + q.y <= 1; // NaN where this half is empty
+        if (second) q = {1 - q.x, 1 - q.y};
+        if (inside) break;
+    }
+    if (!std::isfinite(q.x) || !std::isfinite(q.y)) return std::nullopt;
+    return RawHit{.u = std::clamp(q.x, 0.f, 1.f), .v = std::clamp(q.y, 0.f, 1.f)};
+}
+
+std::optional<UvPoint> Quad::uvPoint(Vec2 uv) const {
+    const Vec2 q = mirrored_ ? Vec2{uv.y, uv.x} : uv;
+    const bool second = q.x + q.y > 1;
+    const Half& half = halves_[second];
+    const float side = second;
+    return UvPoint{half.corner + half.edgeS * std::abs(side - q.x) + half.edgeT * std::abs(side - q.y), pError_,
+                   half.frame.z, length(cross(half.edgeS, half.edgeT))};
+}
+
 std::optional<ShapeSample> Quad::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     Vec3 p, ng;
     if (rectangle_) {

@@ -24,6 +24,8 @@ class Quad final : public Shape {
     // cosine there; everything else: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray&) const override;
+    std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:
     // One of the two triangles: p = corner + s edgeS + t edgeT.

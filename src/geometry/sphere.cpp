@@ -117,6 +117,15 @@ void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
 
 double Sphere::area() const { return 4 * kPiD * radius_ * radius_; }
 
+std::optional<UvPoint> Sphere::uvPoint(Vec2 uv) const {
+    const double longitude = 2 * kPiD * static_cast<double>(uv.x), height = kPiD * (1 - static_cast<double>(uv.y));
+    const double sine = std::sin(height);
+    const Vec3d n = Vec3d(x_) * (sine * std::sin(longitude)) + Vec3d(y_) * std::cos(height) +
+                    Vec3d(z_) * (sine * std::cos(longitude));
+    const ShapeSample s = at(normalize(n));
+    return UvPoint{s.p, s.pError, s.ng, static_cast<float>(2 * square(kPiD * radius_) * std::abs(sine))};
+}
+
 std::optional<ShapeSample> Sphere::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const Vec3d d = centre_ - Vec3d(from.p);
     const double d2 = lengthSquared(d), r2 = radius_ * radius_;

@@ -27,6 +27,7 @@ class Sphere final : public Shape {
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:
     ShapeSample at(Vec3d normal) const; // without density

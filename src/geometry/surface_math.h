@@ -43,6 +43,15 @@ inline Vec3d triangleCross(Vec3d p0, Vec3d p1, Vec3d p2) {
     return l1 >= l2 ? cross(e2, e0) : cross(e0, e1);
 }
 
+// Of a point in the plane of a triangle: p = p0 + x (p1 - p0) + y (p2 - p0), by least squares. Not finite where the
+// triangle is empty.
+inline Vec2 barycentrics(Vec3 p, Vec3 p0, Vec3 p1, Vec3 p2) {
+    const Vec3d e(p1 - p0), f(p2 - p0), d(p - p0);
+    const double ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), ed = dot(e, d), fd = dot(f, d);
+    const double scale = 1 / (ee * ff - ef * ef);
+    return {static_cast<float>((ff * ed - ef * fd) * scale), static_cast<float>((ee * fd - ef * ed) * scale)};
+}
+
 // Solid-angle density at distance² `d2` of a density per area, for the unit normal `ng` and the vector `d` to the
 // point; 0 edge-on or at the point itself.
 inline float areaToSolidAngle(float pdfArea, Vec3 d, Vec3 ng) {

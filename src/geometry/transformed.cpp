@@ -103,4 +103,16 @@ float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) co
     return std::isfinite(static_cast<float>(pdf)) ? static_cast<float>(pdf) : 0;
 }
 
+std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {
+    const auto inner = shape_->uvPoint(uv);
+    if (!inner) return std::nullopt;
+    SurfaceHit hit;
+    hit.p = inner->p;
+    hit.pError = inner->pError;
+    hit.ng = hit.shading.z = inner->ng;
+    map_.toRender(hit);
+    const double stretch = length(map_.map().normal(Vec3d(inner->ng))); // cofactors: render area per own area
+    return UvPoint{hit.p, hit.pError, hit.ng, static_cast<float>(static_cast<double>(inner->area) * stretch)};
+}
+
 } // namespace abbe

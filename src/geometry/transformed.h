@@ -24,6 +24,7 @@ class Transformed final : public Shape {
     double area() const override { return area_; }
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:
     double directionJacobian(Vec3 objectDirection) const;

@@ -213,8 +213,10 @@ typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std
 // What shading needs to know of the path, and what the surface gives off.
 template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 direction) {
     if constexpr (kTextures || kInterfaces) hit.arrival = direction;
-    if constexpr (kTextures) hit.footprint = path_.cone.radius;
+    // Beside samples of the light, which are points, light is looked up at points: the two must see the same.
+    if constexpr (kTextures) hit.footprint = path_.delta ? path_.cone.radius : 0;
     if (hit.light) meetLight(hit, direction);
+    if constexpr (kTextures) hit.footprint = path_.cone.radius;
     if constexpr (kTextures)
         if (hit.material->bends()) hit.material->bend(hit);
 }

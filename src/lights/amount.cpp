@@ -48,8 +48,8 @@ std::optional<double> scaleFor(const schema::Quantity& quantity, const Curve& sh
 
 std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Curve& defaultColor,
                                             const EmitterFactors& factors, Span span, Diagnostics& diagnostics) {
-    if (params.radiance) {
-        if (!params.color) return ScaledCurve{params.radiance, 1};
+    if (params.radiance.curve) {
+        if (!params.color) return ScaledCurve{params.radiance.curve, 1};
         Diagnostic& d = diagnostics.error("E0341", span, "`color` has no effect beside `radiance`");
         d.notes.push_back("`radiance` is an absolute spectrum; `color` shapes the spectrum of the other amounts");
         return std::nullopt;

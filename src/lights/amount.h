@@ -14,13 +14,14 @@ namespace abbe {
 // At most one of the first five is set (the schema's group "amount").
 struct AmountParams {
     std::optional<schema::Quantity> power;      // W or lm
-    const Curve* radiance = nullptr;            // W·m⁻²·sr⁻¹·nm⁻¹
+    schema::TexturedSpectrum radiance = {};     // W·m⁻²·sr⁻¹·nm⁻¹; textures for area lights alone
     std::optional<schema::Quantity> luminance;  // cd/m²
     std::optional<schema::Quantity> intensity;  // cd
     std::optional<schema::Quantity> irradiance; // lx or W/m²
     const Curve* color = nullptr;               // any scale; null: the default of LightContext
 
-    bool stated() const { return power || radiance || luminance || intensity || irradiance; }
+    bool hasRadiance() const { return radiance.curve || radiance.texture; }
+    bool stated() const { return power || hasRadiance() || luminance || intensity || irradiance; }
 };
 
 // The quantities that make sense for a type of light.

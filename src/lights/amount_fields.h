@@ -23,13 +23,16 @@ template <typename Params> void addAmountFields(std::vector<schema::FieldInfo>& 
                              .doc("Light emitted in all directions together, in W (radiant) or lm (luminous).")
                              .example("power 800 lm")
                              .synonyms({"watts", "flux", "lumens"}));
-    if (allowed.has(AmountField::radiance))
-        fields.push_back(schema::field<Params, const Curve*>(FieldType::spectrum, "radiance", &Params::radiance)
-                             .group("amount")
-                             .role(schema::SpectrumRole::emission)
-                             .doc("Absolute spectral radiance in W per m², sr and nm.")
-                             .example("radiance table 400 0 500 8 600 15.6 700 18.4")
-                             .synonyms({"emission", "L", "emit"}));
+    if (allowed.has(AmountField::radiance)) {
+        fields.push_back(
+            schema::field<Params, schema::TexturedSpectrum>(FieldType::spectrum, "radiance", &Params::radiance)
+                .group("amount")
+                .role(schema::SpectrumRole::emission)
+                .doc("Absolute spectral radiance in W per m², sr and nm.")
+                .example("radiance table 400 0 500 8 600 15.6 700 18.4")
+                .synonyms({"emission", "L", "emit"}));
+        fields.back().texturable = false; // but for area lights
+    }
     if (allowed.has(AmountField::luminance))
         fields.push_back(quantity("luminance", &Params::luminance)
                              .unit({Dimension::luminance})

@@ -6,30 +6,42 @@
 
 namespace abbe {
 
-AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided)
-    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), twoSided_(twoSided) {
+AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided,
+                     std::unique_ptr<const LightTexture> texture)
+    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)),
+      twoSided_(twoSided) {
     const double area = shape.area();
     const double spread = std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiance.scale : 0;
-    power_ = spread * radiantIntegral(*radiance.curve);
-    visiblePower_ = spread * visibleIntegral(*radiance.curve);
+    const Curve& mean = texture_ ? texture_->spectrum() : *radiance.curve;
+    power_ = spread * radiantIntegral(mean);
+    visiblePower_ = spread * visibleIntegral(mean);
 }
 
 std::optional<LightBounds> AreaLight::bounds(std::uint32_t part) const {
     if (!(power_ > 0)) return std::nullopt;
     const EmitterPart p = shape_.emitterPart(part);
+    const double share = texture_ ? texture_->share(part) : p.area / shape_.area();
     return LightBounds{.box = p.box,
                        .axis = p.axis,
                        .cosNormals = p.cosNormals,
                        .cosEmission = 0,
                        .twoSided = twoSided_,
-                       .power = static_cast<float>(visiblePower_ * p.area / shape_.area())};
+                       .power = static_cast<float>(visiblePower_ * share)};
 }
 
 std::optional<LightSample> AreaLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
                                              const Wavelengths& lambda, float) const noexcept {
-    const std::optional<ShapeSample> s = shape_.sample(from, part, u);
+    Spectrum factor(1.f);
+    const std::optional<ShapeSample> s = point(from, part, u, lambda, factor);
     if (!s) return std::nullopt;
-    return arriving(*s, from.p, lambda);
+    return arriving(*s, from.p, lambda, factor);
+}
+
+std::optional<ShapeSample> AreaLight::point(const Receiver& from, std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                            Spectrum& factor) const noexcept {
+    if (!texture_) [[likely]]
+        return shape_.sample(from, part, u);
+    return texture_->sample(from, part, u, lambda, factor);
 }
 
 std::optional<LightReach> AreaLight::reach(const Ray&, float tMax) const noexcept {
@@ -37,8 +49,8 @@ std::optional<LightReach> AreaLight::reach(const Ray&, float tMax) const noexcep
     return LightReach{centre_, 0, tMax};
 }
 
-std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from,
-                                               const Wavelengths& lambda) const noexcept {
+std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from, const Wavelengths& lambda,
+                                               const Spectrum& factor) const noexcept {
     if (!(s.pdfSolidAngle > 0) || !(s.pdfSolidAngle < kInfinity)) return std::nullopt;
     const Vec3 offset = s.p - from;
     const float distance = length(offset);
@@ -50,16 +62,17 @@ std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from,
     const float rounding = 0x1p-21f * distance;
     const Vec3 p = spawnOrigin(s.p, s.pError + Vec3{rounding, rounding, rounding}, s.ng, -wi);
     // In place, as every Bsdf::sample (render/bsdf.h).
-    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda), s.pdfSolidAngle);
+    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda) * factor, s.pdfSolidAngle);
 }
 
 Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {
-    return emits(hit.ng, w) ? radiance_.at(lambda) : Spectrum(0.f);
+    if (!emits(hit.ng, w)) return Spectrum(0.f);
+    return texture_ ? radiance_.at(lambda) * texture_->at(hit, lambda) : radiance_.at(lambda);
 }
 
 float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float) const noexcept {
     if (!emits(hit.ng, from.p - hit.p)) return 0;
-    const float pdf = shape_.pdfSolidAngle(from, hit);
+    const float pdf = texture_ ? texture_->pdfSolidAngle(from, hit) : shape_.pdfSolidAngle(from, hit);
     return pdf < kInfinity ? pdf : 0; // as in sample
 }
 
@@ -69,12 +82,31 @@ std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape&
         reportMissingAmount(kAreaAmounts, context.span, diagnostics);
         return nullptr;
     }
+    AmountParams amount = params;
+    if (params.radiance.texture) amount.radiance = {context.textureWhite, nullptr, params.radiance.span};
     const double sides = params.twoSided ? 2 : 1;
-    const auto radiance = absoluteSpectrum(params, *context.defaultColor, {.power = sides * kPiD * shape.area()},
-                                           context.span, diagnostics);
+    const EmitterFactors factors{.power = sides * kPiD * shape.area()};
+    std::unique_ptr<const LightTexture> texture;
+    std::optional<ScaledCurve> radiance;
+    if (context.texture) {
+        const Curve& curve = amount.radiance.curve ? *amount.radiance.curve
+                             : amount.color        ? *amount.color
+                                                   : *context.defaultColor;
+        texture =
+            std::make_unique<const LightTexture>(shape, *context.texture, context.toOwn, curve, context.texturesOpen);
+        if (amount.power) amount.color = &texture->spectrum();
+        if (texture->black())
+            radiance = ScaledCurve{&curve, 0};
+        else if ((radiance = absoluteSpectrum(amount, *context.defaultColor, factors, context.span, diagnostics)))
+            radiance->curve = &curve;
+    } else {
+        radiance = absoluteSpectrum(amount, *context.defaultColor, factors, context.span, diagnostics);
+    }
     if (!radiance) return nullptr;
-    if (context.motion) return std::make_unique<MovingAreaLight>(shape, *radiance, params.twoSided, *context.motion);
-    return std::make_unique<AreaLight>(shape, *radiance, params.twoSided);
+    if (context.motion)
+        return std::make_unique<MovingAreaLight>(shape, *radiance, params.twoSided, *context.motion,
+                                                 std::move(texture));
+    return std::make_unique<AreaLight>(shape, *radiance, params.twoSided, std::move(texture));
 }
 
 } // namespace abbe

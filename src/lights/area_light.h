@@ -1,7 +1,8 @@
-// A shape that emits the same radiance from all its points in all directions of its outer side.
+// A shape that emits the same radiance in all directions of its outer side: from all its points, or with a texture.
 #pragma once
 
 #include "lights/amount.h"
+#include "lights/light_texture.h"
 #include "render/light.h"
 #include "render/shape.h"
 
@@ -11,8 +12,9 @@ namespace abbe {
 
 class AreaLight : public Light {
   public:
-    // The shape is in render space; shape and curve outlive the light.
-    AreaLight(const Shape&, ScaledCurve radiance, bool twoSided);
+    // The shape is in render space; shape and curve outlive the light. `radiance` is that where the texture is 1; the
+    // texture is one over the same shape and curve.
+    AreaLight(const Shape&, ScaledCurve radiance, bool twoSided, std::unique_ptr<const LightTexture> = nullptr);
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
@@ -21,25 +23,27 @@ class AreaLight : public Light {
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
-    const Curve* powerShape() const override { return radiance_.curve; }
+    const Curve* powerShape() const override { return texture_ ? &texture_->spectrum() : radiance_.curve; }
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   protected:
-    const Shape& shape() const { return shape_; }
     Vec3 centre() const { return centre_; } // of its bounds
+    // A point of a part, and what dims the light there. As Shape::sample, at rest.
+    std::optional<ShapeSample> point(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                     Spectrum& factor) const noexcept;
     // The light from a point of the shape; nothing if none arrives.
-    std::optional<LightSample> arriving(const ShapeSample&, Vec3 from, const Wavelengths&) const noexcept;
+    std::optional<LightSample> arriving(const ShapeSample&, Vec3 from, const Wavelengths&,
+                                        const Spectrum& factor) const noexcept;
 
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
     const Shape& shape_;
     Vec3 centre_;
     ScaledCurve radiance_;
+    std::unique_ptr<const LightTexture> texture_; // or null
     double power_, visiblePower_;
     bool twoSided_;
 };

@@ -14,6 +14,14 @@ constexpr double kLargest = 1e12; // m: far beyond any scene, far from overflow
 
 template <typename Params> void addCommonFields(std::vector<FieldInfo>& fields) {
     addAmountFields<Params>(fields, kAreaAmounts);
+    for (FieldInfo& field : fields)
+        if (field.name == "radiance") field.texturable = true;
+    fields.push_back(schema::field<Params, schema::Reference>(FieldType::reference, "texture", &Params::texture)
+                         .to(schema::Kind::texture)
+                         .doc("Picture or pattern that dims and colours the light over the surface: a factor of its "
+                              "radiance. `power` is that of the whole all the same; `luminance` is where it is 1.")
+                         .example("texture checker { even 1; odd 0.1; scale 4 }")
+                         .synonyms({"filename", "map", "emission_map", "image"}));
     fields.push_back(schema::field<Params, bool>(FieldType::toggle, "two-sided", &Params::twoSided)
                          .byDefault("off")
                          .doc("Emit the same radiance from the inner side too; `power` counts both sides.")

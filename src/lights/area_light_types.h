@@ -11,7 +11,8 @@ namespace abbe {
 
 struct AreaLightParams : AmountParams {
     bool twoSided = false;
-    KeyedTransform transform; // light to parent
+    schema::Reference texture; // factor of the radiance; unset: 1
+    KeyedTransform transform;  // light to parent
 };
 
 // A rectangle of `size` in the xy-plane about the origin, facing +z, or four corners, counter-clockwise seen from

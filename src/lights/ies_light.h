@@ -57,10 +57,6 @@ class IesLight final : public Light {
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   private:
     Vec3 position_;

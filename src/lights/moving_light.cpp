@@ -87,9 +87,10 @@ std::optional<LightSample> MovingAreaLight::sample(const Receiver& from, std::ui
                                                    const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
-    const auto s = shape().sample(pose->rest(from), part, u);
+    Spectrum factor(1.f);
+    const auto s = point(pose->rest(from), part, u, lambda, factor);
     if (!s) return std::nullopt;
-    return arriving(toRender(*pose, *s), from.p, lambda);
+    return arriving(toRender(*pose, *s), from.p, lambda, factor);
 }
 
 float MovingAreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept {

@@ -22,8 +22,6 @@ class MovingLight final : public Light {
     bool infinite() const override { return atRest_->infinite(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
@@ -37,8 +35,9 @@ class MovingLight final : public Light {
 class MovingAreaLight final : public AreaLight {
   public:
     // `atRest`: as AreaLight has it, at rest.
-    MovingAreaLight(const Shape& atRest, ScaledCurve radiance, bool twoSided, LightMotion motion)
-        : AreaLight(atRest, radiance, twoSided), motion_(std::move(motion)) {}
+    MovingAreaLight(const Shape& atRest, ScaledCurve radiance, bool twoSided, LightMotion motion,
+                    std::unique_ptr<const LightTexture> texture = nullptr)
+        : AreaLight(atRest, radiance, twoSided, std::move(texture)), motion_(std::move(motion)) {}
 
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;

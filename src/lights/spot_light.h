@@ -43,10 +43,6 @@ class SpotLight final : public Light {
     const Curve* powerShape() const override { return intensity_.curve; }
     // The part of the ray within the cone.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   private:
     float falloff(Vec3 w) const noexcept; // w leaves the light

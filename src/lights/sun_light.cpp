@@ -93,7 +93,7 @@ std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightCon
     const double halfAngle = params.angularDiameter / 2;
     const double projected = kPiD * square(std::sin(halfAngle)); // ∫ cos dω over the disk
     const bool delta = halfAngle < SunLight::kSmallestHalfAngle;
-    if (delta && (params.luminance || params.radiance)) {
+    if (delta && (params.luminance || params.hasRadiance())) {
         diagnostics.error("E0347", context.span, "a sun without a diameter has no luminance",
                           "state its `irradiance`, or an `angular-diameter`");
         return nullptr;

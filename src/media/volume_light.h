@@ -23,11 +23,6 @@ class VolumeLight final : public Light {
     const MediumEmission* emission() const override { return &emission_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
-    // No surface, and nothing at infinity.
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
-    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   private:
     const GridEmission& emission_;

@@ -68,14 +68,18 @@ class Light {
                                               float time) const noexcept = 0;
 
     // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which
-    // sample(from, partOf(hit), ·) makes that point.
-    virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
-    virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept = 0;
+    // sample(from, partOf(hit), ·) makes that point. No other light is ever hit.
+    virtual Spectrum emitted(const SurfaceHit& /*hit*/, Vec3 /*w*/, const Wavelengths&) const noexcept {
+        return Spectrum(0.f);
+    }
+    virtual float pdfSolidAngle(const Receiver& /*from*/, const SurfaceHit& /*hit*/, float /*time*/) const noexcept {
+        return 0;
+    }
 
     // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and the density
-    // with which sample(from, 0, ·) makes that direction.
-    virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
-    virtual float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept = 0;
+    // with which sample(from, 0, ·) makes that direction. Asked of no other light.
+    virtual Spectrum escaped(Vec3 /*w*/, const Wavelengths&, float /*time*/) const noexcept { return Spectrum(0.f); }
+    virtual float pdfEscaped(const Receiver& /*from*/, Vec3 /*w*/, float /*time*/) const noexcept { return 0; }
 };
 
 } // namespace abbe

@@ -34,6 +34,14 @@ struct ShapeSample {
     float pdfSolidAngle;
 };
 
+// A point by its texture coordinates, and m² per unit of them there.
+struct UvPoint {
+    Vec3 p;
+    Vec3 pError;
+    Vec3 ng; // unit, outside
+    float area = 0;
+};
+
 // What choosing among emitting parts needs to know. All normals are within acos(cosNormals) of the axis.
 struct EmitterPart {
     Bounds3 box;
@@ -127,6 +135,23 @@ class Shape {
     // Density with which sample(from, part of the hit, ·) makes the point of `hit`, which lies on this shape; 0 if it
     // cannot.
     virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const = 0;
+
+    // What only emitters with textures need. What surface() and parametrize() are to be given at a point of a part,
+    // where the normal is ng; nothing if it is not on the shape. The ray is the one to go with it.
+    virtual std::optional<RawHit> locate(Vec3 /*p*/, std::uint32_t /*part*/, const Ray& towards) const {
+        return intersect(towards);
+    }
+    // The point whose texture coordinates are these, where parametrize() maps the shape one to one to the unit square.
+    virtual std::optional<UvPoint> uvPoint(Vec2 /*uv*/) const { return std::nullopt; }
 };
+
+// The ray that meets a point of a shape from its outer side, from so near that nothing else is in between, as a rule.
+inline Ray rayOnto(Vec3 p, Vec3 ng, float nearness) {
+    Ray ray;
+    ray.origin = p + ng * nearness;
+    ray.direction = -ng;
+    ray.tMax = 2 * nearness;
+    return ray;
+}
 
 } // namespace abbe

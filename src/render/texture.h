@@ -19,7 +19,7 @@ enum class TextureUse : std::uint8_t {
     heights,     // jet(): displacement, bumps
     number,      // value() of plain numbers: a roughness, an opacity, the directions of a normal map
     reflectance, // spectrum(): 0 … 1 at every wavelength
-    light,       // value() as linear RGB of rgbSpace(), without an upper bound
+    light,       // lightFactor(): without an upper bound
 };
 
 // Where a surface asks for a value, and over how large an area it wants the mean of it.
@@ -70,6 +70,11 @@ class Texture {
     // The same as a reflectance, 0 … 1 at every wavelength. By default the first channel, flat.
     virtual Spectrum spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
         return Spectrum(std::clamp(value(query).x, 0.f, 1.f));
+    }
+    // The same as a factor of light, >= 0 and without an upper bound: white, 1, leaves it as it is. By default the
+    // first channel, flat.
+    virtual Spectrum lightFactor(const TextureQuery& query, const Wavelengths&) const noexcept {
+        return Spectrum(std::max(value(query).x, 0.f));
     }
     // What went wrong in lookups since it was made, as warnings; called after rendering.
     virtual void reportLookups(Diagnostics&) const {}

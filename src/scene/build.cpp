@@ -97,6 +97,10 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
 }
 
 void SceneBuilder::noteEffects(BuiltScene& built) {
+    for (const Span span : lightTextures_) {
+        built.scene.effects |= Effect::textures;
+        built.scene.reasons.push_back({Effect::textures, span, "its light follows a texture"});
+    }
     for (const auto& [index, span] : materialAskers_) {
         if (!usedMaterials_.contains(index)) continue; // what no shape shows asks for nothing
         Effects needs = materials_[index]->needs();

@@ -34,9 +34,19 @@ void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
 
+// What a texture of radiance makes of white: as `radiance rgb 1 1 1` in its colour space, or 1 if it has none.
+const Curve* SceneBuilder::textureWhite(const Texture& texture) {
+    const RgbSpace* const space = texture.rgbSpace();
+    const Curve*& white = textureWhites_[space];
+    if (!white) white = space ? curves_.white(*space) : curves_.constant(1);
+    return white;
+}
+
 // The shape's own emission, or else that of its material; no curve for none.
-ScaledCurve SceneBuilder::emissionOf(const LoadedShape& shape) {
-    if (shape.common.emission) return {shape.common.emission, 1};
+SceneBuilder::Emission SceneBuilder::emissionOf(const LoadedShape& shape) {
+    const schema::TexturedSpectrum& emission = shape.common.emission;
+    if (emission.texture) return {{textureWhite(*emission.texture), 1}, emission.texture, emission.span};
+    if (emission.curve) return {{emission.curve, 1}, nullptr, {}};
     const Material* material = materialOf(shape.common);
     const SurfaceEmission own = material ? material->emission() : SurfaceEmission{};
     if (!(own.luminance > 0)) return {};
@@ -46,26 +56,34 @@ ScaledCurve SceneBuilder::emissionOf(const LoadedShape& shape) {
         diagnostics_.error("E0343", shape.definition->span, "the emission of its material has a colour without light");
         return {};
     }
-    return {color, *scale};
+    return {{color, *scale}, own.texture, shape.definition->span};
 }
 
 const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender) {
-    const ScaledCurve radiance = emissionOf(shape);
+    const Emission emission = emissionOf(shape);
+    const Definition& d = *shape.definition;
     std::optional<LightMotion> motion;
-    if (!radiance.curve || !lightMotion(toRender, shape.definition->span, motion)) return nullptr;
+    if (!emission.radiance.curve || !lightMotion(toRender, d.span, motion)) return nullptr;
     // A light that is sampled would shine from its holes, too.
     if (const Material* material = materialOf(shape.common); material && material->mayBeOpen()) {
-        diagnostics_
-            .error("E0754", shape.definition->span, "a shape that shines has a material with holes",
-                   "its `opacity` is below 1")
+        diagnostics_.error("E0754", d.span, "a shape that shines has a material with holes", "its `opacity` is below 1")
             .help = "take the opacity off, or put the light behind a shape with holes";
         return nullptr;
     }
+    std::unique_ptr<const LightTexture> texture;
+    if (emission.texture) {
+        if (!checkLightTexture(*emission.texture, emission.span, d, placed)) return nullptr;
+        const Transform toOwn = atOpening(toRender).inverse().value_or(Transform{});
+        texture = std::make_unique<const LightTexture>(placed, *emission.texture, toOwn, *emission.radiance.curve,
+                                                       options_.geometry);
+        if (texture->black()) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
+    }
     if (motion)
-        lights_.push_back(std::make_unique<MovingAreaLight>(placed, radiance, false, std::move(*motion)));
+        lights_.push_back(std::make_unique<MovingAreaLight>(placed, emission.radiance, false, std::move(*motion),
+                                                            std::move(texture)));
     else
-        lights_.push_back(std::make_unique<AreaLight>(placed, radiance, false));
-    lightNames_.emplace_back(shape.definition->name, "shape");
+        lights_.push_back(std::make_unique<AreaLight>(placed, emission.radiance, false, std::move(texture)));
+    lightNames_.emplace_back(d.name, "shape");
     return lights_.back().get();
 }
 
@@ -191,6 +209,30 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     return nullptr;
 }
 
+// The texture of an area light, if it has one; false after an error.
+bool SceneBuilder::takeTexture(const AreaLightParams& params, const Shape& shape, const Definition& d,
+                               LightContext& context) {
+    context.texturesOpen = options_.geometry;
+    context.texture = params.radiance.texture;
+    Span asker = params.radiance.span;
+    if (params.texture.valid()) {
+        if (context.texture) {
+            diagnostics_
+                .error("E0755", asker, "`texture` has no effect beside a `radiance` that is a texture itself",
+                       "this texture")
+                .help = "multiply the two: `texture product { first …; second … }`";
+            return false;
+        }
+        for (const schema::Node& property : d.properties)
+            if (property.name() == "texture") asker = property.nameSpan();
+        context.texture = textureFor(params.texture, TextureUse::light, asker);
+        if (!context.texture) return false;
+    }
+    if (!context.texture) return true;
+    context.textureWhite = textureWhite(*context.texture);
+    return checkLightTexture(*context.texture, asker, d, shape);
+}
+
 void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
     AreaLightParams amount;
     auto shape = lightShape(d, atOpening(outer.motion), amount);
@@ -198,12 +240,15 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
     carry(amount.transform, outer, d.span, [&](const Place& place) {
         LightContext context = lightContext(d, outer.motion);
         std::optional<LightMotion> motion;
-        if (!lightMotion(place.motion, d.span, motion)) return;
+        if (!lightMotion(place.motion, d.span, motion) || !takeTexture(amount, *shape, d, context)) return;
+        const auto toOwn = amount.transform.at(built_->shutter.open).then(atOpening(outer.motion)).inverse();
+        context.toOwn = toOwn.value_or(Transform{});
         if (motion) context.motion = &*motion;
         auto light = makeAreaLight(amount, *shape, context, diagnostics_);
         if (!light) return;
         // A lamp emits and reflects nothing.
-        addPlaced(*keepShape(std::move(shape)), {plainMaterial(0), light.get()}, place);
+        addPlaced(*keepShape(std::move(shape)), {plainMaterial(0), light.get(), toOwn, context.texture != nullptr},
+                  place);
         addLight(std::move(light), d);
     });
 }

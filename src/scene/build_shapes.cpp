@@ -85,7 +85,7 @@ SceneBuilder::LoadedShape& SceneBuilder::loadedShape(const Definition& d) {
             auto placed = inner(t);
             return placed ? withFaceMaterials(shape, std::move(placed)) : nullptr;
         };
-    if (shape.sound && shape.infinite && emissionOf(shape).curve) {
+    if (shape.sound && shape.infinite && emissionOf(shape).radiance.curve) {
         diagnostics_.error("E0606", d.span, "an infinite plane cannot emit", "give it an end: use a quad or a disk");
         shape.sound = false;
     }
@@ -136,7 +136,7 @@ void SceneBuilder::countShape(const LoadedShape& shape) {
 void SceneBuilder::placeShape(const Definition& d, const Place& outer) {
     LoadedShape& loaded = loadedShape(d);
     if (!loaded.sound) return;
-    if (outer.object && (loaded.infinite || emissionOf(loaded).curve)) {
+    if (outer.object && (loaded.infinite || emissionOf(loaded).radiance.curve)) {
         outer.object->unshared.push_back(&d);
         outer.object->unsharedPlace.push_back(outer.motion);
         return;
@@ -158,7 +158,10 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
     if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
-    addPlaced(*placed, {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse()}, place);
+    addPlaced(*placed,
+              {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse(),
+               emissionOf(loaded).texture != nullptr},
+              place);
 }
 
 void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {

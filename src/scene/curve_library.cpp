@@ -97,6 +97,8 @@ const Curve* CurveLibrary::daylight() {
     return daylight_;
 }
 
+const Curve* CurveLibrary::white(const RgbSpace& space) { return keep(emissionFromRgb({1, 1, 1}, space).curve); }
+
 const Curve* CurveLibrary::rgb(const SpectrumValue& value, SpectrumRole role, Diagnostics& diagnostics) {
     if (role == SpectrumRole::index) return wrongUse(value, "an RGB colour", role, diagnostics), nullptr;
     const Vec3d colour{value.numbers[0], value.numbers[1], value.numbers[2]};

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "schema/scene_tree.h"
+#include "spectrum/color_space.h"
 #include "spectrum/curve.h"
 
 #include <memory>
@@ -19,6 +20,8 @@ class CurveLibrary {
     const Curve* constant(double value);
     // Illuminant D65, scaled to Y = 1.
     const Curve* daylight();
+    // What `rgb 1 1 1` of a space is as light: its illuminant, Y = 1.
+    const Curve* white(const RgbSpace&);
 
     std::vector<std::unique_ptr<const Curve>> release() { return std::move(curves_); }
 

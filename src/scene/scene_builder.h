@@ -182,7 +182,8 @@ class SceneBuilder final : public schema::Resolver {
     bool prepareTexture(std::uint32_t, TextureUse, Span user);
     void askTextures(std::uint32_t material); // of a material that is part of another one
     void checkTextures(const LoadedShape&, const Shape&);
-    void checkAttributes(std::uint32_t texture, Span asker, const LoadedShape&, const Shape&);
+    void checkTexture(std::uint32_t texture, Span asker, const Definition& shape, const Shape&);
+    void checkAttributes(std::uint32_t texture, Span asker, const Definition& shape, const Shape&);
     // shape_curves.cpp, shape_points.cpp; loadCurves is false for other types than these two.
     bool loadCurves(const Definition&, LoadedShape&);
     void loadPoints(const Definition&, LoadedShape&);
@@ -255,9 +256,18 @@ class SceneBuilder final : public schema::Resolver {
     void placeAreaLight(const Definition&, const Place&);
     template <typename P, typename Make> void placeBareLight(const Definition&, const Place&, Make);
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
+    bool takeTexture(const AreaLightParams&, const Shape&, const Definition&, LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
     void addLight(std::unique_ptr<Light>, const Definition&);
-    ScaledCurve emissionOf(const LoadedShape&);
+    struct Emission {
+        ScaledCurve radiance; // no curve: none
+        const Texture* texture = nullptr;
+        Span span; // where the texture is asked for
+    };
+    Emission emissionOf(const LoadedShape&);
+    const Curve* textureWhite(const Texture&);
+    // Ready for a light over the shape; false after an error.
+    bool checkLightTexture(const Texture&, Span asker, const Definition&, const Shape&);
     const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender);
     LightContext lightContext(const Definition&, const Motion& toRender);
 
@@ -309,6 +319,8 @@ class SceneBuilder final : public schema::Resolver {
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::vector<std::unique_ptr<const Shape>> shapes_;
     std::vector<std::unique_ptr<Light>> lights_;
+    std::vector<Span> lightTextures_; // where lights ask for theirs
+    std::map<const RgbSpace*, const Curve*> textureWhites_;
     std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
     std::map<const Definition*, LoadedShape> loaded_;
     std::map<const Definition*, std::unique_ptr<const PlacedCamera>> dicingCameras_; // null: being made, or faulty

@@ -130,7 +130,7 @@ std::unique_ptr<const Shape> placeCurves(CurveData data, const Transform& place,
 
 // Whether the definition asks for light, which these shapes cannot give.
 bool SceneBuilder::refuseEmission(const Definition& d, const ShapeParams& params) {
-    if (!params.emission) return false;
+    if (!params.emits()) return false;
     Span span = d.span;
     for (const schema::Node& property : d.properties)
         if (property.name() == "emission") span = property.nameSpan();

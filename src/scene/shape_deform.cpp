@@ -26,7 +26,7 @@ bool checkKeys(const ShapeParams& params, const std::vector<ShapeKey>& keys, boo
     if (hasOwnPoints)
         return wrongKey(keys[0], diagnostics, "a shape has points of its own, or keys with points",
                         "beside `file` or `points`");
-    if (params.emission) {
+    if (params.emits()) {
         diagnostics.error("E0682", keys[0].span, "a shape that deforms cannot emit light", "it deforms from here on")
             .help = "remove `emission`, or the keys; a `transform` with keys moves without a change of area";
         return false;

@@ -19,8 +19,10 @@ struct ShapeParams {
     schema::Reference material;                         // unset: grey diffuse
     std::vector<schema::GroupReference> groupMaterials; // of parts; mesh and subdivision only
     schema::Reference interior;                         // medium; unset: empty
-    const Curve* emission = nullptr;                    // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
+    schema::TexturedSpectrum emission;                  // W·m⁻²·sr⁻¹·nm⁻¹ from the outer side
     KeyedTransform transform;
+
+    bool emits() const { return emission.curve || emission.texture; }
 };
 
 struct QuadParams : ShapeParams {

@@ -86,36 +86,47 @@ void SceneBuilder::askTextures(std::uint32_t material) {
 }
 
 // Every attribute that a texture asks for, directly or in its parts.
-void SceneBuilder::checkAttributes(std::uint32_t texture, Span asker, const LoadedShape& loaded, const Shape& shape) {
+void SceneBuilder::checkAttributes(std::uint32_t texture, Span asker, const Definition& owner, const Shape& shape) {
     if (const auto* const attribute = dynamic_cast<const AttributeTexture*>(textures_[texture].get())) {
         const auto names = shape.attributeNames();
         if (std::ranges::find(names, attribute->name()) != names.end()) return;
         auto& d = diagnostics_.error("E0734", asker, fmt::format("the shape has no attribute `{}`", attribute->name()),
                                      "this texture");
-        d.related.push_back({loaded.definition->span, "on this shape"});
+        d.related.push_back({owner.span, "on this shape"});
         d.help = names.empty() ? "attributes are the vertex properties of a PLY file"
                                : "its attributes are " + schema::quotedList(names);
     }
-    for (const auto& [part, asNumber] : textureParts_[texture].parts) checkAttributes(part, asker, loaded, shape);
+    for (const auto& [part, asNumber] : textureParts_[texture].parts) checkAttributes(part, asker, owner, shape);
 }
 
-// Images need texture coordinates; boxes have some on every face.
+// Images need texture coordinates; boxes have them on every face.
+void SceneBuilder::checkTexture(std::uint32_t texture, Span asker, const Definition& owner, const Shape& shape) {
+    checkAttributes(texture, asker, owner, shape);
+    const bool coordinates = shape.hasTextureCoordinates() || (owner.type && owner.type->name == "box");
+    if (coordinates || !textures_[texture]->needsUv()) return;
+    auto& d = diagnostics_.error("E0733", asker, "a texture over uv is on a shape without texture coordinates",
+                                 "this texture");
+    d.related.push_back({owner.span, "on this shape"});
+    d.help = "give the file texture coordinates, or use a texture in space: `noise`, `triplanar`";
+}
+
 void SceneBuilder::checkTextures(const LoadedShape& loaded, const Shape& shape) {
-    const bool coordinates = shape.hasTextureCoordinates() || loaded.definition->type->name == "box";
     const auto check = [&](const schema::Reference& material) {
         const auto found = material.valid() ? textureAskers_.find(material.index) : textureAskers_.end();
         if (found == textureAskers_.end()) return;
-        for (const TextureAsker& asker : found->second) {
-            checkAttributes(asker.texture, asker.span, loaded, shape);
-            if (coordinates || !textures_[asker.texture]->needsUv()) continue;
-            auto& d = diagnostics_.error("E0733", asker.span,
-                                         "a texture over uv is on a shape without texture coordinates", "this texture");
-            d.related.push_back({loaded.definition->span, "on this shape"});
-            d.help = "give the file texture coordinates, or use a texture in space: `noise`, `triplanar`";
-        }
+        for (const TextureAsker& asker : found->second)
+            checkTexture(asker.texture, asker.span, *loaded.definition, shape);
     };
     check(loaded.common.material);
     for (const schema::GroupReference& group : loaded.common.groupMaterials) check(group.reference);
+}
+
+bool SceneBuilder::checkLightTexture(const Texture& texture, Span asker, const Definition& owner, const Shape& shape) {
+    const std::size_t before = diagnostics_.errorCount();
+    const auto found = std::ranges::find(textures_, &texture, &std::unique_ptr<Texture>::get);
+    checkTexture(static_cast<std::uint32_t>(found - textures_.begin()), asker, owner, shape);
+    lightTextures_.push_back(asker);
+    return diagnostics_.errorCount() == before;
 }
 
 const std::shared_ptr<TextureStore>& SceneBuilder::textureStore() {

@@ -152,6 +152,12 @@ SigmoidCoefficients UpsamplingTable::lookup(Vec3 rgb) const {
     return sum;
 }
 
+Spectrum UpsamplingTable::unbounded(Vec3 rgb, const Wavelengths& lambda) const {
+    const float scale = 2 * maxComponent(rgb);
+    if (!(scale > 0)) return Spectrum(0.f);
+    return lookup(rgb * (1 / scale)).at(lambda) * scale;
+}
+
 std::filesystem::path UpsamplingTable::cacheDirectory() {
     const auto variable = [](const char* name) {
         const char* value = std::getenv(name);

@@ -3,6 +3,7 @@
 
 #include "spectrum/color_space.h"
 #include "spectrum/sigmoid.h"
+#include "spectrum/wavelengths.h"
 
 #include <filesystem>
 #include <optional>
@@ -26,6 +27,9 @@ class UpsamplingTable {
 
     // Components are clamped to [0, 1] first: what lies outside is the caller's to count. Greys are exactly flat.
     SigmoidCoefficients lookup(Vec3 rgb) const;
+    // A factor without an upper bound, for light: twice the largest component times a reflectance of at most about a
+    // half, where the model is smooth [Jakob2019, sec. 4]. Negative components count as 0. White is exactly flat.
+    Spectrum unbounded(Vec3 rgb, const Wavelengths& lambda) const;
 
     // Reading and writing of a cache file. load returns nothing for a file that is missing, damaged or of another
     // space.

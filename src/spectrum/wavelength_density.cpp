@@ -52,14 +52,26 @@ double reflectance(int kind, double nm) {
 }
 constexpr int kReflectances = 6;
 
-// The table that SampledCurve would read: linear between the nodes.
-Spectrum lookup(std::span<const double> nodes, const Wavelengths& w) {
-    Spectrum result;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const auto i = static_cast<std::size_t>(w.cell[lane]);
-        result.v[lane] = static_cast<float>(std::lerp(nodes[i], nodes[i + 1], static_cast<double>(w.fraction[lane])));
-    }
-    return result;
+using Nodes = std::array<float, WavelengthDensity::kNodes>;
+
+const std::array<Nodes, kReflectances>& reflectances() {
+    static const auto tables = [] {
+        std::array<Nodes, kReflectances> result;
+        for (int kind = 0; kind < kReflectances; ++kind)
+            for (int i = 0; i <= kCells; ++i)
+                result[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)] =
+                    static_cast<float>(reflectance(kind, nanometres(i)));
+        return result;
+    }();
+    return tables;
+}
+
+// As SampledCurve reads it: linear between the nodes.
+Spectrum lookup(const Nodes& nodes, const Wavelengths& w) {
+    const Int8 next = w.cell + 1;
+    const Spectrum a(_mm256_i32gather_ps(nodes.data(), reinterpret_cast<__m256i>(w.cell), 4));
+    const Spectrum b(_mm256_i32gather_ps(nodes.data(), reinterpret_cast<__m256i>(next), 4));
+    return fma(b - a, w.fraction, a);
 }
 
 // Variance of a vector over its squared mean.
@@ -73,7 +85,7 @@ class RelativeVariance {
     double value() const {
         const Vec3d mean = sum_ * (1 / count_);
         const double square = dot(mean, mean);
-        return square > 0 ? std::max(0.0, squares_ / count_ / square - 1) : 0;
+        return square > 0 ? std::max(0.0, squares_ / count_ / square - 1) : std::numeric_limits<double>::infinity();
     }
 
   private:
@@ -149,24 +161,36 @@ double WavelengthDensity::pdf(double nm) const {
 
 double WavelengthDensity::noise(std::span<const double> power) const {
     ABBE_CHECK(power.size() == kNodes);
-    constexpr int samples = 1024;
+    // At 2048 quantiles: four in a nanometre, in the mean.
+    constexpr int samples = 256;
     const double most = *std::max_element(power.begin(), power.end());
     if (!(most > 0)) return 0;
-    std::vector<std::vector<double>> reflected(kReflectances);
-    for (int k = 0; k < kReflectances; ++k)
-        for (int i = 0; i <= kCells; ++i)
-            reflected[static_cast<std::size_t>(k)].push_back(power[static_cast<std::size_t>(i)] / most *
-                                                             reflectance(k, nanometres(i)));
+    std::array<Nodes, kReflectances> reflected = reflectances();
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        const auto p = static_cast<float>(power[i] / most);
+        for (Nodes& nodes : reflected) nodes[i] *= p;
+    }
+    const Vec3d byX = toRgb(Xyz{1, 0, 0}, rgb::ap0), byY = toRgb(Xyz{0, 1, 0}, rgb::ap0),
+                byZ = toRgb(Xyz{0, 0, 1}, rgb::ap0);
     std::array<RelativeVariance, kReflectances> variance;
     for (int s = 0; s < samples; ++s) {
         // The rotations make the set of wavelengths periodic.
         const Wavelengths w = sample((static_cast<float>(s) + 0.5f) / static_cast<float>(kLanes * samples));
-        for (std::size_t k = 0; k < kReflectances; ++k)
-            variance[k].add(toRgb(toXyz(lookup(reflected[k], w), w), rgb::ap0));
+        // What light of 1 in a lane adds to each channel, up to a factor.
+        const Spectrum x = xbar(w) / w.pdf, y = ybar(w) / w.pdf, z = zbar(w) / w.pdf;
+        const auto channel = [&](double fx, double fy, double fz) {
+            return x * static_cast<float>(fx) + y * static_cast<float>(fy) + z * static_cast<float>(fz);
+        };
+        const Spectrum r = channel(byX.x, byY.x, byZ.x), g = channel(byX.y, byY.y, byZ.y),
+                       b = channel(byX.z, byY.z, byZ.z);
+        for (std::size_t k = 0; k < kReflectances; ++k) {
+            const Spectrum light = lookup(reflected[k], w);
+            variance[k].add(Vec3d(Vec3{sum(light * r), sum(light * g), sum(light * b)}));
+        }
     }
-    double sum = 0;
-    for (const RelativeVariance& v : variance) sum += v.value();
-    return std::sqrt(sum / kReflectances);
+    double total = 0;
+    for (const RelativeVariance& v : variance) total += v.value();
+    return std::sqrt(total / kReflectances);
 }
 
 } // namespace abbe

@@ -33,6 +33,7 @@ class WavelengthDensity {
 
     // The standard deviation, relative to the mean, of one path's AP0 colour that the choice of its wavelengths alone
     // causes under lights of that power: root mean square over six reflectances, some of them with steps.
+    // Infinite where none of the paths looked at meets the light; 0 if there is none.
     double noise(std::span<const double> power) const;
 
   private:

@@ -14,7 +14,7 @@ AttributeTexture::~AttributeTexture() = default;
 const RgbSpace* AttributeTexture::rgbSpace() const { return &rgb::rec709; }
 
 bool AttributeTexture::prepare(TextureUse use, Span user, Diagnostics& diagnostics) {
-    if (use == TextureUse::reflectance && !table_)
+    if ((use == TextureUse::reflectance || use == TextureUse::light) && !table_)
         table_ = std::make_unique<const UpsamplingTable>(UpsamplingTable::loadOrBuild(rgb::rec709));
     if (use != TextureUse::heights) return true;
     diagnostics.error("E0736", user, "`attribute` cannot be heights", "has values at vertices only").help =
@@ -35,6 +35,10 @@ Vec3 AttributeTexture::value(const TextureQuery& query) const noexcept {
 Spectrum AttributeTexture::spectrum(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
     const Vec3 v = value(query);
     return table_ ? table_->lookup(v).at(lambda) : Spectrum(std::clamp(v.x, 0.f, 1.f));
+}
+
+Spectrum AttributeTexture::lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    return table_ ? table_->unbounded(value(query), lambda) : Texture::lightFactor(query, lambda);
 }
 
 schema::TypeInfo attributeTextureType() {

@@ -33,6 +33,7 @@ class AttributeTexture final : public Texture {
     TextureJet jet(const TexturePoint&, int) const noexcept override { return {}; }
     Vec3 value(const TextureQuery&) const noexcept override;
     Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
+    Spectrum lightFactor(const TextureQuery&, const Wavelengths&) const noexcept override;
 
   private:
     std::string name_;

@@ -61,6 +61,13 @@ Spectrum CheckerTexture::spectrum(const TextureQuery& query, const Wavelengths& 
     return even_.spectrum(query, lambda) * (1 - odd) + odd_.spectrum(query, lambda) * odd;
 }
 
+Spectrum CheckerTexture::lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    const auto odd = static_cast<float>(oddShare(query));
+    if (odd <= 0) return even_.lightFactor(query, lambda);
+    if (odd >= 1) return odd_.lightFactor(query, lambda);
+    return even_.lightFactor(query, lambda) * (1 - odd) + odd_.lightFactor(query, lambda) * odd;
+}
+
 schema::TypeInfo checkerTextureType() {
     using namespace schema;
     using P = CheckerTextureParams;

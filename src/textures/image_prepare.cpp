@@ -91,8 +91,8 @@ bool ImageTexture::prepareHeights(Diagnostics& diagnostics) {
 bool ImageTexture::prepareShading(TextureUse use, Diagnostics& diagnostics) {
     if (!store_->settings().open) return true;
     const bool colorful = channels_ == 3;
-    if (use == TextureUse::reflectance && colorful && !upsampling_)
-        upsampling_ = &store_->upsampling(rgbSpace() ? *rgbSpace() : rgb::rec709);
+    const bool colors = use == TextureUse::reflectance || use == TextureUse::light;
+    if (colors && colorful && !upsampling_) upsampling_ = &store_->upsampling(rgbSpace() ? *rgbSpace() : rgb::rec709);
     for (auto& [number, tile] : tiles_)
         if (!tile.handle &&
             !reported(tile.path, asked_.span, diagnostics, [&, &t = tile] { openTile(t, diagnostics); }))

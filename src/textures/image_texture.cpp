@@ -138,6 +138,12 @@ Spectrum ImageTexture::spectrum(const TextureQuery& query, const Wavelengths& la
     return upsampling_->lookup(rgb).at(lambda);
 }
 
+Spectrum ImageTexture::lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    const Vec3 rgb = value(query);
+    if (channels_ == 1 || !upsampling_) return Spectrum(std::max(rgb.x, 0.f));
+    return upsampling_->unbounded(rgb, lambda);
+}
+
 void ImageTexture::reportLookups(Diagnostics& diagnostics) const {
     const std::string name = std::filesystem::path(asked_.value).filename().string();
     const auto warn = [&](LookupFaults::Kind kind, const char* what) {

@@ -51,6 +51,7 @@ class ImageTexture final : public Texture {
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
     Vec3 value(const TextureQuery&) const noexcept override;
     Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
+    Spectrum lightFactor(const TextureQuery&, const Wavelengths&) const noexcept override;
     bool covers(Vec2 uv) const noexcept override;
     void reportLookups(Diagnostics&) const override;
 

@@ -23,6 +23,9 @@ class ProductTexture final : public Texture {
     Spectrum spectrum(const TextureQuery& q, const Wavelengths& lambda) const noexcept override {
         return first_.spectrum(q, lambda) * second_.spectrum(q, lambda);
     }
+    Spectrum lightFactor(const TextureQuery& q, const Wavelengths& lambda) const noexcept override {
+        return first_.lightFactor(q, lambda) * second_.lightFactor(q, lambda);
+    }
 
   private:
     TexturePart first_, second_;

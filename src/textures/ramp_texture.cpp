@@ -88,6 +88,12 @@ Spectrum RampTexture::spectrum(const TextureQuery& query, const Wavelengths& lam
     return sum;
 }
 
+Spectrum RampTexture::lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    Spectrum sum(0.f);
+    mean(query, [&](const TexturePart& part, float weight) { sum += part.lightFactor(query, lambda) * weight; });
+    return sum;
+}
+
 TextureJet RampTexture::jet(const TexturePoint& point, int channels) const noexcept {
     TextureJet t; // of the coordinate, in its first channel
     switch (over_) {

@@ -18,7 +18,7 @@ TextureJet TexturePart::jet(const TexturePoint& point, int channels) const noexc
 }
 
 void TexturePart::prepare(TextureUse use, Span user, Diagnostics& diagnostics) const {
-    if (!curve_ || curve_->isConstant() || use == TextureUse::reflectance) return;
+    if (!curve_ || curve_->isConstant() || use == TextureUse::reflectance || use == TextureUse::light) return;
     diagnostics
         .warning("W0730", user, "a coloured spectrum in this texture is taken for a number", "its value at 550 nm")
         .help = "write plain numbers where no colour is asked for";

@@ -18,6 +18,10 @@ class TexturePart {
         if (texture_) return texture_->spectrum(query, lambda);
         return curve_ ? curve_->at(lambda) : Spectrum(number_);
     }
+    Spectrum lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+        if (texture_) return texture_->lightFactor(query, lambda);
+        return curve_ ? curve_->at(lambda) : Spectrum(number_);
+    }
     Vec3 value(const TextureQuery& query) const noexcept {
         return texture_ ? texture_->value(query) : Vec3(number_, number_, number_);
     }

@@ -58,6 +58,12 @@ Spectrum TriplanarTexture::spectrum(const TextureQuery& query, const Wavelengths
     return sum;
 }
 
+Spectrum TriplanarTexture::lightFactor(const TextureQuery& query, const Wavelengths& lambda) const noexcept {
+    Spectrum sum(0.f);
+    project(query, [&](const TextureQuery& q, float weight) { sum += map_.lightFactor(q, lambda) * weight; });
+    return sum;
+}
+
 schema::TypeInfo triplanarTextureType() {
     using namespace schema;
     using P = TriplanarTextureParams;

@@ -27,6 +27,7 @@ class TriplanarTexture final : public Texture {
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
     Vec3 value(const TextureQuery&) const noexcept override;
     Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
+    Spectrum lightFactor(const TextureQuery&, const Wavelengths&) const noexcept override;
 
   private:
     template <typename Add> void project(const TextureQuery&, Add) const;

@@ -64,6 +64,24 @@ TEST_CASE("strategies: matte box, quad light") {
     checkStrategies({"box", kBox + kLamp + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
 }
 
+TEST_CASE("strategies: lamps with textures") {
+    const std::string ball = "shape sphere { center 0.3 -0.6 0; radius 0.4; material conductor { index metal Au; "
+                             "roughness 0.5 } }\n";
+    checkStrategies({"screen",
+                     kBox + ball +
+                         "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 4; "
+                         "texture checker { even rgb 1 0.3 0.1; odd ramp { over v; stop 0.3 0; stop 1 rgb 0.2 0.3 1 }; "
+                         "scale 3 } }\n",
+                     512});
+    checkStrategies({"ball and mesh",
+                     kBox + ball +
+                         "shape sphere { center -0.5 0.1 0.2; radius 0.25; emission checker { even 4; odd rgb 0.1 0.4 "
+                         "0.1; scale 5 } }\n"
+                         "light mesh { points { - 0.2 0.9 0.5; - 0.2 0.9 -0.5; - 0.8 0.9 -0.5; - 0.8 0.7 0.5 }; "
+                         "faces { - 0 1 2; - 0 2 3 }; radiance 4; texture ramp { over z; stop -0.4 0; stop 0.4 1 } }\n",
+                     512});
+}
+
 TEST_CASE("strategies: rough metals") {
     checkStrategies({"metals",
                      kBox + kLamp +

@@ -34,10 +34,6 @@ class TestLight final : public Light {
                                       float) const noexcept override {
         return std::nullopt;
     }
-    Spectrum emitted(const SurfaceHit&, Vec3, const Wavelengths&) const noexcept override { return {}; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&, float) const noexcept override { return 0; }
-    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return {}; }
-    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
 
   private:
     Description d_;

@@ -71,7 +71,7 @@ TEST_CASE("the absolute spectrum of each amount") {
     CHECK(onDefault->curve == &even);
     CHECK(onDefault->scale == doctest::Approx(10 / luminousIntegral(even)));
     p.intensity.reset();
-    p.radiance = &kLamp;
+    p.radiance.curve = &kLamp;
     CHECK(absoluteSpectrum(p, even, factors, {}, diagnostics)->scale == 1);
     CHECK(diagnostics.all().empty());
 }
@@ -83,7 +83,7 @@ TEST_CASE("amounts that contradict themselves are reported") {
         return diagnostics.all().size() == 1 ? diagnostics.all()[0].code : "";
     };
     AmountParams p;
-    p.radiance = p.color = &kLamp;
+    p.radiance.curve = p.color = &kLamp;
     CHECK(code(p, {}) == "E0341");
     p = {};
     p.power = Quantity{1, Dimension::power, {}};

@@ -120,6 +120,66 @@ TEST_CASE("the zenith has the luminance and the colour of the formulas") {
         }
 }
 
+TEST_CASE("between zenith and horizon the sky is that of the formulas") {
+    // [Preetham1999, appendix A.2], written out again for turbidity 3.
+    struct Perez {
+        double a, b, c, d, e;
+        double at(double theta, double gamma) const {
+            return (1 + a * std::exp(b / std::cos(theta))) *
+                   (1 + c * std::exp(d * gamma) + e * std::cos(gamma) * std::cos(gamma));
+        }
+    };
+    const Perez luminance{-0.9269, -0.6387, 5.2570, -2.2153, 0.1693};
+    const Perez x{-0.3171, -0.1987, 0.2113, -1.0912, 0.0354}, y{-0.3109, -0.2758, 0.1865, -1.7860, 0.0202};
+    for (const double elevation : {15., 50.}) {
+        const double sunAngle = (90 - elevation) * kDegree;
+        const DaylightSky sky = clearSky(elevation * kDegree, 3);
+        const PreethamSky::Value zenith = PreethamSky(sunAngle, 3).zenith();
+        for (const double theta : {20., 55., 80., 88.})
+            for (const double phi : {0., 40., 110., 180.}) {
+                const double t = theta * kDegree, p = phi * kDegree;
+                const Vec3d w{std::sin(t) * std::cos(p), std::cos(t), std::sin(t) * std::sin(p)};
+                const double gamma =
+                    std::acos(w.x * std::cos(elevation * kDegree) + w.y * std::sin(elevation * kDegree));
+                const SampledCurve seen([&](double nm) {
+                    return static_cast<double>(sky.escaped(Vec3(w), Wavelengths::single(static_cast<float>(nm)), 0)[0]);
+                });
+                const auto expected = [&](const Perez& f, double there) {
+                    return there * f.at(t, gamma) / f.at(0, sunAngle);
+                };
+                CAPTURE(theta);
+                CAPTURE(phi);
+                CHECK(luminousIntegral(seen) == doctest::Approx(expected(luminance, zenith.luminance)).epsilon(2e-3));
+                const Chromaticity c = chromaticity(integrate(seen));
+                CHECK(std::abs(c.x - expected(x, zenith.chromaticity.x)) < 1.5e-3);
+                CHECK(std::abs(c.y - expected(y, zenith.chromaticity.y)) < 1.5e-3);
+            }
+    }
+}
+
+TEST_CASE("sunlight at single wavelengths: extraterrestrial radiance, solid angle, and what the air takes") {
+    const double zenithAngle = 50 * kDegree, turbidity = 2.5;
+    const double m = 1 / (std::cos(zenithAngle) + 0.15 * std::pow(93.885 - 50, -1.253));
+    const double beta = 0.04608 * turbidity - 0.04586;
+    const double solidAngle = kPiD * square(std::sin(0.2666 * kDegree));
+    struct Line {
+        double nm, radiance, ozone, water; // W·cm⁻²·μm⁻¹·sr⁻¹, 1/cm, 1/cm
+    };
+    const SampledCurve sun = solarIrradiance(zenithAngle, turbidity);
+    for (const Line& line : {Line{400, 2112.75, 0, 0},
+                             {450, 2965.83, 0.003, 0},
+                             {550, 2550.38, 0.085, 0},
+                             {600, 2463.15, 0.125, 0},
+                             {650, 2233.98, 0.028, 0},
+                             {720, 1942.72, 0, 1}}) {
+        const double um = line.nm / 1000, w = line.water * 2 * m;
+        const double depth = m * (0.008735 * std::pow(um, -4.08) + beta * std::pow(um, -1.3) + 0.35 * line.ozone) +
+                             0.2385 * w / std::pow(1 + 20.07 * w, 0.45);
+        CAPTURE(line.nm);
+        CHECK(sun.at(line.nm) == doctest::Approx(10 * line.radiance * solidAngle * std::exp(-depth)).epsilon(2e-3));
+    }
+}
+
 TEST_CASE("every direction of every sky is finite and not negative; the horizon has no hole") {
     for (const double elevation : {0.01, 0.5, 3., 20., 45., 89.99, 90.})
         for (const double turbidity : {2., 3., 6., 10.}) {

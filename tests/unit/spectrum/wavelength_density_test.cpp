@@ -1,3 +1,4 @@
+#include "spectrum/color_space.h"
 #include "spectrum/emission_curves.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/observer.h"
@@ -146,5 +147,49 @@ TEST_CASE("lines and narrow bands get a table, smooth lights do not") {
         CHECK(best.noise(c.power) < c.atMost);
         MESSAGE(fmt::format("{:20} sech² {:.3f}  table {:.3f}", c.name, WavelengthDensity().noise(c.power),
                             WavelengthDensity::following(c.power).noise(c.power)));
+    }
+}
+
+// What the choice rests on, by a finer and plainer sum: every colour on its own, in double.
+TEST_CASE("the noise that decides about the table is that of many more paths") {
+    const auto slow = [](const WavelengthDensity& density, const std::vector<double>& power) {
+        constexpr int kPaths = 2048;
+        const double most = *std::max_element(power.begin(), power.end());
+        double total = 0;
+        for (int kind = 0; kind < 6; ++kind) {
+            const SampledCurve seen([&](double nm) {
+                const double red = 1 / (1 + std::exp((590 - nm) / 12));
+                const double reflectance = kind == 0   ? 1
+                                           : kind == 1 ? (nm < 580 ? 0.05 : 0.9)
+                                           : kind == 2 ? (nm < 500 ? 0.9 : 0.05)
+                                           : kind == 3 ? (nm > 500 && nm < 580 ? 0.8 : 0.05)
+                                           : kind == 4 ? 0.02 + 0.88 * std::pow(red, 4)
+                                                       : 0.1 + 0.8 * std::exp(-0.5 * square((nm - 540) / 30));
+                return power[static_cast<std::size_t>(nm - 360)] / most * reflectance;
+            });
+            Vec3d sum;
+            double squares = 0;
+            for (int i = 0; i < kPaths; ++i) {
+                const Wavelengths w = density.sample((static_cast<float>(i) + 0.5f) / (kLanes * kPaths));
+                const Vec3d colour = toRgb(toXyz(seen.at(w), w), rgb::ap0);
+                sum += colour;
+                squares += dot(colour, colour);
+            }
+            total += std::max(0.0, squares * kPaths / dot(sum, sum) - 1);
+        }
+        return std::sqrt(total / 6);
+    };
+    std::vector<std::vector<double>> powers = lights();
+    for (const char* name : {"FL2", "FL12", "LED-RGB1", "mercury", "xenon-projector", "A"})
+        powers.push_back(illuminant(name));
+    for (const double width : {1., 2., 8., 12., 16., 24., 40.}) powers.push_back(band(550, width));
+    for (const auto& power : powers) {
+        const WavelengthDensity smooth, table = WavelengthDensity::following(power);
+        const double a = slow(smooth, power), b = slow(table, power);
+        CAPTURE(a);
+        CAPTURE(b);
+        if (a < 2) CHECK(smooth.noise(power) == doctest::Approx(a).epsilon(0.02)); // more: one path in a thousand
+        CHECK(table.noise(power) == doctest::Approx(b).epsilon(0.02));
+        CHECK(WavelengthDensity::bestFor(power).followsLights() == (b < 0.7 * a));
     }
 }
