@@ -11,6 +11,8 @@ namespace abbe {
 
 namespace {
 
+constexpr float kCellAxis = 0.57735027f; // half axis of the ellipse as wide as a cell of 1: equal variance
+constexpr int kSpacePoints = 8;    // where a texture that needs no texture coordinates is looked up for one that does
 constexpr int kGrid = 64;          // cells of a chart, each way
 constexpr int kPoints = 4096;      // over all parts of a shape without one, or one for each
 constexpr double kContrast = 0.02; // least variance of the luminance over its squared mean that pays for a chart
@@ -18,6 +20,11 @@ constexpr float kChartShare = 0.5f;
 
 // Factors are taken at every fifth nanometre and linear in between.
 constexpr int kStep = 5, kBands = 95, kSets = (kBands + kLanes - 1) / kLanes;
+
+// Of a cell of the chart.
+Vec2 placeIn(int column, int row, float x, float y) {
+    return {(static_cast<float>(column) + x) / kGrid, (static_cast<float>(row) + y) / kGrid};
+}
 
 int bandOf(int set, int lane) { return std::min(set * kLanes + lane, kBands - 1); }
 
@@ -109,39 +116,56 @@ std::optional<SurfaceHit> LightTexture::hitAt(Vec3 p, Vec3 ng, std::uint32_t par
 bool LightTexture::surveyChart(Survey& survey) {
     if (shape_.emitterParts() > 1 || !shape_.uvPoint({0.5f, 0.5f})) return false;
     std::vector<double> cells;
-    double sum = 0, squares = 0;
+    double sum = 0;
     for (int row = 0; row < kGrid; ++row)
         for (int column = 0; column < kGrid; ++column) {
-            const auto place = [&](float x, float y) {
-                return Vec2{(static_cast<float>(column) + x) / kGrid, (static_cast<float>(row) + y) / kGrid};
-            };
-            const double area = static_cast<double>(shape_.uvPoint(place(0.5f, 0.5f))->area) / (kGrid * kGrid);
-            // Patterns in space at a point somewhere in the cell, so that none falls in step with the grid: averaged
-            // over a ball as they would be, they are not what they are on the surface.
-            const int i = row * kGrid + column;
-            const auto point = shape_.uvPoint(place(static_cast<float>(std::fmod(0.5 + 0.7548776662466927 * i, 1.0)),
-                                                    static_cast<float>(std::fmod(0.5 + 0.5698402909980532 * i, 1.0))));
-            const auto hit = hitAt(point->p, point->ng, 0);
-            cells.push_back(0);
-            if (!hit) continue;
-            TextureQuery query(*hit);
-            query.uv = place(0.5f, 0.5f); // over texture coordinates, the mean of the cell
-            query.du = {0.5f / kGrid, 0};
-            query.dv = {0, 0.5f / kGrid};
-            const double visible = survey.add(texture_, query, area);
-            cells.back() = visible * area;
-            sum += visible * area;
-            squares += square(visible) * area;
+            cells.push_back(surveyCell(survey, column, row));
+            sum += cells.back();
         }
-    if (sum > 0 && squares * survey.area > (1 + kContrast) * sum * sum) chart_.emplace(cells, kGrid);
+    double squares = 0; // of the luminance over its mean
+    for (int row = 0; row < kGrid && sum > 0; ++row)
+        for (int column = 0; column < kGrid; ++column) {
+            const double area = cellArea(column, row);
+            if (area > 0) squares += square(cells[static_cast<std::size_t>(row * kGrid + column)] / sum) / area;
+        }
+    if (squares * survey.area > 1 + kContrast) chart_.emplace(cells, kGrid);
     return true;
+}
+
+double LightTexture::cellArea(int column, int row) const {
+    const auto middle = shape_.uvPoint(placeIn(column, row, 0.5f, 0.5f));
+    return middle ? static_cast<double>(middle->area) / (kGrid * kGrid) : 0;
+}
+
+// The visible light of a cell: patterns over texture coordinates averaged over it, patterns in space at points in it,
+// that do not fall in step with the grid. These cannot be averaged: over a ball they are not what they are over the
+// surface.
+double LightTexture::surveyCell(Survey& survey, int column, int row) const {
+    const int points = texture_.needsUv() ? 1 : kSpacePoints;
+    const double area = cellArea(column, row) / points;
+    double visible = 0;
+    for (int k = 0; k < points; ++k) {
+        const double i = (row * kGrid + column) * points + k; // of an R₂ sequence [Roberts2018]
+        const auto point =
+            shape_.uvPoint(placeIn(column, row, static_cast<float>(std::fmod(0.5 + 0.7548776662466927 * i, 1.0)),
+                                   static_cast<float>(std::fmod(0.5 + 0.5698402909980532 * i, 1.0))));
+        const auto hit = point ? hitAt(point->p, point->ng, 0) : std::nullopt;
+        if (!hit) continue;
+        TextureQuery query(*hit);
+        query.uv = placeIn(column, row, 0.5f, 0.5f);
+        query.du = {kCellAxis / kGrid, 0};
+        query.dv = {0, kCellAxis / kGrid};
+        visible += area * survey.add(texture_, query, area);
+    }
+    return visible;
 }
 
 // Parts keep a hundredth of what they would have without the texture: lookups may have missed something.
 void LightTexture::surveyParts(Survey& survey) {
     constexpr double kLeast = 0.01;
     const auto count = static_cast<std::uint32_t>(shares_.size());
-    const int points = std::max(1, kPoints / static_cast<int>(std::min<std::uint32_t>(count, kPoints)));
+    const int all = kPoints * (texture_.needsUv() ? 1 : kSpacePoints);
+    const int points = std::max(1, all / static_cast<int>(std::min<std::uint32_t>(count, kPoints)));
     std::vector<double> visible;
     double total = 0;
     for (std::uint32_t part = 0; part < count; ++part) {

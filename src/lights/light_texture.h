@@ -43,6 +43,8 @@ class LightTexture {
     struct Survey;
     std::optional<SurfaceHit> hitAt(Vec3 p, Vec3 ng, std::uint32_t part) const noexcept;
     bool surveyChart(Survey&);
+    double cellArea(int column, int row) const;
+    double surveyCell(Survey&, int column, int row) const;
     void surveyParts(Survey&);
     double surveyPart(Survey&, std::uint32_t part, int points) const;
     float pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept;

@@ -44,7 +44,7 @@ bool possible(const std::string& shape, const std::string& texture) {
 struct Flux {
     double lumens = 0, watts = 0;
 };
-Flux fluxOf(const Light& light, int samples = 30000) {
+Flux fluxOf(const Light& light, int samples = 60000) {
     constexpr float radius = 40;
     // An R₅ sequence: far more even than random points.
     constexpr std::array<double, 5> kSteps{0.8812714616335696, 0.7766393890897682, 0.6844301295853426,
@@ -68,7 +68,7 @@ Flux fluxOf(const Light& light, int samples = 30000) {
 }
 
 // A hundredth would be seen.
-void agrees(double got, double expected) { CHECK(got == doctest::Approx(expected).epsilon(0.004)); }
+void agrees(double got, double expected) { CHECK(got == doctest::Approx(expected).epsilon(0.006)); }
 
 } // namespace
 
@@ -80,8 +80,10 @@ TEST_CASE("a lamp with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
                 if (*color && !nightly() && &shape != kShapes) continue;
                 const std::string text = shape + color + texture;
                 CAPTURE(text);
-                const TestScene luminous = lamp(text + "; power 1 klm }"), radiant = lamp(text + "; power 10 W }");
+                const TestScene luminous = lamp(text + "; power 1 klm }");
                 agrees(fluxOf(*luminous.scene().lights.at(0)).lumens, 1000);
+                if (&texture != kTextures && !nightly()) continue;
+                const TestScene radiant = lamp(text + "; power 10 W }");
                 agrees(fluxOf(*radiant.scene().lights.at(0)).watts, 10);
                 CHECK(radiant.scene().lights.at(0)->power() == doctest::Approx(10).epsilon(1e-4));
             }
