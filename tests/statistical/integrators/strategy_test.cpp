@@ -75,7 +75,7 @@ TEST_CASE("strategies: lamps with textures") {
                      512});
     checkStrategies({"ball and mesh",
                      kBox + ball +
-                         "shape sphere { center -0.5 0.1 0.2; radius 0.25; emission checker { even 4; odd rgb 0.1 0.4 "
+                         "shape sphere { center -0.5 0.1 0.2; radius 0.25; emission checker { even 1; odd rgb 0.1 0.4 "
                          "0.1; scale 5 } }\n"
                          "light mesh { points { - 0.2 0.9 0.5; - 0.2 0.9 -0.5; - 0.8 0.9 -0.5; - 0.8 0.7 0.5 }; "
                          "faces { - 0 1 2; - 0 2 3 }; radiance 4; texture ramp { over z; stop -0.4 0; stop 0.4 1 } }\n",
