@@ -79,7 +79,7 @@ TEST_CASE("strategies: lamps with textures") {
                          "0.1; scale 5 } }\n"
                          "light mesh { points { - 0.2 0.9 0.5; - 0.2 0.9 -0.5; - 0.8 0.9 -0.5; - 0.8 0.7 0.5 }; "
                          "faces { - 0 1 2; - 0 2 3 }; radiance 4; texture ramp { over z; stop -0.4 0; stop 0.4 1 } }\n",
-                     512});
+                     512, 0, 0.004});
 }
 
 TEST_CASE("strategies: rough metals") {
