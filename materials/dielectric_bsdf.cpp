@@ -2,6 +2,7 @@
 
 #include "materials/fresnel.h"
 #include "materials/ggx_albedo.h"
+#include "materials/refracting_halves.h"
 
 namespace abbe {
 namespace {
@@ -90,32 +91,22 @@ BsdfEval RoughDielectricBsdf::evalReflection(Vec3 wo, Vec3 wi, Spectrum eta) con
             mean(reflectance) * d * ggx_.visible(wo)};
 }
 
-// Value and density per lane, each off its own microfacet h ∥ wo + η wi, with |dh/dwi| = η² |wi·h| / |wo + η wi|²
-// [Walter2007, eq. 17]: the length of the sum itself stands for the difference of products in their denominator.
+// Value and density per lane, each off its own microfacet.
 RoughDielectricBsdf::LaneEval RoughDielectricBsdf::transmission(Vec3 wo, Vec3 wi, Spectrum eta,
                                                                 Transport transport) const {
-    const Float8 x = wo.x + eta.v * wi.x, y = wo.y + eta.v * wi.y, z = wo.z + eta.v * wi.z;
-    const Float8 length2 = max(Spectrum(x * x + y * y + z * z), Spectrum(1e-20f)).v;
-    const Float8 unit = (z < 0.f ? -1.f : 1.f) / sqrt(Spectrum(length2)).v;
-    const Float8 hx = x * unit, hy = y * unit, hz = z * unit;
-    const Float8 cosO = wo.x * hx + wo.y * hy + wo.z * hz, cosI = wi.x * hx + wi.y * hy + wi.z * hz;
-    const Int8 possible = (cosO > 0.f) & (cosI < 0.f);
-
-    const Float8 cosine = min(Spectrum(cosO), Spectrum(1.f)).v;
+    const RefractingHalves halves(wo, wi, eta);
+    const Float8 cosine = min(Spectrum(halves.cosO), Spectrum(1.f)).v;
     const Spectrum reflectance = fresnelDielectric(Spectrum(cosine), eta);
     Float8 chosen = meanInLanes(reflectance).v; // probability of reflection off each lane's microfacet
     if (disperses_)
         for (int i = 0; i < kLanes; ++i) chosen[i] = mean(fresnelDielectric(cosine[i], eta));
 
-    const float a = ggx_.alphaX();
-    const Float8 slope2 = (hx * hx + hy * hy) / (a * a) + hz * hz;
-    const Float8 density = 1.f / (kPi * a * a * slope2 * slope2); // D(h)
-    const Float8 common = density * cosO * (eta * eta).v * -cosI / length2;
+    const Float8 common = halves.density(ggx_.alphaX(), ggx_.alphaX(), eta).v;
     const Spectrum fcos = (1.f - reflectance.v) * common * ggx_.maskingOverCosine(wo, wi);
     const Spectrum pdf = (1.f - chosen) * common * ggx_.visible(wo);
     const Spectrum none(0.f);
-    return {select(possible, fcos * lossless(wo.z, eta) * compression(eta, transport), none),
-            select(possible, pdf, none)};
+    return {select(halves.possible, fcos * lossless(wo.z, eta) * compression(eta, transport), none),
+            select(halves.possible, pdf, none)};
 }
 
 std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2 u,

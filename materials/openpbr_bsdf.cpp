@@ -1,6 +1,7 @@
 #include "materials/openpbr_bsdf.h"
 
 #include "materials/dielectric_bsdf.h"
+#include "materials/refracting_halves.h"
 #include "math/warp.h"
 
 namespace abbe {
@@ -182,28 +183,20 @@ OpenPbrBsdf::LaneEval OpenPbrBsdf::refraction(const View& v, Vec3 wi, Transport 
     const Ggx& ggx = point_.specular.ggx();
     const Vec3 wo = v.wo;
     const Spectrum eta = v.within ? kOne / point_.dielectric.eta() : point_.dielectric.eta();
-    const Float8 x = wo.x + eta.v * wi.x, y = wo.y + eta.v * wi.y, z = wo.z + eta.v * wi.z;
-    const Float8 length2 = max(Spectrum(x * x + y * y + z * z), Spectrum(1e-20f)).v;
-    const Float8 unit = (z < 0.f ? -1.f : 1.f) / sqrt(Spectrum(length2)).v;
-    const Float8 hx = x * unit, hy = y * unit, hz = z * unit;
-    const Float8 cosO = wo.x * hx + wo.y * hy + wo.z * hz, cosI = wi.x * hx + wi.y * hy + wi.z * hz;
-    const Int8 possible = (cosO > 0.f) & (cosI < 0.f);
-    const Spectrum cosine = max(min(Spectrum(cosO), kOne), kNone);
+    const RefractingHalves halves(wo, wi, eta);
+    const Spectrum cosine = max(min(Spectrum(halves.cosO), kOne), kNone);
     const Facet at = facet(v, cosine);
     Spectrum chosen(1 - reflectionShare(at));
     if (disperses_) // each lane meets another microfacet, whose choice is a mean over all lanes
         for (int i = 0; i < kLanes; ++i) chosen.v[i] = 1 - reflectionShare(facet(v, Spectrum(cosine[i])));
-    const float ax = ggx.alphaX(), ay = ggx.alphaY();
-    const Float8 sx = hx * (1 / ax), sy = hy * (1 / ay), slope2 = sx * sx + sy * sy + hz * hz;
-    const Float8 density = (1 / (kPi * ax * ay)) / (slope2 * slope2); // D(h)
-    const Spectrum common = density * cosO * (eta * eta).v * -cosI / length2;
+    const Spectrum common = halves.density(ggx.alphaX(), ggx.alphaY(), eta);
     const Passing pass = passing(v, 1, false);
     Spectrum out = pass.clear;
     if (v.within && coatAbsorbs_) out = leavingCoat(-wi.z);
     const Spectrum fcos =
         at.transmitted * point_.through * out * compression(eta, transport) * common * ggx.maskingOverCosine(wo, wi);
     const Spectrum pdf = chosen * common * (v.pick[kSpecular] * ggx.visible(wo));
-    return {select(possible, fcos, kNone), select(possible, pdf, kNone)};
+    return {select(halves.possible, fcos, kNone), select(halves.possible, pdf, kNone)};
 }
 
 Spectrum OpenPbrBsdf::leavingCoat(float cosI) const {
