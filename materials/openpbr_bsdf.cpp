@@ -213,7 +213,7 @@ std::optional<BsdfSample> OpenPbrBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Tran
         return std::optional<BsdfSample>(std::in_place, wi, coatAbsorbs_ ? leavingCoat(wi.z) : kOne, density,
                                          Lobes(Lobe::diffuse) | Lobe::transmission);
     }
-    const View v = view(wo);
+    const View& v = view(wo);
     int choice = -1;
     float rest = uLobe;
     for (int i = 0; i < kChoices; ++i) {

@@ -68,7 +68,10 @@ class OpenPbrBsdf final : public Bsdf {
         Spectrum fcos, pdf;
     };
 
-    View view(Vec3 wo) const;
+    // Kept for the next call: the path loop asks for a sample and for a value with the same wo, and an object belongs to
+    // one vertex of one path.
+    const View& view(Vec3 wo) const;
+    View makeView(Vec3 wo) const;
     void viewCoat(View&) const;
     void viewDielectric(View&) const;
     void viewWithin(View&) const;
@@ -113,6 +116,8 @@ class OpenPbrBsdf final : public Bsdf {
     bool smooth_;         // the specular lobe is a mirror
     bool disperses_;      // the base's index differs between the lanes
     bool coatAbsorbs_, sheetAbsorbs_;
+    mutable Vec3 viewed_; // the direction of view_; 0: none yet
+    mutable View view_;
 };
 
 } // namespace abbe

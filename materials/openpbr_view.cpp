@@ -62,7 +62,15 @@ double hemisphericalReflectance(double n) {
            8 * n4 * (n4 + 1) / (plus * (n4 - 1) * (n4 - 1)) * std::log(n);
 }
 
-OpenPbrBsdf::View OpenPbrBsdf::view(Vec3 wo) const {
+const OpenPbrBsdf::View& OpenPbrBsdf::view(Vec3 wo) const {
+    if (!(wo == viewed_)) {
+        view_ = makeView(wo);
+        viewed_ = wo;
+    }
+    return view_;
+}
+
+OpenPbrBsdf::View OpenPbrBsdf::makeView(Vec3 wo) const {
     View v;
     v.within = wo.z < 0 && refracts();
     v.wo = {wo.x, wo.y, std::abs(wo.z)};
