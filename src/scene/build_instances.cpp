@@ -45,6 +45,11 @@ class TriangleSink final : public GeometrySink {
     ScatterSurface& surface_;
 };
 
+// How many places are asked for by number; 0 where a file tells.
+double placesAskedFor(const InstancesParams& p) {
+    return p.grid ? p.grid->x * p.grid->y * p.grid->z : p.count.value_or(0);
+}
+
 std::size_t saturated(std::size_t a, std::size_t b) {
     std::size_t product = 0;
     return __builtin_mul_overflow(a, b, &product) ? ~std::size_t{0} : product;
@@ -84,12 +89,15 @@ bool SceneBuilder::scatterSurface(const schema::Text& over, const std::vector<De
 std::vector<Placement> SceneBuilder::placements(const Definition& d, const InstancesParams* params,
                                                 const std::vector<Definition>& siblings, const Transform& outwards) {
     std::vector<Placement> result;
+    const auto refuse = [&] {
+        diagnostics_.error("E0607", d.span, "more than 100 million instances", "here they end");
+    };
     const auto add = [&](const Transform& map) {
         if (const auto fault = Placement::findFault(map)) {
             const std::string which = params ? fmt::format("place {}", result.size()) : "this place";
             diagnostics_.error("E0631", d.span, fmt::format("{} cannot be used: {}", which, *fault), "from here");
         } else if (++instanceCount_ > kMaxInstances) {
-            diagnostics_.error("E0607", d.span, "more than 100 million instances", "here they end");
+            refuse();
         } else {
             result.emplace_back(map);
             return true;
@@ -100,6 +108,10 @@ std::vector<Placement> SceneBuilder::placements(const Definition& d, const Insta
     if (instanceCount_ > kMaxInstances) return result; // has been reported
     if (!params) {
         add(outwards);
+        return result;
+    }
+    if (static_cast<double>(instanceCount_) + placesAskedFor(*params) > static_cast<double>(kMaxInstances)) {
+        refuse(); // before memory is taken for them
         return result;
     }
     ScatterSurface surface;
