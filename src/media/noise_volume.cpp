@@ -107,7 +107,10 @@ Vec3d NoiseVolume::cellsPerMetre() const {
 }
 
 float NoiseVolume::density(Vec3d p) const noexcept {
-    p = clamped(p, {box_.lower, box_.upper});
+    const Vec3d inside = clamped(p, {box_.lower, box_.upper});
+    // Larger cells of the walk reach beyond the box; points computed in float may do so by the bounds' own margin.
+    if (maxComponent(multiply(abs(p - inside), cellsPerMetre())) > 1 / 30.0) return 0;
+    p = inside;
     const float thin = nearFaces(box_, p) * withHeight(box_, p[box_.up]);
     return thin > 0 ? thin * field_.at(p) : 0;
 }

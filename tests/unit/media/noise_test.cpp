@@ -97,6 +97,16 @@ TEST_CASE("noise volumes: both estimators against quadrature, thinned or not, wh
     CHECK(filled >= 9);
 }
 
+TEST_CASE("noise ends at the faces of its box, also in cells of the walk that reach beyond") {
+    NoisePattern faint = pattern(NoiseKind::gradient);
+    faint.contrast = 1e-6;
+    const NoiseVolume medium(optics(), faint, box(), {});
+    // Bricks of 2.5/21 and 2/17 m, cells of eight: out of the box at y = 1, close to an edge of a cell.
+    const Vec3d leaves{-1 + 16 * 2.5 / 21 + 0.025, 1, -1 + 8 * 2.0 / 17 + 0.025};
+    const Vec3d direction = normalize(Vec3d{-1, 0.3, 1});
+    check(medium, {Vec3(leaves - direction * 0.5), Vec3(direction)}, 2, 0.5);
+}
+
 TEST_CASE("noise without an end: against quadrature") {
     NoisePattern soft = pattern(NoiseKind::gradient);
     soft.contrast = 0.8;
