@@ -94,6 +94,23 @@ TEST_CASE("gloss: its table is the share that its samples reflect, and smooth it
     CHECK(none.albedo(0.1f) == 0);
 }
 
+TEST_CASE("gloss: reflects what a whole interface of the same index reflects") {
+    Random random(214);
+    for (const double ior : {1.33, 2.4})
+        for (const float roughness : {0.2f, 0.7f}) {
+            const BsdfUnderTest whole = dielectric(ior, roughness);
+            const GlossRange owner = even(ior, roughness);
+            const Gloss gloss = owner.at({});
+            for (int i = 0; i < 1000; ++i) {
+                const Vec3 wo = squareToCosineHemisphere({random.uniform(), random.uniform()}),
+                           wi = squareToCosineHemisphere({random.uniform(), random.uniform()});
+                if (!(wo.z > 0.01f && wi.z > 0.01f)) continue;
+                CHECK(gloss.eval(wo, wi).fcos ==
+                      doctest::Approx(whole.bsdf->eval(wo, wi, Transport::radiance).fcos[0]).epsilon(1e-4));
+            }
+        }
+}
+
 TEST_CASE("a gloss of varying roughness: between its tables, too, the share that its samples reflect") {
     double worst = 0;
     for (const double ior : {1.33, 1.5, 2.4})

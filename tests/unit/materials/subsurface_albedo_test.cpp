@@ -32,6 +32,17 @@ TEST_CASE("the inside of a translucent solid") {
     CHECK(inside.albedo->at(550.0) == doctest::Approx(singleScatteringAlbedo(0.8, 0.4)));
     CHECK(inside.albedo->maximum() <= 1);
     CHECK(makeSubsurfaceInside(white, path, 0).albedo->at(550.0) == 1);
+    // The eight wavelengths of a path see the same curves as a single one.
+    const SampledCurve red([](double nm) { return nm < 600 ? 0.3 : 0.9; }), far([](double nm) { return 1e-5 * nm; });
+    const Wavelengths lanes = Wavelengths::sample(0.3f);
+    const SubsurfaceInside varied = makeSubsurfaceInside(red, far, 0.4, 0.5);
+    for (int i = 0; i < kLanes; ++i) {
+        const auto nm = static_cast<double>(lanes.nm[i]);
+        CHECK(varied.extinction->at(nm) == doctest::Approx(2 / far.at(nm)).epsilon(1e-6));
+        CHECK(varied.extinction->at(lanes)[i] == doctest::Approx(varied.extinction->at(nm)).epsilon(1e-4));
+        CHECK(varied.albedo->at(lanes)[i] == doctest::Approx(varied.albedo->at(nm)).epsilon(1e-4));
+        CHECK(varied.albedo->at(nm) == doctest::Approx(singleScatteringAlbedo(red.at(nm), 0.4)));
+    }
     CHECK(std::isfinite(makeSubsurfaceInside(color, nothing, 0).extinction->at(550.0)));
 }
 
