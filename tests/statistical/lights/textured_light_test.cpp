@@ -90,6 +90,13 @@ TEST_CASE("a lamp with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
         }
 }
 
+TEST_CASE("a screen with a picture sends out the light that was asked for") {
+    const std::string picture = "texture image \"scenes/textures/textures.png\"; size 2 1; ";
+    agrees(fluxOf(*lamp("light quad { " + picture + "power 1 klm }").scene().lights.at(0)).lumens, 1000);
+    agrees(fluxOf(*lamp("light quad { " + picture + "power 10 W; color blackbody 2700 K }").scene().lights.at(0)).watts,
+           10);
+}
+
 TEST_CASE("luminance and radiance are those where the texture is white") {
     // Half of the area is white: half of the flux of a plain one, π L A.
     const TestScene half =
