@@ -38,6 +38,8 @@ DeformingMesh::DeformingMesh(MeshData faces, std::vector<MeshStep> steps)
     const std::size_t vertices = steps_[0].positions.size(), normals = steps_[0].normals.size();
     ABBE_CHECK(normals == 0 || normals == vertices);
     ABBE_CHECK(faces_.uvs.empty() || faces_.uvs.size() == vertices);
+    for (const MeshAttribute& a : faces_.attributes)
+        ABBE_CHECK(a.values.size() == vertices * static_cast<std::size_t>(a.channels));
     std::vector<bool> used(vertices); // other vertices do not count
     for (const auto& t : faces_.triangles)
         for (const std::uint32_t v : t) used[v] = true;
@@ -54,9 +56,16 @@ DeformingMesh::DeformingMesh(MeshData faces, std::vector<MeshStep> steps)
 std::size_t DeformingMesh::bytes() const {
     std::size_t sum = faces_.triangles.size() * sizeof(faces_.triangles[0]) +
                       faces_.quads.size() * sizeof(faces_.quads[0]) + faces_.uvs.size() * sizeof(Vec2);
+    for (const MeshAttribute& a : faces_.attributes) sum += a.values.size() * sizeof(float);
     for (const MeshStep& step : steps_) sum += (step.positions.size() + step.normals.size()) * sizeof(Vec3);
     return sum;
 }
+
+std::optional<Vec3> DeformingMesh::attribute(std::string_view name, const SurfaceHit& hit) const {
+    return attributeAt(faces_, name, hit);
+}
+
+std::vector<std::string_view> DeformingMesh::attributeNames() const { return attributeNamesOf(faces_); }
 
 void DeformingMesh::commit(GeometrySink& sink) const {
     std::vector<std::span<const Vec3>> vertices;

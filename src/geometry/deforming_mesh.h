@@ -15,7 +15,8 @@ struct MeshStep {
 };
 
 // As Mesh, but between equally spaced steps vertices move in straight lines. At any time the face normals are those of
-// the faces as they are then; vertex normals are interpolated. Texture coordinates stay with their vertices.
+// the faces as they are then; vertex normals are interpolated. Texture coordinates and attributes stay with
+// their vertices.
 class DeformingMesh final : public Shape {
   public:
     // Requires data in which cleanMesh() finds no error at any step, and 2 … kMaxTimeSteps steps. The positions and
@@ -33,6 +34,8 @@ class DeformingMesh final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     bool hasTextureCoordinates() const override { return !faces_.uvs.empty(); }
+    std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
+    std::vector<std::string_view> attributeNames() const override;
     double area() const override; // the largest of all steps
 
     // Deforming meshes do not emit: their area changes.
@@ -40,7 +43,7 @@ class DeformingMesh final : public Shape {
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
-    MeshData faces_; // and texture coordinates
+    MeshData faces_; // and texture coordinates, attributes
     std::vector<MeshStep> steps_;
     Bounds3 bounds_;
 };

@@ -31,6 +31,7 @@ class FaceMaterials final : public Shape {
     std::optional<Vec3> attribute(std::string_view name, const SurfaceHit& hit) const override {
         return shape_->attribute(name, hit);
     }
+    float meanCurvature(const SurfaceHit& hit) const override { return shape_->meanCurvature(hit); }
     std::vector<std::string_view> attributeNames() const override { return shape_->attributeNames(); }
     bool usesTextures() const override;
     double area() const override { return shape_->area(); }

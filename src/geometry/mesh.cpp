@@ -126,24 +126,29 @@ void Mesh::parametrize(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
         parametrizeTriangle(p1, p2, uv[c.b] - uv[c.a], uv[c.c] - uv[c.a], hit);
 }
 
-std::optional<Vec3> Mesh::attribute(std::string_view name, const SurfaceHit& hit) const {
-    for (const MeshAttribute& a : data_.attributes) {
-        if (a.name != name) continue;
-        const MeshCorners c = cornersOf(data_, {hit.barycentric.x, hit.barycentric.y, 0, hit.element, hit.part});
-        const auto at = [&](std::uint32_t vertex) {
-            const float* const v = &a.values[static_cast<std::size_t>(vertex) * static_cast<std::size_t>(a.channels)];
-            return a.channels == 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0], v[0], v[0]);
-        };
-        return at(c.a) * (1 - c.s - c.t) + at(c.b) * c.s + at(c.c) * c.t;
-    }
-    return std::nullopt;
+// Half the divergence of the normal, which is linear over the triangle; of a quad the first half counts.
+float Mesh::meanCurvature(const SurfaceHit& hit) const {
+    if (data_.normals.empty()) return 0;
+    const std::uint64_t triangles = data_.triangles.size();
+    const std::uint64_t i = hit.primitive < triangles ? hit.primitive : triangles + 2 * (hit.primitive - triangles);
+    const auto [a, b, c] = triangle(i);
+    const auto normal = [&, this](std::uint32_t v) {
+        const Vec3 n = data_.normals[v];
+        if (!isUsableNormal(n)) return faceNormals_[i];
+        return normalize(dot(n, faceNormals_[i]) < 0 ? -n : n);
+    };
+    const Vec3 e1 = data_.positions[b] - data_.positions[a], e2 = data_.positions[c] - data_.positions[a];
+    const Vec3 n = normal(a), d1 = normal(b) - n, d2 = normal(c) - n;
+    const float e = dot(e1, e1), f = dot(e1, e2), g = dot(e2, e2), determinant = e * g - f * f;
+    if (!(determinant > 1e-12f * e * g)) return 0;
+    return 0.5f * (g * dot(d1, e1) - f * (dot(d1, e2) + dot(d2, e1)) + e * dot(d2, e2)) / determinant;
 }
 
-std::vector<std::string_view> Mesh::attributeNames() const {
-    std::vector<std::string_view> names;
-    for (const MeshAttribute& a : data_.attributes) names.push_back(a.name);
-    return names;
+std::optional<Vec3> Mesh::attribute(std::string_view name, const SurfaceHit& hit) const {
+    return attributeAt(data_, name, hit);
 }
+
+std::vector<std::string_view> Mesh::attributeNames() const { return attributeNamesOf(data_); }
 
 double Mesh::triangleArea(std::uint64_t i) const {
     const auto [a, b, c] = triangle(i);

@@ -35,6 +35,7 @@ class Mesh final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     bool hasTextureCoordinates() const override { return !data_.uvs.empty(); }
+    float meanCurvature(const SurfaceHit&) const override; // of its triangle; 0 without vertex normals
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;
     double area() const override { return area_; }

@@ -36,6 +36,26 @@ inline MeshCorners cornersOf(const MeshData& mesh, const RawHit& raw) {
             triangles + raw.primitive};
 }
 
+// As Shape::attribute and Shape::attributeNames.
+inline std::optional<Vec3> attributeAt(const MeshData& mesh, std::string_view name, const SurfaceHit& hit) {
+    for (const MeshAttribute& a : mesh.attributes) {
+        if (a.name != name) continue;
+        const MeshCorners c = cornersOf(mesh, {hit.barycentric.x, hit.barycentric.y, 0, hit.element, hit.part});
+        const auto at = [&](std::uint32_t vertex) {
+            const float* const v = &a.values[static_cast<std::size_t>(vertex) * static_cast<std::size_t>(a.channels)];
+            return a.channels == 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0], v[0], v[0]);
+        };
+        return at(c.a) * (1 - c.s - c.t) + at(c.b) * c.s + at(c.c) * c.t;
+    }
+    return std::nullopt;
+}
+
+inline std::vector<std::string_view> attributeNamesOf(const MeshData& mesh) {
+    std::vector<std::string_view> names;
+    for (const MeshAttribute& a : mesh.attributes) names.push_back(a.name);
+    return names;
+}
+
 // Not zero, not infinite, not NaN.
 inline bool isUsableNormal(Vec3 n) {
     const float l2 = lengthSquared(n);

@@ -23,6 +23,7 @@ class Sphere final : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    float meanCurvature(const SurfaceHit&) const override { return static_cast<float>(1 / radius_); }
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

@@ -88,6 +88,9 @@ class Dicer {
         m.normals.resize(all.inside);
         if (textured()) m.uvs.resize(all.inside);
         if (displacement_ && !layout_.seams.empty()) moved_.resize(layout_.vertexCount);
+        for (const auto& a : surface_.attributes)
+            m.attributes.push_back(
+                {a.name, a.channels, std::vector<float>(all.inside * static_cast<std::size_t>(a.channels))});
         m.triangles.resize(all.triangles);
         m.quads.resize(all.quads);
     }
@@ -95,6 +98,7 @@ class Dicer {
     bool textured() const { return !surface_.uvCorners.empty(); }
 
     void evaluate(const FaceEvaluator& face, Vec2 at, std::uint32_t vertex) {
+        face.attributes(at.x, at.y, out_.mesh.attributes, vertex);
         if (displacement_) return evaluateDisplaced(face, at, vertex);
         const LimitPoint p = face.point(at.x, at.y);
         out_.mesh.positions[vertex] = p.position;

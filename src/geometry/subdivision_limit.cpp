@@ -98,6 +98,8 @@ CagePoints::CagePoints(std::span<const Vec3> positions) {
 SubdivisionSurface::Impl::Impl(const SubdivisionCage& cage)
     : points(cage.positions), uvs(cage.uvs), uvCorners(cage.uvCorners), refiner(makeRefiner(cage)),
       scheme(schemeOf(cage.scheme)) {
+    for (const MeshAttribute& a : cage.attributes)
+        attributes.push_back({a.name, a.channels, {a.values.begin(), a.values.end()}});
     Factory::Options options;
     options.SetApproxLevelSharp(sharpLevel(cage)).SetApproxLevelSmooth(7);
     factory = std::make_unique<Factory>(*refiner, options);
@@ -125,6 +127,12 @@ void FaceEvaluator::setFace(int face, bool withTexture) {
     const auto controls = static_cast<std::size_t>(limit_.GetNumControlPoints());
     for (std::size_t i = 0; i < controls; ++i) box.add(Vec3d(patch_[3 * i], patch_[3 * i + 1], patch_[3 * i + 2]));
     smallTangent_ = 1e-7 * maxComponent(box.upper - box.lower);
+    attributePatches_.resize(surface_.attributes.size());
+    for (std::size_t i = 0; i < attributePatches_.size(); ++i) {
+        const auto& [name, channels, values] = surface_.attributes[i];
+        attributePatches_[i].resize(static_cast<std::size_t>(limit_.GetNumPatchPoints() * channels));
+        limit_.PreparePatchPoints(values.data(), channels, attributePatches_[i].data(), channels);
+    }
     textured_ = withTexture;
     if (!withTexture) return;
     good = surface_.factory->InitFaceVaryingSurface(face, &texture_, 0);
@@ -190,6 +198,16 @@ Vec2 FaceEvaluator::texture(float u, float v) const {
     Vec2 t;
     texture_.Evaluate(uv, texturePatch_.data(), 2, &t.x);
     return t;
+}
+
+void FaceEvaluator::attributes(float u, float v, std::vector<MeshAttribute>& to, std::uint32_t vertex) const {
+    const double uv[2] = {static_cast<double>(u), static_cast<double>(v)};
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        const auto channels = static_cast<std::size_t>(to[i].channels);
+        double value[3];
+        limit_.Evaluate(uv, attributePatches_[i].data(), to[i].channels, value);
+        for (std::size_t c = 0; c < channels; ++c) to[i].values[vertex * channels + c] = static_cast<float>(value[c]);
+    }
 }
 
 SurfaceJet FaceEvaluator::jet(const double uv[2], bool bentTexture) const {

@@ -39,6 +39,12 @@ struct SubdivisionSurface::Impl {
     CagePoints points;
     std::vector<Vec2> uvs;
     std::vector<std::uint32_t> uvCorners;
+    struct Attribute {
+        std::string name;
+        int channels;
+        std::vector<double> values;
+    };
+    std::vector<Attribute> attributes;      // of the points
     std::vector<std::uint32_t> firstCorner; // of each face, and one past the last
     std::unique_ptr<osd::Far::TopologyRefiner> refiner;
     std::unique_ptr<Factory> factory;
@@ -74,6 +80,8 @@ class FaceEvaluator {
     LimitPoint point(float u, float v) const;
     Vec3 position(float u, float v) const;
     Vec2 texture(float u, float v) const;
+    // Writes the values of the cage's attributes, in their order, to those of a vertex.
+    void attributes(float u, float v, std::vector<MeshAttribute>& to, std::uint32_t vertex) const;
     // Requires setFace(…, true) if the cage has texture coordinates.
     DisplacedLimit displaced(float u, float v, const Displacement&) const;
     osd::Bfr::Parameterization parameterization() const { return limit_.GetParameterization(); }
@@ -90,6 +98,7 @@ class FaceEvaluator {
     osd::Bfr::Surface<float> texture_;
     std::vector<double> patch_;
     std::vector<float> texturePatch_;
+    std::vector<std::vector<double>> attributePatches_;
     double smallTangent_ = 0;
     bool textured_ = false;
     Vec2 home_; // texture coordinates of the middle

@@ -44,7 +44,7 @@ struct DicedSeam {
 
 // Whoever moves vertices moves those of a seam alike (once per original) and the surface stays closed.
 struct DicedSurface {
-    MeshData mesh; // normals always; uvs if the cage has them; quads, and triangles where rates meet
+    MeshData mesh; // normals always; uvs and attributes if the cage has them; quads, and triangles where rates meet
     std::vector<DicedSeam> seams;
     // Where the faces of the diced mesh that make up a face of the cage begin; with one entry past the last.
     struct Face {

@@ -106,6 +106,7 @@ template <EffectBits E> class PathLoop {
     bool hidden(SurfaceHit&, const Ray&, path_detail::Nested&) const;
     float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&) const;
     void meetSurface(SurfaceHit&, Vec3 direction);
+    void turnCone(const SurfaceHit&, const BsdfSample&, float cosine);
     void scatterCone();
     bool scatterInMedium(Ray&, std::uint32_t depth);
     class GlowCollector;
@@ -206,7 +207,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std
     if constexpr (kInterfaces) return arriveThrough(ray, hit, depth);
     if (!context_.scene.intersector->intersect(ray, hit)) return Arrival::nowhere;
     if constexpr (kAbsorption) absorb(hit, ray.direction, hit.distance);
-    if constexpr (kTextures) path_.cone.radius += path_.cone.spread * hit.distance;
+    if constexpr (kTextures) path_.cone.advance(hit.distance);
     return Arrival::surface;
 }
 
@@ -219,13 +220,6 @@ template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 dire
     if constexpr (kTextures) hit.footprint = path_.cone.radius;
     if constexpr (kTextures)
         if (hit.material->bends()) hit.material->bend(hit);
-}
-
-// The directions of a wide lobe lie far apart: each stands for a cone of about the solid angle 1/p. Only a part of that
-// is averaged over, so that what a bounce sees keeps its texture (docs/language/textures.md, "Filtering").
-template <EffectBits E> void PathLoop<E>::scatterCone() {
-    constexpr float kShare = 0.15f;
-    if (!path_.delta) path_.cone.spread = std::max(path_.cone.spread, kShare / std::sqrt(kPi * path_.bsdfPdf));
 }
 
 template <EffectBits E>
@@ -338,7 +332,10 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
         else if constexpr (kAbsorption)
             path_.interior.absorption = absorptionBeyond(hit, direction);
     }
-    if constexpr (kTextures) scatterCone();
+    if constexpr (kTextures) {
+        turnCone(hit, next, eye.wo.z);
+        scatterCone();
+    }
     ray = {spawnOrigin(hit, direction), direction, kInfinity, path_.time};
     return anyNonZero(path_.beta);
 }
@@ -395,6 +392,7 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 
 } // namespace abbe
 
+#include "integrators/path_loop_cone.h"
 #include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_near_light.h"

@@ -75,7 +75,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& h
             if (met) absorb(hit, ray.direction, hit.distance);
         }
         if (!met) return Arrival::nowhere;
-        if constexpr (kTextures) path_.cone.radius += path_.cone.spread * hit.distance;
+        if constexpr (kTextures) path_.cone.advance(hit.distance);
         const float share = straightOn(hit, ray, path_.nested);
         if (share < 1 && !(share > 0 && random.uniform() < share)) return Arrival::surface;
         ray.origin = spawnOrigin(hit, ray.direction);

@@ -54,7 +54,7 @@ bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
         if (ahead) absorb(*ahead, ray.direction, collision.medium ? collision.t : tMax);
     if (!collision.medium) return false;
     media_.leg.collision = collision.t;
-    if constexpr (kTextures) path_.cone.radius += path_.cone.spread * collision.t;
+    if constexpr (kTextures) path_.cone.advance(collision.t);
     ray.origin = placeOfCollision(ray, collision.t, ahead);
     collided_ = collision.medium;
     return true;

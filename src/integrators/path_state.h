@@ -7,6 +7,8 @@
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
 
+#include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 namespace abbe {
@@ -37,10 +39,32 @@ struct Nested {
     // Where a ray starts that leaves the surface.
     const Surroundings& after(bool throughIt) const { return throughIt ? beyond : here; }
 };
-// How wide the path is: a cone about its ray, whose radius grows along the way [Amanatides1984].
+// How wide the path is: a cone about its ray, whose radius grows along the way [Amanatides1984]. Mirrors and lenses
+// change its spread by the means of the two sections of a narrow beam, which Coddington's equations give
+// [Kingslake2010]; `bulge` is the mean curvature of the surface, 1/m, positive where it bulges towards the path.
 struct Cone {
     float radius = 0; // at the start of the segment, m
-    float spread = 0; // radius gained per m
+    float spread = 0; // radius gained per m; negative towards a focus
+
+    void advance(float distance) {
+        radius += spread * distance;
+        if (radius < 0) { // past the focus
+            radius = -radius;
+            spread = -spread;
+        }
+    }
+    void reflect(float bulge, float cosine) { spread += radius * bulge * (cosine + 1 / std::max(cosine, kGrazing)); }
+    // eta: index beyond over that of where the path comes from.
+    void refract(float bulge, float eta, float cosine) {
+        const float here = std::max(cosine, kGrazing);
+        const float beyond = std::sqrt(std::max(1 - (1 - here * here) / (eta * eta), kGrazing * kGrazing));
+        const float power = radius * bulge * (beyond - here / eta);
+        spread = 0.5f * (spread / eta * (1 + here / beyond) - power * (1 + 1 / (here * beyond)));
+        radius *= 0.5f * (1 + beyond / here);
+    }
+
+  private:
+    static constexpr float kGrazing = 0.05f; // smaller cosines would widen it without an end
 };
 } // namespace path_detail
 

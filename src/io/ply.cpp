@@ -181,10 +181,12 @@ void PlyParser::read() {
 
 CageFile PlyParser::parseCage() {
     read();
+    keepAttributes();
     CageFile file;
     file.ignoredFaces = file_.ignoredFaces;
     file.cage.positions = std::move(file_.mesh.positions);
     file.cage.uvs = std::move(file_.mesh.uvs);
+    file.cage.attributes = std::move(file_.mesh.attributes);
     if (!file.cage.uvs.empty()) file.cage.uvCorners = corners_;
     file.cage.corners = std::move(corners_);
     file.cage.faceSizes = std::move(faceSizes_);

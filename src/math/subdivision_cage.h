@@ -1,7 +1,7 @@
 // The control cage of a subdivision surface as files and scenes state it; geometry/ dices it, io/ reads it.
 #pragma once
 
-#include "math/vec.h"
+#include "math/mesh_data.h"
 
 #include <cstdint>
 #include <vector>
@@ -34,7 +34,8 @@ struct SubdivisionCage {
     std::vector<std::uint32_t> uvCorners; // into uvs, like corners; or empty
     std::vector<Crease> creases;
     std::vector<Corner> sharpCorners;
-    std::vector<std::uint32_t> holes; // faces that shape the surface and are left out
+    std::vector<std::uint32_t> holes;      // faces that shape the surface and are left out
+    std::vector<MeshAttribute> attributes; // of the points, smoothed as these are
 
     Scheme scheme = Scheme::catmullClark;
     Boundary boundary = Boundary::edgeAndCorner;

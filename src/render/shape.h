@@ -120,6 +120,9 @@ class Shape {
     // none. A single channel is repeated.
     virtual std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const { return std::nullopt; }
     virtual std::vector<std::string_view> attributeNames() const { return {}; }
+    // The mean of the two curvatures of the shading normals at a hit of this shape, 1/m; positive where it bulges
+    // outwards, 0 where it is not known. For the width of paths beyond mirrors and lenses.
+    virtual float meanCurvature(const SurfaceHit&) const { return 0; }
     // Whether some of its faces have a material of their own that looks at textures.
     virtual bool usesTextures() const { return false; }
 

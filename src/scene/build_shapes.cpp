@@ -102,7 +102,7 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
     const bool grouped = !params->groupMaterials.empty();
     auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_,
                          tree_.header.zUp, grouped ? &groups : nullptr);
-    if (!mesh) return;
+    if (!mesh || !addPointData(*params, !params->file.value.empty(), *mesh, d.span, diagnostics_)) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
     shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
     shape.sound = true;

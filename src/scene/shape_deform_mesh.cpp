@@ -159,6 +159,7 @@ std::unique_ptr<const Shape> placeMeshKeys(const MeshKeys& keys, Interval shutte
     faces.triangles = keys.states[0].triangles;
     faces.quads = keys.states[0].quads;
     faces.uvs = keys.states[0].uvs;
+    faces.attributes = keys.states[0].attributes;
     return placeMeshSteps(std::move(faces), std::move(steps), place, span, diagnostics);
 }
 
@@ -173,7 +174,8 @@ void SceneBuilder::deformMesh(const Definition& d, const MeshParams& params, Loa
     FaceGroups groups;
     const bool grouped = !params.groupMaterials.empty();
     auto keys = loadMeshKeys(params, tree_.header.length, tree_.header.zUp, grouped ? &groups : nullptr, diagnostics_);
-    if (!keys) return;
+    if (!keys || !addPointData(params, !params.keys[0].file.value.empty(), keys->states[0], d.span, diagnostics_))
+        return;
     noteFiles(params.keys);
     shape.mesh = std::make_shared<const MeshData>(keys->states[0]);
     shape.sound = true;

@@ -44,6 +44,14 @@ template <typename P> void addGroupedShapeFields(std::vector<schema::FieldInfo>&
     fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(plain)); // its `material`
 }
 
+template <typename P> schema::FieldInfo attributeField() {
+    using namespace schema;
+    return field<P, std::vector<NamedNumbers>>(FieldType::namedNumbers, "attribute", &P::attributes)
+        .synonyms({"primvar", "vertex-attribute", "attributes", "colors"})
+        .doc("A name and a number, or a colour of three, for each of `points`: what the texture `attribute` shows.")
+        .example("attribute \"wear\" 0 0.5 1 0.2");
+}
+
 template <typename P> schema::FieldInfo centerField(std::string_view what) {
     return schema::field<P, Vec3d>(schema::FieldType::vector3, "center", &P::center)
         .unit({schema::Dimension::length})

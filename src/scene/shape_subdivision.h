@@ -17,6 +17,7 @@ struct SubdivisionParams : ShapeParams, DisplacementParams {
     schema::IndexRows faces;
     std::vector<double> uvs; // pairs
     schema::IndexRows uvFaces;
+    std::vector<schema::NamedNumbers> attributes;
     schema::Choice scheme;
     std::optional<schema::Choice> boundary, faceVarying, creasing; // unset: the file's, or the manual's
     std::vector<schema::SharpRow> creases, corners;

@@ -131,6 +131,8 @@ std::optional<LoadedCage> loadCage(const SubdivisionParams& p, double unit, Span
     }
     Cage& cage = loaded->cage;
     if (!addUvs(p, cage, span, diagnostics)) return std::nullopt;
+    if (!addAttributes(p.attributes, !p.file.value.empty(), cage.positions.size(), cage.attributes, diagnostics))
+        return std::nullopt;
     choose(cage.scheme, p.scheme.word, kSchemes);
     if (p.boundary) choose(cage.boundary, p.boundary->word, kBoundaries);
     if (p.faceVarying) choose(cage.faceVarying, p.faceVarying->word, kFaceVarying);

@@ -42,6 +42,7 @@ schema::TypeInfo subdivisionType() {
             .synonyms({"face-varying-indices", "uv-indices"})
             .doc("The rows of `uvs` that the corners of each face have, like `faces`: seams where neighbours differ.")
             .example("uv-faces { - 0 1 2 3 }"),
+        attributeField<P>(),
         field<P, Choice>(FieldType::choice, "scheme", &P::scheme)
             .choices(words(kSchemes))
             .byDefault("catmull-clark")

@@ -93,6 +93,11 @@ TypeInfo meshType() {
             .synonyms({"indices", "triangles", "polygons"})
             .doc("Rows of vertex numbers from 0, counter-clockwise seen from outside; polygons of any size.")
             .example("faces { - 0 1 2 }"),
+        field<P, std::vector<double>>(FieldType::numbers, "uvs", &P::uvs)
+            .synonyms({"st", "texture-coordinates", "vt", "uv"})
+            .doc("Texture coordinates, two numbers for each of `points`.")
+            .example("uvs { - 0 0; - 1 0; - 0 1 }"),
+        attributeField<P>(),
     };
     fields.push_back(keysField<P>(meshKeyFields()));
     addGroupedShapeFields<P>(fields);

@@ -46,6 +46,8 @@ struct MeshParams : ShapeParams {
     schema::Text file; // resolved path, or empty: points and faces
     std::vector<Vec3d> points;
     schema::IndexRows faces;
+    std::vector<double> uvs; // pairs, one for each point
+    std::vector<schema::NamedNumbers> attributes;
     std::vector<ShapeKey> keys; // instead of file and points: it deforms
 };
 
@@ -70,6 +72,12 @@ std::optional<MeshData> loadMesh(const schema::Text& file, double unit, const st
 // The same, neither cleaned nor checked for more than the indices of faces that are written in place.
 std::optional<MeshData> statedMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
                                    const schema::IndexRows& faces, Span, Diagnostics&, bool zUp, FaceGroups* groups);
+// Adds what is written in place for the points of a mesh or cage: one number each or three. `ofFile`: the points are
+// from a file, which has its own. False after an error.
+bool addAttributes(const std::vector<schema::NamedNumbers>&, bool ofFile, std::size_t points,
+                   std::vector<MeshAttribute>& to, Diagnostics&);
+// The texture coordinates and attributes of a mesh that is written in place. False after an error located at `span`.
+bool addPointData(const MeshParams&, bool ofFile, MeshData&, Span, Diagnostics&);
 // Normals stay outward under mirrors.
 std::unique_ptr<const Shape> placeMesh(MeshData, const Transform& place, Span, Diagnostics&);
 

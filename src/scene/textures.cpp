@@ -93,8 +93,10 @@ void SceneBuilder::checkAttributes(std::uint32_t texture, Span asker, const Defi
         auto& d = diagnostics_.error("E0734", asker, fmt::format("the shape has no attribute `{}`", attribute->name()),
                                      "this texture");
         d.related.push_back({owner.span, "on this shape"});
-        d.help = names.empty() ? "attributes are the vertex properties of a PLY file"
-                               : "its attributes are " + schema::quotedList(names);
+        const std::string_view meant = schema::nearest(attribute->name(), {names.begin(), names.end()});
+        d.help = names.empty()   ? "attributes are the vertex properties of a PLY file, or `attribute` beside `points`"
+                 : meant.empty() ? "its attributes are " + schema::quotedList(names)
+                                 : schema::didYouMean(meant) + " it has " + schema::quotedList(names);
     }
     for (const auto& [part, asNumber] : textureParts_[texture].parts) checkAttributes(part, asker, owner, shape);
 }
@@ -107,7 +109,7 @@ void SceneBuilder::checkTexture(std::uint32_t texture, Span asker, const Definit
     auto& d = diagnostics_.error("E0733", asker, "a texture over uv is on a shape without texture coordinates",
                                  "this texture");
     d.related.push_back({owner.span, "on this shape"});
-    d.help = "give the file texture coordinates, or use a texture in space: `noise`, `triplanar`";
+    d.help = "give it texture coordinates (`uvs` beside `points`), or use a texture in space: `noise`, `triplanar`";
 }
 
 void SceneBuilder::checkTextures(const LoadedShape& loaded, const Shape& shape) {

@@ -23,6 +23,7 @@ bool takesBlock(const FieldInfo& field) {
     case FieldType::table:
     case FieldType::moments:
     case FieldType::stop:
+    case FieldType::namedNumbers:
         return true;
     default:
         return false;
@@ -126,6 +127,7 @@ std::optional<BoundValue> bindUntextured(const FieldInfo& field, const Entry& en
     case FieldType::indexRows:
     case FieldType::sharpRow:
     case FieldType::table:
+    case FieldType::namedNumbers:
         return bindList(field, entry, context);
     case FieldType::spectrum:
     case FieldType::complexIndex:

@@ -31,6 +31,19 @@ class ListBinder {
         return flat;
     }
 
+    std::optional<BoundValue> namedNumbers() {
+        if (!entry_.node() || entry_.count() == 0 || !entry_.value(0).isText()) {
+            report(diagnostics_, entry_.span(), "E0306", fmt::format("`{}` needs a name and numbers", field_.name),
+                   "the name comes first")
+                .help = fmt::format("for example `{}`", field_.example);
+            return std::nullopt;
+        }
+        NamedNumbers result{std::string(entry_.value(0).text), {}, entry_.span()};
+        const Entry rest(*entry_.node(), 1);
+        if (!ListBinder(field_, rest, header_, diagnostics_, reader_).collect(1, result.values)) return std::nullopt;
+        return result;
+    }
+
     std::optional<BoundValue> indexRows() {
         if (!entry_.hasBlock() || entry_.count() > 0) {
             report(diagnostics_, entry_.span(), "E0309", fmt::format("`{}` needs a block of rows", field_.name),
@@ -100,6 +113,10 @@ class ListBinder {
     }
 
   private:
+    ListBinder(const FieldInfo& field, const Entry& entry, const Header& header, Diagnostics& diagnostics,
+               const MeasureReader& reader)
+        : field_(field), entry_(entry), header_(header), diagnostics_(diagnostics), reader_(reader) {}
+
     std::optional<BoundValue> empty() {
         auto& d =
             report(diagnostics_, entry_.span(), "E0306", fmt::format("`{}` needs numbers", field_.name), "has none");
@@ -189,6 +206,7 @@ class ListBinder {
 std::optional<BoundValue> bindList(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     ListBinder binder(field, entry, context);
     if (field.type == FieldType::sharpRow) return binder.sharpRow();
+    if (field.type == FieldType::namedNumbers) return binder.namedNumbers();
     if (field.type == FieldType::table) return binder.table();
     if (field.type == FieldType::points) return binder.points();
     return field.type == FieldType::numbers ? binder.numbers() : binder.indexRows();

@@ -264,6 +264,8 @@ std::string describeUntextured(const FieldInfo& field) {
         return isPlain(field) ? "numbers, in a line or in rows" : fmt::format("numbers, each {}", dimensionList(field));
     case FieldType::sharpRow:
         return "vertex numbers from 0, perhaps `sharpness=`; may be repeated";
+    case FieldType::namedNumbers:
+        return "a name and numbers, in the line or in rows; may be repeated";
     case FieldType::indexRows:
         return "a row of vertex numbers from 0 on for each face";
     case FieldType::spectrum:

@@ -110,6 +110,13 @@ struct Text {
     Span span;
 };
 
+// A name and numbers, such as `attribute "wear" 0 0.5 1`.
+struct NamedNumbers {
+    std::string name;
+    std::vector<double> values;
+    Span span;
+};
+
 // Rows of words and numbers, as written: what the columns mean is the type's own matter.
 struct TableCell {
     std::optional<double> number; // nothing for a word
@@ -160,10 +167,10 @@ struct ComplexIndex {
     const Curve* k = nullptr;
 };
 
-using BoundValue =
-    std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text, std::vector<double>,
-                 std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location, const Curve*, ComplexIndex, Reference,
-                 GroupReference, WeightedReference, KeyedTransform, TexturedSpectrum, TexturedNumber, SpectrumStop>;
+using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
+                                std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
+                                const Curve*, ComplexIndex, Reference, GroupReference, WeightedReference,
+                                KeyedTransform, TexturedSpectrum, TexturedNumber, SpectrumStop, NamedNumbers>;
 
 enum class FieldType : std::uint8_t {
     integer,      // -> std::int64_t
@@ -192,6 +199,7 @@ enum class FieldType : std::uint8_t {
     weighted, // a reference with a key `weight=` (or of another name), 1 when absent; may be repeated where the member
               // is a std::vector -> WeightedReference
     stop,     // a number and a spectrum or texture; may be repeated -> SpectrumStop, into a std::vector
+    namedNumbers, // a name, and numbers in the line or in rows; may be repeated -> NamedNumbers, into a std::vector
 };
 
 struct FieldKey {
@@ -252,9 +260,9 @@ template <typename Params, typename Member> class Field {
         info_.name = name;
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
         info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
-        info_.repeats = std::is_same_v<Member, std::vector<SharpRow>> ||
-                        std::is_same_v<Member, std::vector<WeightedReference>> ||
-                        std::is_same_v<Member, std::vector<SpectrumStop>>;
+        info_.repeats =
+            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>> ||
+            std::is_same_v<Member, std::vector<SpectrumStop>> || std::is_same_v<Member, std::vector<NamedNumbers>>;
         if constexpr (requires(Member m) { m.emplace_back().time; })
             info_.append = [member](void* params, double time, Span span) -> void* {
                 auto& moment = (static_cast<Params*>(params)->*member).emplace_back();
@@ -312,6 +320,8 @@ template <typename Params, typename Member> class Field {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
             if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
+        } else if constexpr (std::is_same_v<M, std::vector<NamedNumbers>>) {
+            if (const auto* one = std::get_if<NamedNumbers>(&value)) member.push_back(*one);
         } else if constexpr (std::is_same_v<M, std::vector<SpectrumStop>>) {
             if (const auto* one = std::get_if<SpectrumStop>(&value)) member.push_back(*one);
         } else if constexpr (std::is_same_v<M, std::vector<WeightedReference>>) {

@@ -127,3 +127,95 @@ TEST_CASE("attributes: properties of PLY vertices, interpolated, as colours and 
     CHECK(missing.diagnostics().all()[0].help == "its attributes are `color` and `wear`");
     CHECK(codes(build("material m diffuse { reflectance checker { even attribute \"color\" } }\n" + kQuad)) == "E0734");
 }
+
+namespace {
+
+std::optional<Vec3> attributeAt(const TestScene& scene, std::string_view name, Vec3d from, Vec3d towards) {
+    const WorldHit hit = trace(scene, from, towards);
+    REQUIRE(hit.met);
+    REQUIRE(hit.hit.shape);
+    return hit.hit.shape->attribute(name, hit.hit);
+}
+
+const std::string kPainted = "material m diffuse { reflectance attribute \"color\" }\n";
+
+} // namespace
+
+TEST_CASE("attributes in place: a number or three for each point, on meshes that stand still and that deform") {
+    const std::string values = "faces { - 0 1 2 3 }; attribute \"wear\" 0 1 3 2; "
+                               "attribute \"color\" { - 0 0 0; - 1 0 0; - 1 1 0; - 0 1 0.5 }; material m }\n";
+    const std::string still = kPainted + "shape mesh { points 0 0 0  1 0 0  1 1 0  0 1 0; " + values;
+    const std::string moving = kPainted + "camera { from 0 0 5; look-at 0 0 0; shutter 1 s }\n" +
+                               "shape mesh { at -0.5 s { points 0 0 0  1 0 0  1 1 0  0 1 0 }; "
+                               "at 0.5 s { points 0 0 1  1 0 1  1 1 1  0 1 1 }; " +
+                               values;
+    for (const std::string& text : {still, moving}) {
+        const TestScene scene = build(text);
+        REQUIRE(codes(scene).empty());
+        const auto wear = attributeAt(scene, "wear", {0.25, 0.5, 3}, {0, 0, -1});
+        REQUIRE(wear);
+        CHECK(wear->x == doctest::Approx(1.25));
+        CHECK(wear->y == wear->x);
+        const auto color = attributeAt(scene, "color", {0.75, 0.25, 3}, {0, 0, -1});
+        REQUIRE(color);
+        CHECK(color->x == doctest::Approx(0.75));
+        CHECK(color->y == doctest::Approx(0.25));
+        CHECK_FALSE(attributeAt(scene, "dirt", {0.25, 0.5, 3}, {0, 0, -1}));
+    }
+    const std::string mesh =
+        "material m diffuse\nshape mesh { points 0 0 0  1 0 0  0 1 0; faces { - 0 1 2 }; material m; ";
+    CHECK(codes(build(mesh + "attribute \"a\" 0 1 }\n")) == "E0737");
+    CHECK(codes(build(mesh + "attribute \"a\" 0 1 2; attribute \"a\" 0 1 2 }\n")) == "E0737");
+    CHECK(codes(build(mesh + "attribute 0 1 2 }\n")) == "E0306");
+    CHECK(codes(build(mesh + "attribute \"a\" }\n")) == "E0306");
+    CHECK(codes(build(mesh + "attribute \"a\" 0 1 1e300 }\n")) == "E0737");
+    CHECK(codes(build(mesh + "uvs 0 0 1 0 }\n")) == "E0611");
+    CHECK(codes(build("shape mesh { points 0 0 0  1 0 0  0 1 0; faces { - 0 1 2 }; uvs 0 0  1 0  0 1; "
+                      "material diffuse { reflectance checker; normal checker } }\n"))
+              .empty());
+    const TestScene near =
+        build("shape mesh { points 0 0 0  1 0 0  0 1 0; faces { - 0 1 2 }; attribute \"wear\" 0 0 1; "
+              "material diffuse { reflectance attribute \"waer\" } }\n");
+    CHECK(codes(near) == "E0734");
+    CHECK(near.diagnostics().all()[0].help == "did you mean `wear`? it has `wear`");
+}
+
+TEST_CASE("attributes of subdivision surfaces are smoothed as the points are: a copy of these is the point itself") {
+    const std::string points = "-1 -1 -1  1 -1 -1.2  1.1 1 -1  -1 1 -1  -1 -1 1  1.3 -1 1  1 1 1.1  -1 0.9 1";
+    const std::string rest = "faces { - 0 3 2 1; - 4 5 6 7; - 0 1 5 4; - 2 3 7 6; - 1 2 6 5; - 0 4 7 3 }; "
+                             "crease 4 5 6 sharpness=2; dicing 3; material m; attribute \"color\" " +
+                             points;
+    const std::string still = "shape subdivision { points " + points + "; " + rest;
+    const std::string moving =
+        "camera { from 0 0 5; look-at 0 0 0; shutter 1 s }\nshape subdivision { at -0.5 s { points " + points +
+        " }; at 0.5 s { points 9 9 9" + points.substr(points.find("  1")) + " }; " + rest;
+    int compared = 0;
+    for (const std::string& text : {still + " }\n", still + "; displacement 0 mm { map noise } }\n",
+                                    still + "; uvs 0 0 1 0 1 1 0 1; uv-faces { - 0 1 2 3; - 0 1 2 3; - 0 1 2 3; - 0 1 "
+                                            "2 3; - 0 1 2 3; - 0 1 2 3 } }\n"}) {
+        const TestScene scene = build(kPainted + text);
+        REQUIRE(codes(scene).empty());
+        for (const Vec3d from :
+             {Vec3d{0.1, 0.2, 3}, Vec3d{0.6, -0.5, 3}, Vec3d{-0.3, 0.4, -3}, Vec3d{0.2, 0.15, 3}}) {
+            const WorldHit hit = trace(scene, from, {0, 0, from.z > 0 ? -1.f : 1.});
+            REQUIRE(hit.met);
+            const auto copy = hit.hit.shape->attribute("color", hit.hit);
+            REQUIRE(copy);
+            CHECK(length(Vec3d(*copy) - hit.p) < 2e-5);
+            ++compared;
+        }
+    }
+    CHECK(compared == 12);
+    const TestScene deforming = build(kPainted + moving + " }\n");
+    REQUIRE(codes(deforming).empty());
+    CHECK(attributeAt(deforming, "color", {-0.3, 0.4, -3}, {0, 0, 1}));
+    const PlyFile file("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                       "property float wear\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                       "0 0 0 0\n1 0 0 1\n1 1 0 1\n0 1 0 0\n4 0 1 2 3\n");
+    const TestScene flat =
+        build(fmt::format("shape subdivision \"{}\" {{ scheme bilinear; dicing 2; material diffuse {{ "
+                          "reflectance attribute \"wear\" }} }}\n",
+                          file.path.string()));
+    REQUIRE(codes(flat).empty());
+    CHECK(attributeAt(flat, "wear", {0.3, 0.6, 3}, {0, 0, -1})->x == doctest::Approx(0.3));
+}
