@@ -9,10 +9,11 @@ namespace abbe {
 
 namespace {
 
-std::unique_ptr<LoadedScene> checkScene(const SceneInput& input) {
+std::unique_ptr<LoadedScene> checkScene(const SceneInput& input, bool textures = false) {
     auto loaded = loadScene(input);
     BuildOptions options;
     options.geometry = false;
+    options.textures = textures;
     if (loaded->readable) buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
     return loaded;
 }
@@ -37,7 +38,7 @@ std::size_t fixScene(const SceneInput& input) {
 
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
     const std::size_t fixed = options.fix ? fixScene(input) : 0;
-    const auto loaded = checkScene(input);
+    const auto loaded = checkScene(input, options.textures);
     console.report(loaded->diagnostics, loaded->sources);
     if (console.format() == MessageFormat::human) {
         if (fixed > 0) console.line(fmt::format("{}: {} repaired", input.path, fixed));

@@ -252,6 +252,7 @@ void Reader::addCheck() {
     addDefines(c, check_.defines);
     c->add_flag("--fix", check_.fix, "Apply the repairs that are certain, in place");
     c->add_flag("--strict", check_.strict, "Exit with 4 when there are warnings");
+    c->add_flag("--textures", check_.textures, "Read image textures to their ends, which also makes them ready");
     c->add_option("--format", format_, "human, short (path:line:column: text) or json")
         ->check(CLI::IsMember({"human", "short", "json"}).description(""))
         ->type_name("FORMAT");

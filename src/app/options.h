@@ -44,6 +44,7 @@ struct CheckOptions {
     std::vector<std::string> defines;
     bool fix = false;
     bool strict = false;
+    bool textures = false; // read to their ends
 };
 
 struct ExplainOptions {

@@ -25,6 +25,7 @@ struct BuildOptions {
     std::optional<double> textureCache; // MiB
     std::string strategy, sampler;      // words of `render`; empty: the scene's
     bool geometry = true;               // false: check only; no acceleration structure is built
+    bool textures = false;              // then read images to their ends all the same
 };
 
 // Facts for `abbe info` and the summary of a render.

@@ -135,7 +135,7 @@ const std::shared_ptr<TextureStore>& SceneBuilder::textureStore() {
     if (!textureStore_) {
         TextureStoreSettings settings;
         settings.bytes = static_cast<std::int64_t>(built_->render.textureCache * 1048576);
-        settings.open = options_.geometry;
+        settings.open = options_.geometry || options_.textures;
         textureStore_ = std::make_shared<TextureStore>(std::move(settings));
     }
     return textureStore_;

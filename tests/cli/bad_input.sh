@@ -35,6 +35,37 @@ expect 0 "$scenes/film_32768x1.scene" -o odd.exr --png
 expect 0 "$scenes/black.scene" -o odd.exr
 says err "every pixel of the image is black"
 
+# Images: those that are none, too short, or hold what is no number; numbers out of a picture of colours.
+printf 'P6\n2 2\n255\n123456789012' >good.ppm
+printf 'P6\n64 64\n255\n123456789012' >cut.ppm
+echo "no picture" >text.ppm
+{ printf 'PF\n1 1\n-1.0\n' && printf '\000\000\300\177\000\000\000\077\000\000\000\100'; } >nan.pfm
+{ printf 'PF\n1 1\n-1.0\n' && printf '\000\000\200\277\000\000\000\077\000\000\000\100'; } >odd.pfm
+textured() { # PROPERTY
+    printf 'scene 1\ncamera\nlight sky\nshape quad { material conductor { index metal Ag; %s } }\n' "$1" >image.scene
+}
+export XDG_CACHE_HOME=$PWD/cache
+for name in cut.ppm nan.pfm; do
+    textured "tint image \"$name\""
+    expect 0 check image.scene
+    expect 1 check --textures image.scene
+    says err "image.scene:4:62"
+    says err "$name"
+done
+textured 'tint image "text.ppm"'
+expect 1 check image.scene
+says err "image.scene:4:62"
+textured 'tint image "odd.pfm"'
+expect 4 check --strict --textures image.scene
+says err "1 of 1 texels of \`odd.pfm\` have a negative channel"
+says err "1 of 1 texels of \`odd.pfm\` are above 1"
+textured 'roughness image "good.ppm"'
+expect 4 check --strict --format=short image.scene
+says err "image.scene:4:67: warning[W0450]"
+textured 'roughness image "good.ppm" space=data; tint image "good.ppm"'
+expect 0 check --strict --textures image.scene
+unset XDG_CACHE_HOME
+
 # Empty, binary and cut files, and a folder.
 : >empty.scene
 expect 1 empty.scene
