@@ -17,11 +17,12 @@ template <typename P> void addShapeFields(std::vector<schema::FieldInfo>& fields
                          .synonyms({"medium", "interior_medium", "inside", "volume"})
                          .doc("Medium that fills the closed shape: its name, or one written in place.")
                          .example("interior homogeneous { extinction 20 per-m }"));
-    fields.push_back(field<P, TexturedSpectrum>(FieldType::spectrum, "emission", &P::emission)
-                         .role(SpectrumRole::emission)
-                         .synonyms({"emitter", "glow", "Le"})
-                         .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm, or a texture of it.")
-                         .example("emission 0.5"));
+    fields.push_back(
+        field<P, TexturedSpectrum>(FieldType::spectrum, "emission", &P::emission)
+            .role(SpectrumRole::emission)
+            .synonyms({"emitter", "glow", "Le"})
+            .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm, or a texture of it.")
+            .example("emission 0.5"));
     fields.push_back(field<P, KeyedTransform>(FieldType::transform, "transform", &P::transform)
                          .synonyms({"to_world", "toWorld", "xform"})
                          .doc("Places the shape: steps from top to bottom, as applied to the object.")
