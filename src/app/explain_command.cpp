@@ -1,6 +1,6 @@
 #include "app/options.h"
-#include "app/presets.h"
 #include "base/diagnostic_catalogue.h"
+#include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
 

@@ -1,8 +1,8 @@
 #include "app/load.h"
 
-#include "app/presets.h"
 #include "app/stopwatch.h"
 #include "parser/parse.h"
+#include "parser/presets.h"
 #include "scene/registry.h"
 
 namespace abbe {

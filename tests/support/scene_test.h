@@ -5,6 +5,7 @@
 #include "base/source_map.h"
 #include "integrators/path_tracer.h"
 #include "parser/parse.h"
+#include "parser/presets.h"
 #include "scene/build.h"
 #include "scene/registry.h"
 #include "support/scene_test_film.h"
@@ -33,11 +34,13 @@ class TestScene {
         scene.build(file, ABBE_SOURCE_DIR, options);
         return scene;
     }
-    // A file relative to the source tree.
+    // A file relative to the source tree, with the library of materials.
     static TestScene load(const std::filesystem::path& path, const BuildOptions& options = {}) {
         TestScene scene;
         const auto full = std::filesystem::path(ABBE_SOURCE_DIR) / path;
-        if (const auto file = readSceneFile(scene.parts_->sources, full, scene.parts_->diagnostics))
+        Parts& p = *scene.parts_;
+        addPresets(p.types, p.sources, p.diagnostics);
+        if (const auto file = readSceneFile(p.sources, full, p.diagnostics))
             scene.build(*file, full.parent_path(), options);
         return scene;
     }

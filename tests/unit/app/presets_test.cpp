@@ -1,7 +1,7 @@
 // `preset NAME`: the library of materials and media.
-#include "app/presets.h"
 #include "base/diagnostic_format.h"
 #include "parser/parse.h"
+#include "parser/presets.h"
 #include "scene/build.h"
 #include "scene/registry.h"
 #include "schema/describe.h"

@@ -1,4 +1,4 @@
-#include "app/presets.h"
+#include "parser/presets.h"
 
 #include "parser/parse.h"
 #include "schema/preset_library.h"
