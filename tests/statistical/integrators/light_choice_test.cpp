@@ -123,9 +123,6 @@ shape shiny sphere { center 0.8 0.4 0.5; radius 0.4; material conductor { index 
     const auto scene = TestScene::parse(text);
     const TestImage byTree = renderBy(scene, tree, 2048, 1), evenly = renderBy(scene, uniform, 16384, 2);
     checkSame(compareImages(byTree.film, evenly.film), 0.002);
-    const double gain = 8 * spread(evenly) / spread(byTree);
-    MESSAGE("variance per sample: ", gain, " times that of the tree");
-    CHECK(gain > 1.4);
 }
 
 TEST_CASE("emitters, a sun and a sky: the tree's choice against scattering alone") {
