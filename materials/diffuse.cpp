@@ -36,7 +36,6 @@ class Diffuse final : public Material {
   public:
     explicit Diffuse(const DiffuseParams& params) : reflectance_(params.reflectance, 0.5f) {}
 
-
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
         return arena.make<DiffuseBsdf>(reflectance_.at(hit, wavelengths));
     }

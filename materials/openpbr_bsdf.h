@@ -68,8 +68,8 @@ class OpenPbrBsdf final : public Bsdf {
         Spectrum fcos, pdf;
     };
 
-    // Kept for the next call: the path loop asks for a sample and for a value with the same wo, and an object belongs to
-    // one vertex of one path.
+    // Kept for the next call: the path loop asks for a sample and for a value with the same wo, and an object belongs
+    // to one vertex of one path.
     const View& view(Vec3 wo) const;
     View makeView(Vec3 wo) const;
     void viewCoat(View&) const;

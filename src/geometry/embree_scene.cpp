@@ -56,7 +56,7 @@ class EmbreeScene final : public Intersector {
     std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
     EmbreeHandle<RTCScene, rtcReleaseScene> scene;
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
-    std::vector<OwnSpace> ownSpaces; // GeometryRecord::space
+    std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
     std::vector<std::unique_ptr<const InstanceTable>> tables;
     Bounds3 bounds_;
 
