@@ -62,6 +62,11 @@ TEST_CASE("openpbr: contradictions are shown where they are written") {
     CHECK(faults("subsurface-color checker\ngeometry-thin-walled on; subsurface-weight 1") == "");
     CHECK(faults("subsurface-weight 1\nsubsurface-scatter-anisotropy 1") == "6:1 E0703");
     CHECK(faults("geometry-thin-walled on; subsurface-weight 1; subsurface-scatter-anisotropy 1") == "");
+    CHECK(faults("transmission-weight 1; specular-roughness checker\nspecular-roughness-anisotropy 0.5") ==
+          "6:1 E0704");
+    CHECK(faults("transmission-weight checker\nspecular-roughness-anisotropy checker") == "6:1 E0704");
+    CHECK(faults("transmission-weight 1; specular-roughness checker") == "");
+    CHECK(faults("specular-roughness checker; specular-roughness-anisotropy 0.5") == "");
 }
 
 } // namespace abbe::test
