@@ -1,5 +1,6 @@
 #include "geometry/sphere.h"
 
+#include "geometry/projected_cap.h"
 #include "geometry/surface_math.h"
 #include "math/warp.h"
 
@@ -12,38 +13,6 @@ namespace {
 double coneOneMinusCos(double d2, double r2) {
     const double sin2 = r2 / d2, cos2 = (d2 - r2) / d2;
     return sin2 / (1 + std::sqrt(cos2));
-}
-
-// Directions to a sphere in proportion to the cosine at the receiver: uniform over the ellipse that is the projection
-// of the cone on the receiver's tangent plane [Peters2019].
-struct ProjectedCone {
-    Vec3d n, x, y;     // of the receiver; the axis of the cone is in the plane of n and x
-    double centre;     // of the ellipse, along x
-    double a, b;       // its half axes, along x and y
-    double solidAngle; // projected, sr
-
-    Vec3d direction(Vec2 u) const {
-        const Vec2 d = squareToDisk(u);
-        const double px = centre + a * static_cast<double>(d.x), py = b * static_cast<double>(d.y);
-        return x * px + y * py + n * safeSqrt(1 - px * px - py * py);
-    }
-    double pdf(Vec3d w) const { return std::max(0.0, dot(w, n)) / solidAngle; }
-};
-
-// The cone towards a sphere at distance² d2 in the direction `axis`, if it is wide enough for the cosine to vary and
-// the receiver sees all of it. sample() and pdfSolidAngle() both decide by this function.
-std::optional<ProjectedCone> projectedCone(const Receiver& from, Vec3d axis, double d2, double r2) {
-    constexpr double kSmallest = 0.01; // sine², 6°
-    const double sin2 = r2 / d2;
-    if (!from.oneSided() || !(sin2 > kSmallest)) return std::nullopt;
-    const Vec3d n(from.n);
-    const double height = dot(axis, n);
-    if (!(height > 0 && height * height > sin2 * 1.0001)) return std::nullopt; // the horizon cuts it
-    const double sine = std::sqrt(sin2), cosine = std::sqrt(1 - sin2);
-    const Vec3d side = axis - n * height;
-    const double along = length(side);
-    const Vec3d x = along > 1e-9 ? side / along : Vec3d(Frame::fromNormal(from.n).x);
-    return ProjectedCone{n, x, cross(n, x), along * cosine, sine * height, sine, kPiD * sin2 * height};
 }
 
 } // namespace
@@ -135,16 +104,16 @@ std::optional<ShapeSample> Sphere::sample(const Receiver& from, std::uint32_t, V
         if (!(s.pdfSolidAngle > 0)) return std::nullopt;
         return s;
     }
-    // Uniform in the cone. A direction at angle θ in it meets the sphere first at the point whose normal is at angle α
-    // from the axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, ch. 6].
-    if (const auto cone = projectedCone(from, d / std::sqrt(d2), d2, r2)) {
-        const Vec3d w = normalize(cone->direction(u));
+    if (const auto cap = ProjectedCap::seen(from, d / std::sqrt(d2), d2, r2)) {
+        const Vec3d w = cap->direction(u);
         const double along = dot(d, w);
         ShapeSample s = at(normalize(w * (along - safeSqrt(along * along - (d2 - r2))) - d));
-        s.pdfSolidAngle = static_cast<float>(cone->pdf(w));
+        s.pdfSolidAngle = static_cast<float>(cap->pdf(w));
         if (!(s.pdfSolidAngle > 0)) return std::nullopt;
         return s;
     }
+    // Uniform in the cone. A direction at angle θ in it meets the sphere first at the point whose normal is at angle α
+    // from the axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, ch. 6].
     const double oneMinusCosMax = coneOneMinusCos(d2, r2);
     const double h = static_cast<double>(u.x) * oneMinusCosMax;
     const double sin2 = h * (2 - h), sin2Max = r2 / d2;
@@ -164,8 +133,8 @@ float Sphere::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     const Vec3d d = centre_ - Vec3d(from.p);
     const double d2 = lengthSquared(d), r2 = radius_ * radius_;
     if (!(d2 > r2)) return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from.p, hit.ng);
-    if (const auto cone = projectedCone(from, d / std::sqrt(d2), d2, r2))
-        return static_cast<float>(cone->pdf(normalize(Vec3d(hit.p) - Vec3d(from.p))));
+    if (const auto cap = ProjectedCap::seen(from, d / std::sqrt(d2), d2, r2))
+        return static_cast<float>(cap->pdf(normalize(Vec3d(hit.p) - Vec3d(from.p))));
     const auto pdf = static_cast<float>(1 / (2 * kPiD * coneOneMinusCos(d2, r2)));
     return std::isfinite(pdf) ? pdf : 0;
 }

@@ -147,6 +147,11 @@ TEST_CASE("sphere: sampled by the cosine at the receiver") {
     check(kSphere, traceSphere, {"from the side", {{0.5f, 0.2f, 0.3f}, normalize(Vec3{0.4f, 1, 0}), false}});
     check(kSphere, traceSphere, {"just above the horizon", {{0, 0, 0}, normalize(Vec3{1, 0.62f, 0}), false}});
     check(kSphere, traceSphere, {"cut by the horizon", {{0, 0, 0}, normalize(Vec3{1, 0.4f, 0}), false}});
+    check(kSphere, traceSphere, {"cut in the middle", {{0, 0, 0}, {1, 0, 0}, false}});
+    check(kSphere, traceSphere,
+          {"its centre below the horizon", {{0, 0.8f, 0}, normalize(Vec3{1, -0.5f, 0.2f}), false}});
+    check(kSphere, traceSphere, {"near its surface", {{0, 0.99f, 0}, normalize(Vec3{1, 0.3f, 0}), false}});
+    check(kSphere, traceSphere, {"a touch of the horizon", {{0, 0, 0}, normalize(Vec3{1, 0.5773f, 0}), false}});
     check(kSphere, traceSphere, {"both sides count", {{0, 0.5f, 0}, {1, 0, 0}, true}});
 }
 
