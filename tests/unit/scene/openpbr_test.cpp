@@ -14,8 +14,9 @@ std::string surface(const std::string& properties) {
 // The diagnostics with the line and column of each. The properties begin in line 5.
 std::string faults(const std::string& properties) {
     std::string text;
-    for (const Diagnostic& d : build(surface(properties)).diagnostics().all()) CHECK(!d.help.empty());
-    const std::string report = build(surface(properties)).report();
+    const TestScene scene = build(surface(properties));
+    for (const Diagnostic& d : scene.diagnostics().all()) CHECK(!d.help.empty());
+    const std::string report = scene.report();
     for (std::size_t at = 0; at < report.size(); at = report.find('\n', at) + 1) {
         const std::size_t place = report.find(':', at) + 1, code = report.find('[', at) + 1;
         text += (text.empty() ? "" : " ") + report.substr(place, report.find(": ", place) - place) + " " +
