@@ -195,13 +195,6 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
     });
 }
 
-// Whether it may refract through microfacets that are wider one way than the other.
-bool isStretchedGlass(const OpenPbrParams& p) {
-    const auto some = [](const schema::TexturedNumber& n) { return n.texture || n.value != 0; };
-    const bool metal = !p.baseMetalness.texture && p.baseMetalness.value == 1;
-    return !p.geometryThinWalled && !metal && some(p.transmissionWeight) && some(p.specularRoughnessAnisotropy);
-}
-
 } // namespace
 
 bool checkParams(const OpenPbrParams& p, const schema::PlaceOf& placeOf, Diagnostics& diagnostics) {
@@ -229,8 +222,10 @@ bool checkParams(const OpenPbrParams& p, const schema::PlaceOf& placeOf, Diagnos
         error("E0702", "subsurface-color", "the colour of an inside cannot be a texture",
               "light that enters here comes out elsewhere",
               "give one colour; `subsurface-weight` and `base-color` may be textures");
-    if (isStretchedGlass(p) && (p.specularRoughness.texture || p.specularRoughnessAnisotropy.texture ||
-                                p.coatWeight.texture || p.coatRoughness.texture))
+    const bool stretched = p.specularRoughnessAnisotropy.texture || p.specularRoughnessAnisotropy.value > 0;
+    const bool varies = p.specularRoughness.texture || p.specularRoughnessAnisotropy.texture || p.coatWeight.texture ||
+                        p.coatRoughness.texture;
+    if (mayRefract(p) && stretched && varies)
         error("E0704", "specular-roughness-anisotropy", "stretched rough glass cannot vary by a texture",
               "what it scatters more than once is tabulated for one roughness and one anisotropy",
               "give plain numbers, or leave the anisotropy out where the surface transmits");

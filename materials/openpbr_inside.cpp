@@ -64,9 +64,12 @@ bool hasSubsurfaceInside(const OpenPbrParams& p) {
            !isWhole(p.baseMetalness);
 }
 
+bool mayRefract(const OpenPbrParams& p) {
+    return !p.geometryThinWalled && isLit(p.transmissionWeight) && !isWhole(p.baseMetalness);
+}
+
 bool hasScatteringGlass(const OpenPbrParams& p) {
-    return !p.geometryThinWalled && isLit(p.transmissionWeight) && !isWhole(p.baseMetalness) &&
-           p.transmissionDepth > 0 && p.transmissionScatter && p.transmissionScatter->maximum() > 0;
+    return mayRefract(p) && p.transmissionDepth > 0 && p.transmissionScatter && p.transmissionScatter->maximum() > 0;
 }
 
 std::optional<SubsurfaceInside> insideOf(const OpenPbrParams& p) {

@@ -10,6 +10,8 @@ namespace abbe {
 
 // Whether light goes in and out through the matte part of the surface of a solid.
 bool hasSubsurfaceInside(const OpenPbrParams&);
+// Whether light refracts into the solid.
+bool mayRefract(const OpenPbrParams&);
 // Whether its clear part leads into a medium that scatters, which then absorbs, too.
 bool hasScatteringGlass(const OpenPbrParams&);
 

@@ -129,8 +129,7 @@ void Mesh::parametrize(const RawHit& raw, const Ray&, SurfaceHit& hit) const {
 // Half the divergence of the normal, which is linear over the triangle; of a quad the first half counts.
 float Mesh::meanCurvature(const SurfaceHit& hit) const {
     if (data_.normals.empty()) return 0;
-    const std::uint64_t triangles = data_.triangles.size();
-    const std::uint64_t i = hit.primitive < triangles ? hit.primitive : triangles + 2 * (hit.primitive - triangles);
+    const std::uint64_t i = trianglesOf(hit.primitive).first;
     const auto [a, b, c] = triangle(i);
     const auto normal = [&, this](std::uint32_t v) {
         const Vec3 n = data_.normals[v];

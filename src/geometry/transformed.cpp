@@ -77,15 +77,21 @@ double Transformed::directionJacobian(Vec3 w) const {
     return l * l * l / determinant_;
 }
 
+// A point of the inner shape, in render space.
+SurfaceHit Transformed::pointInRender(Vec3 p, Vec3 pError, Vec3 ng) const {
+    SurfaceHit hit;
+    hit.p = p;
+    hit.pError = pError;
+    hit.ng = hit.shading.z = ng;
+    map_.toRender(hit);
+    return hit;
+}
+
 std::optional<ShapeSample> Transformed::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const Vec3 origin(inverse_.point(Vec3d(from.p)));
     const auto inner = shape_->sample(origin, 0, u);
     if (!inner) return std::nullopt;
-    SurfaceHit hit;
-    hit.p = inner->p;
-    hit.pError = inner->pError;
-    hit.ng = hit.shading.z = inner->ng;
-    map_.toRender(hit);
+    const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     const Vec3 w = inner->p - origin;
     const double pdf = static_cast<double>(inner->pdfSolidAngle) * directionJacobian(normalize(w));
     if (!(pdf > 0) || !std::isfinite(static_cast<float>(pdf))) return std::nullopt;
@@ -106,11 +112,7 @@ float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) co
 std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {
     const auto inner = shape_->uvPoint(uv);
     if (!inner) return std::nullopt;
-    SurfaceHit hit;
-    hit.p = inner->p;
-    hit.pError = inner->pError;
-    hit.ng = hit.shading.z = inner->ng;
-    map_.toRender(hit);
+    const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     const double stretch = length(map_.map().normal(Vec3d(inner->ng))); // cofactors: render area per own area
     return UvPoint{hit.p, hit.pError, hit.ng, static_cast<float>(static_cast<double>(inner->area) * stretch)};
 }

@@ -27,6 +27,7 @@ class Transformed final : public Shape {
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:
+    SurfaceHit pointInRender(Vec3 p, Vec3 pError, Vec3 ng) const;
     double directionJacobian(Vec3 objectDirection) const;
     void setBounds(Vec3d centre, Vec3d halfExtent);
 

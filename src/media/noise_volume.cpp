@@ -95,6 +95,8 @@ NoiseVolume::NoiseVolume(MediumOptics optics, const NoisePattern& pattern, const
     const auto inverse = toRender.inverse();
     ABBE_CHECK(inverse.has_value());
     toBox_ = *inverse;
+    const Vec3d cells = cellsPerMetre();
+    margin_ = Vec3d{1 / cells.x, 1 / cells.y, 1 / cells.z} / 30.0;
     bricks_ = sampleBounds(Sampled(*this), brickCount_);
     for (int corner = 0; corner < 8; ++corner)
         bounds_.add(Vec3(toRender.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
@@ -109,7 +111,7 @@ Vec3d NoiseVolume::cellsPerMetre() const {
 float NoiseVolume::density(Vec3d p) const noexcept {
     const Vec3d inside = clamped(p, {box_.lower, box_.upper});
     // Larger cells of the walk reach beyond the box; points computed in float may do so by the bounds' own margin.
-    if (maxComponent(multiply(abs(p - inside), cellsPerMetre())) > 1 / 30.0) return 0;
+    if (maxComponent(abs(p - inside) - margin_) > 0) return 0;
     p = inside;
     const float thin = nearFaces(box_, p) * withHeight(box_, p[box_.up]);
     return thin > 0 ? thin * field_.at(p) : 0;

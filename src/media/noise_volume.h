@@ -40,6 +40,7 @@ class NoiseVolume final : public OpticalMedium {
     Vec3i brickCount_;
     BrickBounds bricks_;
     Transform toBox_; // render space to that of the box
+    Vec3d margin_;    // beyond the box, for which its bounds hold, too: a thirtieth of a cell
     Bounds3 bounds_;
     float thickest_; // greatest extinction, 1/m
 };
