@@ -2,7 +2,7 @@
 #include "app/json.h"
 #include "app/options.h"
 #include "app/provenance.h"
-#include "io/exr_reader.h"
+#include "io/exr_channels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,198 @@
+#include "io/exr_channels.h"
+
+#include "io/io_error.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+namespace abbe {
+
+namespace {
+
+// More values than this are not read at once: 16 GiB.
+constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 32;
+
+// Runs `body`; whatever OpenEXR throws becomes an IoError with the file's name.
+template <typename F> auto guarded(const std::string& path, const F& body) {
+    const auto fail = [&](std::string_view why) { throw IoError(fmt::format("cannot read `{}`: {}", path, why)); };
+    try {
+        return body();
+    } catch (const IoError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail("it needs more memory than there is");
+    } catch (const std::exception& e) {
+        fail(e.what());
+    }
+    throw IoError(path); // not reached
+}
+
+[[noreturn]] void refuse(const std::string& path, std::string_view why) {
+    throw IoError(fmt::format("cannot read `{}`: {}", path, why));
+}
+
+PixelWindow fromImf(const Imath::Box2i& b) { return {b.min.x, b.min.y, b.max.x + 1, b.max.y + 1}; }
+
+Chromaticities fromImf(const Imf::Chromaticities& c) {
+    const auto point = [](Imath::V2f v) { return Chromaticity{v.x, v.y}; };
+    return {point(c.red), point(c.green), point(c.blue), point(c.white)};
+}
+
+std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header) {
+    const auto* a = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities");
+    return a ? std::optional(fromImf(a->value())) : std::nullopt;
+}
+
+// A header can claim any size: before memory is taken for it, it must be possible for a file of this length. The most
+// that any compression makes of a chunk's bytes is bounded loosely; each chunk of up to 256 rows costs 8 bytes of
+// offset.
+void checkSize(const std::string& path, const PixelWindow& w) {
+    const auto width = static_cast<std::int64_t>(w.x1) - w.x0, height = static_cast<std::int64_t>(w.y1) - w.y0;
+    if (width < 1 || height < 1) refuse(path, "it has no pixels");
+    if (width > INT32_MAX || height > INT32_MAX ||
+        static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > kMaxImagePixels)
+        refuse(path, fmt::format("{} by {} pixels are too many", width, height));
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0 && status.st_size < height / 256 * 8) refuse(path, "it is cut short");
+}
+
+void checkChannel(const std::string& path, const Imf::Channel& channel, std::string_view name) {
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+        refuse(path, fmt::format("channel {} is stored at a lower resolution, which is not supported", name));
+}
+
+// Where a channel's plane lies, as OpenEXR addresses it.
+Imf::Slice slice(const PixelWindow& w, const float* values) {
+    return Imf::Slice::Make(Imf::FLOAT, values, {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}, sizeof(float),
+                            sizeof(float) * static_cast<std::size_t>(w.width()));
+}
+
+std::optional<ImageAttribute> fromImf(const std::string& name, const Imf::Attribute& a) {
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a)) return ImageAttribute{name, text->value()};
+    if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&a)) return ImageAttribute{name, number->value()};
+    if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&a))
+        return ImageAttribute{name, number->value()};
+    if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&a))
+        return ImageAttribute{name, static_cast<double>(number->value())};
+    return std::nullopt;
+}
+
+std::string_view compressionName(Imf::Compression c) {
+    switch (c) {
+    case Imf::NO_COMPRESSION:
+        return "none";
+    case Imf::RLE_COMPRESSION:
+        return "rle";
+    case Imf::ZIPS_COMPRESSION:
+        return "zips";
+    case Imf::ZIP_COMPRESSION:
+        return "zip";
+    case Imf::PIZ_COMPRESSION:
+        return "piz";
+    case Imf::PXR24_COMPRESSION:
+        return "pxr24";
+    case Imf::B44_COMPRESSION:
+        return "b44";
+    case Imf::B44A_COMPRESSION:
+        return "b44a";
+    case Imf::DWAA_COMPRESSION:
+        return "dwaa";
+    case Imf::DWAB_COMPRESSION:
+        return "dwab";
+    default:
+        return "unknown";
+    }
+}
+
+ExrInfo describe(const Imf::Header& header, int parts) {
+    ExrInfo info;
+    info.parts = parts;
+    info.window = fromImf(header.dataWindow());
+    info.display = fromImf(header.displayWindow());
+    info.compression = compressionName(header.compression());
+    info.chromaticities = chromaticitiesOf(header);
+    constexpr std::array<const char*, 3> kTypes{"uint", "half", "float"};
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        info.channels.push_back({c.name(), kTypes.at(static_cast<std::size_t>(c.channel().type))});
+    for (auto a = header.begin(); a != header.end(); ++a)
+        if (const auto attribute = fromImf(a.name(), a.attribute())) info.attributes.push_back(*attribute);
+    const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag");
+    info.acesContainer = flag && flag->value() == 1;
+    return info;
+}
+
+ExrPlanes readPlanes(const std::string& path, const std::function<bool(std::string_view)>& wanted) {
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    const Imf::Header& header = file.header(0);
+    ExrPlanes planes{describe(header, file.parts()), {}};
+    const PixelWindow& window = planes.info.window;
+    checkSize(path, window);
+    planes.values.resize(planes.info.channels.size());
+    std::uint64_t values = 0;
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < planes.values.size(); ++i) {
+        const std::string& name = planes.info.channels[i].name;
+        if (wanted && !wanted(name)) continue;
+        checkChannel(path, header.channels()[name.c_str()], name);
+        if ((values += window.area()) > kMaxValues) refuse(path, "its channels are more than 16 GiB");
+        planes.values[i].resize(window.area());
+        buffer.insert(name, slice(window, planes.values[i].data()));
+    }
+    if (values == 0) return planes;
+    Imf::InputPart part(file, 0);
+    part.setFrameBuffer(buffer);
+    part.readPixels(window.y0, window.y1 - 1);
+    return planes;
+}
+
+} // namespace
+
+bool ExrInfo::has(std::string_view channel) const {
+    return std::any_of(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == channel; });
+}
+
+std::string ExrInfo::channelNames() const {
+    std::string names;
+    for (const Channel& c : channels) names += (names.empty() ? "" : " ") + c.name;
+    return names;
+}
+
+const std::vector<float>* ExrPlanes::find(std::string_view name) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (info.channels[i].name == name) return values[i].empty() ? nullptr : &values[i];
+    return nullptr;
+}
+
+ExrInfo readExrInfo(const std::string& path) {
+    return guarded(path, [&] {
+        const Imf::MultiPartInputFile file(path.c_str(), 0, false);
+        return describe(file.header(0), file.parts());
+    });
+}
+
+ExrPlanes readExrChannels(const std::string& path, const std::function<bool(std::string_view)>& wanted) {
+    return guarded(path, [&] { return readPlanes(path, wanted); });
+}
+
+std::vector<float> readExrChannel(const std::string& path, const std::string& channel) {
+    ExrPlanes planes = readExrChannels(path, [&](std::string_view name) { return name == channel; });
+    for (std::vector<float>& values : planes.values)
+        if (!values.empty()) return std::move(values);
+    throw IoError(
+        fmt::format("cannot read `{}`: it has no channel {}, only {}", path, channel, planes.info.channelNames()));
+}
+
+} // namespace abbe

@@ -1,0 +1,51 @@
+// OpenEXR input of channels by their names, and of the facts in the header.
+#pragma once
+
+#include "io/exr_writer.h"
+#include "io/image.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+struct ExrInfo {
+    struct Channel {
+        std::string name;
+        std::string type; // "half", "float", "uint"
+    };
+    PixelWindow window, display;
+    std::vector<Channel> channels;
+    std::string compression; // as in ExrCompression, or what the file says
+    std::optional<Chromaticities> chromaticities;
+    bool acesContainer = false;
+    int parts = 1;                          // only the first one is described
+    std::vector<ImageAttribute> attributes; // the ones of types text, int, float and double
+
+    bool has(std::string_view channel) const;
+    std::string channelNames() const; // with spaces between them
+};
+// Reads the header alone. Throws IoError.
+ExrInfo readExrInfo(const std::string& path);
+
+// Channels of the first part, each a plane of the data window, row by row from the top.
+struct ExrPlanes {
+    ExrInfo info;
+    std::vector<std::vector<float>> values; // one for each of info.channels, empty for those that were not wanted
+
+    // The values of a channel, or null if the file has none of that name or it was not wanted.
+    const std::vector<float>* find(std::string_view name) const;
+};
+
+// Reads every channel that `wanted` accepts, by default all; scan lines or tiles. Halves and floats keep their bits
+// (NaN payloads of halves aside); integers are rounded to float, exactly below 2²⁴. Throws IoError for files that are
+// damaged, too large, deep, or have a wanted channel at a lower resolution than the picture.
+ExrPlanes readExrChannels(const std::string& path, const std::function<bool(std::string_view name)>& wanted = nullptr);
+
+// One channel by its name. Throws IoError, also when there is none.
+std::vector<float> readExrChannel(const std::string& path, const std::string& channel);
+
+} // namespace abbe
