@@ -98,7 +98,7 @@ ExitCode RenderRun::checkFilm() {
     film_ = filmSettings(built_.film);
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
     constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
-    const double bytes = pixels * (kResolved + 28.0 * static_cast<double>(built_.render.replicates));
+    const double bytes = pixels * (kResolved + 52.0 * static_cast<double>(built_.render.replicates));
     if (bytes > physicalMemory())
         return refuse("E0650",
                       fmt::format("an image of {}×{} pixels needs {:.3g} GB; this machine has {:.3g} GB of memory",

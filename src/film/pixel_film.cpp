@@ -21,7 +21,7 @@ PixelFilm::PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicat
 
 std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates) {
     return static_cast<std::uint64_t>(bounds.area()) * static_cast<std::uint64_t>(replicates) *
-           (sizeof(Xyz) + sizeof(std::uint32_t));
+           (sizeof(ExactXyz) + sizeof(std::uint32_t));
 }
 
 std::size_t PixelFilm::firstCell(int x, int y) const noexcept {
@@ -30,9 +30,8 @@ std::size_t PixelFilm::firstCell(int x, int y) const noexcept {
     return (row * static_cast<std::size_t>(bounds_.width()) + column) * static_cast<std::size_t>(replicates_);
 }
 
-void PixelFilm::add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept {
+void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept {
     ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
-    ABBE_DCHECK(std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z));
     const std::size_t cell = firstCell(x, y) + static_cast<std::size_t>(replicate);
     sums_[cell] += sum;
     samples_[cell] += samples;
@@ -41,13 +40,13 @@ void PixelFilm::add(int x, int y, int replicate, Xyz sum, std::uint32_t samples)
 
 Xyz PixelFilm::mean(int x, int y) const noexcept {
     const std::size_t first = firstCell(x, y);
-    Xyz sum;
+    ExactXyz sum;
     std::uint64_t count = 0;
     for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell) {
         sum += sums_[cell];
         count += samples_[cell];
     }
-    return count == 0 ? Xyz{} : sum * (1 / static_cast<double>(count));
+    return count == 0 ? Xyz{} : sum.value() * (1 / static_cast<double>(count));
 }
 
 std::uint64_t PixelFilm::samples(int x, int y) const noexcept {
@@ -66,7 +65,7 @@ PixelFilm::Luminance PixelFilm::luminance(int x, int y) const noexcept {
     double total = 0, sum = 0;
     int used = 0;
     for (std::size_t cell = first; cell < end; ++cell) {
-        sum += sums_[cell].y;
+        sum += sums_[cell].y.value();
         total += samples_[cell];
         used += samples_[cell] > 0;
     }
@@ -74,7 +73,7 @@ PixelFilm::Luminance PixelFilm::luminance(int x, int y) const noexcept {
     Luminance result{sum / total, 0, used > 1};
     if (!result.known) return result;
     for (std::size_t cell = first; cell < end; ++cell) // w (m − mean) = (sum − count · mean) / total
-        result.variance += square((sums_[cell].y - samples_[cell] * result.mean) / total);
+        result.variance += square((sums_[cell].y.value() - samples_[cell] * result.mean) / total);
     result.variance *= static_cast<double>(used) / (used - 1);
     return result;
 }

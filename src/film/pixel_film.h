@@ -1,4 +1,4 @@
-// The film of the renderer: 28 bytes per pixel and replicate, and no other plane of the image's size.
+// The film of the renderer: 52 bytes per pixel and replicate, and no other plane of the image's size.
 #pragma once
 
 #include "film/pixel_filter.h"
@@ -31,7 +31,7 @@ class PixelFilm final : public Film {
     int replicates() const override { return replicates_; }
     FilterSample filter(Vec2 u) const noexcept override { return filter_.sample(u); }
     // Different pixels may be added to from different threads at once.
-    void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept override;
+    void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override;
     Xyz mean(int x, int y) const noexcept override;
     std::uint64_t samples(int x, int y) const noexcept;
 
@@ -64,7 +64,7 @@ class PixelFilm final : public Film {
     PixelBounds bounds_;
     int replicates_;
     PixelFilter filter_;
-    std::vector<Xyz> sums_;              // [pixel][replicate]
+    std::vector<ExactXyz> sums_;         // [pixel][replicate]
     std::vector<std::uint32_t> samples_; // [pixel][replicate]
 };
 

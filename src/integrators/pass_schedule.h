@@ -16,7 +16,4 @@ inline std::uint32_t passEnd(std::uint32_t first) {
     return first + (power >= 16 ? power / 4 : power);
 }
 
-// True where the roulette reference is renewed: at powers of two up to 256, when the image changes most.
-inline bool renewsRoulette(std::uint32_t samples) { return samples <= 256 && (samples & (samples - 1)) == 0; }
-
 } // namespace abbe

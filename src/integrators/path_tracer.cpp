@@ -60,13 +60,14 @@ class RenderJob {
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
           lights_(scene.lights, settings.lightChoice), context_{scene, lights_, settings, drawsChoices(scene, lights_)},
-          roulette_(film.bounds()), tiles_(makeTiles(film.bounds())) {
+          tiles_(makeTiles(film.bounds())) {
         const auto replicates = static_cast<std::uint32_t>(film.replicates());
         perReplicate_ = std::max<std::uint32_t>(1, (settings.samples + replicates - 1) / replicates);
         statistics_.kernel = kernel.name;
     }
 
     RenderStatistics run() {
+        lookAhead();
         std::uint32_t first = 0;
         while (first < perReplicate_ && !ended()) {
             const std::uint32_t last = std::min(passEnd(first), perReplicate_);
@@ -75,7 +76,6 @@ class RenderJob {
             first = last;
             ++pass_;
             statistics_.samplesPerPixel = first * static_cast<std::uint32_t>(film_.replicates());
-            if (renewsRoulette(first)) roulette_.update(film_);
             statistics_.noise = film_.relativeNoise();
         }
         statistics_.seconds = elapsed();
@@ -95,6 +95,21 @@ class RenderJob {
         if (settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget)
             return true;
         return stopRequested();
+    }
+
+    // Samples of a seed of its own, which are never part of the image.
+    void lookAhead() {
+        constexpr std::uint64_t kPilot = 0x70696c6f74; // "pilot"
+        const PixelBounds frame = context_.scene.frame.area() > 0 ? context_.scene.frame : film_.bounds();
+        PilotFilm pilot(frame, combine64(settings_.seed, kPilot));
+        PathContext context = context_;
+        context.settings.seed = combine64(settings_.seed, kPilot);
+        parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t row) {
+            for (int column = 0; column < pilot.columns() && !stopRequested(); ++column)
+                kernel_.render(context, pilot,
+                               {pilot.pixelOf(column, static_cast<int>(row)), 0, PilotFilm::kSamples, &roulette_});
+        });
+        roulette_ = RouletteReference(pilot);
     }
 
     void runPass(std::uint32_t first, std::uint32_t last) {

@@ -70,7 +70,7 @@ template <EffectBits E> class TileKernel {
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
         const std::uint64_t seed = combine64(combine64(context_.settings.seed, place), static_cast<std::uint64_t>(r));
         const float rouletteScale = job_.roulette->scale(x, y);
-        Xyz sum;
+        ExactXyz sum;
         std::uint32_t counted = 0;
         sampler_.startPixel(seed, context_.settings.randomSampler, context_.choices);
         for (std::uint32_t i = job_.first; i < job_.last; ++i) {
@@ -119,7 +119,8 @@ template <EffectBits E> class TileKernel {
     // times a matching function of 0 would be NaN.
     unsigned fault(Xyz v) const {
         const bool negative = minLane(radiance_) < 0 && !maySubtract_;
-        if (std::isfinite(v.x + v.y + v.z) && !negative) [[likely]]
+        const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        if (largest < ExactSum::kLargest && std::isfinite(v.x + v.y + v.z) && !negative) [[likely]]
             return 3;
         const bool nan = _mm256_movemask_ps(_mm256_cmp_ps(radiance_.v, radiance_.v, _CMP_UNORD_Q)) != 0;
         const DropCause cause = nan                                ? DropCause::nan

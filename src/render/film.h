@@ -1,8 +1,8 @@
-// The image while it is being made: XYZ sums in double for every pixel and replicate.
+// The image while it is being made: exact XYZ sums for every pixel and replicate.
 #pragma once
 
 #include "math/vec.h"
-#include "spectrum/xyz.h"
+#include "spectrum/exact_xyz.h"
 
 #include <cstdint>
 
@@ -25,7 +25,7 @@ struct PixelBounds {
 
 // Replicates are independent randomisations of the sample set; their spread gives honest error bars for correlated
 // samples [Owen1997]. A pixel's samples go to that pixel alone (filter importance sampling [Ernst2006]), so threads
-// never share one, and the sum does not depend on their order.
+// never share one; sums are exact, so that they do not depend on the order of the samples either.
 class Film {
   public:
     virtual ~Film() = default;
@@ -33,7 +33,7 @@ class Film {
     virtual int replicates() const = 0;
     virtual FilterSample filter(Vec2 u) const noexcept = 0;
     // Adds the sum of `samples` samples to one replicate of a pixel within bounds().
-    virtual void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept = 0;
+    virtual void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept = 0;
     // Mean over all samples so far.
     virtual Xyz mean(int x, int y) const noexcept = 0;
     // Estimated relative error of the image from the spread of the replicates; 0 with a single replicate or sample.

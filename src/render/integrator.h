@@ -28,7 +28,7 @@ struct RenderSettings {
 };
 
 // Why samples were dropped.
-enum class DropCause : std::uint8_t { nan, infinite, negative };
+enum class DropCause : std::uint8_t { nan, infinite, negative }; // infinite: or beyond ExactSum::kLargest
 
 // A sample that can be repeated: `abbe render … --pixel x,y --sample i`.
 struct DroppedSample {

@@ -3,6 +3,7 @@
 
 #include "render/camera.h"
 #include "render/effects.h"
+#include "render/film.h"
 #include "render/intersector.h"
 #include "render/light.h"
 #include "render/material.h"
@@ -30,6 +31,7 @@ struct Scene {
                              // partly open, or lies hidden in a dielectric
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
+    PixelBounds frame;             // the whole picture, of which a film may hold a part
     WavelengthDensity wavelengths; // of paths
     Effects effects;
     std::vector<EffectReason> reasons;

@@ -70,6 +70,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     auto placed = makeCamera(definition->type->name, bindInto, context, diagnostics_);
     if (!placed) return;
     built.scene.camera = std::move(placed->camera);
+    built.scene.frame = {0, 0, context.filmSize.x, context.filmSize.y};
     built.scene.origin = placed->origin;
     built.exposure = placed->exposure;
     const Shutter& shutter = placed->shutter;

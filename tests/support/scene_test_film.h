@@ -27,7 +27,7 @@ class RecordingFilm final : public Film {
     PixelBounds bounds() const override { return film_.bounds(); }
     int replicates() const override { return film_.replicates(); }
     FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
-    void add(int x, int y, int replicate, Xyz sum, std::uint32_t samples) noexcept override {
+    void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
         film_.add(x, y, replicate, sum, samples);
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(replicate);
         sums_[i] += sum;
@@ -41,7 +41,7 @@ class RecordingFilm final : public Film {
         Moments m;
         for (int r = 0; r < replicates(); ++r) {
             const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
-            if (counts_[i] > 0) m.add(value(sums_[i], channel) / counts_[i]);
+            if (counts_[i] > 0) m.add(value(sums_[i].value(), channel) / counts_[i]);
         }
         return {m.mean(), m.variance() / m.count(), m.count() - 1};
     }
@@ -64,7 +64,7 @@ class RecordingFilm final : public Film {
     // Sum of one replicate of a pixel and the samples in it, for tests of bits.
     std::pair<Xyz, std::uint32_t> replicate(int x, int y, int r) const {
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
-        return {sums_[i], counts_[i]};
+        return {sums_[i].value(), counts_[i]};
     }
     // Mean over all pixels of the variance of one replicate's mean: the MSE of a render with its number of samples.
     double replicateVariance() const {
@@ -84,7 +84,7 @@ class RecordingFilm final : public Film {
     }
 
     PixelFilm film_;
-    std::vector<Xyz> sums_; // [pixel][replicate]
+    std::vector<ExactXyz> sums_; // [pixel][replicate]
     std::vector<std::uint32_t> counts_;
 };
 

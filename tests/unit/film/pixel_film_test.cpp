@@ -45,7 +45,7 @@ TEST_CASE("variance is that of the mean, also for replicates of different size")
         for (int r = 0; r < 4; ++r) {
             double sum = 0;
             for (std::uint32_t i = 0; i < kCounts[r]; ++i) sum += normal(random);
-            film.add(x, 0, r, {0, sum, 0}, kCounts[r]);
+            film.add(x, 0, r, Xyz{0, sum, 0}, kCounts[r]);
         }
         meanError += square(film.mean(x, 0).y - 5) / kPixels;
         estimate += *film.variance(x, 0) / kPixels;
@@ -61,7 +61,7 @@ TEST_CASE("variance from two equal replicates is unbiased; pooling narrows it") 
     PixelFilm film({0, 0, 100, 100}, box(), 2);
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x)
-            for (int r = 0; r < 2; ++r) film.add(x, y, r, {0, normal(random) * 4, 0}, 4); // mean of a replicate ± 1
+            for (int r = 0; r < 2; ++r) film.add(x, y, r, Xyz{0, normal(random) * 4, 0}, 4); // mean of a replicate ± 1
     double sum = 0, spread = 0, pooledSpread = 0;
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
@@ -79,22 +79,22 @@ TEST_CASE("noise of two pixels by hand") {
     PixelFilm film({0, 0, 2, 1}, box(), 2);
     const double means[2][2] = {{3, 5}, {-1, 1}}; // 4 ± 1 and 0 ± 1
     for (int x = 0; x < 2; ++x)
-        for (int r = 0; r < 2; ++r) film.add(x, 0, r, {0, means[x][r] * 8, 0}, 8);
+        for (int r = 0; r < 2; ++r) film.add(x, 0, r, Xyz{0, means[x][r] * 8, 0}, 8);
     // The image's mean is 2, so ε = 0.04.
     CHECK(film.relativeNoise() == doctest::Approx(std::sqrt((1 / 16.04 + 1 / 0.04) / 2)));
 }
 
 TEST_CASE("noise needs two replicates with samples") {
     PixelFilm one({0, 0, 2, 2}, box(), 1);
-    one.add(0, 0, 0, {1, 1, 1}, 1);
+    one.add(0, 0, 0, Xyz{1, 1, 1}, 1);
     CHECK(!one.variance(0, 0));
     CHECK(one.relativeNoise() == 0);
     PixelFilm two({0, 0, 2, 2}, box(), 2);
     CHECK(two.relativeNoise() == 0);
-    two.add(0, 0, 0, {1, 1, 1}, 1);
+    two.add(0, 0, 0, Xyz{1, 1, 1}, 1);
     CHECK(!two.variance(0, 0));
     CHECK(!two.pooledVariance(1, 1));
-    two.add(0, 0, 1, {3, 3, 3}, 1);
+    two.add(0, 0, 1, Xyz{3, 3, 3}, 1);
     CHECK(*two.variance(0, 0) == doctest::Approx(1)); // means 1 and 3: s² = 2, s²/2
     CHECK(two.relativeNoise() > 0);
     const auto image = two.resolve(rgb::ap0.fromXyz(), 1);
@@ -107,29 +107,29 @@ TEST_CASE("noise needs two replicates with samples") {
 
 TEST_CASE("films of one pixel, of one long row and cropped") {
     PixelFilm pixel({0, 0, 1, 1}, box(), 2);
-    pixel.add(0, 0, 1, {1, 2, 3}, 1);
+    pixel.add(0, 0, 1, Xyz{1, 2, 3}, 1);
     CHECK(pixel.mean(0, 0).y == 2);
     CHECK(pixel.resolve(rgb::ap0.fromXyz(), 1).r.size() == 1);
 
     PixelFilm row({0, 0, 32768, 1}, box(), 2);
-    row.add(32767, 0, 1, {1, 2, 3}, 1);
-    row.add(0, 0, 0, {1, 4, 3}, 1);
+    row.add(32767, 0, 1, Xyz{1, 2, 3}, 1);
+    row.add(0, 0, 0, Xyz{1, 4, 3}, 1);
     CHECK(row.mean(32767, 0).y == 2);
     CHECK(row.mean(0, 0).y == 4);
     CHECK(row.mean(32766, 0).y == 0);
     CHECK(row.resolve(rgb::ap1.fromXyz(), 1).g.size() == 32768);
 
     PixelFilm crop({10, 20, 13, 22}, box(), 1);
-    crop.add(12, 21, 0, {0, 5, 0}, 1);
+    crop.add(12, 21, 0, Xyz{0, 5, 0}, 1);
     CHECK(crop.mean(12, 21).y == 5);
     CHECK(crop.mean(10, 20).y == 0);
     CHECK(crop.resolve(rgb::ap0.fromXyz(), 1).g.back() == doctest::Approx(5 * 1.3733130458));
-    CHECK(PixelFilm::memoryBytes({0, 0, 65536, 32768}, 2) == 56ull << 31);
+    CHECK(PixelFilm::memoryBytes({0, 0, 65536, 32768}, 2) == 104ull << 31);
 }
 
 TEST_CASE("resolving uses the standard's matrix, scales, and keeps negatives") {
     PixelFilm film({0, 0, 1, 1}, box(), 1);
-    film.add(0, 0, 0, {1, 1, 1}, 1);
+    film.add(0, 0, 0, Xyz{1, 1, 1}, 1);
     const auto image = film.resolve(rgb::ap0.fromXyz(), 2);
     // SMPTE ST 2065-1: rows of XYZ to AP0.
     CHECK(image.r[0] == doctest::Approx(2 * (1.0498110175 - 0.0000974845)).epsilon(1e-6));
@@ -138,7 +138,7 @@ TEST_CASE("resolving uses the standard's matrix, scales, and keeps negatives") {
     CHECK(image.variance.empty());
 
     PixelFilm red({0, 0, 1, 1}, box(), 1);
-    red.add(0, 0, 0, {1, 0.2, 0}, 1);
+    red.add(0, 0, 0, Xyz{1, 0.2, 0}, 1);
     CHECK(red.resolve(rgb::ap0.fromXyz(), 1).g[0] < -0.2);
 }
 

@@ -1,19 +1,22 @@
-// Passes, and Russian roulette's reference.
-#include "film/pixel_film.h"
+// Passes, the pilot, and Russian roulette's reference.
 #include "integrators/pass_schedule.h"
 #include "integrators/roulette.h"
 #include "support/chi_square.h"
 
 #include <doctest/doctest.h>
+#include <functional>
 
 namespace abbe::test {
 namespace {
 
-PixelFilm filmOf(int width, int height, const std::function<double(int, int)>& luminance) {
-    PixelFilm film({0, 0, width, height}, PixelFilter(FilterShape::box, 0.5), 1);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) film.add(x, y, 0, Xyz{0, 4 * luminance(x, y), 0}, 4);
-    return film;
+PilotFilm pilotOf(PixelBounds frame, const std::function<double(int, int)>& luminance) {
+    PilotFilm pilot(frame, 1);
+    for (int row = 0; row < pilot.rows(); ++row)
+        for (int column = 0; column < pilot.columns(); ++column) {
+            const PixelBounds p = pilot.pixelOf(column, row);
+            pilot.add(p.x0, p.y0, 0, Xyz{0, 4 * luminance(p.x0, p.y0), 0}, 4);
+        }
+    return pilot;
 }
 
 } // namespace
@@ -39,13 +42,6 @@ TEST_CASE("passes end at powers of two and at quarters between them, whatever th
     }
 }
 
-TEST_CASE("roulette's reference is renewed at powers of two up to 256") {
-    std::vector<std::uint32_t> renewed;
-    for (std::uint32_t n = 1; n <= 2048; ++n)
-        if (renewsRoulette(n)) renewed.push_back(n);
-    CHECK(renewed == std::vector<std::uint32_t>{1, 2, 4, 8, 16, 32, 64, 128, 256});
-}
-
 TEST_CASE("roulette: survival follows the throughput between the floor and certainty") {
     CHECK(RouletteReference::survival(0.5f, 1) == 0.5f);
     CHECK(RouletteReference::survival(0.5f, 0.5f) == 0.25f);
@@ -56,43 +52,65 @@ TEST_CASE("roulette: survival follows the throughput between the floor and certa
     CHECK(RouletteReference::kFloor == 0.05f);
 }
 
-TEST_CASE("roulette: the reference of an even image is the threshold everywhere") {
-    RouletteReference reference({0, 0, 9, 7});
-    const float before = reference.scale(3, 3);
-    CHECK(before == doctest::Approx(1 / RouletteReference::kThreshold));
-    reference.update(filmOf(9, 7, [](int, int) { return 0.0; })); // nothing seen yet
-    CHECK(reference.scale(3, 3) == before);
-    reference.update(filmOf(9, 7, [](int, int) { return 5.0; }));
+TEST_CASE("roulette: the reference of an even frame is the threshold everywhere") {
+    const float average = RouletteReference().scale(3, 3);
+    CHECK(average == doctest::Approx(1 / RouletteReference::kThreshold));
+    const RouletteReference black(pilotOf({0, 0, 9, 7}, [](int, int) { return 0.0; })); // nothing seen
+    CHECK(black.scale(3, 3) == average);
+    const RouletteReference even(pilotOf({0, 0, 9, 7}, [](int, int) { return 5.0; }));
     for (int y = 0; y < 7; ++y)
-        for (int x = 0; x < 9; ++x) CHECK(reference.scale(x, y) == doctest::Approx(1 / RouletteReference::kThreshold));
+        for (int x = 0; x < 9; ++x) CHECK(even.scale(x, y) == doctest::Approx(average));
 }
 
 TEST_CASE("roulette: bright pixels need brighter paths, and dark ones count as the median") {
-    // A tenth of the image is 100 times as bright as the rest.
-    const auto luminance = [](int x, int) { return x < 3 ? 100.0 : 1.0; };
-    RouletteReference reference({0, 0, 30, 10});
-    reference.update(filmOf(30, 10, luminance));
-    const double average = 10.9, t = RouletteReference::kThreshold;
-    CHECK(reference.scale(0, 5) == doctest::Approx(average / (t * 100)));
-    CHECK(reference.scale(20, 5) == doctest::Approx(average / t));
-    CHECK(reference.scale(2, 5) == doctest::Approx(average / (t * (3 * 100 + 2) / 5.0))); // 5 pixels wide
+    // A fifth of the frame is five times as bright as the rest; cells are 2×2 pixels.
+    const PixelBounds frame{0, 0, 60, 20};
+    const RouletteReference reference(pilotOf(frame, [](int x, int) { return x < 12 ? 5.0 : 1.0; }));
+    const double average = 1.8, t = RouletteReference::kThreshold;
+    CHECK(reference.scale(1, 9) == doctest::Approx(average / (t * 5)));
+    CHECK(reference.scale(40, 9) == doctest::Approx(average / t));
+    // 5 cells wide about cell 5 (pixels 10 and 11), then linear between centres of cells.
+    const double five = (3 * 5 + 2 * 1) / 5.0, six = (2 * 5 + 3 * 1) / 5.0;
+    CHECK(reference.scale(11, 9) == doctest::Approx(average / (t * (0.75 * five + 0.25 * six))));
     // Black pixels beside lit ones.
-    reference.update(filmOf(30, 10, [](int x, int) { return x < 10 ? 0.0 : 2.0; }));
-    CHECK(reference.scale(0, 0) == doctest::Approx(2.0 * 20 / 30 / (t * 2)));
+    const RouletteReference half(pilotOf(frame, [](int x, int) { return x < 20 ? 0.0 : 2.0; }));
+    CHECK(half.scale(0, 0) == doctest::Approx(2.0 * 40 / 60 / (t * 2)));
     // Even where more than half is black, survival stays defined.
-    reference.update(filmOf(30, 10, [](int x, int) { return x < 25 ? 0.0 : 2.0; }));
-    for (int x = 0; x < 30; ++x) CHECK_UNARY(reference.scale(x, 0) > 0 && std::isfinite(reference.scale(x, 0)));
+    const RouletteReference dark(pilotOf(frame, [](int x, int) { return x < 50 ? 0.0 : 2.0; }));
+    for (int x = 0; x < 60; ++x) CHECK_UNARY(dark.scale(x, 0) > 0 && std::isfinite(dark.scale(x, 0)));
 }
 
-TEST_CASE("roulette: a crop is indexed from its own corner") {
-    PixelFilm film({100, 50, 110, 60}, PixelFilter(FilterShape::box, 0.5), 1);
-    for (int y = 50; y < 60; ++y)
-        for (int x = 100; x < 110; ++x) film.add(x, y, 0, Xyz{0, x < 105 ? 1.0 : 3.0, 0}, 1);
-    RouletteReference reference(film.bounds());
-    reference.update(film);
-    CHECK(reference.scale(100, 50) ==
-          doctest::Approx(2 / (RouletteReference::kThreshold * 2.2))); // the median, at the edge
-    CHECK(reference.scale(109, 59) == doctest::Approx(2 / (RouletteReference::kThreshold * 3)));
+TEST_CASE("roulette: one cell a thousand times as bright as the rest counts as bright and no more") {
+    const RouletteReference reference(
+        pilotOf({0, 0, 64, 64}, [](int x, int y) { return x / 2 == 16 && y / 2 == 16 ? 1000.0 : 1.0; }));
+    // 8 times the rest in one cell of 25.
+    CHECK(reference.scale(33, 33) > 0.7f * reference.scale(0, 0));
+    CHECK(reference.scale(33, 33) < 0.9f * reference.scale(0, 0));
+}
+
+TEST_CASE("the pilot looks at one pixel in each of at most 128 by 128 cells, by the frame and the seed alone") {
+    for (const PixelBounds frame : {PixelBounds{0, 0, 1, 1},
+                                    {0, 0, 37, 21},
+                                    {0, 0, 256, 256},
+                                    {0, 0, 257, 256},
+                                    {0, 0, 65536, 1},
+                                    {0, 0, 7680, 4320}}) {
+        const PilotFilm pilot(frame, 7), again(frame, 7), other(frame, 8);
+        CHECK(pilot.columns() * pilot.rows() <= 128 * 128);
+        int moved = 0;
+        for (int row = 0; row < pilot.rows(); ++row)
+            for (int column = 0; column < pilot.columns(); ++column) {
+                const PixelBounds p = pilot.pixelOf(column, row);
+                REQUIRE(
+                    (p.area() == 1 && p.x0 >= frame.x0 && p.y0 >= frame.y0 && p.x1 <= frame.x1 && p.y1 <= frame.y1));
+                REQUIRE((p.x0 / pilot.cellSize() == column && p.y0 / pilot.cellSize() == row));
+                REQUIRE((again.pixelOf(column, row).x0 == p.x0 && again.pixelOf(column, row).y0 == p.y0));
+                moved += other.pixelOf(column, row).x0 != p.x0;
+            }
+        if (frame.area() > 1000) CHECK(moved > pilot.columns() * pilot.rows() / 4);
+    }
+    CHECK(PilotFilm({0, 0, 256, 256}, 7).cellSize() == 2);
+    CHECK(PilotFilm({0, 0, 257, 256}, 7).cellSize() == 4);
 }
 
 } // namespace abbe::test
