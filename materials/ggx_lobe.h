@@ -29,26 +29,20 @@ class GgxLobe {
         if (smooth()) return Spectrum(wo.z);
         return stretched_ ? stretched_->cosines(wo) : microfacetCosines(wo.z, width(wo));
     }
-    // See visibleCosines().
-    Spectrum visible(Vec3 wo) const {
-        if (smooth()) return Spectrum(wo.z);
-        return stretched_ ? stretched_->visible(wo) : visibleCosines(wo.z, width(wo));
+    // Whether the tables know a clear interface: round ones all, a stretched one that of one index. eta: far side over
+    // near side, `within` if that is outside; `varies` if it differs between the lanes.
+    bool tabulated(Spectrum eta, bool varies, bool within) const {
+        if (!stretched_ || smooth()) return true;
+        return interface_ && !varies && eta[0] == (within ? 1 / interface_->eta() : interface_->eta());
     }
-    // Share that a clear interface of this shape reflects and transmits together; eta: far side over near side,
-    // `within` if that is outside. The table knows round lobes; a stretched one has its own table for one index, and
-    // changes with the index as its profile along wo does.
+    // Share that it reflects and transmits together; if not tabulated, that of a round one of the width along wo.
     Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool varies, bool within) const {
         if (smooth()) return Spectrum(1.f);
+        if (interface_ && tabulated(eta, varies, within)) return Spectrum((*interface_)(wo, within));
         const float alpha = width(wo);
-        float ratio = 1;
-        if (interface_) {
-            const float own = within ? 1 / interface_->eta() : interface_->eta();
-            if (!varies && eta[0] == own) return Spectrum((*interface_)(wo, within));
-            ratio = (*interface_)(wo, within) / ggxAlbedo(wo.z, alpha, own);
-        }
-        if (!varies) return Spectrum(std::min(1.f, ratio * ggxAlbedo(wo.z, alpha, eta[0])));
+        if (!varies) return Spectrum(ggxAlbedo(wo.z, alpha, eta[0]));
         Float8 result;
-        for (int i = 0; i < kLanes; ++i) result[i] = std::min(1.f, ratio * ggxAlbedo(wo.z, alpha, eta[i]));
+        for (int i = 0; i < kLanes; ++i) result[i] = ggxAlbedo(wo.z, alpha, eta[i]);
         return result;
     }
 

@@ -37,39 +37,8 @@ Spectrum lookUp(const std::int16_t* table, float mu, float alpha) {
     return min(max(fma(between(low, high, y), scale, Spectrum(mu)), Spectrum(0.f)), Spectrum(1.f));
 }
 
-// Lagrange's polynomials of the Gauss points in the middles of 32 parts.
-struct FinerPoints {
-    alignas(32) float share[4][8][8] = {};
-
-    constexpr FinerPoints() {
-        constexpr double gauss[] = {0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788,
-                                    0.5917173212, 0.7627662050, 0.8983332387, 0.9801449282};
-        for (int i = 0; i < 32; ++i)
-            for (int k = 0; k < 8; ++k) {
-                double product = 1;
-                for (int j = 0; j < 8; ++j)
-                    if (j != k) product *= ((i + 0.5) / 32 - gauss[j]) / (gauss[k] - gauss[j]);
-                share[i / 8][k][i % 8] = static_cast<float>(product);
-            }
-    }
-};
-
 } // namespace
 
-std::array<Spectrum, 4> finerCosines(Spectrum atGaussPoints) {
-    static constexpr FinerPoints points;
-    std::array<Spectrum, 4> result;
-    for (std::size_t i = 0; i < 4; ++i) {
-        Spectrum sum(0.f);
-        for (int k = 0; k < 8; ++k)
-            sum = fma(Spectrum(_mm256_load_ps(points.share[i][k])), Spectrum(atGaussPoints[k]), sum);
-        result[i] = min(max(sum, Spectrum(0.f)), Spectrum(1.f));
-    }
-    return result;
-}
-
 Spectrum microfacetCosines(float mu, float alpha) { return lookUp(kMicrofacetCosines, mu, alpha); }
-
-Spectrum visibleCosines(float mu, float alpha) { return lookUp(kVisibleCosines, mu, alpha); }
 
 } // namespace abbe

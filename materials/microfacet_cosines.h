@@ -10,23 +10,16 @@
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 
-#include <array>
-
 namespace abbe {
 
 // c at the Gauss points of [0, 1], in the eight lanes, for a surface of width `alpha` (at most √2) seen at cosine mu.
 Spectrum microfacetCosines(float mu, float alpha);
-// The same for all microfacets that are visible, whether or not a reflection off them leaves the surface: light that
-// goes through does so nearly everywhere.
-Spectrum visibleCosines(float mu, float alpha);
 
-// Weights of the points; their sum is 1. Points: 1/2 ± half the roots of the Legendre polynomial of degree 8.
+// The points, 1/2 ± half the roots of the Legendre polynomial of degree 8, and their weights, whose sum is 1.
+inline constexpr Float8 kCosinePoints = {0.0198550718f, 0.1016667613f, 0.2372337950f, 0.4082826788f,
+                                         0.5917173212f, 0.7627662050f, 0.8983332387f, 0.9801449282f};
 inline constexpr Float8 kCosineWeights = {0.0506142681f, 0.1111905172f, 0.1568533229f, 0.1813418917f,
                                           0.1813418917f, 0.1568533229f, 0.1111905172f, 0.0506142681f};
-
-// For reflectances with an edge, such as that of total reflection: from c at the Gauss points to c in the middles of 32
-// equal parts of [0, 1], by the polynomial through them.
-std::array<Spectrum, 4> finerCosines(Spectrum atGaussPoints);
 
 // The layout of the table, shared with the program that makes it (tools/make_microfacet_cosines.cpp). Positions along
 // mu are GgxAlbedoGrid's; stored is (c - mu)/α.

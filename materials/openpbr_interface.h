@@ -49,6 +49,8 @@ class OpenPbrDielectric {
     const Spectrum& eta() const { return eta_; }
     // Whether there is more than the bare interface.
     bool covered() const { return cover_.coat > 0 || cover_.film > 0; }
+    // Whether reflectances differ between the lanes.
+    bool varies() const { return cover_.varies; }
 
     // From outside, at the microfacet; c in [0, 1] is the cosine outside the coat.
     Spectrum reflectance(Spectrum c) const {

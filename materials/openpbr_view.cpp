@@ -1,4 +1,5 @@
 // What of an OpenPBR surface depends on the direction of view alone: the albedos by which its layers share the light.
+#include "materials/microfacet_escape.h"
 #include "materials/openpbr_bsdf.h"
 
 #include <cmath>
@@ -6,48 +7,48 @@
 namespace abbe {
 namespace {
 
-const Spectrum kOne(1.f), kNone(0.f), kMostFactor(1.5f);
+const Spectrum kOne(1.f);
 
-// Share of the light transmitted by a microfacet that no other one stops, about: of the microfacet in the plane of wo
-// and the normal, on the normal's side.
-class Escape {
+// Cosines at which a lobe meets microfacets, for integrals over them: dense where most of the light is and, from within
+// a dense base, where total reflection makes an edge.
+class MetCosines {
   public:
-    Escape(Vec3 wo, float alpha, Spectrum eta)
-        : mu_(wo.z), sine_(std::sqrt((1 - wo.z) * (1 + wo.z))), alpha2_(square(alpha)), stretch_(stretch(mu_)),
-          eta_(eta) {}
-
-    // c: cosine between wo and the microfacet.
-    Spectrum operator()(Spectrum c) const {
-        const Spectrum height = mu_ * c + sine_ * sqrt(max((kOne - c) * (kOne + c), kNone)); // z of the microfacet
-        const Spectrum g2 = (eta_ - kOne) * (eta_ + kOne) + c * c;
-        const Spectrum z = (mu_ - height * (c - sqrt(max(g2, kNone)))) / eta_; // of the direction, downwards
-        const Spectrum kept = (mu_ + stretch_) / (stretch_ + stretch(z) * mu_ / max(z, Spectrum(1e-6f))); // G2/G1
-        return select((g2.v > 0.f) & (z.v > 0.f), kept, kNone);
+    // lobe: see microfacetCosines(); lowest: the cosine of that edge, 0 if there is none.
+    MetCosines(Spectrum lobe, float lowest, bool fine) : count_(fine ? 4 : 2) {
+        const float middle = 0.5f * (lobe[3] + lobe[4]), width = std::max(0.5f * (lobe[5] - lobe[2]), 1e-5f);
+        const float from = std::asinh((lowest - middle) / width), all = std::asinh((1 - middle) / width) - from;
+        const float panel = 1 / static_cast<float>(count_);
+        for (std::size_t i = 0; i < count_; ++i) {
+            const Spectrum t = (Spectrum(kCosinePoints) + Spectrum(static_cast<float>(i))) * panel;
+            // Beyond the edge reflectances grow like the root of the distance.
+            const Spectrum place = lowest > 0 ? t * t : t, pace = lowest > 0 ? t + t : kOne;
+            const Spectrum up = exp(fma(place, Spectrum(all), Spectrum(from))), down = kOne / up;
+            cosines_[i] = min(max(fma(up - down, Spectrum(0.5f * width), Spectrum(middle)), Spectrum(lowest)), kOne);
+            steps_[i] = (up + down) * pace * Spectrum(kCosineWeights) * (0.5f * width * all * panel);
+        }
+    }
+    // Integral of share · f over the cosine. `varies`: f differs between the lanes for reasons of its own; `disperses`:
+    // the share does.
+    template <typename F, typename Share> Spectrum integral(F&& f, Share&& share, bool varies, bool disperses) const {
+        Spectrum result(0.f);
+        for (std::size_t block = 0; block < count_; ++block) {
+            const Spectrum& c = cosines_[block];
+            const Spectrum weighted = disperses ? steps_[block] : share(c) * steps_[block];
+            if (!varies) { // the lanes take eight cosines
+                result += Spectrum(sum(f(c) * weighted));
+                continue;
+            }
+            for (int i = 0; i < kLanes; ++i) {
+                const Spectrum at(c[i]);
+                result += f(at) * (disperses ? share(at) * weighted[i] : Spectrum(weighted[i]));
+            }
+        }
+        return result;
     }
 
   private:
-    Spectrum stretch(Spectrum z) const { return sqrt(fma(alpha2_, max((kOne - z) * (kOne + z), kNone), z * z)); }
-    Spectrum mu_, sine_, alpha2_, stretch_, eta_;
-};
-
-// Cosines at which a lobe meets its microfacets: at Gauss points, or at more of them from within a dense base, where
-// total reflection makes an edge.
-class Quantiles {
-  public:
-    Quantiles(Spectrum cosines, bool fine)
-        : count_(fine ? 4 : 1), weights_(fine ? Float8{} + 1.f / 32 : kCosineWeights) {
-        cosines_ = fine ? finerCosines(cosines) : std::array<Spectrum, 4>{cosines};
-    }
-    template <typename F> Spectrum mean(const OpenPbrDielectric& d, F&& f) const {
-        Spectrum sum(0.f);
-        for (std::size_t i = 0; i < count_; ++i) sum += d.meanOver(cosines_[i], f, false, weights_);
-        return sum;
-    }
-
-  private:
-    std::array<Spectrum, 4> cosines_;
     std::size_t count_;
-    Spectrum weights_;
+    std::array<Spectrum, 4> cosines_, steps_;
 };
 
 } // namespace
@@ -129,26 +130,24 @@ void OpenPbrBsdf::viewWithin(View& v) const {
     v.scale = kOne / interfaceAlbedo(v.wo, eta, true, covered, bare);
 }
 
-// What single scattering at the interface returns and transmits together. The tables know it of the bare interface.
-// Film and coat change the reflectance by some Δ: by its mean more light is reflected and less transmitted, and the sum
-// changes by as much as the one is stopped by other microfacets more often than the other.
+// What single scattering at the interface returns and transmits together: what it would if it reflected everything,
+// changed wherever it transmits by as much as other microfacets stop the one more often than the other. Where tables
+// know that of the bare interface, only the change that film and coat make is left to integrate.
 template <typename Covered, typename Bare>
 Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covered&& covered, Bare&& bare) const {
-    const OpenPbrDielectric& d = point_.dielectric;
     const GgxLobe& lobe = point_.specular;
+    const OpenPbrDielectric& d = point_.dielectric;
     const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_, within);
-    if (!d.covered() || lobe.smooth()) return pair;
-    const Escape escape(wo, lobe.width(wo), eta);
-    const auto more = [&](Spectrum c) { return covered(c) - bare(c); };
-    const Spectrum mirror(lobe.mirrorAlbedo(wo));
-    const Quantiles up(lobe.cosines(wo), within), down(lobe.visible(wo), within);
-    // How often transmitted light escapes is stated up to a factor, which the bare interface knows.
-    const Spectrum through = max(pair - mirror * up.mean(d, bare), kNone);
-    const Spectrum estimate = down.mean(d, [&](Spectrum c) { return (kOne - bare(c)) * escape(c); });
-    const Spectrum factor =
-        select(estimate.v > 1e-3f, min(through / max(estimate, Spectrum(1e-3f)), kMostFactor), kOne);
-    const Spectrum lost = down.mean(d, [&](Spectrum c) { return more(c) * escape(c); });
-    return min(max(pair + mirror * up.mean(d, more) - factor * lost, Spectrum(1e-3f)), kOne);
+    // Plastic keeps its light whatever the scale of its gloss: the matte part gets the rest.
+    if (!refracts() || lobe.smooth()) return pair;
+    const bool tabulated = lobe.tabulated(eta, disperses_, within);
+    if (tabulated && !d.covered()) return pair;
+    const auto more = [&](Spectrum c) { return covered(c) - (tabulated ? bare(c) : kOne); };
+    const float ratio = maxLane(eta), edge = std::sqrt(std::max((1 - ratio) * (1 + ratio), 0.f));
+    const MetCosines cosines(lobe.cosines(wo), edge, edge > 0 || !tabulated);
+    const MicrofacetEscape escape(lobe.ggx(), wo, eta);
+    const Spectrum change = cosines.integral(more, escape, d.varies(), disperses_);
+    return min(max((tabulated ? pair : Spectrum(lobe.mirrorAlbedo(wo))) + change, Spectrum(1e-3f)), kOne);
 }
 
 // The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is

@@ -41,19 +41,17 @@ StretchedLobe::StretchedLobe(float alphaX, float alphaY)
 }
 
 StretchedLobe::Node StretchedLobe::integrate(const Ggx& ggx, Vec3 wo) const {
-    std::vector<Event> reflected, visible;
+    std::vector<Event> reflected;
     double sum = 0;
     forVisibleMicrofacets(ggx, wo, [&](Vec3 m, double share) {
         const float c = dot(wo, m);
-        visible.push_back({c, share});
         const Vec3 wi = reflect(wo, m);
         if (!(wi.z > 0)) return;
         reflected.push_back({c, share * static_cast<double>(ggx.maskingOverCosine(wo, wi) / ggx.visible(wo))});
         sum += reflected.back().share;
     });
     const Spectrum mu(wo.z), scale(1 / grid_.widthTowards(wo));
-    return {(quantiles(reflected, wo.z) - mu) * scale, (quantiles(visible, wo.z) - mu) * scale,
-            static_cast<float>(std::min(1.0, sum))};
+    return {(quantiles(reflected, wo.z) - mu) * scale, static_cast<float>(std::min(1.0, sum))};
 }
 
 float StretchedLobe::mirrorAlbedo(Vec3 wo) const {
@@ -62,10 +60,6 @@ float StretchedLobe::mirrorAlbedo(Vec3 wo) const {
 
 Spectrum StretchedLobe::cosines(Vec3 wo) const {
     return placed(wo, grid_.at(*table_, wo, [](const Node& node) { return node.reflected; }));
-}
-
-Spectrum StretchedLobe::visible(Vec3 wo) const {
-    return placed(wo, grid_.at(*table_, wo, [](const Node& node) { return node.visible; }));
 }
 
 Spectrum StretchedLobe::placed(Vec3 wo, Spectrum offset) const {

@@ -19,11 +19,10 @@ class StretchedLobe {
     // As those of GgxLobe; wo unit, wo.z >= 0.
     float mirrorAlbedo(Vec3 wo) const;
     Spectrum cosines(Vec3 wo) const;
-    Spectrum visible(Vec3 wo) const;
 
   private:
     struct Node {
-        Spectrum reflected, visible; // (c - mu)/width at the Gauss points
+        Spectrum reflected; // (c - mu)/width at the Gauss points
         float albedo = 0;
     };
     Node integrate(const Ggx&, Vec3 wo) const;

@@ -16,7 +16,7 @@ namespace {
 
 using Grid = MicrofacetCosineGrid;
 
-void printTable(const char* name, bool reflected) {
+void printTable(const char* name) {
     std::printf("inline constexpr std::int16_t %s[] = {\n", name);
     for (int j = 0; j < Grid::kRoughness; ++j) {
         const double roughness = j / (Grid::kRoughness - 1.0);
@@ -28,7 +28,7 @@ void printTable(const char* name, bool reflected) {
                 (GgxAlbedoGrid::coordinate(middle, alpha, 0.0) < i / (Grid::kMu - 1.0) ? low : high) = middle;
             }
             const double mu = std::max(high, 1e-7);
-            for (const double c : test::referenceCosines(mu, alpha, alpha, 0, reflected))
+            for (const double c : test::referenceCosines(mu, alpha, alpha))
                 std::printf("%.0f,", std::clamp((c - mu) / alpha * Grid::kScale, -32767.0, 32767.0));
         }
         std::printf("\n");
@@ -43,6 +43,5 @@ int main() {
     std::printf("// Made by tools/make_microfacet_cosines.cpp. Units of 1/%g; the layout is MicrofacetCosineGrid's: "
                 "[roughness][mu][point].\n",
                 abbe::MicrofacetCosineGrid::kScale);
-    abbe::printTable("kMicrofacetCosines", true);
-    abbe::printTable("kVisibleCosines", false);
+    abbe::printTable("kMicrofacetCosines");
 }

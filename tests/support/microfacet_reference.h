@@ -11,10 +11,8 @@
 
 namespace abbe::test {
 
-// Cosines at the Gauss points of the share of the reflected light, or of all visible microfacets; see
-// materials/microfacet_cosines.h.
-inline std::array<double, 8> referenceCosines(double mu, double alphaX, double alphaY, double azimuth = 0,
-                                              bool reflected = true) {
+// Cosines at the Gauss points of the share of the reflected light; see materials/microfacet_cosines.h.
+inline std::array<double, 8> referenceCosines(double mu, double alphaX, double alphaY, double azimuth = 0) {
     const ReferenceGgx ggx{alphaX, alphaY};
     const double sine = std::sqrt(1 - mu * mu);
     const Vec3d wo{sine * std::cos(azimuth), sine * std::sin(azimuth), mu};
@@ -29,8 +27,8 @@ inline std::array<double, 8> referenceCosines(double mu, double alphaX, double a
         const Vec3d m = ggx.visibleNormal(wo, u, 1 - (1 - t) * (1 - t) * (1 - t));
         const double c = dot(wo, m);
         const Vec3d wi = m * (2 * c) - wo;
-        if (reflected && !(wi.z > 0)) continue;
-        const double kept = reflected ? ggx.G2(wo, wi) / ggx.G1(wo) : 1;
+        if (!(wi.z > 0)) continue;
+        const double kept = ggx.G2(wo, wi) / ggx.G1(wo);
         events.push_back({std::clamp(c, 0.0, 1.0), (1 - t) * (1 - t) * kept});
         total += events.back().share;
     }

@@ -19,9 +19,12 @@ struct Furnace {
     int count = 0;
     std::string where, whereWithin;
 
-    // `turned`: seen across what it is stretched along.
-    void add(const OpenPbrParams& p, int samples, bool turned = false) {
-        const BsdfUnderTest b = openPbr(p, describe(p));
+    // `turned`: seen across what it is stretched along; `outside`: index of what lies there, null: air.
+    void add(const OpenPbrParams& p, int samples, bool turned = false, const Curve* outside = nullptr) {
+        BsdfUnderTest b = openPbr(p, describe(p));
+        SurfaceHit hit;
+        hit.outside = outside;
+        if (outside) b.bsdf = b.material->bsdf(hit, Wavelengths::single(550), *b.arena);
         for (const double degrees : {5.0, 40.0, 65.0, 80.0, 87.0}) {
             const Vec3 w = directionAt(degrees), wo = turned ? Vec3{w.y, w.x, w.z} : w;
             note(std::abs(albedo(*b.bsdf, wo, samples) - 1), b.name, degrees, worst, where);
@@ -68,8 +71,28 @@ TEST_CASE("white furnace over the cube: stretched highlights") {
     CHECK(furnace.worst < 0.005);
 }
 
-// The tables are made for these widths; film and coat are added as to round ones.
-TEST_CASE("white furnace: stretched rough glass, from both sides") {
+// Chosen corners: where other microfacets stop what is reflected far more often than what goes through, or less.
+TEST_CASE("white furnace: film and coat on rough glass, from both sides") {
+    std::deque<ConstantCurve> curves;
+    Furnace furnace;
+    for (const double ior : {1.1, 1.5, 2.4})
+        for (const double roughness : {0.2, 0.5, 0.85, 1.0})
+            for (const double cover : {1.0, 2.0, 3.0}) {
+                OpenPbrParams p = whiteOpenPbr();
+                p.transmissionWeight = number(1), p.specularRoughness = number(roughness);
+                p.specularIor = &curves.emplace_back(ior);
+                p.coatWeight = number(cover != 2), p.coatIor = cover == 1 ? 2 : 1.5;
+                p.thinFilmWeight = number(cover != 1), p.thinFilmIor = 1 + 0.35 * cover;
+                p.thinFilmThickness = cover * 150e-9;
+                furnace.add(p, 8000);
+            }
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+    CHECK(furnace.worstWithin < 0.005);
+    CHECK(furnace.sum / furnace.count < 0.0006);
+}
+
+TEST_CASE("white furnace: stretched rough glass, from both sides, in air and in water") {
     RandomOpenPbr cube(5);
     Furnace bare, covered;
     for (int i = 0; i < 12; ++i) {
@@ -77,14 +100,14 @@ TEST_CASE("white furnace: stretched rough glass, from both sides") {
         p.geometryThinWalled = false;
         p.baseMetalness = p.subsurfaceWeight = number(0), p.transmissionWeight = number(1);
         if (i % 3 > 0) p.coatWeight = p.thinFilmWeight = number(0);
-        (i % 3 > 0 ? bare : covered).add(p, 4000, i % 2);
+        (i % 3 > 0 ? bare : covered).add(p, 4000, i % 2, i % 4 < 2 ? &flat(1.33) : nullptr);
     }
     bare.report();
     covered.report();
-    CHECK(bare.worst < 0.005);
+    CHECK(bare.worst < 0.01);
     CHECK(bare.worstWithin < 0.01);
-    CHECK(covered.worst < 0.02);
-    CHECK(covered.worstWithin < 0.03);
+    CHECK(covered.worst < 0.005);
+    CHECK(covered.worstWithin < 0.01);
 }
 
 TEST_CASE("no surface returns more than it receives, at any wavelength") {
