@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include "app/argument_values.h"
+#include "app/command_line_compare.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
@@ -66,13 +67,6 @@ Examples:
   abbe convert room.exr room.png
   abbe convert room.exr room.png --exposure 1.5 --view Raw)";
 
-constexpr const char* kCompareHelp = R"(Measures how much two images differ.
-
-Examples:
-  abbe compare room.exr reference.exr
-  abbe compare room.exr a.exr --ref b.exr      a and b from different seeds: their noise cancels
-  abbe compare --threshold 0 a.exr b.exr       fails unless all pixels are equal)";
-
 constexpr const char* kVolumeHelp = R"(Inspects, makes and converts OpenVDB volumes.
 
 Examples:
@@ -94,7 +88,7 @@ class Reader {
         addExplain();
         addInfo();
         addConvert();
-        addCompare();
+        addCompareArguments(*add("compare", kCompareHelp), compare_, common_.json);
         addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
     }
 
@@ -162,7 +156,6 @@ class Reader {
     void addExplain();
     void addInfo();
     void addConvert();
-    void addCompare();
 
     // The command, or the action of a command that has some.
     const CLI::App* chosenCommand() const {
@@ -285,18 +278,6 @@ void Reader::addConvert() {
     c->add_option("--bits", convert_.bits, "8 or 16 bits per component")
         ->check(CLI::IsMember({8, 16}).description(""))
         ->type_name("N");
-}
-
-void Reader::addCompare() {
-    CLI::App* c = add("compare", kCompareHelp);
-    c->add_option("image", compare_.image, "EXR")->required()->type_name("");
-    c->add_option("other", compare_.other, "EXR to compare with")->required()->type_name("");
-    c->add_option("--ref", compare_.reference, "Second reference of another seed: the references' noise cancels")
-        ->type_name("FILE");
-    c->add_option("--threshold", compare_.threshold, "Exit with 4 when relMSE is larger")
-        ->check(CLI::NonNegativeNumber.description(""))
-        ->type_name("RELMSE");
-    addJson(c);
 }
 
 // The flag that an unknown one probably means.

@@ -1,66 +1,185 @@
-#include "app/json.h"
+#include "app/compare_figures.h"
+#include "app/compare_page.h"
 #include "app/options.h"
-#include "io/image_compare.h"
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace abbe {
 
 namespace {
 
-struct Figures {
-    ImageDifference difference;
-    double relMse = 0; // the one that counts: unbiased with two references
-    bool unbiased = false;
+// The images under test, what they are measured against, and the result.
+struct Comparison {
+    std::vector<CompareImage> images;     // one or two
+    std::vector<CompareImage> references; // one or two
+    CompareImage reference;               // their mean
+    std::vector<CompareFigures> figures;  // of each image
 };
 
-std::string json(const Figures& f) {
-    const ImageDifference& d = f.difference;
-    return Json::object({{"mse", d.mse},
-                         {"rel_mse", f.relMse},
-                         {"unbiased", f.unbiased},
-                         {"rel_mse_without_tail", d.relMseWithoutTail},
-                         {"psnr", d.psnr},
-                         {"maximum", d.maximum},
-                         {"mean_ratio", d.meanRatio},
-                         {"non_finite", d.nonFinite}})
-               .text() +
-           "\n";
+// `compare IMAGE OTHER` measures IMAGE against OTHER; with --ref both are measured against the references.
+Comparison read(const CompareOptions& options) {
+    Comparison c;
+    c.images.push_back(CompareImage::read(options.image));
+    auto& others = options.references.empty() ? c.references : c.images;
+    if (options.other) others.push_back(CompareImage::read(*options.other));
+    for (const std::string& path : options.references) c.references.push_back(CompareImage::read(path));
+    return c;
 }
 
-std::string table(const Figures& f) {
-    const ImageDifference& d = f.difference;
-    return fmt::format("relMSE      {:.6g}{}\n"
-                       "  without the worst 0.1 % of pixels  {:.6g}\n"
-                       "MSE         {:.6g}\n"
-                       "PSNR        {:.2f} dB\n"
-                       "largest     {:.6g}\n"
-                       "mean ratio  {:.6f}\n"
-                       "not finite  {} pixels\n",
-                       f.relMse, f.unbiased ? " (noise of the references cancelled)" : "", d.relMseWithoutTail, d.mse,
-                       d.psnr, d.maximum, d.meanRatio, d.nonFinite);
+std::optional<std::string> fault(const Comparison& c) {
+    const CompareImage& first = c.references.front();
+    for (const auto* images : {&c.images, &c.references})
+        for (const CompareImage& image : *images) {
+            if (image.picture.rgb.empty()) return fmt::format("`{}` has no pixels", image.path);
+            if (const auto found = comparisonFault(image.picture, first.picture))
+                return fmt::format("`{}` and `{}` cannot be compared: {}", image.path, first.path, *found);
+        }
+    return std::nullopt;
+}
+
+// Why a threshold cannot be judged, or nothing.
+std::optional<std::string> thresholdFault(const CompareOptions& options, const Comparison& c) {
+    for (const CompareThreshold& threshold : options.thresholds) {
+        if (threshold.figure != "agreement") continue;
+        for (const auto* images : {&c.images, &c.references})
+            for (const CompareImage& image : *images)
+                if (image.variance.empty())
+                    return fmt::format("`--threshold agreement` needs the channel variance.Y in every image, and `{}` "
+                                       "has none (the film writes it for two replicates or more)",
+                                       image.path);
+    }
+    return std::nullopt;
+}
+
+char letter(std::size_t image) { return static_cast<char>('a' + image); }
+
+// The image that a figure puts nearer to the reference, or nothing for equal ones and for one image.
+std::optional<std::size_t> nearer(const Comparison& c, const CompareFigure& figure) {
+    if (c.figures.size() < 2) return std::nullopt;
+    double a = figure.value(c.figures[0]), b = figure.value(c.figures[1]);
+    if (figure.name == std::string_view("relmse") && c.figures[0].unbiased) a = std::abs(a), b = std::abs(b);
+    if (std::isnan(a) || std::isnan(b) || a == b) return std::nullopt;
+    return (figure.atLeast ? a > b : a < b) ? 0 : 1;
+}
+
+std::string table(const Comparison& c) {
+    std::string text;
+    const auto line = [&](std::string_view label, const std::vector<std::string>& cells) {
+        text += fmt::format("{:<30}", label);
+        for (const std::string& cell : cells) text += fmt::format("{:>14}", cell);
+        text += '\n';
+    };
+    if (c.images.size() == 2) {
+        text += fmt::format("a          {}\nb          {}\n", c.images[0].path, c.images[1].path);
+        text += fmt::format("reference  {}\n", c.reference.path);
+        line("", {"a", "b", "nearer"});
+    }
+    for (const CompareFigure& figure : compareFigures()) {
+        if (figure.name == std::string_view("agreement")) continue; // the verdicts below say it
+        std::vector<std::string> cells;
+        for (const CompareFigures& figures : c.figures) cells.push_back(figure.text(figures));
+        if (const auto best = nearer(c, figure)) cells.emplace_back(1, letter(*best));
+        line(figure.label, cells);
+        if (figure.name == std::string_view("relmse") && c.figures[0].unbiased)
+            text += "  (the noise of the references cancels)\n";
+    }
+    line("mean ratio", [&] {
+        std::vector<std::string> cells;
+        for (const CompareFigures& f : c.figures) cells.push_back(fmt::format("{:.6f}", f.difference.meanRatio));
+        return cells;
+    }());
+    return text;
+}
+
+std::string verdicts(const Comparison& c) {
+    std::string text;
+    for (std::size_t i = 0; i < c.figures.size(); ++i) {
+        const std::string who = c.images.size() == 2 ? fmt::format("{}: ", letter(i)) : "";
+        const auto& t = c.figures[i].tiles;
+        if (!t) continue;
+        text += fmt::format("{}{} ({} tiles of 8×8; the scores have a mean of {:.3f} and a deviation of {:.3f}; "
+                            "p = {:.2g} for their distribution, {:.2g} for the largest)\n",
+                            who, t->verdict(), t->tiles, t->mean, t->deviation, t->kolmogorovProbability,
+                            t->largestProbability);
+    }
+    return text;
+}
+
+// The thresholds that an image exceeds, one line each.
+std::vector<std::string> exceeded(const CompareOptions& options, const Comparison& c) {
+    std::vector<std::string> lines;
+    for (const CompareThreshold& threshold : options.thresholds)
+        for (std::size_t i = 0; i < c.figures.size(); ++i) {
+            const CompareFigure& figure = *findCompareFigure(threshold.figure);
+            if (figure.within(c.figures[i], threshold.value)) continue;
+            lines.push_back(fmt::format("{} of `{}` is {}, not {} {:g}", figure.name, c.images[i].path,
+                                        figure.text(c.figures[i]), figure.atLeast ? "at least" : "at most",
+                                        threshold.value));
+        }
+    return lines;
+}
+
+std::string json(const Comparison& c, const std::vector<std::string>& failures) {
+    Json all = c.figures[0].json();
+    if (c.images.size() == 2) {
+        Json best = Json::object();
+        for (const CompareFigure& figure : compareFigures())
+            if (const auto image = nearer(c, figure)) best.set(figure.name, std::string(1, letter(*image)));
+        all = Json::object({{"a", c.figures[0].json().set("path", c.images[0].path)},
+                            {"b", c.figures[1].json().set("path", c.images[1].path)},
+                            {"nearer", best}});
+    }
+    Json references = Json::list(), exceeding = Json::list();
+    for (const CompareImage& reference : c.references) references.push(reference.path);
+    for (const std::string& failure : failures) exceeding.push(failure);
+    return all.set("references", references).set("exceeded", exceeding).text() + "\n";
+}
+
+void writePage(const std::string& path, const Comparison& c, const Console& console) {
+    ComparePage page;
+    const bool rivals = c.images.size() == 2;
+    const auto fileName = [](const std::string& p) { return std::filesystem::path(p).filename().string(); };
+    for (std::size_t i = 0; i < c.images.size(); ++i) {
+        page.images.push_back({fileName(c.images[i].path), c.images[i].path, i == 0 ? 'A' : 'B', &c.images[i].picture});
+        if (c.figures[i].flip) page.maps.push_back({i, c.figures[i].flip->map});
+    }
+    const std::string name = c.references.size() == 2 ? "mean of the references" : fileName(c.reference.path);
+    page.images.push_back({name, c.reference.path, rivals ? 'R' : 'B', &c.reference.picture});
+    page.title = fmt::format("{} – {}", page.images.front().name, page.images.back().name);
+    for (const CompareFigure& figure : compareFigures()) {
+        std::vector<std::string> cells;
+        for (const CompareFigures& figures : c.figures) cells.push_back(figure.text(figures));
+        page.figures.push_back({figure.label, std::move(cells)});
+    }
+    page.verdict = verdicts(c);
+    writeComparePage(path, page);
+    const RgbImage& picture = c.reference.picture;
+    if (const int block = pageBlock(picture.width(), picture.height()); block > 1)
+        console.line(fmt::format("the images are too large for a page: it shows means of {0}×{0} pixels", block));
+    console.line(fmt::format("page {}", path));
 }
 
 } // namespace
 
 ExitCode run(const CompareOptions& options, const CommonOptions& common) {
-    const RgbImage image = readImage(options.image), other = readImage(options.other);
-    std::optional<RgbImage> second;
-    if (options.reference) second = readImage(*options.reference);
-    auto fault = comparisonFault(image, other);
-    if (!fault && second) fault = comparisonFault(image, *second);
-    if (fault) {
-        common.console.error(*fault);
+    Comparison c = read(options);
+    auto found = fault(c);
+    if (!found) found = thresholdFault(options, c);
+    if (found) {
+        common.console.error(*found);
         return ExitCode::faulty;
     }
-    Figures figures;
-    figures.difference = compare(image, other);
-    figures.unbiased = second.has_value();
-    figures.relMse = second ? unbiasedRelMse(image, other, *second) : figures.difference.relMse;
-    common.console.data(common.json ? json(figures) : table(figures));
-    // Written so that NaN, the result of pixels that are not finite, fails.
-    const bool within = !options.threshold || figures.relMse <= *options.threshold;
-    return within ? ExitCode::done : ExitCode::threshold;
+    c.reference = CompareImage::mean(c.references);
+    for (const CompareImage& image : c.images)
+        c.figures.push_back(CompareFigures::measure(image, c.references, c.reference, options.pixelsPerDegree));
+    const std::vector<std::string> failures = exceeded(options, c);
+    common.console.data(common.json ? json(c, failures) : table(c) + verdicts(c));
+    if (options.html) writePage(*options.html, c, common.console);
+    for (const std::string& failure : failures) common.console.line("beyond the threshold: " + failure);
+    return failures.empty() ? ExitCode::done : ExitCode::threshold;
 }
 
 } // namespace abbe

@@ -4,6 +4,7 @@
 #include "app/console.h"
 #include "app/load.h"
 #include "app/volume_options.h"
+#include "io/flip.h"
 #include "scene/build.h"
 
 #include <optional>
@@ -63,10 +64,19 @@ struct ConvertOptions {
     int bits = 8;
 };
 
+// A bound on a figure of a comparison; exceeding it is exit code 4.
+struct CompareThreshold {
+    std::string figure; // a name that findCompareFigure knows
+    double value = 0;
+};
+
 struct CompareOptions {
-    std::string image, other;
-    std::optional<std::string> reference;
-    std::optional<double> threshold; // of relMSE
+    std::string image;
+    std::optional<std::string> other;    // there, or a reference is
+    std::vector<std::string> references; // none: `other` is the reference
+    std::vector<CompareThreshold> thresholds;
+    std::optional<std::string> html;
+    double pixelsPerDegree = kFlipPixelsPerDegree;
 };
 
 using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,

@@ -2,10 +2,9 @@
 
 #include "base/check.h"
 #include "io/display_rgb.h"
+#include "spectrum/lab.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace abbe {
 
@@ -13,28 +12,6 @@ namespace {
 
 constexpr double kMeanLuminance = 0.18;
 constexpr int kTile = 8;
-constexpr double kDegree = std::numbers::pi / 180;
-
-double labCurve(double t) {
-    constexpr double kKnee = 6.0 / 29;
-    return t > kKnee * kKnee * kKnee ? std::cbrt(t) : t / (3 * kKnee * kKnee) + 4.0 / 29;
-}
-
-double power7(double v) { return std::pow(v, 7); }
-
-// Hue in degrees, 0 … 360; 0 for greys.
-double hueOf(double a, double b) {
-    if (a == 0 && b == 0) return 0;
-    const double hue = std::atan2(b, a) / kDegree;
-    return hue < 0 ? hue + 360 : hue;
-}
-
-// The mean of two hues along the shorter arc [Sharma2005, eq. 14]. Requires colours that are not grey.
-double meanHue(double h1, double h2) {
-    const double sum = h1 + h2;
-    if (std::abs(h1 - h2) <= 180) return sum / 2;
-    return sum < 360 ? (sum + 360) / 2 : (sum - 360) / 2;
-}
 
 // Turns the RGB of an image into Lab.
 class Viewing {
@@ -90,35 +67,6 @@ Summary summarise(std::vector<float> values) {
 }
 
 } // namespace
-
-Lab toLab(const Xyz& color, const Xyz& white) {
-    const double x = labCurve(color.x / white.x), y = labCurve(color.y / white.y), z = labCurve(color.z / white.z);
-    return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
-}
-
-// [Sharma2005, eqs. 2 to 22].
-double deltaE2000(const Lab& p, const Lab& q) {
-    const double meanChroma = (std::hypot(p.a, p.b) + std::hypot(q.a, q.b)) / 2;
-    const double g = 0.5 * (1 - std::sqrt(power7(meanChroma) / (power7(meanChroma) + power7(25))));
-    const double a1 = (1 + g) * p.a, a2 = (1 + g) * q.a;
-    const double c1 = std::hypot(a1, p.b), c2 = std::hypot(a2, q.b);
-    const double h1 = hueOf(a1, p.b), h2 = hueOf(a2, q.b);
-    const bool grey = c1 * c2 == 0;
-    double dh = grey ? 0 : h2 - h1;
-    if (dh > 180) dh -= 360;
-    if (dh < -180) dh += 360;
-    const double dL = q.l - p.l, dC = c2 - c1, dH = 2 * std::sqrt(c1 * c2) * std::sin(dh / 2 * kDegree);
-
-    const double l = (p.l + q.l) / 2, c = (c1 + c2) / 2, h = grey ? h1 + h2 : meanHue(h1, h2);
-    const double t = 1 - 0.17 * std::cos((h - 30) * kDegree) + 0.24 * std::cos(2 * h * kDegree) +
-                     0.32 * std::cos((3 * h + 6) * kDegree) - 0.20 * std::cos((4 * h - 63) * kDegree);
-    const double turn = 30 * std::exp(-square((h - 275) / 25));
-    const double sL = 1 + 0.015 * square(l - 50) / std::sqrt(20 + square(l - 50));
-    const double sC = 1 + 0.045 * c, sH = 1 + 0.015 * c * t;
-    const double rotation = -std::sin(2 * turn * kDegree) * 2 * std::sqrt(power7(c) / (power7(c) + power7(25)));
-    const double x = dL / sL, y = dC / sC, z = dH / sH;
-    return std::sqrt(std::max(0.0, x * x + y * y + z * z + rotation * y * z));
-}
 
 ColorDifference colorDifference(const RgbImage& image, const RgbImage& reference) {
     ABBE_CHECK(image.rgb.size() == reference.rgb.size() && !image.rgb.empty());

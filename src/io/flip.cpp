@@ -2,9 +2,9 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "io/color_difference.h"
 #include "io/display_rgb.h"
 #include "io/flip_filters.h"
+#include "spectrum/lab.h"
 
 #include <algorithm>
 #include <array>
