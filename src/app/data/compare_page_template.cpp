@@ -20,7 +20,7 @@ main { flex: 1; display: flex; min-height: 0; }
 #stage { flex: 1; position: relative; min-width: 0; background: #2b2b2b; }
 canvas { position: absolute; inset: 0; width: 100%; height: 100%; cursor: crosshair; touch-action: none; outline: none; }
 #label { position: absolute; left: 8px; bottom: 6px; padding: 1px 6px; background: #000a; pointer-events: none; }
-aside { width: 400px; overflow: auto; padding: 8px 12px; border-left: 1px solid var(--line); }
+aside { width: 430px; overflow: auto; padding: 8px 12px; border-left: 1px solid var(--line); }
 button { font: inherit; color: inherit; background: #333; border: 1px solid #4a4a4a; border-radius: 3px;
          padding: 2px 8px; cursor: pointer; max-width: 24em; overflow: hidden; text-overflow: ellipsis;
          white-space: nowrap; }
@@ -29,7 +29,9 @@ input[type="range"] { width: 170px; vertical-align: middle; }
 h2 { font-size: 13px; margin: 14px 0 4px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 1px 4px; border-bottom: 1px solid #2c2c2c; }
-th:first-child, td:first-child { text-align: left; overflow-wrap: anywhere; }
+th:first-child, td:first-child { text-align: left; }
+#probe td:first-child { max-width: 110px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+#figures th { max-width: 100px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 th, .soft { color: var(--soft); font-weight: normal; }
 kbd { background: #333; border-radius: 3px; padding: 0 4px; }
 #bar { height: 10px; margin-top: 4px; }
@@ -232,9 +234,13 @@ function drawLegend() {
     byId("scale").replaceChildren(...scale[1].map(text => element("span", text)));
 }
 
-const digits = v => !Number.isFinite(v) ? String(v) : v === 0 ? "0" : v.toPrecision(6);
+const digits = v => {
+    const size = Math.abs(v);
+    return !Number.isFinite(v) || v === 0 ? String(v) : size >= 1e-3 && size < 1e6 ? v.toPrecision(6) : v.toExponential(4);
+};
 function row(name, cells, head) {
     const tr = document.createElement("tr");
+    tr.title = name;
     tr.append(element(head ? "th" : "td", name), ...cells.map(text => element(head ? "th" : "td", text)));
     return tr;
 }
