@@ -20,7 +20,7 @@ main { flex: 1; display: flex; min-height: 0; }
 #stage { flex: 1; position: relative; min-width: 0; background: #2b2b2b; }
 canvas { position: absolute; inset: 0; width: 100%; height: 100%; cursor: crosshair; touch-action: none; outline: none; }
 #label { position: absolute; left: 8px; bottom: 6px; padding: 1px 6px; background: #000a; pointer-events: none; }
-aside { width: 430px; overflow: auto; padding: 8px 12px; border-left: 1px solid var(--line); }
+aside { width: 440px; overflow: auto; padding: 8px 12px; border-left: 1px solid var(--line); }
 button { font: inherit; color: inherit; background: #333; border: 1px solid #4a4a4a; border-radius: 3px;
          padding: 2px 8px; cursor: pointer; max-width: 24em; overflow: hidden; text-overflow: ellipsis;
          white-space: nowrap; }
@@ -34,6 +34,7 @@ th:first-child, td:first-child { text-align: left; }
 #figures th { max-width: 100px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 th, .soft { color: var(--soft); font-weight: normal; }
 kbd { background: #333; border-radius: 3px; padding: 0 4px; }
+#verdict { white-space: pre-line; }
 #bar { height: 10px; margin-top: 4px; }
 #scale { display: flex; justify-content: space-between; }
 </style>
@@ -91,7 +92,7 @@ function floatsOf(bytes) {
 const images = facts.images.map((image, i) => ({...image, rgb: floatsOf(bytesOf("image" + i))}));
 const maps = facts.maps.map((map, i) => ({...map, values: bytesOf("map" + i)}));
 
-const state = {view: "image", left: 0, right: 1, exposure: 0, wipe: 0.5, zoom: 0, x: width / 2, y: height / 2,
+const state = {view: "image", left: 0, right: images.length - 1, exposure: 0, wipe: 0.5, zoom: 0, x: width / 2, y: height / 2,
                held: false, pixel: null};
 const luminance = (rgb, i) => facts.luminance[0] * rgb[i] + facts.luminance[1] * rgb[i + 1] +
                               facts.luminance[2] * rgb[i + 2];
@@ -236,7 +237,7 @@ function drawLegend() {
 
 const digits = v => {
     const size = Math.abs(v);
-    return !Number.isFinite(v) || v === 0 ? String(v) : size >= 1e-3 && size < 1e6 ? v.toPrecision(6) : v.toExponential(4);
+    return !Number.isFinite(v) || v === 0 ? String(v) : size >= 1e-3 && size < 1e6 ? v.toPrecision(5) : v.toExponential(4);
 };
 function row(name, cells, head) {
     const tr = document.createElement("tr");

@@ -53,14 +53,18 @@ TEST_CASE("tile test: false alarms are as rare as they should be, and a bias of 
         for (const Noise noise : {Noise::normal, Noise::exponential}) {
             std::mt19937 random(static_cast<unsigned>(100 * replicates + static_cast<int>(noise)));
             int alarms = 0, fivePercent = 0;
+            double deviation = 0;
             for (int i = 0; i < 200; ++i) {
                 const TileTest t = test(random, replicates, 1, noise);
                 alarms += t.probability() < 0.01;
+                deviation += t.deviation / 200;
                 fivePercent += t.kolmogorovProbability < 0.05;
             }
-            MESSAGE(replicates << " replicates: " << alarms << " alarms, " << fivePercent << " below 5 %");
+            MESSAGE(replicates << " replicates: " << alarms << " alarms, " << fivePercent << " below 5 %, deviation "
+                               << deviation);
             CHECK(alarms <= 12);
-            CHECK(fivePercent <= 22); // 10 expected
+            CHECK(std::abs(deviation - 1) < (noise == Noise::normal ? 0.01 : 0.02)); // ± 0.003, one standard error
+            CHECK(fivePercent <= 22);                                                // 10 expected
             int found = 0;
             for (int i = 0; i < 20; ++i) found += test(random, replicates, 1.01, noise).probability() < 0.01;
             CHECK(found >= 19);

@@ -89,6 +89,33 @@ TEST_CASE("HDR-FLIP of a picture is what the formulas give, exposures included")
     CHECK(*std::max_element(flip.map.begin(), flip.map.end()) == about(0.8742133064915553));
 }
 
+TEST_CASE("the filters of FLIP are those of the papers, weight by weight") {
+    const FlipFilters filters(kFlipPixelsPerDegree);
+    CHECK(filters.radius() == 10);
+    constexpr int width = 41;
+    FlipPlane impulse(width, 21 + 2 * filters.radius());
+    impulse.row(10 + filters.radius())[20] = 1;
+    const auto close = [](const std::vector<float>& values, int dx, int dy, double expected) {
+        return std::abs(values[static_cast<std::size_t>(width * (10 + dy) + 20 + dx)] - expected) < 1e-6 * expected;
+    };
+    const std::vector<float> a = filters.achromatic(impulse), r = filters.redGreen(impulse);
+    CHECK(close(a, 0, 0, 0.14881092959817405));
+    CHECK(close(a, 1, 0, 0.09323966738242204));
+    CHECK(close(a, 3, 2, 0.0003413432714894462));
+    CHECK(close(r, 0, 0, 0.13196440960021213));
+    CHECK(close(r, 0, 1, 0.08717816011767025));
+    CHECK(close(r, 2, 3, 0.0006023074826656456));
+    const std::vector<float> y = filters.blueYellow(impulse);
+    CHECK(close(y, 0, 0, 0.02000057943121686));
+    CHECK(close(y, 1, 0, 0.018726737222749083));
+    CHECK(close(y, -3, 2, 0.008654079040295384));
+    const std::vector<float> edges = filters.edges(impulse), points = filters.points(impulse);
+    CHECK(close(edges, 3, 2, 0.02972793482988894));
+    CHECK(close(edges, 3, 0, 0.03223659501493324));
+    CHECK(close(points, 3, -2, 0.009342404805855986));
+    CHECK(close(points, 0, 3, 0.02437311212612898));
+}
+
 TEST_CASE("FLIP of constant pictures is the colour difference alone") {
     const auto flip = [](const Vec3d& a, const Vec3d& b) {
         return ldrFlip(constant(32, 32, a), constant(32, 32, b), kFlipPixelsPerDegree);
