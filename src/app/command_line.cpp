@@ -136,7 +136,7 @@ class Reader {
     void addView(CLI::App* c, ViewOptions& view) {
         c->add_option("--display", view.display, "OCIO display of the PNG")->type_name("NAME");
         c->add_option("--view", view.view, "OCIO view of the PNG")->type_name("NAME");
-        c->add_option("--ocio", view.config, "OCIO configuration to use instead of the built-in one")
+        c->add_option("--ocio", view.config, "OCIO configuration; without it $OCIO, else the built-in one")
             ->type_name("FILE");
         c->add_option("--exposure", view.exposure, "Brighten the PNG by so many stops")->type_name("STOPS");
     }

@@ -8,6 +8,7 @@
 #include "spectrum/color_space.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -24,6 +25,27 @@ void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics&
     for (const std::string& channel : report.leftOut)
         diagnostics.warning("W0631", {},
                             fmt::format("`{}` is an ACES container, which cannot hold `{}`", path, channel));
+}
+
+// Calls `use` with the configuration's file, empty for the built-in one.
+template <typename Use> auto withConfig(const ViewOptions& options, const Use& use) {
+    if (options.config == OcioView::builtInConfig) return use(std::string());
+    if (!options.config.empty()) return use(options.config);
+    const char* variable = std::getenv("OCIO");
+    if (!variable || !*variable) return use(std::string());
+    try {
+        return use(std::string(variable));
+    } catch (const IoError& e) {
+        throw IoError(fmt::format("{}\n($OCIO names `{}`; `--ocio FILE` takes another configuration, `--ocio {}` the "
+                                  "built-in one)",
+                                  e.what(), variable, OcioView::builtInConfig));
+    }
+}
+
+OcioView makeView(ViewInput input, const ViewOptions& o) {
+    const std::string display = o.display.empty() ? OcioView::defaultDisplay : o.display;
+    const std::string view = o.view.empty() ? OcioView::defaultView : o.view;
+    return withConfig(o, [&](const std::string& file) { return OcioView(input, display, view, file); });
 }
 
 } // namespace
@@ -64,16 +86,42 @@ void writeImage(const std::string& path, const ResolvedImage& image, const FilmS
     picture.b = image.b;
     if (!image.variance.empty()) picture.more.push_back({"variance.Y", image.variance});
     picture.chromaticities = Chromaticities::of(rgbSpace(film.space));
+    picture.adoptedNeutral = adoptedNeutral(film.space);
+    picture.acesContainer = film.acesContainer;
     picture.compression = findExrCompression(film.compression).value_or(ExrCompression::zip);
     picture.half = film.half;
     picture.attributes = std::move(attributes);
+    picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
     warnOfLosses(writeExr(path, picture), path, diagnostics);
 }
 
+void checkView(const ViewOptions& options, bool png) {
+    if (png)
+        makeView(ViewInput::aces2065_1, options);
+    else
+        viewIdentity(options);
+}
+
+std::vector<ImageAttribute> viewIdentity(const ViewOptions& options) {
+    const OcioIdentity config = withConfig(options, [](const std::string& file) { return OcioView::identify(file); });
+    return {{"abbe.ocio", config.name}, {"abbe.ocioHash", config.hash}};
+}
+
+void convertToAces(std::span<float> rgb, const RgbSpace& space, Chromaticity neutral) {
+    const Matrix3 m = rgb::ap0.fromXyz() * adaptation(whiteXyz(neutral), whiteXyz(rgb::ap0.white)) * space.toXyz();
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
+        const auto v = m.apply<Vec3d>(Vec3d(rgb[i], rgb[i + 1], rgb[i + 2]));
+        rgb[i] = static_cast<float>(v.x);
+        rgb[i + 1] = static_cast<float>(v.y);
+        rgb[i + 2] = static_cast<float>(v.z);
+    }
+}
+
 void writeDisplayPng(const std::string& path, DisplayPicture picture, const ViewOptions& options, int bits) {
-    const ViewInput input = picture.space == OutputSpace::acescg ? ViewInput::acescg : ViewInput::aces2065_1;
-    const OcioView view(input, options.display.empty() ? OcioView::defaultDisplay : options.display,
-                        options.view.empty() ? OcioView::defaultView : options.view, options.config);
+    const bool aces = picture.space == OutputSpace::aces2065_1 || picture.space == OutputSpace::acescg;
+    if (!aces) convertToAces(picture.rgb, rgbSpace(picture.space), adoptedNeutral(picture.space));
+    const OcioView view =
+        makeView(picture.space == OutputSpace::acescg ? ViewInput::acescg : ViewInput::aces2065_1, options);
     const auto gain = static_cast<float>(std::exp2(options.exposure));
     if (gain != 1)
         for (float& v : picture.rgb) v *= gain;
@@ -87,10 +135,10 @@ void writeDisplayPng(const std::string& path, DisplayPicture picture, const View
     png.texts = {{"Software", "abbe " + versionNumber()},
                  {"Display", view.display()},
                  {"View", view.view()},
+                 {"OCIO", view.config().name},
+                 {"OCIO hash", view.config().hash},
                  {"Exposure", fmt::format("{:g} stops", options.exposure)}};
     writePng(path, png);
 }
-
-std::string_view spaceName(OutputSpace space) { return space == OutputSpace::acescg ? "ACEScg" : "ACES2065-1"; }
 
 } // namespace abbe

@@ -2,7 +2,9 @@
 #include "app/json.h"
 #include "app/options.h"
 #include "app/provenance.h"
+#include "io/aces_container.h"
 #include "io/exr_channels.h"
+#include "io/file_bytes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -128,22 +130,37 @@ std::string_view spaceOf(const ExrInfo& info) {
     if (info.chromaticities->matches(rgb::ap0)) return "ACES2065-1";
     if (info.chromaticities->matches(rgb::ap1)) return "ACEScg";
     if (info.chromaticities->matches(rgb::rec709)) return "linear Rec. 709";
+    if (info.chromaticities->matches(rgb::xyz)) return "CIE XYZ";
     return "other";
+}
+
+// Nothing about files that neither are nor claim to be an ACES container.
+std::string containerText(const AcesVerdict& aces) {
+    if (aces.valid()) return "container    ACES (SMPTE ST 2065-4)\n";
+    if (!aces.claimed) return {};
+    std::string text = "container    not ACES, as it claims:\n";
+    for (const std::string& fault : aces.faults) text += fmt::format("             {}\n", fault);
+    return text;
 }
 
 ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     const ExrInfo info = readExrInfo(options.path);
     const std::string hash = pixelHash(options.path, info);
+    const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
     if (common.json) {
         Json channels = Json::list(), attributes = Json::object();
         for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
         for (const ImageAttribute& a : info.attributes) attributes.set(a.name, json(a));
+        Json faults = Json::list();
+        if (aces.claimed)
+            for (const std::string& fault : aces.faults) faults.push(fault);
         const Json object = Json::object({{"window", json(info.window)},
                                           {"display", json(info.display)},
                                           {"channels", std::move(channels)},
                                           {"compression", info.compression},
                                           {"space", spaceOf(info)},
-                                          {"aces_container", info.acesContainer},
+                                          {"aces_container", aces.valid()},
+                                          {"aces_faults", std::move(faults)},
                                           {"pixels", hash},
                                           {"attributes", std::move(attributes)}});
         common.console.data(object.text(true) + "\n");
@@ -152,7 +169,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     std::string s = fmt::format("size         {}×{}\nspace        {}\ncompression  {}\nchannels    ",
                                 info.window.width(), info.window.height(), spaceOf(info), info.compression);
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
-    s += fmt::format("\npixels       {}\n", hash);
+    s += fmt::format("\n{}pixels       {}\n", containerText(aces), hash);
     for (const ImageAttribute& a : info.attributes) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;

@@ -24,7 +24,8 @@ struct CommonOptions {
 
 // A display rendering for PNG files.
 struct ViewOptions {
-    std::string display, view, config; // empty: our own defaults
+    std::string display, view; // empty: our own defaults
+    std::string config;        // OCIO: see image_output.h
     double exposure = 0;               // stops
 };
 

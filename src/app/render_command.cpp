@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "integrators/path_tracer.h"
 #include "io/io_error.h"
-#include "io/ocio_view.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -42,7 +41,7 @@ class RenderRun {
     ExitCode prepare();
     ExitCode checkFilm();
     ExitCode checkOutputs();
-    ExitCode refuse(const char* code, std::string message, std::string help, ExitCode exit);
+    ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
     PixelFilm makeFilm(PixelBounds bounds) const {
         return {bounds, PixelFilter(film_.filter, film_.filterRadius), static_cast<int>(built_.render.replicates)};
     }
@@ -85,16 +84,16 @@ ExitCode RenderRun::load() {
     return loaded_->exitCode();
 }
 
-ExitCode RenderRun::refuse(const char* code, std::string message, std::string help, ExitCode exit) {
+ExitCode RenderRun::refuse(std::string_view code, std::string message, std::string help, ExitCode exit) {
     Diagnostics diagnostics;
-    diagnostics.error(code, {}, std::move(message)).help = std::move(help);
+    diagnostics.error(std::string(code), {}, std::move(message)).help = std::move(help);
     report_->diagnostics(diagnostics, loaded_->sources);
     return exit;
 }
 
 ExitCode RenderRun::checkFilm() {
     for (const FilmFault& fault : findFaults(built_.film))
-        return refuse("E0609", fault.message, fault.help, options_.build.size ? ExitCode::usage : ExitCode::faulty);
+        return refuse(fault.code, fault.message, fault.help, options_.build.size ? ExitCode::usage : ExitCode::faulty);
     film_ = filmSettings(built_.film);
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
     constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
@@ -124,11 +123,7 @@ ExitCode RenderRun::checkOutputs() {
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);
     }
-    if (options_.png) {
-        const ViewOptions& v = options_.view;
-        const OcioView probe(ViewInput::aces2065_1, v.display.empty() ? OcioView::defaultDisplay : v.display,
-                             v.view.empty() ? OcioView::defaultView : v.view, v.config);
-    }
+    checkView(options_.view, options_.png.has_value());
     return ExitCode::done;
 }
 
@@ -175,6 +170,7 @@ void RenderRun::write(const PixelFilm& film) {
     auto attributes =
         provenance({loaded_.get(), &options_.input, &built_, &settings_, &summary_.statistics, common_.commandLine,
                     std::string(spaceName(film_.space)), summary_.noise, seconds, film.replicates()});
+    for (ImageAttribute& a : viewIdentity(options_.view)) attributes.push_back(std::move(a));
     const ResolvedImage image = resolveImage(film, film_, built_.exposure);
     Diagnostics warnings;
     try {

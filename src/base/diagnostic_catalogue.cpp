@@ -112,6 +112,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0441", "an environment image is not finite", "Pixels that are infinite or not a number cannot be rendered; the message counts them. They often come from a division by zero, or from values above 65504 in a half-float file."},
     {"E0451", "an image texture is not finite", "Pixels that are infinite or not a number cannot be part of a texture; the message counts them. Set them to a number in the program that wrote the file."},
     {"E0452", "tiles of different colour spaces", "All tiles of a `<UDIM>` texture are read alike. Without `space=` each file's tag or type says how it is stored, and here they do not agree."},
+    {"E0453", "an ACES container is asked for something else", "`container=aces` writes what SMPTE ST 2065-4 demands: ACES2065-1, 16 bits, no compression. `space`, `compression` and `half` can be left out beside it; other values contradict it."},
     {"W0440", "negative pixels in an environment image", "Radiance cannot be negative. Such pixels, often colours outside of the file's gamut or ringing of a filter, are taken as 0."},
     // E05: layers
     {"E0501", "unknown language edition", "`scene N` names the edition of the language that a file is written in. This version of the program reads edition 1."},
@@ -197,7 +198,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},
     {"W0630", "values beyond half floats", "The film's `output` asks for 16-bit values, whose largest is 65504. Larger ones were written as that."},
-    {"W0631", "a channel was left out", "An ACES container (half, uncompressed, ACES2065-1) holds red, green and blue alone."},
+    {"W0631", "a channel was left out", "An ACES container (`container=aces`) holds red, green and blue alone. Leave out `container` to have an OpenEXR file with everything."},
     {"W0640", "samples were dropped", "A sample that is not finite or is negative never reaches the image: it is left out of its pixel's mean and counted. A few hint at a numerical limit, many at a mistake in the scene or in the program. `--pixel X,Y` repeats one pixel."},
     {"W0641", "a black image", "No light reaches the camera. It may look away from the scene or stand inside something; a light may face the other way or be enclosed; the exposure may be far too low."},
     {"W0642", "endless paths", "Paths that scatter 100000 times are cut, because nothing in the scene absorbs them. Reflectances of exactly 1 in a closed room do this."},

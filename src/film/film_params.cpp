@@ -52,6 +52,27 @@ void checkFilter(const FilmParams& p, std::vector<FilmFault>& faults) {
         faults.push_back({"filter", "the filter's radius must be above 0 and at most 16 pixels", ""});
 }
 
+// An ACES container fixes what the other keys of `output` choose.
+void checkContainer(const FilmParams& p, std::vector<FilmFault>& faults) {
+    if (keyOf(p.output, "container") != "aces") return;
+    constexpr std::pair<std::string_view, std::string_view> kDemanded[] = {
+        {"space", "aces2065-1"}, {"compression", "none"}, {"half", "on"}};
+    for (const auto& [key, demanded] : kDemanded) {
+        const std::string_view given = keyOf(p.output, key);
+        if (given.empty() || given == demanded) continue;
+        faults.push_back({"output", fmt::format("`container=aces` contradicts `{}={}`", key, given),
+                          fmt::format("leave out `{}`: an ACES container has `{}={}`", key, key, demanded), "E0453"});
+    }
+}
+
+OutputSpace spaceOf(const schema::Text& output) {
+    const std::string_view space = keyOf(output, "space");
+    return space == "acescg"   ? OutputSpace::acescg
+           : space == "rec709" ? OutputSpace::rec709
+           : space == "xyz"    ? OutputSpace::xyz
+                               : OutputSpace::aces2065_1;
+}
+
 } // namespace
 
 schema::TypeInfo filmType() {
@@ -85,22 +106,48 @@ schema::TypeInfo filmType() {
     type.fields.push_back(field(FieldType::text, "output", &FilmParams::output)
                               .doc("OpenEXR file to write; without it, the scene's name with .exr.")
                               .example("output \"hero.exr\" space=acescg compression=dwab")
-                              .key({"space", {"aces2065-1", "acescg"}, "RGB encoding; aces2065-1 (AP0) if not given."})
+                              .key({"space",
+                                    {"aces2065-1", "acescg", "rec709", "xyz"},
+                                    "Linear encoding; aces2065-1 (AP0) if not given. Of xyz, R G B hold X Y Z."})
                               .key({"compression",
                                     {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
                                     "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
                               .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
+                              .key({"container",
+                                    {"exr", "aces"},
+                                    "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
                               .synonyms({"filename", "file"}));
     return type;
 }
 
-const RgbSpace& rgbSpace(OutputSpace space) { return space == OutputSpace::acescg ? rgb::ap1 : rgb::ap0; }
+const RgbSpace& rgbSpace(OutputSpace space) {
+    switch (space) {
+    case OutputSpace::acescg:
+        return rgb::ap1;
+    case OutputSpace::rec709:
+        return rgb::rec709;
+    case OutputSpace::xyz:
+        return rgb::xyz;
+    default:
+        return rgb::ap0;
+    }
+}
+
+std::string_view spaceName(OutputSpace space) {
+    constexpr std::string_view kNames[] = {"ACES2065-1", "ACEScg", "linear Rec. 709", "CIE XYZ"};
+    return kNames[static_cast<std::size_t>(space)];
+}
+
+Chromaticity adoptedNeutral(OutputSpace space) {
+    return space == OutputSpace::xyz ? rgb::rec709.white : rgbSpace(space).white;
+}
 
 std::vector<FilmFault> findFaults(const FilmParams& p) {
     std::vector<FilmFault> faults;
     checkSize(p, faults);
     if (faults.empty()) checkCrop(p, faults);
     checkFilter(p, faults);
+    checkContainer(p, faults);
     return faults;
 }
 
@@ -119,9 +166,14 @@ FilmSettings filmSettings(const FilmParams& p) {
     s.filter = *shape;
     s.filterRadius = p.filter.number.value_or(defaultRadius(*shape));
     s.output = p.output.value;
-    if (keyOf(p.output, "space") == "acescg") s.space = OutputSpace::acescg;
+    s.space = spaceOf(p.output);
     if (const auto compression = keyOf(p.output, "compression"); !compression.empty()) s.compression = compression;
     s.half = keyOf(p.output, "half") == "on";
+    s.acesContainer = keyOf(p.output, "container") == "aces";
+    if (s.acesContainer) {
+        s.compression = "none";
+        s.half = true;
+    }
     return s;
 }
 

@@ -22,9 +22,13 @@ struct FilmParams {
 
 schema::TypeInfo filmType();
 
-// Linear RGB encodings of the written image.
-enum class OutputSpace : std::uint8_t { aces2065_1, acescg };
+// Linear encodings of the written image. Of `xyz` R, G, B are X, Y, Z.
+enum class OutputSpace : std::uint8_t { aces2065_1, acescg, rec709, xyz };
 const RgbSpace& rgbSpace(OutputSpace);
+// Name for people: "ACES2065-1".
+std::string_view spaceName(OutputSpace);
+// The chromaticity that looks neutral: the white of the space; of XYZ, which has none, D65 [ColorInterop2026].
+Chromaticity adoptedNeutral(OutputSpace);
 
 // FilmParams as the renderer uses them.
 struct FilmSettings {
@@ -36,6 +40,7 @@ struct FilmSettings {
     OutputSpace space = OutputSpace::aces2065_1;
     std::string compression = "zip"; // as in the scene; a name of io/exr_writer.h
     bool half = false;
+    bool acesContainer = false; // SMPTE ST 2065-4; then the three above are what that asks for
 };
 
 // A rule that the field table cannot express, broken by the value of `field`.
@@ -43,6 +48,7 @@ struct FilmFault {
     std::string_view field;
     std::string message; // one sentence, lower case
     std::string help;
+    std::string_view code = "E0609";
 };
 std::vector<FilmFault> findFaults(const FilmParams&);
 

@@ -13,6 +13,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -124,6 +125,8 @@ ExrInfo describe(const Imf::Header& header, int parts) {
     info.display = fromImf(header.displayWindow());
     info.compression = compressionName(header.compression());
     info.chromaticities = chromaticitiesOf(header);
+    if (const auto* neutral = header.findTypedAttribute<Imf::V2fAttribute>("adoptedNeutral"))
+        info.adoptedNeutral = Chromaticity{neutral->value().x, neutral->value().y};
     constexpr std::array<const char*, 3> kTypes{"uint", "half", "float"};
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
         info.channels.push_back({c.name(), kTypes.at(static_cast<std::size_t>(c.channel().type))});

@@ -21,7 +21,8 @@ struct ExrInfo {
     std::vector<Channel> channels;
     std::string compression; // as in ExrCompression, or what the file says
     std::optional<Chromaticities> chromaticities;
-    bool acesContainer = false;
+    std::optional<Chromaticity> adoptedNeutral;
+    bool acesContainer = false;             // as the file claims: see io/aces_container.h
     int parts = 1;                          // only the first one is described
     std::vector<ImageAttribute> attributes; // the ones of types text, int, float and double
 

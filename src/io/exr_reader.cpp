@@ -24,6 +24,10 @@ RgbImage readExr(const std::string& path) {
     image.window = planes.info.window;
     image.display = planes.info.display;
     image.chromaticities = planes.info.chromaticities;
+    image.adoptedNeutral = planes.info.adoptedNeutral;
+    for (const ImageAttribute& a : planes.info.attributes)
+        if (const auto* text = std::get_if<std::string>(&a.value); text && a.name == "colorInteropID")
+            image.interopId = *text;
     image.rgb.resize(3 * image.window.area());
     for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = (*sources[i % 3])[i / 3];
     countFaults(image);

@@ -60,13 +60,10 @@ class AtomicStream final : public Imf::OStream {
     std::string error_;
 };
 
-bool isAcesContainer(const ExrPicture& p) {
-    return p.half && p.compression == ExrCompression::none && p.chromaticities.matches(rgb::ap0);
-}
+Imath::V2f toImf(Chromaticity c) { return {static_cast<float>(c.x), static_cast<float>(c.y)}; }
 
 Imf::Chromaticities toImf(const Chromaticities& c) {
-    const auto point = [](Chromaticity p) { return Imath::V2f(static_cast<float>(p.x), static_cast<float>(p.y)); };
-    return {point(c.red), point(c.green), point(c.blue), point(c.white)};
+    return {toImf(c.red), toImf(c.green), toImf(c.blue), toImf(c.white)};
 }
 
 Imath::Box2i toImf(const PixelWindow& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
@@ -78,16 +75,16 @@ void addAttribute(Imf::Header& header, const ImageAttribute& a) {
     if (const auto* number = std::get_if<double>(&a.value)) header.insert(name, Imf::DoubleAttribute(*number));
 }
 
-Imf::Header makeHeader(const ExrPicture& p, bool aces) {
+Imf::Header makeHeader(const ExrPicture& p) {
     Imf::Header header(toImf(p.display), toImf(p.window));
     header.compression() = toImf(p.compression);
     for (const ImageAttribute& a : p.attributes) addAttribute(header, a);
     Imf::addChromaticities(header, toImf(p.chromaticities));
-    Imf::addAdoptedNeutral(header, toImf(p.chromaticities).white);
-    if (aces) header.insert("acesImageContainerFlag", Imf::IntAttribute(1));
+    Imf::addAdoptedNeutral(header, toImf(p.adoptedNeutral.value_or(p.chromaticities.white)));
+    if (p.acesContainer) header.insert("acesImageContainerFlag", Imf::IntAttribute(1));
     const Imf::PixelType colour = p.half ? Imf::HALF : Imf::FLOAT;
     for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(colour));
-    if (!aces)
+    if (!p.acesContainer)
         for (const ExrChannel& c : p.more) header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
     return header;
 }
@@ -115,7 +112,7 @@ template <typename T> Imf::Slice slice(const PixelWindow& w, const T* values) {
 }
 
 void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
-    Imf::OutputFile file(stream, makeHeader(p, report.acesContainer), 0);
+    Imf::OutputFile file(stream, makeHeader(p), 0);
     Imf::FrameBuffer buffer;
     std::array<std::vector<Imath::half>, 3> halves;
     const std::array<std::span<const float>, 3> planes{p.r, p.g, p.b};
@@ -125,7 +122,7 @@ void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
         buffer.insert(kNames[i], p.half ? slice(p.window, halves[i].data()) : slice(p.window, planes[i].data()));
     }
     for (const ExrChannel& c : p.more) {
-        if (report.acesContainer)
+        if (p.acesContainer)
             report.leftOut.push_back(c.name);
         else
             buffer.insert(c.name, slice(p.window, c.values.data()));
@@ -138,6 +135,8 @@ void checkPicture(const ExrPicture& p) {
     const std::size_t area = p.window.area();
     ABBE_CHECK(area > 0 && p.r.size() == area && p.g.size() == area && p.b.size() == area);
     for (const ExrChannel& c : p.more) ABBE_CHECK(c.values.size() == area);
+    ABBE_CHECK(!p.acesContainer ||
+               (p.half && p.compression == ExrCompression::none && p.chromaticities.matches(rgb::ap0)));
 }
 
 } // namespace
@@ -153,7 +152,6 @@ std::string_view name(ExrCompression c) { return kCompressions[static_cast<std::
 ExrReport writeExr(const std::string& path, const ExrPicture& picture) {
     checkPicture(picture);
     ExrReport report;
-    report.acesContainer = isAcesContainer(picture);
     AtomicFile file(path);
     AtomicStream stream(file);
     try {

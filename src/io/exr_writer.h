@@ -35,19 +35,20 @@ struct ExrPicture {
     std::span<const float> r, g, b;
     std::vector<ExrChannel> more = {}; // "variance.Y", …; always float
     Chromaticities chromaticities = {};
+    std::optional<Chromaticity> adoptedNeutral = {}; // their white, if not given
     ExrCompression compression = ExrCompression::zip;
-    bool half = false; // R G B in 16 bits
+    bool half = false;          // R G B in 16 bits
+    bool acesContainer = false; // SMPTE ST 2065-4. Requires half, no compression and the primaries of ACES2065-1
     std::vector<ImageAttribute> attributes = {};
 };
 
 struct ExrReport {
     std::uint64_t halfOverflows = 0;  // finite values beyond ±65504, written as ±65504
     std::uint64_t halfUnderflows = 0; // non-zero values that became 0
-    bool acesContainer = false;       // the file obeys SMPTE ST 2065-4 and says so
     std::vector<std::string> leftOut; // channels that an ACES container cannot hold
 };
 
-// Half, uncompressed, AP0: the picture is written as an ACES container (SMPTE ST 2065-4) with R G B alone.
+// An ACES container holds R G B alone: other channels are left out and reported.
 // The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
 ExrReport writeExr(const std::string& path, const ExrPicture&);
 

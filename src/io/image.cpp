@@ -23,7 +23,7 @@ bool Chromaticities::matches(const RgbSpace& space) const {
 }
 
 RgbSpace Chromaticities::space() const {
-    for (const RgbSpace* known : {&rgb::rec709, &rgb::ap1, &rgb::ap0, &rgb::rec2020, &rgb::p3d65})
+    for (const RgbSpace* known : {&rgb::rec709, &rgb::ap1, &rgb::ap0, &rgb::rec2020, &rgb::p3d65, &rgb::xyz})
         if (matches(*known)) return *known;
     return {"", red, green, blue, white, ""};
 }

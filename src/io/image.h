@@ -37,6 +37,8 @@ struct RgbImage {
     PixelWindow display;                          // the whole picture; differs from `window` for crops
     std::vector<float> rgb;                       // 3 · window.area()
     std::optional<Chromaticities> chromaticities; // as the file states them
+    std::optional<Chromaticity> adoptedNeutral;   // the colour that a display shall show neutral, if the file says so
+    std::string interopId;                        // "lin_ap0_scene", as the file states it; empty: it does not
     std::uint64_t nonFinite = 0, negative = 0;    // texels with such a component, as found; they are left as they are
 
     int width() const { return window.width(); }

@@ -7,6 +7,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <sstream>
 
@@ -33,6 +34,12 @@ OCIO::ConstConfigRcPtr loadConfig(const std::string& file) {
     if (!file.empty()) return OCIO::Config::CreateFromFile(file.c_str());
     std::istringstream stream(kOcioConfig);
     return OCIO::Config::CreateFromStream(stream);
+}
+
+OcioIdentity identityOf(const OCIO::Config& config, const std::string& file) {
+    std::string name = config.getName();
+    if (name.empty()) name = std::filesystem::path(file).filename().string();
+    return {std::move(name), config.getCacheID()};
 }
 
 std::vector<DisplayViews> listViews(const OCIO::Config& config) {
@@ -66,24 +73,28 @@ void checkNames(const OCIO::Config& config, const std::string& display, const st
 
 const char* inputName(ViewInput input) { return input == ViewInput::acescg ? "ACEScg" : "ACES2065-1"; }
 
-OCIO::ConstCPUProcessorRcPtr makeProcessor(ViewInput input, const std::string& display, const std::string& view,
-                                           const std::string& file) {
-    const OCIO::ConstConfigRcPtr config = loadConfig(file);
-    checkNames(*config, display, view);
-    if (!config->getColorSpace(inputName(input)))
-        throw IoError(fmt::format("the OpenColorIO configuration `{}` has no colour space {}", file, inputName(input)));
+OCIO::ConstCPUProcessorRcPtr makeProcessor(const OCIO::Config& config, ViewInput input, const std::string& display,
+                                           const std::string& view) {
+    checkNames(config, display, view);
+    if (!config.getColorSpace(inputName(input)))
+        throw IoError(fmt::format("the OpenColorIO configuration `{}` has no colour space {}", config.getName(),
+                                  inputName(input)));
     const auto transform = OCIO::DisplayViewTransform::Create();
     transform->setSrc(inputName(input));
     transform->setDisplay(display.c_str());
     transform->setView(view.c_str());
-    return config->getProcessor(transform)->getDefaultCPUProcessor();
+    return config.getProcessor(transform)->getDefaultCPUProcessor();
 }
 
 } // namespace
 
 OcioView::OcioView(ViewInput input, const std::string& display, const std::string& view, const std::string& configFile)
     : display_(display), view_(view) {
-    const auto cpu = guarded([&] { return makeProcessor(input, display, view, configFile); });
+    const auto cpu = guarded([&] {
+        const OCIO::ConstConfigRcPtr config = loadConfig(configFile);
+        config_ = identityOf(*config, configFile);
+        return makeProcessor(*config, input, display, view);
+    });
     processor_ = std::make_unique<const Processor>(Processor{cpu});
 }
 
@@ -106,6 +117,10 @@ bool OcioView::isSrgb() const { return display_ == defaultDisplay && view_ != "R
 
 std::vector<DisplayViews> OcioView::list(const std::string& configFile) {
     return guarded([&] { return listViews(*loadConfig(configFile)); });
+}
+
+OcioIdentity OcioView::identify(const std::string& configFile) {
+    return guarded([&] { return identityOf(*loadConfig(configFile), configFile); });
 }
 
 } // namespace abbe

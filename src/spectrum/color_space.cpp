@@ -17,6 +17,7 @@ const RgbSpace rgb::rec2020{"lin_rec2020_scene", {0.708, 0.292}, {0.170, 0.797},
 const RgbSpace rgb::p3d65{"lin_p3d65_scene", {0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65, "D65"};
 const RgbSpace rgb::ap1{"lin_ap1_scene", {0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, kAcesWhite, "D60"};
 const RgbSpace rgb::ap0{"lin_ap0_scene", {0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, kAcesWhite, "D60"};
+const RgbSpace rgb::xyz{"lin_ciexyzd65_scene", {1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}, "E"};
 
 namespace {
 

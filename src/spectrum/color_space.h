@@ -36,6 +36,7 @@ extern const RgbSpace rec2020; // ITU-R BT.2020
 extern const RgbSpace p3d65;   // SMPTE EG 432-1 primaries with D65: Display P3
 extern const RgbSpace ap1;     // ACEScg (Academy S-2014-004)
 extern const RgbSpace ap0;     // ACES2065-1 (SMPTE ST 2065-1)
+extern const RgbSpace xyz;     // CIE 1931 X, Y, Z in the places of R, G, B; (1, 1, 1) has equal energy
 } // namespace rgb
 
 // By identifier or alias, any case: "acescg", "srgb-linear", "aces2065-1", …

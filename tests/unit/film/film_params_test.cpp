@@ -62,6 +62,43 @@ TEST_CASE("film values that a field table cannot check") {
     CHECK(filmSettings(p).filterRadius == 2);
 }
 
+TEST_CASE("film spaces") {
+    const auto settings = [](std::string_view space) {
+        FilmParams p;
+        p.output.keys = {{"space", std::string(space)}};
+        return filmSettings(p);
+    };
+    CHECK(rgbSpace(settings("aces2065-1").space).name == "lin_ap0_scene");
+    CHECK(rgbSpace(settings("acescg").space).name == "lin_ap1_scene");
+    CHECK(rgbSpace(settings("rec709").space).name == "lin_rec709_scene");
+    CHECK(rgbSpace(settings("xyz").space).name == "lin_ciexyzd65_scene");
+    CHECK(spaceName(settings("xyz").space) == "CIE XYZ");
+    const Vec3d same = rgb::xyz.fromXyz().apply<Vec3d>(Xyz{0.3, 0.2, 0.1});
+    CHECK(length(same - Vec3d(0.3, 0.2, 0.1)) < 1e-15);
+    CHECK(adoptedNeutral(OutputSpace::xyz).x == 0.3127);
+    CHECK(adoptedNeutral(OutputSpace::acescg).x == 0.32168);
+}
+
+TEST_CASE("an ACES container settles the other keys, and contradictions are errors") {
+    FilmParams p;
+    p.output.keys = {{"container", "aces"}};
+    CHECK(findFaults(p).empty());
+    const FilmSettings s = filmSettings(p);
+    CHECK(s.acesContainer);
+    CHECK(s.half);
+    CHECK(s.compression == "none");
+    CHECK(s.space == OutputSpace::aces2065_1);
+    p.output.keys = {{"space", "aces2065-1"}, {"compression", "none"}, {"half", "on"}, {"container", "aces"}};
+    CHECK(findFaults(p).empty());
+    p.output.keys = {{"space", "acescg"}, {"compression", "zip"}, {"half", "off"}, {"container", "aces"}};
+    const auto faults = findFaults(p);
+    REQUIRE(faults.size() == 3);
+    for (const FilmFault& fault : faults) CHECK(fault.code == "E0453");
+    p.output.keys.back().second = "exr";
+    CHECK(findFaults(p).empty());
+    CHECK_FALSE(filmSettings(p).acesContainer);
+}
+
 TEST_CASE("film fields store what is written") {
     const schema::TypeInfo type = filmType();
     CHECK(type.kind == schema::Kind::film);

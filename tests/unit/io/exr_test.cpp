@@ -77,7 +77,6 @@ TEST_CASE("float pictures come back bit for bit with every lossless compression"
         const std::string path = folder / "a.exr";
         const ExrReport report = writeExr(path, t.picture);
         CHECK(report.halfOverflows == 0);
-        CHECK(!report.acesContainer);
         const RgbImage image = readImage(path);
         CHECK(sameValues(image, t));
         CHECK(image.chromaticities->matches(rgb::ap0));
@@ -151,23 +150,23 @@ TEST_CASE("half counts what it cannot hold") {
     CHECK(readExrInfo(path).channels[0].type == "half");
 }
 
-TEST_CASE("half, uncompressed AP0 is an ACES container") {
+TEST_CASE("the neutral colour and the identifier of the space come back") {
     const TemporaryFolder folder;
     const std::string path = folder / "a.exr";
-    TestPicture t(8, 8);
-    t.picture.half = true;
-    t.picture.compression = ExrCompression::none;
-    t.picture.more.push_back({"variance.Y", t.variance});
-    const ExrReport report = writeExr(path, t.picture);
-    CHECK(report.acesContainer);
-    CHECK(report.leftOut == std::vector<std::string>{"variance.Y"});
-    const ExrInfo info = readExrInfo(path);
-    CHECK(info.acesContainer);
-    CHECK(info.channels.size() == 3);
-    CHECK(attribute<int>(info, "acesImageContainerFlag") == 1);
-    t.picture.chromaticities = Chromaticities::of(rgb::ap1);
-    CHECK(!writeExr(path, t.picture).acesContainer);
-    CHECK(!readExrInfo(path).acesContainer);
+    TestPicture t(2, 2);
+    writeExr(path, t.picture);
+    CHECK(readImage(path).adoptedNeutral->x == 0.32168f); // the white, if nothing else is said
+    CHECK(readImage(path).interopId.empty());
+    t.picture.chromaticities = Chromaticities::of(rgb::xyz);
+    t.picture.adoptedNeutral = rgb::rec709.white;
+    t.picture.attributes = {{"colorInteropID", std::string(rgb::xyz.name)}};
+    writeExr(path, t.picture);
+    const RgbImage image = readImage(path);
+    CHECK(image.adoptedNeutral->x == 0.3127f);
+    CHECK(image.adoptedNeutral->y == 0.329f);
+    CHECK(image.interopId == "lin_ciexyzd65_scene");
+    CHECK(image.chromaticities->space().name == image.interopId);
+    CHECK(sameValues(image, t));
 }
 
 TEST_CASE("a write that fails says why and keeps the old picture") {

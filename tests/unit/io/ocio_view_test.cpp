@@ -36,6 +36,31 @@ TEST_CASE("the default view has the figures of the ACES 1.0 SDR video transform"
     CHECK(view.isSrgb());
 }
 
+TEST_CASE("a configuration has a name and a digest that change with it") {
+    const OcioIdentity builtIn = OcioView::identify();
+    CHECK(builtIn.name == OcioView::builtInConfig);
+    CHECK(builtIn.hash.size() >= 32);
+    const OcioView view(ViewInput::acescg);
+    CHECK(view.config().hash == builtIn.hash);
+    const TemporaryFolder folder;
+    writeAll(folder / "same.ocio", kOcioConfig);
+    CHECK(OcioView::identify(folder / "same.ocio").hash == builtIn.hash);
+    std::string text = kOcioConfig;
+    text.replace(text.find("0.0722"), 6, "0.0721");
+    writeAll(folder / "other.ocio", text);
+    CHECK(OcioView::identify(folder / "other.ocio").hash != builtIn.hash);
+    text.erase(text.find("name: abbe-aces-1.3"), sizeof "name: abbe-aces-1.3");
+    writeAll(folder / "nameless.ocio", text);
+    CHECK(OcioView::identify(folder / "nameless.ocio").name == "nameless.ocio");
+    CHECK_THROWS_AS(OcioView::identify(folder / "absent.ocio"), IoError);
+    text = kOcioConfig;
+    for (std::size_t at; (at = text.find("ACEScg")) != std::string::npos;) text.replace(at, 6, "Linear");
+    writeAll(folder / "no_acescg.ocio", text);
+    CHECK_THROWS_WITH_AS(
+        OcioView(ViewInput::acescg, OcioView::defaultDisplay, OcioView::defaultView, folder / "no_acescg.ocio"),
+        doctest::Contains("no colour space ACEScg"), IoError);
+}
+
 TEST_CASE("views for other displays") {
     checkGrey(OcioView{ViewInput::acescg, "sRGB - Display", "Un-tone-mapped"}, 0.18f, 0.46136);
     checkGrey(OcioView{ViewInput::acescg, "sRGB - Display", "Un-tone-mapped"}, 1, 1);
@@ -43,6 +68,7 @@ TEST_CASE("views for other displays") {
     checkGrey(OcioView{ViewInput::acescg, "P3-D65 - Display"}, 0.18f, 0.41883);
     const OcioView pq(ViewInput::acescg, "Rec.2100-PQ - Display", "ACES 1.1 - HDR Video (1000 nits & Rec.2020 lim)");
     checkGrey(pq, 0.18f, 0.33259);
+    checkGrey(pq, 1, 0.5153);
     checkGrey(pq, 10, 0.68009);
     CHECK(!pq.isSrgb());
     const OcioView raw(ViewInput::acescg, "sRGB - Display", "Raw");
