@@ -54,7 +54,7 @@ TEST_CASE("a configuration has a name and a digest that change with it") {
     CHECK(OcioView::identify(folder / "nameless.ocio").name == "nameless.ocio");
     CHECK_THROWS_AS(OcioView::identify(folder / "absent.ocio"), IoError);
     text = kOcioConfig;
-    for (std::size_t at; (at = text.find("ACEScg")) != std::string::npos;) text.replace(at, 6, "Linear");
+    for (std::size_t at; (at = text.find(" ACEScg\n")) != std::string::npos;) text.replace(at, 7, " Linear");
     writeAll(folder / "no_acescg.ocio", text);
     CHECK_THROWS_WITH_AS(
         OcioView(ViewInput::acescg, OcioView::defaultDisplay, OcioView::defaultView, folder / "no_acescg.ocio"),
