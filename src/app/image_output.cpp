@@ -23,8 +23,9 @@ void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics&
                      fmt::format("{} values of `{}` exceed 65504, the largest half float", report.halfOverflows, path))
             .help = "leave out `half` in the film's output, or lower the exposure";
     for (const std::string& channel : report.leftOut)
-        diagnostics.warning("W0631", {},
-                            fmt::format("`{}` is an ACES container, which cannot hold `{}`", path, channel));
+        if (channel != "variance.Y") // which nobody asked for
+            diagnostics.warning("W0631", {},
+                                fmt::format("`{}` is an ACES container, which cannot hold `{}`", path, channel));
 }
 
 // Calls `use` with the configuration's file, empty for the built-in one.

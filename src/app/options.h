@@ -26,7 +26,7 @@ struct CommonOptions {
 struct ViewOptions {
     std::string display, view; // empty: our own defaults
     std::string config;        // OCIO: see image_output.h
-    double exposure = 0;               // stops
+    double exposure = 0;       // stops
 };
 
 struct RenderOptions {

@@ -79,9 +79,8 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
         if (auto params = bound<FilmParams>(*film)) {
             built.film = std::move(*params);
             for (const FilmFault& fault : findFaults(built.film))
-                diagnostics_
-                    .error(std::string(fault.code), film->span, fault.message, std::string(fault.field))
-                    .help = fault.help;
+                diagnostics_.error(std::string(fault.code), film->span, fault.message, std::string(fault.field)).help =
+                    fault.help;
         }
     if (const Definition* render = only(Kind::render, ""))
         if (const auto params = bound<RenderParams>(*render)) built.render = *params;
