@@ -108,7 +108,7 @@ std::string factsOf(const ComparePage& page, int block) {
     const RgbImage& reference = *page.images.back().picture;
     const auto& chromaticities =
         reference.chromaticities ? reference.chromaticities : page.images.front().picture->chromaticities;
-    const Matrix3 d = toDisplayRgb(chromaticities);
+    const Matrix3 d = toDisplayRgb(*page.images.front().picture, reference);
     const Matrix3 y = (chromaticities ? chromaticities->space() : rgb::rec709).toXyz();
     Json images = Json::list(), maps = Json::list(), figures = Json::list();
     for (const ComparePage::Image& image : page.images)

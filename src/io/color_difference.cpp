@@ -17,8 +17,7 @@ constexpr int kTile = 8;
 class Viewing {
   public:
     Viewing(const RgbImage& image, const RgbImage& reference)
-        : toXyz_(rgb::rec709.toXyz() *
-                 toDisplayRgb(reference.chromaticities ? reference.chromaticities : image.chromaticities)) {
+        : toXyz_(rgb::rec709.toXyz() * toDisplayRgb(image, reference)) {
         double sum = 0;
         for (std::size_t i = 0; i < reference.rgb.size(); i += 3) sum += xyz(&reference.rgb[i]).y;
         const double mean = sum / (static_cast<double>(reference.rgb.size()) / 3);

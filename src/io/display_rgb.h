@@ -6,8 +6,11 @@
 
 namespace abbe {
 
-// From linear RGB of these chromaticities (Rec.709 if there are none, as OpenEXR says) to linear Rec.709; the white
-// becomes D65 by Bradford's adaptation. Nothing is clipped: components may be negative.
-Matrix3 toDisplayRgb(const std::optional<Chromaticities>&);
+// From the linear RGB of an image (Rec.709 if it names no primaries, as OpenEXR says) to linear Rec.709. What the image
+// takes for white, its adopted neutral or else the white of its space, becomes D65 by Bradford's adaptation. Nothing is
+// clipped: components may be negative.
+Matrix3 toDisplayRgb(const RgbImage&);
+// The same for two images of one space, of which only one may name it.
+Matrix3 toDisplayRgb(const RgbImage& image, const RgbImage& reference);
 
 } // namespace abbe

@@ -189,7 +189,7 @@ std::vector<float> ldrFlip(const RgbImage& image, const RgbImage& reference, dou
 HdrFlip hdrFlip(const RgbImage& image, const RgbImage& reference, double pixelsPerDegree) {
     ABBE_CHECK(image.rgb.size() == reference.rgb.size() && !image.rgb.empty() && pixelsPerDegree >= 1 &&
                pixelsPerDegree <= 1000);
-    const Matrix3 matrix = toDisplayRgb(reference.chromaticities ? reference.chromaticities : image.chromaticities);
+    const Matrix3 matrix = toDisplayRgb(image, reference);
     const std::vector<float> a = displayRgb(image, matrix), b = displayRgb(reference, matrix);
     const Model model(pixelsPerDegree);
     HdrFlip flip;

@@ -1,6 +1,7 @@
 #include "io/color_difference.h"
 #include "spectrum/lab.h"
 
+#include <cmath>
 #include <doctest/doctest.h>
 #include <random>
 
@@ -33,6 +34,28 @@ TEST_CASE("colour differences of images are seen from the white of their space a
         CHECK(d.tileMean == doctest::Approx(expected).epsilon(1e-5));
         CHECK(colorDifference(reference, reference).mean == 0);
     }
+}
+
+TEST_CASE("X Y Z with a neutral of D65 is seen as Rec. 709 is") {
+    const RgbImage reference = constant(8, 8, {0.3, 0.2, 0.1}), image = constant(8, 8, {0.28, 0.21, 0.1});
+    const double expected = colorDifference(image, reference).mean;
+    CHECK(expected > 2);
+    const auto asXyz = [](const RgbImage& rgb) {
+        RgbImage result = rgb;
+        for (std::size_t i = 0; i < rgb.rgb.size(); i += 3) {
+            const Xyz c = toXyz(Vec3d{rgb.rgb[i], rgb.rgb[i + 1], rgb.rgb[i + 2]}, rgb::rec709);
+            result.rgb[i] = static_cast<float>(c.x);
+            result.rgb[i + 1] = static_cast<float>(c.y);
+            result.rgb[i + 2] = static_cast<float>(c.z);
+        }
+        result.chromaticities = Chromaticities{{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}};
+        result.adoptedNeutral = rgb::rec709.white;
+        return result;
+    };
+    CHECK(colorDifference(asXyz(image), asXyz(reference)).mean == doctest::Approx(expected).epsilon(1e-4));
+    RgbImage tinted = asXyz(reference), other = asXyz(image);
+    tinted.adoptedNeutral = other.adoptedNeutral = std::nullopt;
+    CHECK(std::abs(colorDifference(other, tinted).mean - expected) > 0.01);
 }
 
 TEST_CASE("means of tiles show a fault of colour that noise hides in the pixels") {
