@@ -30,7 +30,8 @@ h2 { font-size: 13px; margin: 14px 0 4px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 1px 4px; border-bottom: 1px solid #2c2c2c; }
 th:first-child, td:first-child { text-align: left; }
-#probe td:first-child { max-width: 110px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+#probe { font-size: 12px; }
+#probe td:first-child { max-width: 96px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 #figures th { max-width: 100px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 th, .soft { color: var(--soft); font-weight: normal; }
 kbd { background: #333; border-radius: 3px; padding: 0 4px; }
