@@ -2,6 +2,7 @@
 
 #include "materials/attenuation_curve.h"
 #include "materials/openpbr_bsdf.h"
+#include "materials/openpbr_coat_frame.h"
 #include "materials/openpbr_inside.h"
 #include "render/surface_input.h"
 #include "spectrum/cauchy_curve.h"
@@ -58,6 +59,7 @@ class OpenPbr final : public Material {
     std::optional<AttenuationCurve> attenuation_;
     bool filled_; // with the medium of the subsurface part
     float coatReturns_;
+    OpenPbrCoatFrame coatFrame_;
     std::optional<StretchedLobe> stretched_, stretchedCoat_;
     std::optional<StretchedInterface> stretchedGlass_;
 };
@@ -73,7 +75,8 @@ OpenPbr::OpenPbr(const OpenPbrParams& p)
       baseColor_(p.baseColor, 0.8f), specularColor_(p.specularColor, 1), transmissionColor_(p.transmissionColor, 1),
       subsurfaceColor_(p.subsurfaceColor, 0.8f), coatColor_(p.coatColor, 1), fuzzColor_(p.fuzzColor, 1),
       ior_(p.specularIor ? p.specularIor : &plainIor_), filled_(hasSubsurfaceInside(p)),
-      coatReturns_(static_cast<float>(1 - (1 - hemisphericalReflectance(p.coatIor)) / (p.coatIor * p.coatIor))) {
+      coatReturns_(static_cast<float>(1 - (1 - hemisphericalReflectance(p.coatIor)) / (p.coatIor * p.coatIor))),
+      coatFrame_(p) {
     if (p.transmissionDispersionScale > 0) {
         cauchy_.emplace(cauchyOf(ior_->at(587.6), p.transmissionDispersionAbbeNumber / p.transmissionDispersionScale));
         ior_ = &*cauchy_;
@@ -106,6 +109,7 @@ Effects OpenPbr::needs() const {
 }
 
 bool OpenPbr::usesTextures() const {
+    if (!coatWeight_.is(0) && coatFrame_.usesTextures()) return true;
     for (const NumberInput* n :
          {&baseWeight_, &baseDiffuseRoughness_, &baseMetalness_, &specularWeight_, &specularRoughness_,
           &specularRoughnessAnisotropy_, &transmissionWeight_, &subsurfaceWeight_, &coatWeight_, &coatRoughness_,
@@ -186,6 +190,7 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
         .fuzz = fuzzWeight_.at(hit),
         .fuzzColor = fuzzColor_.at(hit, lambda),
         .sheen = SheenLobe(fuzzRoughness_.at(hit)),
+        .coatFrame = covering.coat > 0 ? coatFrame_.at(hit) : std::nullopt,
         .cover = covering,
         .dielectric = dielectric,
         .metal = metal(hit, lambda, covering),
@@ -222,6 +227,11 @@ bool checkParams(const OpenPbrParams& p, const schema::PlaceOf& placeOf, Diagnos
         error("E0702", "subsurface-color", "the colour of an inside cannot be a texture",
               "light that enters here comes out elsewhere",
               "give one colour; `subsurface-weight` and `base-color` may be textures");
+    for (const auto& [property, directions] : {std::pair("geometry-coat-normal", p.geometryCoatNormal.texture),
+                                               std::pair("geometry-coat-tangent", p.geometryCoatTangent.texture)})
+        if (directions && directions->channels() < 3)
+            error("E0705", property, "directions have three channels", "this texture has one",
+                  "take an image of directions, 0 … 1 for -1 … 1, or give a number");
     const bool stretched = p.specularRoughnessAnisotropy.texture || p.specularRoughnessAnisotropy.value > 0;
     const bool varies = p.specularRoughness.texture || p.specularRoughnessAnisotropy.texture || p.coatWeight.texture ||
                         p.coatRoughness.texture;

@@ -47,6 +47,11 @@ struct OpenPbrParams {
     Number coatRoughnessAnisotropy{0, nullptr, {}};
     double coatIor = 1.6;
     Number coatDarkening{1, nullptr, {}};
+    // How far the coat's normal follows that of the base: 1 wholly, 0 it is the shape's own. Or a normal map of its
+    // own.
+    Number geometryCoatNormal{1, nullptr, {}};
+    // Turns from the texture's u to the coat's tangent. Or a texture of directions, 0 … 1 for -1 … 1.
+    Number geometryCoatTangent{0, nullptr, {}};
 
     Number fuzzWeight{0, nullptr, {}};
     Color fuzzColor; // null: 1

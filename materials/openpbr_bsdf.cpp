@@ -103,6 +103,16 @@ BsdfEval OpenPbrBsdf::evalFrom(const View& v, Vec3 wi, Transport transport) cons
     return {lanes.fcos, pdf, lanes.pdf / pdf};
 }
 
+// wi in the coat's axes.
+OpenPbrBsdf::LaneEval OpenPbrBsdf::coatReflection(const View& v, Vec3 wi) const {
+    if (!(wi.z > 0)) return {kNone, kNone};
+    const Ggx& ggx = point_.coat.ggx();
+    const Vec3 h = normalize(v.coatWo + wi);
+    const float d = ggx.D(h), share = v.ground * point_.cover.coat * 0.25f * d * ggx.maskingOverCosine(v.coatWo, wi);
+    return {v.coatScale * point_.cover.coatReflectance(Spectrum(std::min(dot(v.coatWo, h), 1.f))) * share,
+            Spectrum(v.pick[kCoat] * ggx.boundedReflection(v.coatWo) * d)};
+}
+
 OpenPbrBsdf::LaneEval OpenPbrBsdf::reflection(const View& v, Vec3 wi) const {
     Spectrum f(0.f);
     float pdf = 0;
@@ -111,16 +121,14 @@ OpenPbrBsdf::LaneEval OpenPbrBsdf::reflection(const View& v, Vec3 wi) const {
         f += point_.fuzzColor * (point_.fuzz * fuzz.fcos);
         pdf += v.pick[kFuzz] * fuzz.pdf;
     }
+    if (v.pick[kCoat] > 0 && !point_.coat.smooth()) {
+        const LaneEval coat = coatReflection(v, inCoat(v, wi));
+        f += coat.fcos;
+        pdf += coat.pdf[0];
+    }
     const Vec3 h = normalize(v.wo + wi); // both z > 0: never 0
     const Spectrum c(std::min(dot(v.wo, h), 1.f));
-    if (v.pick[kCoat] > 0 && !point_.coat.smooth()) {
-        const Ggx& ggx = point_.coat.ggx();
-        const float d = ggx.D(h);
-        f += v.coatScale * point_.cover.coatReflectance(c) *
-             (v.ground * point_.cover.coat * 0.25f * d * ggx.maskingOverCosine(v.wo, wi));
-        pdf += v.pick[kCoat] * ggx.boundedReflection(v.wo) * d;
-    }
-    const Passing pass = passing(v, wi.z, true);
+    const Passing pass = passing(v, inCoat(v, wi).z, true);
     if (v.pick[kSpecular] > 0 && !smooth_) {
         const Ggx& ggx = point_.specular.ggx();
         const float d = ggx.D(h);
@@ -252,7 +260,9 @@ std::optional<Vec3> OpenPbrBsdf::direction(const View& v, Choice choice, float r
         wi = point_.sheen.sample(v.wo, u);
         break;
     case kCoat:
-        wi = reflect(v.wo, point_.coat.ggx().sampleBounded(v.wo, u));
+        wi = reflect(v.coatWo, point_.coat.ggx().sampleBounded(v.coatWo, u));
+        if (!(wi.z > 0)) return std::nullopt;
+        wi = outOfCoat(v, wi);
         break;
     case kSpecular: {
         const Ggx& ggx = point_.specular.ggx();
@@ -292,17 +302,19 @@ std::optional<BsdfSample> OpenPbrBsdf::sampleSmooth(const View& v, Choice choice
     const Vec3 mirror{-v.wo.x, -v.wo.y, v.wo.z};
     const Spectrum c(v.wo.z);
     const Lobes through = Lobes(Lobe::delta) | Lobe::transmission, back = Lobes(Lobe::delta) | Lobe::reflection;
-    if (choice == kCoat)
-        return std::optional<BsdfSample>(
-            std::in_place, mirror, v.coatScale * point_.cover.coatReflectance(c) * (v.ground * point_.cover.coat / p),
-            p, back);
+    if (choice == kCoat) {
+        const Vec3 wi = outOfCoat(v, {-v.coatWo.x, -v.coatWo.y, v.coatWo.z});
+        const Spectrum reflected = v.coatScale * point_.cover.coatReflectance(Spectrum(v.coatWo.z));
+        if (!(wi.z > 0)) return std::nullopt;
+        return std::optional<BsdfSample>(std::in_place, wi, reflected * (v.ground * point_.cover.coat / p), p, back);
+    }
     if (choice == kSheet)
         return std::optional<BsdfSample>(std::in_place, -v.wo, passing(v, 1, false).clear * v.sheet * (v.clear / p), p,
                                          through);
     const Facet at = facet(v, c);
     const float share = reflectionShare(at);
     if (rest < share) {
-        const Passing pass = passing(v, v.wo.z, true);
+        const Passing pass = passing(v, inCoat(v, mirror).z, true);
         return std::optional<BsdfSample>(
             std::in_place, mirror, (at.opaque * pass.opaque + at.clear * pass.clear) / (p * share), p * share, back);
     }

@@ -10,7 +10,10 @@
 #include "materials/ggx_lobe.h"
 #include "materials/openpbr_interface.h"
 #include "materials/sheen_lobe.h"
+#include "math/frame.h"
 #include "render/bsdf.h"
+
+#include <optional>
 
 namespace abbe {
 
@@ -31,6 +34,7 @@ struct OpenPbrPoint {
     float fuzz;          // share covered, 0 … 1
     Spectrum fuzzColor;
     SheenLobe sheen;
+    std::optional<Frame> coatFrame; // the coat's axes in those of the base, if they are its own
     OpenPbrCover cover;
     OpenPbrDielectric dielectric;
     OpenPbrMetal metal;
@@ -52,6 +56,8 @@ class OpenPbrBsdf final : public Bsdf {
     struct View {
         Vec3 wo;             // wo.z > 0
         bool within;         // wo lies inside a translucent base
+        Frame coatFrame;     // of the coat on this side
+        Vec3 coatWo;         // wo in it, coatWo.z > 0
         float ground;        // share of the light that passes the fuzz
         Spectrum coatScale;  // factor of the coat's single scattering
         Spectrum covered;    // what the coat lets through, times its coverage
@@ -85,6 +91,11 @@ class OpenPbrBsdf final : public Bsdf {
     Sheet sheetFacet(Spectrum c) const;
 
     BsdfEval evalFrom(const View&, Vec3 wi, Transport) const;
+    // Directions in the coat's axes, and cosines at which light goes through it.
+    Vec3 inCoat(const View& v, Vec3 w) const { return point_.coatFrame ? v.coatFrame.toLocal(w) : w; }
+    Vec3 outOfCoat(const View& v, Vec3 w) const { return point_.coatFrame ? v.coatFrame.toWorld(w) : w; }
+    void turnCoat(View&, bool back) const;
+    LaneEval coatReflection(const View&, Vec3 wi) const;
     LaneEval reflection(const View&, Vec3 wi) const;
     LaneEval sheetTransmission(const View&, Vec3 wi) const;
     LaneEval entering(const View&, Vec3 wi) const;

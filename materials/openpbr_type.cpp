@@ -218,7 +218,22 @@ std::vector<FieldInfo> coatFields() {
             .unit({Dimension::none, Dimension::fraction})
             .range(0, 1)
             .byDefault("1")
-            .synonyms({"coat_darkening", "coat_affect_color"})};
+            .synonyms({"coat_darkening", "coat_affect_color"}),
+        field(FieldType::number, "geometry-coat-normal", &P::geometryCoatNormal)
+            .doc("A normal map for the coat alone; or how far it follows the base's `normal` and `bump`: 0 is smooth.")
+            .example("geometry-coat-normal 0")
+            .unit({Dimension::none, Dimension::fraction})
+            .range(0, 1)
+            .byDefault("1")
+            .synonyms({"geometry_coat_normal", "coat_normal", "coatNormal", "clearcoat_normal"}),
+        field(FieldType::number, "geometry-coat-tangent", &P::geometryCoatTangent)
+            .doc("Turns from the texture's u to the direction that the coat's highlight is stretched along; or a "
+                 "texture "
+                 "of directions.")
+            .example("geometry-coat-tangent 0.25")
+            .range(-1, 1)
+            .byDefault("0")
+            .synonyms({"geometry_coat_tangent", "coat_tangent", "coat_rotation", "coat_anisotropy_angle"})};
 }
 
 std::vector<FieldInfo> fuzzFields() {

@@ -75,6 +75,8 @@ OpenPbrBsdf::View OpenPbrBsdf::makeView(Vec3 wo) const {
     View v;
     v.within = wo.z < 0 && refracts();
     v.wo = {wo.x, wo.y, std::abs(wo.z)};
+    v.coatWo = v.wo;
+    if (point_.coatFrame) turnCoat(v, wo.z < 0);
     v.opaque = point_.metalness + (1 - point_.metalness) * (1 - point_.transmission);
     v.clear = (1 - point_.metalness) * point_.transmission;
     v.coatScale = v.pathOut = v.sheet = Spectrum(0.f);
@@ -150,20 +152,31 @@ Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covere
     return min(max((tabulated ? pair : Spectrum(lobe.mirrorAlbedo(wo))) + change, Spectrum(1e-3f)), kOne);
 }
 
+// Seen from the back of a sheet, what leans to the right there leans to the right here: of directions told as if both
+// sides were the front, the normal changes its slope. Where the coat turns its back on wo, it is seen edge-on.
+void OpenPbrBsdf::turnCoat(View& v, bool back) const {
+    constexpr float edge = 1e-3f;
+    const Frame& f = *point_.coatFrame;
+    v.coatFrame = back ? Frame{{f.x.x, f.x.y, -f.x.z}, {f.y.x, f.y.y, -f.y.z}, {-f.z.x, -f.z.y, f.z.z}} : f;
+    v.coatWo = v.coatFrame.toLocal(v.wo);
+    if (v.coatWo.z < edge) v.coatWo = normalize(Vec3{v.coatWo.x, v.coatWo.y, edge});
+}
+
 // The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is
 // partly sent back, (1 - K)/(1 - E K) of it gets out in the end.
 void OpenPbrBsdf::viewCoat(View& v) const {
     const OpenPbrCover& cover = point_.cover;
     const auto reflectance = [&](Spectrum c) { return cover.coatReflectance(c); };
-    const Spectrum mean = point_.dielectric.meanOver(point_.coat.cosines(v.wo), reflectance);
-    v.coatScale = kOne / point_.coat.interfaceAlbedo(
-                             v.wo, cover.coatEta, maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0, false);
-    const Spectrum albedo = min(v.coatScale * point_.coat.mirrorAlbedo(v.wo) * mean, kOne);
+    const Spectrum mean = point_.dielectric.meanOver(point_.coat.cosines(v.coatWo), reflectance);
+    v.coatScale =
+        kOne / point_.coat.interfaceAlbedo(v.coatWo, cover.coatEta,
+                                           maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0, false);
+    const Spectrum albedo = min(v.coatScale * point_.coat.mirrorAlbedo(v.coatWo) * mean, kOne);
     v.pick[kCoat] = v.ground * cover.coat * abbe::mean(albedo);
     v.covered *= kOne - albedo;
-    if (coatAbsorbs_) v.pathOut = point_.coatLog / cover.cosineInCoat(Spectrum(v.wo.z));
+    if (coatAbsorbs_) v.pathOut = point_.coatLog / cover.cosineInCoat(Spectrum(v.coatWo.z));
     if (!(point_.coatDarkening > 0 && v.opaque > 0)) return;
-    const Spectrum smooth = cover.coatReflectance(Spectrum(v.wo.z));
+    const Spectrum smooth = cover.coatReflectance(Spectrum(v.coatWo.z));
     const Spectrum returned = mix(smooth, Spectrum(point_.coatReturns), baseRoughness_);
     const Spectrum dark = (kOne - returned) / max(kOne - baseAlbedo_ * returned, Spectrum(1e-6f));
     v.darkening = mix(kOne, dark, point_.coatDarkening);
@@ -182,7 +195,7 @@ Spectrum OpenPbrBsdf::opaqueAlbedo() const {
 // Probabilities of the lobes, in proportion to the mean of their albedos over the lanes: the same for all rotations of
 // the hero.
 void OpenPbrBsdf::choose(View& v) const {
-    const Passing pass = passing(v, v.wo.z, true);
+    const Passing pass = passing(v, v.coatWo.z, true);
     const float plastic = (1 - point_.metalness) * (1 - point_.transmission);
     const Spectrum mirror = kOne - v.below, metal = point_.metal.reflectance(Spectrum(v.wo.z)) * point_.metalness;
     Spectrum specular = pass.opaque * (metal + (v.within ? Spectrum(0.f) : mirror * point_.tint * plastic));

@@ -1,16 +1,13 @@
 // A material with holes, normal and bump maps, or a priority among nested dielectrics.
 #pragma once
 
+#include "materials/normal_map.h"
 #include "render/surface_input.h"
 #include "scene/forwarding_material.h"
 
 namespace abbe {
 
-// A texture of slopes, or of heights: what bends the shading normal.
-struct NormalMap {
-    const Texture* texture = nullptr; // three channels, 0 … 1 for -1 … 1
-    float strength = 1;               // factor of x and y
-};
+// A texture of heights: what bends the shading normal besides a NormalMap.
 struct BumpMap {
     const Texture* texture = nullptr; // its first channel
     float height = 0;                 // m where it is 1
@@ -42,9 +39,8 @@ class DressedMaterial final : public ForwardingMaterial {
     Dress dress_;
 };
 
-// The unit normals that the maps say, in ng's hemisphere or not: `hit` unbent. Where there are no texture coordinates
-// (dpdu = 0) a normal map says nothing, and of a bump map only what it says of positions counts.
-Vec3 mappedNormal(const NormalMap&, const SurfaceHit& hit);
+// The unit normal that the map says, in ng's hemisphere or not: `hit` unbent. Where there are no texture coordinates
+// (dpdu = 0) only what the map says of positions counts.
 Vec3 bumpedNormal(const BumpMap&, const SurfaceHit& hit);
 
 } // namespace abbe

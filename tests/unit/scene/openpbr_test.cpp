@@ -68,6 +68,7 @@ TEST_CASE("openpbr: contradictions are shown where they are written") {
     CHECK(faults("transmission-weight checker\nspecular-roughness-anisotropy checker") == "6:1 E0704");
     CHECK(faults("transmission-weight 1; specular-roughness checker") == "");
     CHECK(faults("specular-roughness checker; specular-roughness-anisotropy 0.5") == "");
+    CHECK(faults("coat-weight 1; geometry-coat-normal 0; geometry-coat-tangent 0.25") == "");
 }
 
 } // namespace abbe::test
