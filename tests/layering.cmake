@@ -9,6 +9,7 @@ set(below_render base math spectrum schema render)
 set(allowed_base)
 set(allowed_math base)
 set(allowed_spectrum base math)
+set(allowed_denoise base math)
 set(allowed_schema base math spectrum)
 set(allowed_parser base math spectrum schema)
 set(allowed_io base math spectrum)
@@ -21,8 +22,8 @@ endforeach()
 list(APPEND allowed_media volumes)
 set(allowed_modules textures)
 set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
-set(allowed_app ${allowed_scene} parser scene)
-set(folders base math spectrum schema parser io volumes vdb render geometry lights cameras film media materials textures
+set(allowed_app ${allowed_scene} parser scene denoise)
+set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules integrators scene app)
 
 # Libraries that only one folder may know, or two.

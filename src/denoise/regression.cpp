@@ -1,0 +1,123 @@
+#include "denoise/regression.h"
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "denoise/lanes.h"
+#include "denoise/linear_fit.h"
+
+#include <utility>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kWindowRadius = 9;
+
+// Predictions summed with their weights.
+struct Sums {
+    ColourPlanes colour;
+    Plane weight;
+
+    Sums(int width, int height) : weight(width, height) { colour.fill(Plane(width, height)); }
+    // Where no weight is, there is no pixel.
+    ColourPlanes means() &&;
+};
+
+ColourPlanes Sums::means() && {
+    for (Plane& plane : colour) {
+        parallelFor(static_cast<std::size_t>(plane.height()), [&](std::size_t i) {
+            const int y = static_cast<int>(i);
+            for (int x = 0; x < plane.width(); ++x) plane.row(y)[x] /= weight.row(y)[x];
+        });
+        plane.extend();
+    }
+    return std::move(colour);
+}
+
+// What the fits of one half read.
+struct Source {
+    const std::vector<Plane>& colours;
+    const std::vector<Plane>& features;
+    const PatchWeights& weights;
+    bool sharp; // k = 1/2: the weights to the fourth power
+
+    Lanes weight(int dx, int dy, int x, int y) const {
+        const Lanes w = load(weights.row(dx, dy, y) + x);
+        const Lanes squared = w * w;
+        return sharp ? squared * squared : w;
+    }
+};
+
+// The fits around eight pixels that begin at column x and row y of the picture, xt and yt of the tile.
+template <int N> struct Window {
+    const Source& source;
+    int x, y, xt, yt;
+    Lanes centre[N > 0 ? N : 1];
+
+    Window(const Source& s, const Tile& tile, int tileX, int tileY)
+        : source(s), x(tile.x0 + tileX), y(tile.y0 + tileY), xt(tileX), yt(tileY) {
+        for (std::size_t i = 0; i < N; ++i) centre[i] = load(source.features[i].row(y) + x);
+    }
+    // Calls visit(weights, features relative to the centre, dx, dy) for all neighbours.
+    template <typename Visit> void forEach(const Visit& visit) const {
+        for (int dy = -kWindowRadius; dy <= kWindowRadius; ++dy)
+            for (int dx = -kWindowRadius; dx <= kWindowRadius; ++dx) {
+                Lanes f[N > 0 ? N : 1];
+                for (std::size_t i = 0; i < N; ++i) f[i] = load(source.features[i].row(y + dy) + x + dx) - centre[i];
+                visit(source.weight(dx, dy, xt, yt), f, dx, dy);
+            }
+    }
+    LinearFit<N> fit() const {
+        LinearFit<N> fit;
+        forEach([&](Lanes w, const Lanes* f, int dx, int dy) {
+            Lanes c[3];
+            for (std::size_t i = 0; i < 3; ++i) c[i] = load(source.colours[i].row(y + dy) + x + dx);
+            fit.add(w, f, c);
+        });
+        fit.solve();
+        return fit;
+    }
+    void predict(const LinearFit<N>& fit, Sums& sums) const {
+        forEach([&](Lanes w, const Lanes* f, int dx, int dy) {
+            for (int i = 0; i < 3; ++i) {
+                float* const to = sums.colour[static_cast<std::size_t>(i)].row(y + dy) + x + dx;
+                store(to, load(to) + w * fit.at(f, i));
+            }
+            float* const to = sums.weight.row(y + dy) + x + dx;
+            store(to, load(to) + w);
+        });
+    }
+};
+
+template <int N> void regressTile(const Source& source, const Tile& tile, Sums& sums) {
+    for (int y = 0; y < tile.height; ++y)
+        for (int x = 0; x < tile.width; x += kLanes) {
+            const Window<N> window(source, tile, x, y);
+            window.predict(window.fit(), sums);
+        }
+}
+
+using RegressTile = void (*)(const Source&, const Tile&, Sums&);
+
+template <int... N> RegressTile chooseFor(std::size_t features, std::integer_sequence<int, N...>) {
+    constexpr std::array<RegressTile, sizeof...(N)> kFunctions{regressTile<N>...};
+    return kFunctions.at(features);
+}
+
+} // namespace
+
+std::array<ColourPlanes, 2> regress(const std::vector<Plane>& colours, const std::vector<Plane>& features,
+                                    const Guide& guide) {
+    ABBE_CHECK(colours.size() == 3 && features.size() <= kMaxFeatures);
+    const int width = colours[0].width(), height = colours[0].height();
+    const RegressTile run = chooseFor(features.size(), std::make_integer_sequence<int, kMaxFeatures + 1>());
+    std::array<Sums, 2> sums{Sums(width, height), Sums(width, height)};
+    forEachTile(width, height, [&](const Tile& tile) {
+        PatchWeights weights(kWindowRadius);
+        weights.compute(guide, tile);
+        for (std::size_t k = 0; k < 2; ++k) run({colours, features, weights, k == 1}, tile, sums[k]);
+    });
+    return {std::move(sums[0]).means(), std::move(sums[1]).means()};
+}
+
+} // namespace abbe

@@ -1,0 +1,103 @@
+#include "denoise/wavelets.h"
+
+#include "base/parallel.h"
+#include "denoise/lanes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kLevels = 5;
+constexpr float kNoiseWidths = 3;      // standard deviations of noise that a difference of colour may have
+constexpr float kFeatureWidth = 0.05f; // difference of features that halves a weight, roughly
+
+// One half between two levels: its colours, and of the compressed ones the mean variance of a channel.
+struct Level {
+    std::vector<Plane> colours;
+    Plane variance;
+};
+
+Plane meanVariance(const HalfBuffers& guide) {
+    Plane variance(guide.variances[0].width(), guide.variances[0].height());
+    for (int y = 0; y < variance.height(); ++y)
+        for (int x = 0; x < variance.width(); ++x)
+            for (const Plane& p : guide.variances) variance.row(y)[x] += p.row(y)[x] / 3;
+    variance.extend();
+    return variance;
+}
+
+// The squared distance of two pixels in units of what separates surfaces and of the noise of `guide`.
+struct Distance {
+    const std::vector<Plane>& features;
+    const std::vector<Plane>& guide; // compressed colours
+    const Plane& variance;
+
+    float operator()(int x, int y, int u, int v) const {
+        float feature = 0, colour = 0;
+        for (const Plane& f : features) {
+            const float d = f.row(y)[x] - f.row(v)[u];
+            feature += d * d;
+        }
+        for (const Plane& c : guide) {
+            const float d = c.row(y)[x] - c.row(v)[u];
+            colour += d * d;
+        }
+        const float noise = 3 * (variance.row(y)[x] + variance.row(v)[u]) + kColourEpsilon;
+        return feature / (kFeatureWidth * kFeatureWidth) + colour / (kNoiseWidths * kNoiseWidths * noise);
+    }
+};
+
+// One pixel of the next level: the 5 × 5 pixels `step` apart, with the weights of a cubic B-spline.
+void filterPixel(const Level& from, const Distance& distance, int x, int y, int step, Level& to) {
+    constexpr std::array<float, 5> kSpline{1 / 16.f, 1 / 4.f, 3 / 8.f, 1 / 4.f, 1 / 16.f};
+    std::array<float, 3> sum{};
+    float variance = 0, total = 0;
+    for (int j = -2; j <= 2; ++j)
+        for (int i = -2; i <= 2; ++i) {
+            const int u = x + i * step, v = y + j * step;
+            if (u < 0 || v < 0 || u >= to.variance.width() || v >= to.variance.height()) continue;
+            const float spline = kSpline[static_cast<std::size_t>(i + 2)] * kSpline[static_cast<std::size_t>(j + 2)];
+            const float w = spline * std::exp(-distance(x, y, u, v));
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += w * from.colours[c].row(v)[u];
+            variance += w * w * from.variance.row(v)[u];
+            total += w;
+        }
+    for (std::size_t c = 0; c < 3; ++c) to.colours[c].row(y)[x] = sum[c] / total;
+    to.variance.row(y)[x] = variance / (total * total);
+}
+
+Level nextLevel(const Level& from, const Level& guide, const std::vector<Plane>& features, int step) {
+    const int width = from.variance.width(), height = from.variance.height();
+    Level to{{3, Plane(width, height)}, Plane(width, height)};
+    const std::vector<Plane> compressedGuide = compressed(guide.colours);
+    const Distance distance{features, compressedGuide, guide.variance};
+    parallelFor(static_cast<std::size_t>(height), [&](std::size_t y) {
+        for (int x = 0; x < width; ++x) filterPixel(from, distance, x, static_cast<int>(y), step, to);
+    });
+    return to;
+}
+
+} // namespace
+
+DenoisedHalves denoiseByWavelets(const PreparedInput& input) {
+    const Plane variance = meanVariance(input.guide);
+    std::array<Level, 2> halves{Level{input.colour.halves[0], variance}, Level{input.colour.halves[1], variance}};
+    for (int level = 0; level < kLevels; ++level) {
+        std::array<Level, 2> next{nextLevel(halves[0], halves[1], input.features, 1 << level),
+                                  nextLevel(halves[1], halves[0], input.features, 1 << level)};
+        halves = std::move(next);
+    }
+    DenoisedHalves result;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t c = 0; c < 3; ++c) {
+            result[half][c] = std::move(halves[half].colours[c]);
+            result[half][c].extend();
+        }
+    return result;
+}
+
+} // namespace abbe
