@@ -2,6 +2,7 @@
 
 #include "app/argument_values.h"
 #include "app/command_line_compare.h"
+#include "app/command_line_denoise.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
@@ -17,7 +18,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare", "volume"};
+constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare", "volume", "denoise"};
 
 constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
@@ -90,6 +91,7 @@ class Reader {
         addConvert();
         addCompareArguments(*add("compare", kCompareHelp), compare_, common_.json);
         addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
+        addDenoiseArguments(*add("denoise", kDenoiseHelp), denoise_, common_);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -182,6 +184,7 @@ class Reader {
     ConvertOptions convert_;
     CompareOptions compare_;
     VolumeOptions volume_;
+    DenoiseOptions denoise_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -326,6 +329,7 @@ Command Reader::command(const Words& words) {
     if (name == "explain") return {explain_, common_};
     if (name == "info") return {info_, common_};
     if (name == "convert") return {convert_, common_};
+    if (name == "denoise") return {denoise_, common_};
     return {compare_, common_};
 }
 

@@ -4,6 +4,7 @@
 #include "app/console.h"
 #include "app/load.h"
 #include "app/volume_options.h"
+#include "denoise/denoise.h"
 #include "io/flip.h"
 #include "scene/build.h"
 
@@ -80,8 +81,13 @@ struct CompareOptions {
     double pixelsPerDegree = kFlipPixelsPerDegree;
 };
 
+struct DenoiseOptions {
+    std::string input, output; // no output: the input gets the layer
+    DenoiseMethod method = DenoiseMethod::nfor;
+};
+
 using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
-                             VolumeOptions>;
+                             VolumeOptions, DenoiseOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -92,5 +98,6 @@ ExitCode run(const InfoOptions&, const CommonOptions&);
 ExitCode run(const ConvertOptions&, const CommonOptions&);
 ExitCode run(const CompareOptions&, const CommonOptions&);
 ExitCode run(const VolumeOptions&, const CommonOptions&);
+ExitCode run(const DenoiseOptions&, const CommonOptions&);
 
 } // namespace abbe

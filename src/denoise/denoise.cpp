@@ -11,22 +11,38 @@ namespace abbe {
 
 namespace {
 
-constexpr int kErrorRadius = 8;
+constexpr int kErrorRadius = 12;
 
-// The noise of single estimates is averaged away, as far as neighbours have the same error; what is noise in the result
-// bounds the error from below.
+// What squared errors are relative to, as in relMSE: the mean of the picture is 0.25.
+float reference(float value) { return value * value + 0.01f; }
+
+// Single estimates are as noisy as the picture. Relative to the brightness they are averaged over neighbours; what is
+// noise in the result bounds the error from below.
 Plane standardError(const ColourPlanes& squared, const DenoisedHalves& denoised) {
     const int width = squared[0].width(), height = squared[0].height();
-    Plane mean(width, height);
+    const Plane noise = remainingNoise(denoised);
+    Plane brightness(width, height), relative(width, height), relativeNoise(width, height);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            mean.row(y)[x] = (squared[0].row(y)[x] + squared[1].row(y)[x] + squared[2].row(y)[x]) / 3;
-    mean.extend();
-    Plane error = boxFilter(mean, kErrorRadius);
-    const Plane noise = boxFilter(remainingNoise(denoised), 2);
+        for (int x = 0; x < width; ++x) {
+            float error = 0, value = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                error += squared[c].row(y)[x] / 3;
+                value += std::abs(denoised[0][c].row(y)[x] + denoised[1][c].row(y)[x]) / 6;
+            }
+            brightness.row(y)[x] = reference(value);
+            relative.row(y)[x] = error / reference(value);
+            relativeNoise.row(y)[x] = noise.row(y)[x] / reference(value);
+        }
+    relative.extend();
+    relativeNoise.extend();
+    Plane result = boxFilter(relative, kErrorRadius);
+    const Plane bound = boxFilter(relativeNoise, 2);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) error.row(y)[x] = std::sqrt(std::max(error.row(y)[x], noise.row(y)[x]));
-    return error;
+        for (int x = 0; x < width; ++x) {
+            const float error = std::max(result.row(y)[x], bound.row(y)[x]);
+            result.row(y)[x] = std::sqrt(error * brightness.row(y)[x]);
+        }
+    return result;
 }
 
 // relMSE with the denoised picture in the place of the reference, and the squared errors as given.

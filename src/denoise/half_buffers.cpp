@@ -19,7 +19,7 @@ HalfBuffers::HalfBuffers(std::vector<Plane> first, std::vector<Plane> second)
             }
         });
         variance.extend();
-        variances.push_back(boxFilter(variance, 2));
+        variances.push_back(boxFilter(variance, 4));
     }
 }
 

@@ -9,7 +9,8 @@
 namespace abbe {
 
 // Planes that belong together (R G B, or the components of a normal) from two halves of the samples, and the variance
-// of each half, averaged over 5 × 5 pixels. Borders are extended.
+// of each half, averaged over 9 × 9 pixels: few enough to follow the noise, and enough that a single pixel of one half
+// hardly takes part in what is made of the other. Borders are extended.
 struct HalfBuffers {
     std::array<std::vector<Plane>, 2> halves;
     std::vector<Plane> variances;

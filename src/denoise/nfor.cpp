@@ -51,8 +51,8 @@ void blend(const Plane& weight, const Plane& from, Plane& to) {
 DenoisedHalves denoiseByRegression(const PreparedInput& input) {
     DenoisedHalves smooth, sharp;
     for (std::size_t half = 0; half < 2; ++half) {
-        // The weights come from the other half: their noise must not choose the noise that they average.
-        auto results = regress(input.colour.halves[half], input.features, input.guide.guide(1 - half, kColourEpsilon));
+        // The weights come from the same half, so that the other one can tell how large the error is.
+        auto results = regress(input.colour.halves[half], input.features, input.guide.guide(half, kColourEpsilon));
         smooth[half] = std::move(results[0]);
         sharp[half] = std::move(results[1]);
     }

@@ -19,7 +19,7 @@ struct Guide {
 // are these to the power of 1/k².
 class PatchWeights {
   public:
-    static constexpr int kPatchRadius = 3;
+    static constexpr int kPatchRadius = 1;
 
     // Requires windowRadius <= 9.
     explicit PatchWeights(int windowRadius);

@@ -12,7 +12,7 @@ inline constexpr int kMaxFeatures = 7;
 
 // Around every pixel p, over 19 × 19 pixels q, colours are fitted by an affine function of the features,
 //   Σ_q w_pq |c_q − a − B·(f_q − f_p)|² → min,
-// with the weights of the guide, which should be independent of the colours. Every fit predicts all pixels of its
+// with the weights of the guide. Every fit predicts all pixels of its
 // window, and a pixel's value is the mean of its predictions with the same weights [Bitterli2016, §4.2, §5.2].
 // Two results, one for each bandwidth of the weights: k = 1, and k = 1/2, which keeps more detail and more noise.
 //

@@ -1,7 +1,7 @@
 #include "io/exr_writer.h"
 
 #include "base/check.h"
-#include "io/atomic_file.h"
+#include "io/exr_stream.h"
 #include "io/io_error.h"
 
 #include <Imath/half.h>
@@ -9,7 +9,6 @@
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
@@ -35,30 +34,6 @@ constexpr std::array<std::pair<std::string_view, Imf::Compression>, 8> kCompress
 }};
 
 Imf::Compression toImf(ExrCompression c) { return kCompressions[static_cast<std::size_t>(c)].second; }
-
-// OpenEXR's destructors swallow errors: the first one is kept here.
-class AtomicStream final : public Imf::OStream {
-  public:
-    explicit AtomicStream(AtomicFile& file) : OStream(file.temporaryPath().c_str()), file_(file) {}
-    void write(const char bytes[], int count) override {
-        guard([&] { file_.write({bytes, static_cast<std::size_t>(count)}); });
-    }
-    std::uint64_t tellp() override { return file_.position(); }
-    void seekp(std::uint64_t position) override { file_.seek(position); }
-    const std::string& error() const { return error_; }
-
-  private:
-    template <typename F> void guard(const F& action) {
-        try {
-            action();
-        } catch (const IoError& e) {
-            if (error_.empty()) error_ = e.what();
-            throw;
-        }
-    }
-    AtomicFile& file_;
-    std::string error_;
-};
 
 Imath::V2f toImf(Chromaticity c) { return {static_cast<float>(c.x), static_cast<float>(c.y)}; }
 

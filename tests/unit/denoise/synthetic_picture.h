@@ -49,10 +49,10 @@ struct SyntheticPicture {
         return sum / (3 * static_cast<double>(size()));
     }
     double relMse(const std::array<std::vector<float>, 3>& picture) const {
-        double mean = 0, sum = 0;
+        double average = 0, sum = 0;
         for (const auto& t : truth)
-            for (const float v : t) mean += v / (3 * static_cast<double>(size()));
-        const double scale = 0.25 / mean;
+            for (const float v : t) average += v / (3 * static_cast<double>(size()));
+        const double scale = 0.25 / average;
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t i = 0; i < size(); ++i) {
                 const double t = truth[c][i] * scale, d = picture[c][i] * scale - t;
@@ -74,7 +74,7 @@ struct SyntheticPicture {
             z -= 0.5f * n[2];
             const float shade = std::max(0.05f, 0.5f * n[0] + 0.6f * n[1] + 0.4f * n[2]);
             light *= shade + 30 * std::pow(shade, 60.f); // a highlight
-        } else if (y < 0.4f) { // the wall, with a window, and a part that is black
+        } else if (y < 0.4f) {                           // the wall, with a window, and a part that is black
             n = {0, 0, 1};
             z = 3.2f;
             if (x > 0.6f && x < 0.8f && y > 0.1f && y < 0.3f) light *= 40;
@@ -94,7 +94,7 @@ struct SyntheticPicture {
 
     // Two independent halves of a gamma distribution, skewed as light is; channels of a pixel vary together.
     static void addNoise(const std::array<std::vector<float>, 3>& clean, float noise, unsigned seed,
-                         std::array<std::vector<float>, 3>& mean, std::array<std::vector<float>, 3>& half) {
+                         std::array<std::vector<float>, 3>& both, std::array<std::vector<float>, 3>& first) {
         std::mt19937 random(seed);
         const float shape = 1 / (2 * noise * noise); // of one half
         std::gamma_distribution<float> factor(shape, 1 / shape);
@@ -102,8 +102,8 @@ struct SyntheticPicture {
             const float a = factor(random), b = factor(random);
             for (std::size_t c = 0; c < 3; ++c) {
                 const float tint = 1 + 0.1f * (factor(random) - 1);
-                half[c].push_back(clean[c][i] * a * tint);
-                mean[c].push_back((clean[c][i] * a * tint + clean[c][i] * b) / 2);
+                first[c].push_back(clean[c][i] * a * tint);
+                both[c].push_back((clean[c][i] * a * tint + clean[c][i] * b) / 2);
             }
         }
     }
