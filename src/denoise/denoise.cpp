@@ -86,7 +86,7 @@ std::string_view version(DenoiseMethod) { return "1"; }
 
 DenoiseResult denoise(const DenoiseInput& input, DenoiseMethod method) {
     checkInput(input);
-    const PreparedInput prepared = prepare(input);
+    const PreparedInput prepared = prepare(input, method == DenoiseMethod::nfor);
     const DenoisedHalves halves =
         method == DenoiseMethod::nfor ? denoiseByRegression(prepared) : denoiseByWavelets(prepared);
     DenoiseResult result;

@@ -13,13 +13,6 @@ constexpr int kPatch = 2 * PatchWeights::kPatchRadius + 1;
 constexpr int kStride = Tile::kSize + kLanes; // of distances_: holds a tile's width and two patch radii
 static_assert(kStride >= Tile::kSize + kPatch - 1);
 
-// exp(−x) as (1 − x/64)⁶⁴, 0 from 64 on: within 0.004 of it and made of multiplications alone.
-Lanes decay(Lanes x) {
-    Lanes e = max(Lanes{}, 1.f - x * (1 / 64.f));
-    for (int i = 0; i < 6; ++i) e *= e;
-    return e;
-}
-
 } // namespace
 
 PatchWeights::PatchWeights(int windowRadius)

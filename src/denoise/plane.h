@@ -12,7 +12,7 @@ namespace abbe {
 // the edges is 0 until extend() is called.
 class Plane {
   public:
-    static constexpr int kBorder = 24;
+    static constexpr int kBorder = 40;
 
     Plane() = default;
     // Zeros.

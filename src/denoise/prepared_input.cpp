@@ -97,16 +97,20 @@ HalfBuffers halvesOf(Pairs pairs) {
     return {std::move(pairs.half), std::move(pairs.mean)};
 }
 
-void addFeature(const DenoiseInput& input, std::span<const DenoiseChannel> channels, std::vector<Plane>& features) {
+std::vector<Plane> cleaned(Pairs pairs, bool filter) {
+    return filter ? filterFeature(halvesOf(std::move(pairs)), kFeatureEpsilon) : std::move(pairs.mean);
+}
+
+void addFeature(const DenoiseInput& input, std::span<const DenoiseChannel> channels, bool filter,
+                std::vector<Plane>& features) {
     if (channels[0].mean.empty()) return;
     Pairs pairs = pairsOf(input, channels);
     repair(pairs);
-    for (Plane& plane : filterFeature(halvesOf(std::move(pairs)), kFeatureEpsilon))
-        features.push_back(std::move(plane));
+    for (Plane& plane : cleaned(std::move(pairs), filter)) features.push_back(std::move(plane));
 }
 
 // Where nothing is hit, depth is 0 or not finite: as far as the farthest surface. Logarithms make near and far alike.
-void addDepth(const DenoiseInput& input, std::vector<Plane>& features) {
+void addDepth(const DenoiseInput& input, bool filter, std::vector<Plane>& features) {
     if (input.features.depth.mean.empty()) return;
     Pairs pairs = pairsOf(input, {&input.features.depth, 1});
     float farthest = 0;
@@ -117,14 +121,14 @@ void addDepth(const DenoiseInput& input, std::vector<Plane>& features) {
     for (std::vector<Plane>* planes : {&pairs.mean, &pairs.half})
         forEachPixel((*planes)[0], [&](float v) { return std::isfinite(v) && v > 0 ? v : farthest; });
     multiply(pairs, scaleTo(1, pairs));
-    std::vector<Plane> depth = filterFeature(halvesOf(std::move(pairs)), kFeatureEpsilon);
+    std::vector<Plane> depth = cleaned(std::move(pairs), filter);
     forEachPixel(depth[0], [](float v) { return std::log(std::max(v, 1e-6f)); });
     features.push_back(std::move(depth[0]));
 }
 
 } // namespace
 
-PreparedInput prepare(const DenoiseInput& input) {
+PreparedInput prepare(const DenoiseInput& input, bool filterFeatures) {
     Pairs pairs = pairsOf(input, input.colour);
     const std::uint64_t repaired = repair(pairs);
     const float scale = scaleTo(0.25, pairs);
@@ -132,9 +136,9 @@ PreparedInput prepare(const DenoiseInput& input) {
     HalfBuffers colour = halvesOf(std::move(pairs));
     HalfBuffers guide(compressed(colour.halves[0]), compressed(colour.halves[1]));
     PreparedInput result{std::move(colour), std::move(guide), {}, scale, repaired};
-    addFeature(input, input.features.albedo, result.features);
-    addFeature(input, input.features.normal, result.features);
-    addDepth(input, result.features);
+    addFeature(input, input.features.albedo, filterFeatures, result.features);
+    addFeature(input, input.features.normal, filterFeatures, result.features);
+    addDepth(input, filterFeatures, result.features);
     return result;
 }
 

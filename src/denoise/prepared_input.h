@@ -14,7 +14,8 @@ struct PreparedInput {
     std::uint64_t repaired = 0;  // pixels of the colours that were not finite
 };
 
-PreparedInput prepare(const DenoiseInput&);
+// `filterFeatures`: the noise of features is removed; else they are taken as they are.
+PreparedInput prepare(const DenoiseInput&, bool filterFeatures);
 
 // Squared differences of compressed colours and of features below this count as none.
 inline constexpr float kColourEpsilon = 1e-6f, kFeatureEpsilon = 1e-6f;

@@ -4,7 +4,6 @@
 #include "denoise/lanes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace abbe {
@@ -12,6 +11,7 @@ namespace abbe {
 namespace {
 
 constexpr int kLevels = 5;
+static_assert(2 << (kLevels - 1) <= Plane::kBorder - kLanes); // the farthest pixel that is looked at
 constexpr float kNoiseWidths = 3;      // standard deviations of noise that a difference of colour may have
 constexpr float kFeatureWidth = 0.05f; // difference of features that halves a weight, roughly
 
@@ -30,44 +30,43 @@ Plane meanVariance(const HalfBuffers& guide) {
     return variance;
 }
 
-// The squared distance of two pixels in units of what separates surfaces and of the noise of `guide`.
+// The squared distance of pixels in units of what separates surfaces and of the noise of `guide`.
 struct Distance {
     const std::vector<Plane>& features;
     const std::vector<Plane>& guide; // compressed colours
     const Plane& variance;
 
-    float operator()(int x, int y, int u, int v) const {
-        float feature = 0, colour = 0;
-        for (const Plane& f : features) {
-            const float d = f.row(y)[x] - f.row(v)[u];
-            feature += d * d;
-        }
-        for (const Plane& c : guide) {
-            const float d = c.row(y)[x] - c.row(v)[u];
-            colour += d * d;
-        }
-        const float noise = 3 * (variance.row(y)[x] + variance.row(v)[u]) + kColourEpsilon;
-        return feature / (kFeatureWidth * kFeatureWidth) + colour / (kNoiseWidths * kNoiseWidths * noise);
+    Lanes operator()(int x, int y, int u, int v) const {
+        const auto sumOfSquares = [&](const std::vector<Plane>& planes) {
+            Lanes sum{};
+            for (const Plane& plane : planes) {
+                const Lanes d = load(plane.row(y) + x) - load(plane.row(v) + u);
+                sum += d * d;
+            }
+            return sum;
+        };
+        const Lanes noise = 3.f * (load(variance.row(y) + x) + load(variance.row(v) + u)) + kColourEpsilon;
+        return sumOfSquares(features) * (1 / (kFeatureWidth * kFeatureWidth)) +
+               sumOfSquares(guide) / (kNoiseWidths * kNoiseWidths * noise);
     }
 };
 
-// One pixel of the next level: the 5 × 5 pixels `step` apart, with the weights of a cubic B-spline.
-void filterPixel(const Level& from, const Distance& distance, int x, int y, int step, Level& to) {
+// Eight pixels of the next level, each from 5 × 5 that are `step` apart, with the weights of a cubic B-spline. Beyond
+// the edges of the picture its border counts.
+void filterPixels(const Level& from, const Distance& distance, int x, int y, int step, Level& to) {
     constexpr std::array<float, 5> kSpline{1 / 16.f, 1 / 4.f, 3 / 8.f, 1 / 4.f, 1 / 16.f};
-    std::array<float, 3> sum{};
-    float variance = 0, total = 0;
+    Lanes sum[3] = {}, variance{}, total{};
     for (int j = -2; j <= 2; ++j)
         for (int i = -2; i <= 2; ++i) {
             const int u = x + i * step, v = y + j * step;
-            if (u < 0 || v < 0 || u >= to.variance.width() || v >= to.variance.height()) continue;
             const float spline = kSpline[static_cast<std::size_t>(i + 2)] * kSpline[static_cast<std::size_t>(j + 2)];
-            const float w = spline * std::exp(-distance(x, y, u, v));
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += w * from.colours[c].row(v)[u];
-            variance += w * w * from.variance.row(v)[u];
+            const Lanes w = spline * decay(distance(x, y, u, v));
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += w * load(from.colours[c].row(v) + u);
+            variance += w * w * load(from.variance.row(v) + u);
             total += w;
         }
-    for (std::size_t c = 0; c < 3; ++c) to.colours[c].row(y)[x] = sum[c] / total;
-    to.variance.row(y)[x] = variance / (total * total);
+    for (std::size_t c = 0; c < 3; ++c) store(to.colours[c].row(y) + x, sum[c] / total);
+    store(to.variance.row(y) + x, variance / (total * total));
 }
 
 Level nextLevel(const Level& from, const Level& guide, const std::vector<Plane>& features, int step) {
@@ -76,8 +75,10 @@ Level nextLevel(const Level& from, const Level& guide, const std::vector<Plane>&
     const std::vector<Plane> compressedGuide = compressed(guide.colours);
     const Distance distance{features, compressedGuide, guide.variance};
     parallelFor(static_cast<std::size_t>(height), [&](std::size_t y) {
-        for (int x = 0; x < width; ++x) filterPixel(from, distance, x, static_cast<int>(y), step, to);
+        for (int x = 0; x < width; x += kLanes) filterPixels(from, distance, x, static_cast<int>(y), step, to);
     });
+    for (Plane& plane : to.colours) plane.extend();
+    to.variance.extend();
     return to;
 }
 
@@ -93,10 +94,7 @@ DenoisedHalves denoiseByWavelets(const PreparedInput& input) {
     }
     DenoisedHalves result;
     for (std::size_t half = 0; half < 2; ++half)
-        for (std::size_t c = 0; c < 3; ++c) {
-            result[half][c] = std::move(halves[half].colours[c]);
-            result[half][c].extend();
-        }
+        for (std::size_t c = 0; c < 3; ++c) result[half][c] = std::move(halves[half].colours[c]);
     return result;
 }
 
