@@ -56,6 +56,12 @@ class RoughConductorBsdf final : public Bsdf {
         return std::optional<BsdfSample>(std::in_place, wi, weight, bounded * ggx_.D(m), lobes());
     }
 
+    ScatterOutline outline(Vec3) const noexcept override {
+        ScatterOutline result{.diffuse = 0};
+        result.add({.share = 1, .alpha2 = ggx_.alphaX() * ggx_.alphaX()});
+        return result;
+    }
+
   private:
     // Fresnel's reflectance, with the light of further bounces between microfacets added: 1 + F0 (1 - E)/E
     // [Turquin2019]. Exact for F = 1; not reciprocal.

@@ -61,6 +61,17 @@ Lobes RoughDielectricBsdf::lobes() const noexcept {
     return disperses_ ? lobes | Lobe::dispersive : lobes;
 }
 
+// By the mean index, which is the same for all rotations of the hero.
+ScatterOutline RoughDielectricBsdf::outline(Vec3 wo) const noexcept {
+    const Spectrum eta = relativeIndex(n_, wo.z > 0);
+    const float reflected = mean(fresnelDielectric(std::min(std::abs(wo.z), 1.f), eta));
+    const float alpha2 = square(ggx_.alphaX());
+    ScatterOutline result{.diffuse = 0};
+    result.add({.share = reflected, .alpha2 = alpha2});
+    result.add({.share = 1 - reflected, .alpha2 = alpha2, .eta = mean(eta)});
+    return result;
+}
+
 // Factor that makes reflection and transmission sum to 1 after single scattering took its loss [Turquin2019].
 Spectrum RoughDielectricBsdf::lossless(float mu, Spectrum eta) const {
     if (!disperses_) return Spectrum(1 / ggxAlbedo(mu, ggx_.alphaX(), eta[0]));

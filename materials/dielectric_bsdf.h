@@ -47,6 +47,7 @@ class RoughDielectricBsdf final : public Bsdf {
     Lobes lobes() const noexcept override;
     BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept override;
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept override;
+    ScatterOutline outline(Vec3 wo) const noexcept override;
 
   private:
     // Below, wo.z > 0 and eta is the index of the far side over that of wo's side.

@@ -87,6 +87,15 @@ class LayeredBsdf final : public Bsdf {
         return s;
     }
 
+    ScatterOutline outline(Vec3 wo) const noexcept override {
+        if (!(wo.z > 0)) return base_.outline(wo);
+        const float p = coatShare(wo);
+        ScatterOutline result{.diffuse = 0};
+        result.add(base_.outline(wo), 1 - p);
+        if (!gloss_.smooth() && !gloss_.absent()) result.add({.share = p, .alpha2 = square(gloss_.alpha())});
+        return result;
+    }
+
   private:
     std::optional<BsdfSample> sampleCoat(Vec3 wo, Vec2 u, float p, Transport transport) const {
         if (gloss_.smooth())

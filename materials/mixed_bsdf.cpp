@@ -43,4 +43,10 @@ std::optional<BsdfSample> MixedBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Transp
     return s;
 }
 
+ScatterOutline MixedBsdf::outline(Vec3 wo) const noexcept {
+    ScatterOutline result{.diffuse = 0};
+    for (int i = 0; i < 2; ++i) result.add(parts_[i]->outline(wo), shares_[i]);
+    return result;
+}
+
 } // namespace abbe

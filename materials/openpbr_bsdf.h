@@ -48,6 +48,7 @@ class OpenPbrBsdf final : public Bsdf {
     Lobes lobes() const noexcept override;
     BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept override;
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept override;
+    ScatterOutline outline(Vec3 wo) const noexcept override;
 
   private:
     enum Choice { kFuzz, kCoat, kSpecular, kSheet, kDiffuse, kDiffuseThrough, kChoices };

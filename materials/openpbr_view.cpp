@@ -218,6 +218,20 @@ void OpenPbrBsdf::choose(View& v) const {
         for (float& p : v.pick) p /= total;
 }
 
+// Rough sheets, which let light pass straight on, count as diffuse.
+ScatterOutline OpenPbrBsdf::outline(Vec3 wo) const noexcept {
+    if (wo.z == 0 || (point_.filled && wo.z < 0)) return {};
+    const View& v = view(wo);
+    ScatterOutline result{.diffuse = v.pick[kFuzz] + v.pick[kDiffuse] + v.pick[kDiffuseThrough] + v.pick[kSheet]};
+    if (!point_.coat.smooth()) result.add({.share = v.pick[kCoat], .alpha2 = square(point_.coat.ggx().alphaX())});
+    if (smooth_) return result;
+    const float reflected = reflectionShare(facet(v, Spectrum(v.wo.z))), eta = mean(point_.dielectric.eta());
+    const float alpha2 = square(point_.specular.ggx().alphaX());
+    result.add({.share = v.pick[kSpecular] * reflected, .alpha2 = alpha2});
+    result.add({.share = v.pick[kSpecular] * (1 - reflected), .alpha2 = alpha2, .eta = v.within ? 1 / eta : eta});
+    return result;
+}
+
 // A thin sheet reflects at both of its faces and all the times that light goes to and fro between them.
 OpenPbrBsdf::Sheet OpenPbrBsdf::sheetFacet(Spectrum c) const {
     const Spectrum r = point_.dielectric.reflectance(c), enters = kOne - r;

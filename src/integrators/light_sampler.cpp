@@ -110,32 +110,34 @@ PickedLight LightSampler::pickFar(double u, float share) const noexcept {
     return picked(near_ + i, share * farProbability_[i]);
 }
 
-PickedLight LightSampler::pick(float u, const Receiver& at) const noexcept {
+PickedLight LightSampler::pick(float u, const Receiver& at, const ScatterView& view) const noexcept {
     if (lights_.size() == 1) return picked(0, 1);
     const float share = nearShare(at);
     const auto border = static_cast<double>(share);
     const double x = refined(u, at.p);
     if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share);
-    const LightTree::Pick p = tree_->pick(x / border, at);
+    const LightTree::Pick p = tree_->pick(x / border, at, view);
     return picked(p.light, share * p.probability);
 }
 
-float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at) const noexcept {
+float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const ScatterView& view) const noexcept {
     if (i == kNone) return 0;
     if (lights_.size() == 1) return 1;
     const float share = nearShare(at);
-    return i < near_ ? share * tree_->probability(i, at) : (1 - share) * farProbability_[i - near_];
+    return i < near_ ? share * tree_->probability(i, at, view) : (1 - share) * farProbability_[i - near_];
 }
 
-float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at) const noexcept {
+float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at,
+                                const ScatterView& view) const noexcept {
     // The one light of most scenes, without a search.
     if (lights_.size() == 1 && light == lights_[0].light && part == lights_[0].part) return 1;
-    return probabilityOf(find(light, part), at);
+    return probabilityOf(find(light, part), at, view);
 }
 
-float LightSampler::probability(const MediumEmission* emission, const Receiver& at) const noexcept {
+float LightSampler::probability(const MediumEmission* emission, const Receiver& at,
+                                const ScatterView& view) const noexcept {
     const auto found = emitters_.find(emission);
-    return found != emitters_.end() ? probability(found->second, 0, at) : 0;
+    return found != emitters_.end() ? probability(found->second, 0, at, view) : 0;
 }
 
 PickedLight LightSampler::pickAlong(float u, const Ray& ray, RayExtent extent) const noexcept {

@@ -34,12 +34,14 @@ class LightSampler {
     bool needsChoice() const { return lights_.size() > 1; }
     // Whether any light may have a reach.
     bool placed() const { return placed_; }
-    // For light that arrives at a receiver. Requires !empty(); u in [0, 1).
-    PickedLight pick(float u, const Receiver&) const noexcept;
+    // Whether a ScatterView makes a difference.
+    bool asksForLobes() const { return near_ > 1; }
+    // For light that arrives at a receiver and is scattered. Requires !empty(); u in [0, 1).
+    PickedLight pick(float u, const Receiver&, const ScatterView& = {}) const noexcept;
     // Probability with which a part of `light`, one of the scene's, is picked there.
-    float probability(const Light* light, std::uint32_t part, const Receiver&) const noexcept;
+    float probability(const Light* light, std::uint32_t part, const Receiver&, const ScatterView& = {}) const noexcept;
     // That of the light which samples this emission; 0 if none does.
-    float probability(const MediumEmission* emission, const Receiver&) const noexcept;
+    float probability(const MediumEmission* emission, const Receiver&, const ScatterView& = {}) const noexcept;
     // The same for light that scatters somewhere on a piece of a ray: lights far away only where there are no others.
     PickedLight pickAlong(float u, const Ray&, RayExtent) const noexcept;
     float probabilityAlong(const Light* light, std::uint32_t part, const Ray&, RayExtent) const noexcept;
@@ -65,7 +67,7 @@ class LightSampler {
     PickedLight picked(std::uint32_t i, float probability) const {
         return {lights_[i].light, lights_[i].part, probability};
     }
-    float probabilityOf(std::uint32_t i, const Receiver&) const noexcept;
+    float probabilityOf(std::uint32_t i, const Receiver&, const ScatterView&) const noexcept;
 
     std::vector<Source> lights_; // those in the tree, in its order, then those far away
     std::uint32_t near_ = 0;     // how many are in the tree

@@ -5,6 +5,7 @@
 #include "render/light_bounds.h"
 #include "render/ray.h"
 #include "render/receiver.h"
+#include "render/scatter_outline.h"
 #include "spectrum/spectrum.h"
 
 #include <array>
@@ -27,8 +28,8 @@ class LightTree {
     explicit LightTree(std::span<const LightBounds>);
 
     // u in [0, 1), with more digits than the least probability.
-    Pick pick(double u, const Receiver&) const noexcept;
-    float probability(std::uint32_t light, const Receiver&) const noexcept;
+    Pick pick(double u, const Receiver&, const ScatterView& = {}) const noexcept;
+    float probability(std::uint32_t light, const Receiver&, const ScatterView& = {}) const noexcept;
     // For a piece of a ray on which the light is to scatter.
     Pick pick(double u, const Ray&, RayExtent) const noexcept;
     float probability(std::uint32_t light, const Ray&, RayExtent) const noexcept;
@@ -59,8 +60,25 @@ class LightTree {
         const Ray& ray;
         RayExtent extent;
     };
+    // A surface and its lobes.
+    struct Glossy {
+        struct Lobe {
+            float scale, alpha2, eta;
+        };
+        Glossy(const Receiver&, const ScatterView&);
+        Spectrum value(Spectrum cosine, Spectrum cosineWo, Spectrum sin2Ball, Spectrum sinBall, Spectrum seen) const;
+
+        const Receiver& at;
+        Vec3 wo;
+        float cosO, diffuse;
+        int count;
+        std::array<Lobe, ScatterOutline::kMost> lobes;
+    };
     static void assign(Node&, std::uint32_t slot, const LightBounds&);
     static Spectrum importance(const Node&, const Receiver&) noexcept;
+    static Spectrum importance(const Node&, const Glossy&) noexcept;
+    // `lobes(x, y, z, signed cosine, ball's sine², sine, what a matte surface sees)`, of unit directions.
+    template <typename Lobes> static Spectrum weigh(const Node&, const Receiver&, Lobes&&) noexcept;
     static Spectrum importance(const Node&, const Along&) noexcept;
     // The probability of each branch.
     template <typename Place> static Spectrum shares(const Node&, const Place&) noexcept;

@@ -139,6 +139,10 @@ template <EffectBits E> class PathLoop {
         const Vec3 n = hit.shading.z;
         return {hit.p, eye.wo.z < 0 ? -n : n, bsdf.lobes().has(Lobe::transmission)};
     }
+    void viewLobes(const Bsdf& bsdf, const Directions& eye) {
+        path_.scatters.outline.count = 0;
+        if (bsdf.lobes().has(Lobe::glossy)) path_.scatters = {eye.woRender, bsdf.outline(eye.wo)};
+    }
     // False where the shading normal would let light through a surface or keep it from crossing one.
     static bool sidesAgree(const SurfaceHit&, const Directions&, Vec3 wi, Vec3 wiRender);
     // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation
@@ -193,6 +197,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
         path_.from = receiver(hit, bsdf, eye);
+        if (context_.lights.asksForLobes()) viewLobes(bsdf, eye);
         const VertexSample sample = sampler_.vertex(depth);
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
@@ -259,7 +264,7 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     float lightPdf = 0;
     if (!path_.delta && strategy == Strategy::mis)
-        lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from) *
+        lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
     path_.radiance = fma(path_.beta * weight, emitted, path_.radiance);
@@ -271,7 +276,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
         if (!path_.delta && strategy == Strategy::mis)
-            lightPdf = context_.lights.probability(light, 0, path_.from) *
+            lightPdf = context_.lights.probability(light, 0, path_.from, path_.scatters) *
                        light->pdfEscaped(path_.from, direction, path_.time);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
         path_.radiance = fma(path_.beta * scatteringWeight(lightPdf), arriving, path_.radiance);
@@ -283,7 +288,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
                               const VertexSample& sample, [[maybe_unused]] std::uint32_t depth) {
     if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
-    const PickedLight picked = context_.lights.pick(sample.pick, path_.from);
+    const PickedLight picked = context_.lights.pick(sample.pick, path_.from, path_.scatters);
     const auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);

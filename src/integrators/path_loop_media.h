@@ -14,7 +14,7 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
         const Strategy strategy = loop_.context_.settings.strategy;
         float lightPdf = 0;
         if (!path.delta && strategy != Strategy::bsdfOnly)
-            lightPdf = loop_.context_.lights.probability(&emission, path.from) *
+            lightPdf = loop_.context_.lights.probability(&emission, path.from, path.scatters) *
                        emission.pdfSolidAngle(path.from.p, ray_.origin + ray_.direction * t);
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
@@ -70,6 +70,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
     const Frame frame = Frame::fromNormal(ray.direction);
     path_.from = ray.origin;
+    path_.scatters.outline.count = 0;
     path_.bsdfPdf = phase.value(cosine);
     path_.delta = false;
     if (phase.spectral()) path_.beta *= phase.ratio(cosine, path_.lambda);

@@ -4,6 +4,7 @@
 #include "integrators/surroundings.h"
 #include "render/effects.h"
 #include "render/receiver.h"
+#include "render/scatter_outline.h"
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
 
@@ -73,6 +74,7 @@ template <EffectBits E> struct PathState {
     Spectrum beta{1.f};     // f / q_h: throughput over the hero's density
     Spectrum radiance{0.f}; // estimate of the radiance at the eye, per lane of the film's wavelengths
     Receiver from{Vec3()};  // the last vertex, for the densities of lights
+    ScatterView scatters;   // there, if any of its lobes is glossy and lights are chosen by it
     float bsdfPdf = 1;      // density of the last direction; 1 at the eye
     bool delta = true;      // the last direction came from a delta lobe (or the eye): no other technique finds it
     float time = 0;         // of the whole path, in the shutter interval

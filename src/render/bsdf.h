@@ -4,6 +4,7 @@
 
 #include "base/flags.h"
 #include "math/vec.h"
+#include "render/scatter_outline.h"
 #include "spectrum/spectrum.h"
 
 #include <cstdint>
@@ -59,6 +60,8 @@ class Bsdf {
     // place, `return std::optional<BsdfSample>(std::in_place, …)`: one that is filled field by field and then copied is
     // read back in wider pieces than it was written, which stalls the processor (measured: 15 ns a vertex).
     virtual std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept = 0;
+    // How it scatters light towards wo. Asked for only with Lobe::glossy; delta lobes are left out.
+    virtual ScatterOutline outline([[maybe_unused]] Vec3 wo) const noexcept { return {}; }
 
   protected:
     ~Bsdf() = default; // never deleted through the base
