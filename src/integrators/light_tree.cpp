@@ -13,10 +13,6 @@ namespace {
 constexpr float kSlack = 1e-3f;
 // Least share of the cosine at receivers that are lit from both sides: hair and cloth go by no cosine.
 constexpr float kBothSides = 0.1f;
-// Least share that goes by the cosine at glossy receivers, whose outline is a guess.
-constexpr float kLeastDiffuse = 0.05f;
-// Of a node's sine², what it adds to the square of a lobe's width.
-constexpr float kSpread = 0.5f;
 // Importance stays in a range whose sums and ratios are finite and not 0.
 constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
@@ -41,7 +37,8 @@ Eight clamped(Eight x, float least, float most) { return min(max(x, Eight(least)
 // receiver is halfway to that of the middle, and the distance² is the mean over the box, d² + r²/3, if it is a cube:
 // with eight branches near the receiver, half to a third of the variance. Both are areas, so that the ratio of two
 // nodes does not depend on the scene's scale.
-template <typename Lobes> Spectrum LightTree::weigh(const Node& node, const Receiver& at, Lobes&& lobes) noexcept {
+template <typename Scatters>
+Spectrum LightTree::weigh(const Node& node, const Receiver& at, Scatters&& scatters) noexcept {
     const Eight x = Eight(node.x) - Eight(at.p.x), y = Eight(node.y) - Eight(at.p.y), z = Eight(node.z) - Eight(at.p.z);
     const Eight d2 = fma(x, x, fma(y, y, z * z)), radius2(node.radius2);
     const Eight base = Eight(node.power) / max(fma(radius2, Eight(1.f / 3), d2), Eight(kLeast));
@@ -67,7 +64,7 @@ template <typename Lobes> Spectrum LightTree::weigh(const Node& node, const Rece
         cosine = clamped(cosine, -1, 1);
         const Eight best = cosDifference(cosine, sineOf(cosine), cosBall, sinBall);
         const Eight seen = max((best + max(cosine, Eight(0.f))) * 0.5f, Eight(at.twoSided ? kBothSides : kSlack));
-        const Eight scattered = lobes(x, y, z, inverse, cosineN, sin2, sinBall, seen);
+        const Eight scattered = scatters(Seen{x * inverse, y * inverse, z * inverse, cosineN, sinBall, sin2, seen});
         factor *= select(best.v < Eight(-kSlack).v, Eight(0.f), scattered);
     }
     factor = select(outside, factor, Eight(1.f));
@@ -76,45 +73,15 @@ template <typename Lobes> Spectrum LightTree::weigh(const Node& node, const Rece
 }
 
 Spectrum LightTree::importance(const Node& node, const Receiver& at) noexcept {
-    return weigh(node, at, [](Eight, Eight, Eight, Eight, Eight, Eight, Eight, Eight seen) { return seen; });
+    return weigh(node, at, [](const Seen& seen) { return seen.matte; });
 }
 
-LightTree::Glossy::Glossy(const Receiver& receiver, const ScatterView& view)
-    : at(receiver), wo(view.wo), cosO(std::max(dot(view.wo, receiver.n), 0.f)),
-      diffuse(std::max(view.outline.diffuse, kLeastDiffuse)), count(view.outline.count) {
-    for (int i = 0; i < count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const ScatterOutline::Glossy& lobe = view.outline.glossy[k];
-        // π G1/(4 cos θo) over π D
-        const float masked = 0.5f / (cosO + std::sqrt(lobe.alpha2 + (1 - lobe.alpha2) * cosO * cosO));
-        lobes[k] = {lobe.share * masked, lobe.alpha2, lobe.eta};
-    }
-}
-
-Spectrum LightTree::Glossy::value(Eight cosine, Eight cosineWo, Eight sin2Ball, Eight sinBall, Eight seen) const {
-    Eight result = seen * diffuse;
-    for (int i = 0; i < count; ++i) {
-        const Lobe& lobe = lobes[static_cast<std::size_t>(i)];
-        const float eta2 = lobe.eta * lobe.eta;
-        const Eight h2 = max(fma(cosineWo, Eight(2 * lobe.eta), Eight(1 + eta2)), Eight(1e-6f));
-        const Eight hz = fma(cosine, Eight(lobe.eta), Eight(cosO)), inverse = Eight(1.f) / h2;
-        const Eight cos2 = min(hz * hz * inverse, Eight(1.f));
-        const Eight alpha2 = min(fma(sin2Ball * inverse, Eight(kSpread * eta2), Eight(lobe.alpha2)), Eight(1.f));
-        const Eight slope = fma(cos2, alpha2 - Eight(1.f), Eight(1.f));
-        const Eight value = alpha2 * lobe.scale / (slope * slope);
-        const Int8 there = lobe.eta == 1 ? cosine.v > -sinBall.v : cosine.v < sinBall.v;
-        result += select(there, value, Eight(0.f));
-    }
-    return result;
-}
-
-Spectrum LightTree::importance(const Node& node, const Glossy& glossy) noexcept {
-    const Vec3 w = glossy.wo;
-    return weigh(node, glossy.at,
-                 [&](Eight x, Eight y, Eight z, Eight inverse, Eight cosine, Eight sin2, Eight sinBall, Eight seen) {
-                     const Eight cosineWo = (x * w.x + y * w.y + z * w.z) * inverse;
-                     return glossy.value(cosine, cosineWo, sin2, sinBall, seen);
-                 });
+// Times π f cos θi of the lobes, where a matte surface has the cosine.
+Spectrum LightTree::importance(const Node& node, const GlossyReceiver& glossy) noexcept {
+    return weigh(node, glossy.at(), [&glossy](const Seen& s) {
+        const Vec3 w = glossy.wo();
+        return glossy.value(s.cosine, s.x * w.x + s.y * w.y + s.z * w.z, s.sine, s.sine2, s.matte);
+    });
 }
 
 // Over the distance to the ray alone: what a light gives along it, ∫ 1/(D² + t²) dt, is an angle over D.
@@ -178,11 +145,11 @@ template <typename Place> float LightTree::probabilityAt(std::uint32_t light, co
 }
 
 LightTree::Pick LightTree::pick(double u, const Receiver& at, const ScatterView& view) const noexcept {
-    return view.glossy() ? pickAt(u, Glossy(at, view)) : pickAt(u, at);
+    return view.glossy() ? pickAt(u, GlossyReceiver(at, view)) : pickAt(u, at);
 }
 
 float LightTree::probability(std::uint32_t light, const Receiver& at, const ScatterView& view) const noexcept {
-    return view.glossy() ? probabilityAt(light, Glossy(at, view)) : probabilityAt(light, at);
+    return view.glossy() ? probabilityAt(light, GlossyReceiver(at, view)) : probabilityAt(light, at);
 }
 
 LightTree::Pick LightTree::pick(double u, const Ray& ray, RayExtent extent) const noexcept {

@@ -2,10 +2,10 @@
 // eight branches, which are weighed at once.
 #pragma once
 
+#include "integrators/glossy_receiver.h"
 #include "render/light_bounds.h"
 #include "render/ray.h"
 #include "render/receiver.h"
-#include "render/scatter_outline.h"
 #include "spectrum/spectrum.h"
 
 #include <array>
@@ -27,7 +27,8 @@ class LightTree {
     // Requires at least one light, all with power > 0 and finite boxes.
     explicit LightTree(std::span<const LightBounds>);
 
-    // u in [0, 1), with more digits than the least probability.
+    // u in [0, 1), with more digits than the least probability. A surface whose lobes are told prefers lights that they
+    // see; Requires a receiver with a normal, on the side of the view.
     Pick pick(double u, const Receiver&, const ScatterView& = {}) const noexcept;
     float probability(std::uint32_t light, const Receiver&, const ScatterView& = {}) const noexcept;
     // For a piece of a ray on which the light is to scatter.
@@ -60,25 +61,17 @@ class LightTree {
         const Ray& ray;
         RayExtent extent;
     };
-    // A surface and its lobes.
-    struct Glossy {
-        struct Lobe {
-            float scale, alpha2, eta;
-        };
-        Glossy(const Receiver&, const ScatterView&);
-        Spectrum value(Spectrum cosine, Spectrum cosineWo, Spectrum sin2Ball, Spectrum sinBall, Spectrum seen) const;
-
-        const Receiver& at;
-        Vec3 wo;
-        float cosO, diffuse;
-        int count;
-        std::array<Lobe, ScatterOutline::kMost> lobes;
-    };
     static void assign(Node&, std::uint32_t slot, const LightBounds&);
     static Spectrum importance(const Node&, const Receiver&) noexcept;
-    static Spectrum importance(const Node&, const Glossy&) noexcept;
-    // `lobes(x, y, z, signed cosine, ball's sine², sine, what a matte surface sees)`, of unit directions.
-    template <typename Lobes> static Spectrum weigh(const Node&, const Receiver&, Lobes&&) noexcept;
+    static Spectrum importance(const Node&, const GlossyReceiver&) noexcept;
+    // `scatters` turns what a matte surface sees into what another one does.
+    struct Seen {
+        Spectrum x, y, z;     // unit, to the middle
+        Spectrum cosine;      // of it, to the receiver's normal
+        Spectrum sine, sine2; // of the ball's half angle
+        Spectrum matte;
+    };
+    template <typename Scatters> static Spectrum weigh(const Node&, const Receiver&, Scatters&&) noexcept;
     static Spectrum importance(const Node&, const Along&) noexcept;
     // The probability of each branch.
     template <typename Place> static Spectrum shares(const Node&, const Place&) noexcept;

@@ -4,6 +4,8 @@
 #include "math/vec.h"
 
 #include <array>
+#include <cstddef>
+#include <utility>
 
 namespace abbe {
 
