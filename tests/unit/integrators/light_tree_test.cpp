@@ -2,6 +2,7 @@
 #include "integrators/light_tree.h"
 #include "integrators/light_tree_builder.h"
 #include "support/chi_square.h"
+#include "support/scene_test.h"
 #include "support/statistics.h"
 
 #include <ctime>
@@ -54,6 +55,20 @@ Receiver randomReceiver(Random& random, float size, int kind) {
     return {p, randomDirection(random), kind == 2};
 }
 
+// Of any glossiness for one receiver of three, sharp enough to leave next to nothing elsewhere; none otherwise.
+ScatterView randomView(Random& random, const Receiver& at, int kind) {
+    ScatterView view;
+    if (!at.surface || kind == 0) return view;
+    view.wo = randomDirection(random);
+    if (dot(view.wo, at.n) < 0) view.wo = -view.wo;
+    view.outline.diffuse = 0;
+    view.outline.add({.share = random.uniform(), .alpha2 = std::pow(10.f, -7 * random.uniform())});
+    if (kind == 1) return view;
+    const float eta = at.twoSided ? 0.6f + random.uniform() : 1;
+    view.outline.add({.share = random.uniform(), .alpha2 = std::pow(10.f, -7 * random.uniform()), .eta = eta});
+    return view;
+}
+
 // Whether light that leaves a point of the bounds along a normal they allow can reach the receiver, in double, for
 // corners and the centre of the box and the axis only: a necessary part of what may give light.
 bool mayLight(const LightBounds& b, const Receiver& at) {
@@ -87,9 +102,10 @@ TEST_CASE("light tree: probabilities sum to one, inside nodes and outside, and n
         for (int i = 0; i < 100; ++i) {
             const Receiver at = i % 10 == 9 ? Receiver(lights[random.bits() % count].box.lower) // on a light
                                             : randomReceiver(random, 10, i % 3);
+            const ScatterView view = randomView(random, at, i / 3 % 3);
             double sum = 0;
             for (std::uint32_t k = 0; k < count; ++k) {
-                const float p = tree.probability(k, at);
+                const float p = tree.probability(k, at, view);
                 sum += static_cast<double>(p);
                 CHECK_UNARY(p >= 0 && p <= 1);
                 if (!mayLight(lights[k], at)) continue;
@@ -106,24 +122,28 @@ TEST_CASE("light tree: picks have the probabilities that are stated") {
     const auto lights = randomLights(200, 4, 5);
     const LightTree tree(lights);
     Random random(3);
-    for (int kind = 0; kind < 4; ++kind) {
+    for (int kind = 0; kind < 6; ++kind) {
+        // 0 to 2: points and surfaces; 3: along a ray; 4 and 5: surfaces with lobes.
         const Receiver at = randomReceiver(random, 4, kind % 3);
+        const ScatterView view = randomView(random, at, kind < 4 ? 0 : kind - 3);
         const Ray ray{at.p, randomDirection(random)};
         const RayExtent extent{0.5f, 3};
+        const auto probability = [&](std::uint32_t k) {
+            return kind == 3 ? tree.probability(k, ray, extent) : tree.probability(k, at, view);
+        };
         constexpr int picks = 200000;
         std::vector<double> observed(lights.size(), 0), expected;
         int different = 0;
         for (int i = 0; i < picks; ++i) {
             const auto u = static_cast<double>(random.uniform());
-            const auto p = kind < 3 ? tree.pick(u, at) : tree.pick(u, ray, extent);
+            const auto p = kind == 3 ? tree.pick(u, ray, extent) : tree.pick(u, at, view);
             ++observed[p.light];
-            different +=
-                p.probability != (kind < 3 ? tree.probability(p.light, at) : tree.probability(p.light, ray, extent));
+            different += p.probability != probability(p.light);
         }
         CHECK(different == 0);
         double sum = 0;
         for (std::uint32_t k = 0; k < lights.size(); ++k) {
-            const auto p = static_cast<double>(kind < 3 ? tree.probability(k, at) : tree.probability(k, ray, extent));
+            const auto p = static_cast<double>(probability(k));
             expected.push_back(picks * p);
             sum += p;
             if (p == 0) CHECK(observed[k] == 0);
@@ -140,8 +160,9 @@ TEST_CASE("light tree: no random number leads to a light of probability 0") {
     Random random(4);
     for (int i = 0; i < 3000; ++i) {
         const Receiver at = randomReceiver(random, 4, 1);
+        const ScatterView view = randomView(random, at, i % 3);
         for (const double u : {0.0, 0x1p-53, 0.5, static_cast<double>(kOneMinusEpsilon), 1 - 0x1p-53})
-            CHECK_UNARY(tree.pick(u, at).probability > 0);
+            CHECK_UNARY(tree.pick(u, at, view).probability > 0);
     }
 }
 
@@ -158,9 +179,15 @@ TEST_CASE("light tree: the scale of the scene does not matter (T3.3)") {
         for (int i = 0; i < 60; ++i) {
             Receiver at = randomReceiver(random, 10, i % 3), there = at;
             there.p = at.p * scale;
+            ScatterView view;
+            if (at.surface && i % 2) {
+                view.wo = at.n;
+                view.outline.diffuse = 0.3f;
+                view.outline.add({.share = 0.7f, .alpha2 = 0.01f});
+            }
             for (std::uint32_t k = 0; k < lights.size(); ++k) {
-                const auto p = static_cast<double>(tree.probability(k, at));
-                const auto q = static_cast<double>(other.probability(k, there));
+                const auto p = static_cast<double>(tree.probability(k, at, view));
+                const auto q = static_cast<double>(other.probability(k, there, view));
                 worst = std::max(worst, std::abs(p - q));
                 if (p > 1e-4) worstRelative = std::max(worstRelative, std::abs(q / p - 1));
             }
@@ -200,6 +227,69 @@ TEST_CASE("light tree: one light of a thousand tells what all give") {
     MESSAGE("relative variance ", sum / receivers, ", by power ", byPower / receivers);
     CHECK(sum / receivers < 3);
     CHECK(byPower > 4 * sum);
+}
+
+// The same for a surface that reflects or refracts roughly, by the values of its Bsdf.
+TEST_CASE("light tree: one light of a thousand tells what a glossy surface sends to the eye") {
+    const auto lights = randomLights(1000, 10, 12);
+    const LightTree tree(lights);
+    const auto scene = TestScene::parse(R"(scene 1
+camera { from 0 0 5; look-at 0 0 0; fov 40 deg }
+shape sphere { radius 1; material conductor { index metal Cu; roughness 0.3 } }
+shape sphere { radius 1; material dielectric { ior 1.5; roughness 0.3 } }
+shape sphere { radius 1; material openpbr { specular-roughness 0.25; base-color 0.2 } }
+shape sphere { radius 1; material layered { roughness 0.2; base diffuse { reflectance 0.3 } } }
+)");
+    REQUIRE_MESSAGE(!scene.diagnostics().hasErrors(), scene.report());
+    const Wavelengths lambda = Wavelengths::sample(0.3f);
+    int materials = 0;
+    for (const auto& material : scene.scene().materials) {
+        Random random(13);
+        double told = 0, untold = 0;
+        int counted = 0;
+        for (int i = 0; i < 200; ++i) {
+            Arena arena;
+            SurfaceHit hit;
+            hit.material = material.get();
+            hit.shading = Frame::fromNormal(randomDirection(random));
+            hit.ng = hit.shading.z;
+            hit.p = randomPoint(random, 10);
+            Vec3 eye = randomDirection(random);
+            if (dot(eye, hit.ng) < 0) eye = -eye;
+            const Bsdf& bsdf = *material->bsdf(hit, lambda, arena);
+            if (!bsdf.lobes().has(Lobe::glossy)) break; // the base of the layers
+            const Vec3 wo = hit.shading.toLocal(eye);
+            const Receiver at(hit.p, hit.shading.z, bsdf.lobes().has(Lobe::transmission));
+            const ScatterView view{eye, bsdf.outline(wo)};
+            CHECK(view.glossy());
+            double mean = 0, with = 0, without = 0;
+            for (std::uint32_t k = 0; k < lights.size(); ++k) {
+                const LightBounds& b = lights[k];
+                const Vec3 way = b.box.centre() - at.p;
+                const float d = std::max(0.1f, length(way));
+                float emitted = b.cosNormals > -1 ? -dot(b.axis, way) / d : 1;
+                if (b.twoSided) emitted = std::abs(emitted);
+                if (!(emitted > b.cosEmission)) continue;
+                const Vec3 wi = hit.shading.toLocal(normalize(way));
+                const auto f = static_cast<double>(abbe::mean(bsdf.eval(wo, wi, Transport::radiance).fcos));
+                const double given = f * static_cast<double>(b.power * emitted / (d * d));
+                if (!(given > 0)) continue;
+                mean += given;
+                with += given * given / static_cast<double>(tree.probability(k, at, view));
+                without += given * given / static_cast<double>(tree.probability(k, at));
+            }
+            if (!(mean > 0)) continue;
+            ++counted;
+            told += with / (mean * mean) - 1;
+            untold += without / (mean * mean) - 1;
+        }
+        if (counted == 0) continue;
+        ++materials;
+        MESSAGE("relative variance ", told / counted, ", without the lobes ", untold / counted);
+        CHECK(counted > 150);
+        CHECK(told * 2 < untold);
+    }
+    CHECK(materials == 4);
 }
 
 TEST_CASE("light tree: near lights are preferred to far ones, lights in front to those behind") {
