@@ -235,6 +235,7 @@ TEST_CASE("light tree: one light of a thousand tells what a glossy surface sends
     const LightTree tree(lights);
     const auto scene = TestScene::parse(R"(scene 1
 camera { from 0 0 5; look-at 0 0 0; fov 40 deg }
+light point { position 0 3 0; power 1 W }
 shape sphere { radius 1; material conductor { index metal Cu; roughness 0.3 } }
 shape sphere { radius 1; material dielectric { ior 1.5; roughness 0.3 } }
 shape sphere { radius 1; material openpbr { specular-roughness 0.25; base-color 0.2 } }
