@@ -41,7 +41,7 @@ class Gloss {
     float ior() const { return ior_; }
     bool smooth() const { return ggx_.smooth(); } // reflects in one direction
     float alpha() const { return ggx_.alphaX(); }
-    bool absent() const { return !below_; }       // index 1: reflects nothing
+    bool absent() const { return !below_; } // index 1: reflects nothing
     // Share of the light from one direction that it reflects, by its cosine; the rest is let through.
     float albedo(float mu) const;
     // The mean of it over all directions, by cosine.

@@ -53,8 +53,8 @@ inline GlossyReceiver::GlossyReceiver(const Receiver& receiver, const ScatterVie
 }
 
 // The distribution of microfacets at the half vector of the middle, wo + η wi, made wider by as much as half vectors
-// spread over the cone; by half angles their density is that of directions but for its Jacobian [Walter2007, eq. 14,
-// 17], which is 1/4 over the cosine of reflection.
+// spread over the cone, as [Tokuyoshi2024b] filters it for Gaussians. The Jacobian from half vectors to directions
+// [Walter2007, eq. 14 and 17] is that of reflection at the same angle times what follows for refraction.
 inline Spectrum GlossyReceiver::lobeValue(const Lobe& lobe, Spectrum cosine, Spectrum cosineWo, Spectrum sine2) const {
     const Spectrum one(1.f), eta(lobe.eta);
     const float eta2 = lobe.eta * lobe.eta;
