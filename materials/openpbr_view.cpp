@@ -218,12 +218,15 @@ void OpenPbrBsdf::choose(View& v) const {
         for (float& p : v.pick) p /= total;
 }
 
-// Rough sheets, which let light pass straight on, count as diffuse.
+// Rough sheets, which let light pass straight on, and coats with a normal of their own count as diffuse.
 ScatterOutline OpenPbrBsdf::outline(Vec3 wo) const noexcept {
     if (wo.z == 0 || (point_.filled && wo.z < 0)) return {};
     const View& v = view(wo);
     ScatterOutline result{.diffuse = v.pick[kFuzz] + v.pick[kDiffuse] + v.pick[kDiffuseThrough] + v.pick[kSheet]};
-    if (!point_.coat.smooth()) result.add({.share = v.pick[kCoat], .alpha2 = square(point_.coat.ggx().alphaX())});
+    if (point_.coatFrame)
+        result.diffuse += v.pick[kCoat];
+    else if (!point_.coat.smooth())
+        result.add({.share = v.pick[kCoat], .alpha2 = square(point_.coat.ggx().alphaX())});
     if (smooth_) return result;
     const float reflected = reflectionShare(facet(v, Spectrum(v.wo.z))), eta = mean(point_.dielectric.eta());
     const float alpha2 = square(point_.specular.ggx().alphaX());
