@@ -1,5 +1,6 @@
 #include "app/argument_values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -29,6 +30,19 @@ std::optional<Vec2i> readSize(std::string_view text) {
 }
 
 std::optional<Vec2i> readPixel(std::string_view text) { return readPair(text, ",", 0); }
+
+std::optional<PixelBounds> readCrop(std::string_view text) {
+    const std::size_t first = text.find(','), second = text.find(',', std::min(first, text.size() - 1) + 1);
+    if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
+    const auto from = readPair(text.substr(0, second), ",", 0), to = readPair(text.substr(second + 1), ",", 1);
+    if (!from || !to || to->x <= from->x || to->y <= from->y) return std::nullopt;
+    return PixelBounds{from->x, from->y, to->x, to->y};
+}
+
+std::optional<Vec2i> readPart(std::string_view text) {
+    const auto part = readPair(text, "/", 1);
+    return part && part->x <= part->y ? part : std::nullopt;
+}
 
 std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension) {
     double value = 0;

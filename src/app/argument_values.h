@@ -2,6 +2,7 @@
 #pragma once
 
 #include "math/vec.h"
+#include "render/film.h"
 #include "schema/unit.h"
 
 #include <optional>
@@ -14,6 +15,10 @@ namespace abbe {
 std::optional<Vec2i> readSize(std::string_view text);
 // "12,34"; not negative.
 std::optional<Vec2i> readPixel(std::string_view text);
+// "0,0,640,360": left, top, right, bottom, the last two exclusive; not empty.
+std::optional<PixelBounds> readCrop(std::string_view text);
+// "2/4": the second of four.
+std::optional<Vec2i> readPart(std::string_view text);
 // "45min", "0.5 %", "90": in SI units; a bare number is already in them.
 std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension);
 

@@ -18,7 +18,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render", "check", "explain", "info", "convert", "compare", "volume", "denoise"};
+constexpr const char* kCommands[] = {"render",  "merge",   "check",  "explain", "info",
+                                     "convert", "compare", "volume", "denoise"};
 
 constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
@@ -37,8 +38,16 @@ Examples:
   abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
   abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
   abbe render room.scene --json                        progress as JSON lines on stdout
+  abbe render room.scene --resume                      goes on where it was interrupted
+  abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
 
-Ctrl-C writes the image so far; a second one leaves at once.)";
+Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
+
+constexpr const char* kMergeHelp = R"(Puts parts of a render together, to the bits of the whole.
+
+Examples:
+  abbe merge room.part*.abbe -o room.exr
+  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
 
 constexpr const char* kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
 
@@ -85,6 +94,7 @@ class Reader {
         app_.require_subcommand(1);
         app_.get_formatter()->column_width(28);
         addRender();
+        addMerge();
         addCheck();
         addExplain();
         addInfo();
@@ -153,7 +163,9 @@ class Reader {
         c->add_option_function<std::string>(name, store, help)->type_name(type);
     }
     void addGoals(CLI::App* c);
+    void addSaving();
     void addRender();
+    void addMerge();
     void addCheck();
     void addExplain();
     void addInfo();
@@ -175,9 +187,10 @@ class Reader {
     Command command(const Words& words);
 
     CLI::App app_{kAbout};
-    std::string color_ = "auto", format_ = "human", kernel_ = "auto", png_;
+    std::string color_ = "auto", format_ = "human", kernel_ = "auto", png_, checkpoint_;
     CommonOptions common_;
     RenderOptions render_;
+    MergeOptions merge_;
     CheckOptions check_;
     ExplainOptions explain_;
     InfoOptions info_;
@@ -211,12 +224,36 @@ void Reader::addGoals(CLI::App* c) {
         ->type_name("N");
 }
 
+void Reader::addSaving() {
+    CLI::App* c = app_.get_subcommand("render");
+    CheckpointOptions& checkpoint = render_.checkpoint;
+    const auto readCheckpoint = [&checkpoint](const std::string& text) {
+        checkpoint.off = text == "off";
+        checkpoint.keep = text == "keep";
+        if (checkpoint.off || checkpoint.keep) return;
+        const auto interval = readQuantity(text, schema::Dimension::time);
+        if (!interval || !(*interval > 0 && *interval <= 1e9))
+            throw CLI::ValidationError("--checkpoint",
+                                       fmt::format("`{}` is not a time such as 5min, off or keep", text));
+        checkpoint.interval = *interval;
+    };
+    c->add_option_function<std::string>("--checkpoint", readCheckpoint,
+                                        "Save what was done every so often (25s); off: never; keep: also when done")
+        ->type_name("TIME|off|keep");
+    c->add_flag("--resume", checkpoint.resume, "Go on from the checkpoint, if there is one");
+    addRead(c, "--crop", render_.crop, "X0,Y0,X1,Y1", "Render these pixels only", "a rectangle such as 0,0,640,360",
+            readCrop);
+    addRead(c, "--part", render_.part, "K/N", "Take the K-th of N ranges of the samples and write a part for `merge`",
+            "a part such as 2/4", readPart);
+}
+
 void Reader::addRender() {
     CLI::App* c = add("render", kRenderHelp);
     RenderOptions& r = render_;
     c->add_option("scene", r.input.path, "Scene file")->required()->type_name("");
     c->add_option("-o,--output", r.output, "Image to write (EXR)")->type_name("FILE");
     addGoals(c);
+    addSaving();
     addDefines(c, r.input.defines);
     c->add_option("-t,--threads", common_.threads, "Threads; without it one per core")
         ->check(CLI::Range(1, 4096).description(""))
@@ -240,6 +277,16 @@ void Reader::addRender() {
         ->type_name("NAME")
         ->group(studies);
     addRead(c, "--pixel", r.pixel, "X,Y", "Render one pixel and print its value", "a pixel such as 12,34", readPixel);
+}
+
+void Reader::addMerge() {
+    CLI::App* c = add("merge", kMergeHelp);
+    c->add_option("parts", merge_.parts, "Parts of one render (.abbe)")->required()->type_name("");
+    c->add_option("-o,--output", merge_.output, "Image to write (EXR)")->required()->type_name("FILE");
+    c->add_option("--scene", merge_.scene, "Where the scene is now")->type_name("FILE");
+    c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
+    addView(c, merge_.view);
+    addJson(c);
 }
 
 void Reader::addCheck() {
@@ -320,11 +367,13 @@ Command Reader::command(const Words& words) {
     common_.console = Console(color, format);
     common_.commandLine = "abbe";
     for (const std::string& word : words) common_.commandLine += " " + shellQuoted(word);
+    common_.words = words;
     render_.largestKernel = kernel_ == "all";
-    if (!png_.empty()) render_.png = png_ == "." ? std::string() : png_;
+    if (!png_.empty()) merge_.png = render_.png = png_ == "." ? std::string() : png_;
     if (app_.got_subcommand("volume")) return {volume_, common_};
     const std::string name = chosenCommand()->get_name();
     if (name == "render") return {render_, common_};
+    if (name == "merge") return {merge_, common_};
     if (name == "check") return {check_, common_};
     if (name == "explain") return {explain_, common_};
     if (name == "info") return {info_, common_};

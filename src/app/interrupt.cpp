@@ -7,8 +7,9 @@ namespace abbe {
 
 namespace {
 
-// A signal handler can reach nothing but globals; both are lock-free.
+// A signal handler can reach nothing but globals; they are lock-free.
 std::atomic<bool> stopRequested{false};
+std::atomic<bool> snapshotRequested{false};
 std::atomic<int> receivedSignal{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -17,27 +18,35 @@ void onSignal(int signal) {
     stopRequested = true;
 }
 
+void onSnapshot(int) { snapshotRequested = true; }
+
 // Also where the signal was ignored on entry, as shells do for jobs in the background: who sends one means it.
-void handle(void (*handler)(int)) {
+void handle(void (*handler)(int), void (*snapshot)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    action.sa_handler = snapshot;
+    sigaction(SIGUSR1, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);
 }
 
 } // namespace
 
 InterruptGuard::InterruptGuard() {
     stopRequested = false;
+    snapshotRequested = false;
     receivedSignal = 0;
-    handle(onSignal);
+    handle(onSignal, onSnapshot);
 }
 
-InterruptGuard::~InterruptGuard() { handle(SIG_DFL); }
+InterruptGuard::~InterruptGuard() { handle(SIG_DFL, SIG_DFL); }
 
 const std::atomic<bool>& InterruptGuard::stop() const { return stopRequested; }
+
+std::atomic<bool>& InterruptGuard::snapshot() const { return snapshotRequested; }
 
 int InterruptGuard::signal() const { return receivedSignal; }
 

@@ -1,4 +1,4 @@
-// Ctrl-C and termination while there is something to save.
+// Signals while there is something to save.
 #pragma once
 
 #include <atomic>
@@ -6,7 +6,8 @@
 namespace abbe {
 
 // From construction to destruction SIGINT and SIGTERM set a flag instead of ending the process; the second one leaves
-// at once with exit code 128 + signal, and nothing is written any more. At most one at a time.
+// at once with exit code 128 + signal, and nothing is written any more. SIGUSR1 and SIGHUP ask for a snapshot. At most
+// one at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -15,7 +16,9 @@ class InterruptGuard {
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
     const std::atomic<bool>& stop() const;
-    // The signal that came, or 0.
+    // Set when a snapshot is asked for; whoever takes it resets it.
+    std::atomic<bool>& snapshot() const;
+    // The signal that came to end it, or 0.
     int signal() const;
 };
 

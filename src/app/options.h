@@ -17,7 +17,8 @@ namespace abbe {
 
 // Of every command.
 struct CommonOptions {
-    std::string commandLine; // as it would be typed in a shell
+    std::string commandLine;        // as it would be typed in a shell
+    std::vector<std::string> words; // of it, after the program's name
     Console console;
     bool json = false;
     int threads = 0; // 0: one per core
@@ -30,6 +31,14 @@ struct ViewOptions {
     double exposure = 0;       // stops
 };
 
+// How a render is kept from being lost.
+struct CheckpointOptions {
+    double interval = 25; // s; 0: only when interrupted or asked to
+    bool off = false;     // none at all
+    bool keep = false;    // also when it is done
+    bool resume = false;  // go on from it
+};
+
 struct RenderOptions {
     SceneInput input;
     std::string output;             // EXR; empty: from the scene
@@ -40,6 +49,10 @@ struct RenderOptions {
     bool quiet = false;
     bool strict = false;
     std::optional<Vec2i> pixel; // render this one alone and print it
+    CheckpointOptions checkpoint;
+    std::optional<PixelBounds> crop;
+    std::optional<Vec2i> part;      // x of y equal ranges of the samples; a file for MergeOptions is written
+    std::vector<std::string> parts; // nothing is rendered, but these are put together
 };
 
 struct CheckOptions {
@@ -86,12 +99,21 @@ struct DenoiseOptions {
     DenoiseMethod method = DenoiseMethod::nfor;
 };
 
-using Options = std::variant<RenderOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
-                             VolumeOptions, DenoiseOptions>;
+struct MergeOptions {
+    std::vector<std::string> parts;
+    std::string scene;  // empty: where it was when the first part was made
+    std::string output; // EXR
+    std::optional<std::string> png;
+    ViewOptions view;
+};
+
+using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
+                             CompareOptions, VolumeOptions, DenoiseOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
 ExitCode run(const RenderOptions&, const CommonOptions&);
+ExitCode run(const MergeOptions&, const CommonOptions&);
 ExitCode run(const CheckOptions&, const CommonOptions&);
 ExitCode run(const ExplainOptions&, const CommonOptions&);
 ExitCode run(const InfoOptions&, const CommonOptions&);

@@ -130,6 +130,15 @@ double PixelFilm::relativeNoise() const {
     return pixels == 0 ? 0 : std::sqrt(error / static_cast<double>(pixels));
 }
 
+FilmPlanes PixelFilm::planes() {
+    const auto replicates = static_cast<std::size_t>(replicates_);
+    FilmPlanes planes;
+    planes.push_back(std::make_unique<DensePlane<ExactXyz>>("xyz", bounds_, replicates, std::span<ExactXyz>(sums_)));
+    planes.push_back(std::make_unique<DensePlane<std::uint32_t>>("samples", bounds_, replicates,
+                                                                 std::span<std::uint32_t>(samples_)));
+    return planes;
+}
+
 ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale) const {
     ResolvedImage image{bounds_, {}, {}, {}, {}};
     const auto area = static_cast<std::size_t>(bounds_.area());

@@ -1,6 +1,7 @@
 // The film of the renderer: 52 bytes per pixel and replicate, and no other plane of the image's size.
 #pragma once
 
+#include "film/film_planes.h"
 #include "film/pixel_filter.h"
 #include "render/film.h"
 #include "spectrum/matrix3.h"
@@ -46,6 +47,9 @@ class PixelFilm final : public Film {
     // √ mean over pixels of variance/(Y² + ε), ε = 0.01 (image mean of Y)²: the square root of the expected relMSE.
     // Pixels without a variance are left out; 0 if there is none. No thread may be adding.
     double relativeNoise() const override;
+
+    // All that was added, for a checkpoint. They refer to this film.
+    FilmPlanes planes();
 
     // Linear RGB of mean · scale, by the matrix of an RgbSpace (spectrum/color_space.h); negative components stay. No
     // thread may be adding. Pixels without samples are black.

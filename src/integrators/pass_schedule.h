@@ -16,4 +16,15 @@ inline std::uint32_t passEnd(std::uint32_t first) {
     return first + (power >= 16 ? power / 4 : power);
 }
 
+// The end of the pass of the whole render that sample `first` belongs to, wherever in it that is.
+inline std::uint32_t endOfPassWith(std::uint32_t first) {
+    std::uint32_t end = 0;
+    while (end <= first) {
+        const std::uint32_t next = passEnd(end);
+        if (next < end) return 0xffffffff; // beyond 32 bits
+        end = next;
+    }
+    return end;
+}
+
 } // namespace abbe

@@ -3,16 +3,19 @@
 #include "base/parallel.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/tile_kernel.h"
+#include "render/render_state.h"
 
 #include <chrono>
 #include <ctime>
 #include <mutex>
+#include <optional>
 
 namespace abbe {
 
 namespace {
 
-constexpr int kTileSize = 16;
+// At most about this long is a tile in one thread's hands, so that a render ends soon when it is told to.
+constexpr double kPortionSeconds = 0.4;
 
 struct Kernel {
     Effects effects;
@@ -40,12 +43,9 @@ double threadSeconds() {
     return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
 
-std::vector<PixelBounds> makeTiles(PixelBounds b) {
-    std::vector<PixelBounds> tiles;
-    for (int y = b.y0; y < b.y1; y += kTileSize)
-        for (int x = b.x0; x < b.x1; x += kTileSize)
-            tiles.push_back({x, y, std::min(x + kTileSize, b.x1), std::min(y + kTileSize, b.y1)});
-    return tiles;
+PathTally tallyOf(const TileResult& r, double seconds) {
+    const PathCounters& c = r.counters;
+    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, seconds};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights) {
@@ -60,32 +60,40 @@ class RenderJob {
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
           lights_(scene.lights, settings.lightChoice), context_{scene, lights_, settings, drawsChoices(scene, lights_)},
-          tiles_(makeTiles(film.bounds())) {
-        const auto replicates = static_cast<std::uint32_t>(film.replicates());
-        perReplicate_ = std::max<std::uint32_t>(1, (settings.samples + replicates - 1) / replicates);
+          range_(settings.range(film.replicates())), ownState_(ownState(film, range_, control)),
+          state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
         statistics_.kernel = kernel.name;
+        count(state_.tally());
     }
 
     RenderStatistics run() {
         lookAhead();
-        std::uint32_t first = 0;
-        while (first < perReplicate_ && !ended()) {
-            const std::uint32_t last = std::min(passEnd(first), perReplicate_);
-            runPass(first, last);
+        if (pass_ > 0 && state_.even()) endPass();
+        while (state_.reached() < range_.last && !ended()) {
+            runPass(std::min(endOfPassWith(state_.reached()), range_.last));
             if (unfinished_) break;
-            first = last;
             ++pass_;
-            statistics_.samplesPerPixel = first * static_cast<std::uint32_t>(film_.replicates());
-            statistics_.noise = film_.relativeNoise();
+            endPass();
         }
-        statistics_.seconds = elapsed();
-        report(statistics_.samplesPerPixel, 1);
+        describe(statistics_);
+        report(1);
         return std::move(statistics_);
     }
 
   private:
     using Clock = std::chrono::steady_clock;
 
+    static std::optional<RenderState> ownState(const Film& film, SampleRange range, const RenderControl& control) {
+        if (control.state) return std::nullopt;
+        return std::optional<RenderState>(std::in_place, film.bounds(), range.first);
+    }
+    // Passes of this range that end at or before a sample.
+    std::uint32_t passesBefore(std::uint32_t sample) const {
+        std::uint32_t count = 0;
+        for (std::uint32_t end = range_.first; (end = endOfPassWith(end)) <= sample;) ++count;
+        return count;
+    }
+    bool snapshotRequested() const { return control_.snapshot && control_.snapshot->load(std::memory_order_relaxed); }
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     bool stopRequested() const {
         if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return true;
@@ -112,54 +120,108 @@ class RenderJob {
         roulette_ = RouletteReference(pilot);
     }
 
-    void runPass(std::uint32_t first, std::uint32_t last) {
-        std::size_t done = 0;
-        parallelFor(tiles_.size(), [&](std::size_t i) {
-            if (stopRequested()) return;
-            const double before = threadSeconds();
-            const TileResult result = kernel_.render(context_, film_, {tiles_[i], first, last, &roulette_});
-            const double seconds = threadSeconds() - before;
-            const std::lock_guard lock(mutex_);
-            merge(result, seconds);
-            ++done;
-            maybeReport(first + static_cast<double>(done) / static_cast<double>(tiles_.size()) * (last - first));
-        });
-        unfinished_ = done < tiles_.size();
+    // All tiles up to sample `last`, as far as nobody ends it.
+    void runPass(std::uint32_t last) {
+        std::vector<std::size_t> open;
+        for (std::size_t i = 0; i < state_.tileCount(); ++i)
+            if (state_.tile(i).reached < last) open.push_back(i);
+        do {
+            parallelFor(open.size(), [&](std::size_t i) { advance(open[i], last); });
+            if (snapshotRequested()) takeSnapshot();
+            std::erase_if(open, [&](std::size_t i) { return state_.tile(i).reached >= last; });
+        } while (!open.empty() && !stopRequested());
+        unfinished_ = !open.empty();
         statistics_.stopped = unfinished_ && control_.stop && control_.stop->load();
     }
 
-    // Sums of integers: the same in any order.
-    void merge(const TileResult& r, double seconds) {
-        statistics_.paths += r.counters.paths;
-        statistics_.vertices += r.counters.vertices;
-        statistics_.shadowRays += r.counters.shadowRays;
-        statistics_.cappedPaths += r.counters.capped;
-        statistics_.excess.add(r.excess);
-        statistics_.coreSeconds += seconds;
-        for (std::size_t i = 0; i < r.dropped.size(); ++i) statistics_.dropped[i] += r.dropped[i];
-        for (const DroppedSample& s : r.examples)
-            if (statistics_.examples.size() < 4) statistics_.examples.push_back(s);
+    void advance(std::size_t i, std::uint32_t last) {
+        TileState& tile = state_.tile(i);
+        while (tile.reached < last && !stopRequested() && !snapshotRequested()) {
+            PathTally tally;
+            {
+                const std::lock_guard hold(state_.mutex(i));
+                const std::uint32_t end = std::min(last, tile.reached + portion(tile));
+                const double before = threadSeconds();
+                const TileResult result =
+                    kernel_.render(context_, film_, {state_.pixels(i), tile.reached, end, &roulette_});
+                tally = tallyOf(result, threadSeconds() - before);
+                tile.tally.add(tally);
+                tile.reached = end;
+                for (const DroppedSample& s : result.examples)
+                    if (tile.examples.size() < TileState::kExamples) tile.examples.push_back(s);
+            }
+            const std::lock_guard lock(mutex_);
+            count(tally);
+            maybeReport();
+        }
     }
 
-    void maybeReport(double samplesPerReplicate) {
+    // How many samples of each replicate are taken in one go.
+    std::uint32_t portion(const TileState& tile) const {
+        const std::uint32_t done = tile.reached - state_.first();
+        if (done == 0) return 2;
+        const double samples = kPortionSeconds * done / std::max(tile.tally.coreSeconds, 1e-6);
+        return static_cast<std::uint32_t>(std::clamp(samples, 1.0, 1e6));
+    }
+
+    void takeSnapshot() {
+        control_.snapshot->store(false);
+        RenderStatistics now = statistics_;
+        describe(now);
+        now.stopped = true;
+        control_.takeSnapshot(now);
+    }
+
+    // What is not counted on the way.
+    void describe(RenderStatistics& s) const {
+        s.samplesPerPixel = finishedSamples();
+        s.seconds = state_.seconds + elapsed();
+        s.examples = state_.examples();
+    }
+
+    std::uint32_t finishedSamples() const {
+        return (state_.reached() - state_.first()) * static_cast<std::uint32_t>(film_.replicates());
+    }
+
+    void endPass() {
+        statistics_.samplesPerPixel = finishedSamples();
+        statistics_.noise = film_.relativeNoise();
+    }
+
+    void count(const PathTally& t) {
+        statistics_.paths += t.paths;
+        statistics_.vertices += t.vertices;
+        statistics_.shadowRays += t.shadowRays;
+        statistics_.cappedPaths += t.cappedPaths;
+        statistics_.excess.add(t.excess);
+        statistics_.coreSeconds += t.coreSeconds;
+        for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
+    }
+
+    void maybeReport() {
         const double now = elapsed();
         if (now - lastReport_ < 0.1) return;
         lastReport_ = now;
-        report(static_cast<std::uint32_t>(samplesPerReplicate * film_.replicates()),
-               samplesPerReplicate / perReplicate_);
+        report(0);
     }
 
-    void report(std::uint32_t samples, double fraction) {
+    // `least`: of the fraction, for the end.
+    void report(double least) {
         if (!control_.progress) return;
+        const double pixels = static_cast<double>(film_.bounds().area());
+        const double samples = static_cast<double>(statistics_.paths) / pixels; // of a pixel, on average
+        const auto total = (range_.last - range_.first) * static_cast<std::uint32_t>(film_.replicates());
         Progress p;
         p.elapsed = elapsed();
         p.pass = pass_;
-        p.samplesPerPixel = samples;
-        p.totalSamples = perReplicate_ * static_cast<std::uint32_t>(film_.replicates());
+        p.samplesPerPixel = static_cast<std::uint32_t>(samples);
+        p.totalSamples = total;
         p.noise = statistics_.noise;
-        p.pathsPerSecond = p.elapsed > 0 ? static_cast<double>(statistics_.paths) / p.elapsed : 0;
-        p.fraction = goalFraction(fraction, samples);
-        if (p.fraction > 0) p.left = p.elapsed * (1 - p.fraction) / p.fraction;
+        p.pathsPerSecond = p.elapsed > 0 ? static_cast<double>(statistics_.paths - pathsBefore_) / p.elapsed : 0;
+        p.fraction = std::max(least, goalFraction(samples / total, p.samplesPerPixel));
+        // What earlier runs did took no time of this one.
+        const double done = p.fraction - std::min(p.fraction, static_cast<double>(pathsBefore_) / pixels / total);
+        if (done > 0) p.left = p.elapsed * (1 - p.fraction) / done;
         control_.progress(p);
     }
 
@@ -182,14 +244,16 @@ class RenderJob {
     LightSampler lights_;
     PathContext context_;
     RouletteReference roulette_;
-    std::vector<PixelBounds> tiles_;
-    std::uint32_t perReplicate_ = 0;
+    SampleRange range_;
+    std::optional<RenderState> ownState_; // unless the caller has one
+    RenderState& state_;
     std::uint32_t pass_ = 0;
     RenderStatistics statistics_;
     std::mutex mutex_;
     Clock::time_point start_ = Clock::now();
     double lastReport_ = 0;
-    bool unfinished_ = false; // the last pass was cut short
+    std::uint64_t pathsBefore_ = state_.tally().paths; // of earlier runs
+    bool unfinished_ = false;                          // the last pass was cut short
 };
 
 class PathTracer final : public Integrator {

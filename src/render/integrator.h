@@ -3,6 +3,7 @@
 
 #include "render/film.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -13,18 +14,36 @@
 namespace abbe {
 
 struct Scene;
+class RenderState;
+
+// Half-open, of the samples of each replicate.
+struct SampleRange {
+    std::uint32_t first = 0, last = 0;
+};
 
 // The numbers a render is asked for. Defaults are documented in the schema of `render`.
 struct RenderSettings {
     std::uint32_t samples = 64; // per pixel, all replicates together; rounded up to a multiple of the replicates
     std::uint64_t seed = 0;
-    std::uint32_t maxDepth = 0; // 0: no limit
-    double noiseTarget = 0;     // relative error at which to stop (0.005 for 0.5 %); 0: none
-    double timeLimit = 0;       // s; 0: none
-    bool randomSampler = false; // plain random numbers instead of Owen-scrambled Sobol, for comparisons
+    std::uint32_t maxDepth = 0;        // 0: no limit
+    double noiseTarget = 0;            // relative error at which to stop (0.005 for 0.5 %); 0: none
+    double timeLimit = 0;              // s; 0: none
+    std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken
+    bool randomSampler = false;        // plain random numbers instead of Owen-scrambled Sobol, for comparisons
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
     // Which light is asked: by what it may give to the place; by its power alone, or evenly, for comparisons.
     enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
+
+    // Of the whole render.
+    std::uint32_t samplesPerReplicate(int replicates) const {
+        const auto r = static_cast<std::uint64_t>(replicates);
+        return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (samples + r - 1) / r));
+    }
+    // Of this part of it. Requires 1 <= part <= parts.
+    SampleRange range(int replicates) const {
+        const std::uint64_t all = samplesPerReplicate(replicates);
+        return {static_cast<std::uint32_t>(all * (part - 1) / parts), static_cast<std::uint32_t>(all * part / parts)};
+    }
 };
 
 // Why samples were dropped.
@@ -57,12 +76,12 @@ struct RenderStatistics {
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
     std::uint64_t rays() const { return vertices + shadowRays; }
-    std::uint32_t samplesPerPixel = 0;      // finished
+    std::uint32_t samplesPerPixel = 0;      // finished in all pixels
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
     std::uint64_t cappedPaths = 0;          // reached the safety cap on vertices (PathLoop::kMaxVertices)
     DensityExcess excess;
-    double seconds = 0;     // wall clock
+    double seconds = 0;     // wall clock, with that of earlier runs
     double coreSeconds = 0; // summed over threads
     double noise = 0;       // estimated relative error of the image
     bool stopped = false;   // by the caller
@@ -78,10 +97,17 @@ struct Progress {
     double elapsed = 0, left = -1; // s; left < 0: unknown yet
 };
 
-// How a caller watches and ends a render. Both are used from the calling thread or from workers, one at a time.
+// How a caller watches, ends and continues a render. Functions are called from the calling thread or from workers, one
+// at a time.
 struct RenderControl {
-    const std::atomic<bool>* stop = nullptr;       // set: finish the tiles in hand and return
-    std::function<void(const Progress&)> progress; // a few times a second
+    const std::atomic<bool>* stop = nullptr;            // set: finish the portions of tiles in hand and return
+    std::function<void(const Progress&)> progress = {}; // a few times a second
+    // Where the render begins, in step with the film given beside it; changed as it goes on. Null: at nothing.
+    RenderState* state = nullptr;
+    // Set by anyone to have takeSnapshot called between two portions of tiles, with no thread at work on the film; the
+    // render then goes on. Both or neither.
+    std::atomic<bool>* snapshot = nullptr;
+    std::function<void(const RenderStatistics&)> takeSnapshot = {};
 };
 
 class Integrator {

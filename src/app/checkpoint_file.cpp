@@ -1,0 +1,236 @@
+#include "app/checkpoint_file.h"
+
+#include "app/checkpoint_bytes.h"
+#include "io/atomic_file.h"
+#include "io/io_error.h"
+#include "math/byte_hash.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace abbe {
+
+namespace {
+
+constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
+constexpr std::uint32_t kVersion = 1;
+
+enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3 };
+
+// What comes before the bytes of a block; its hash comes after them.
+struct BlockHead {
+    std::uint32_t kind = 0, reserved = 0;
+    std::uint64_t size = 0;
+};
+
+std::uint64_t hashOfBlock(const BlockHead& head, std::span<const std::byte> bytes) {
+    ByteHash hash;
+    hash.add(std::as_bytes(std::span(&head, 1)));
+    hash.add(bytes);
+    return hash.value();
+}
+
+void writeBytes(AtomicFile& file, const void* data, std::size_t size) {
+    file.write({static_cast<const char*>(data), size});
+}
+
+void writeBlock(AtomicFile& file, BlockKind kind, const std::vector<std::byte>& bytes) {
+    const BlockHead head{kind, 0, bytes.size()};
+    const std::uint64_t hash = hashOfBlock(head, bytes);
+    writeBytes(file, &head, sizeof head);
+    writeBytes(file, bytes.data(), bytes.size());
+    writeBytes(file, &hash, sizeof hash);
+}
+
+std::vector<std::byte> bytesOf(const CheckpointHeader& h) {
+    std::vector<std::byte> bytes;
+    ByteWriter out(bytes);
+    for (const int v : {h.bounds.x0, h.bounds.y0, h.bounds.x1, h.bounds.y1, h.replicates}) out.number(v);
+    for (const std::uint32_t v : {h.first, h.last, h.whole}) out.number(v);
+    out.number(h.seconds);
+    out.texts(h.planes);
+    out.texts(h.words);
+    out.text(h.folder);
+    out.number(static_cast<std::uint64_t>(h.identity.size()));
+    for (const Fact& f : h.identity) {
+        out.text(f.name);
+        out.text(f.value);
+    }
+    return bytes;
+}
+
+bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
+    ByteReader in(bytes);
+    for (int* v : {&h.bounds.x0, &h.bounds.y0, &h.bounds.x1, &h.bounds.y1, &h.replicates}) *v = in.number<int>();
+    for (std::uint32_t* v : {&h.first, &h.last, &h.whole}) *v = in.number<std::uint32_t>();
+    h.seconds = in.number<double>();
+    h.planes = in.texts();
+    h.words = in.texts();
+    h.folder = in.text();
+    for (auto n = in.number<std::uint64_t>(); n > 0 && in.sound(); --n) {
+        Fact& fact = h.identity.emplace_back();
+        fact.name = in.text();
+        fact.value = in.text();
+    }
+    const auto sideOk = [](std::int64_t from, std::int64_t to) { return from >= 0 && from < to; };
+    return in.sound() && in.atEnd() && sideOk(h.bounds.x0, h.bounds.x1) && sideOk(h.bounds.y0, h.bounds.y1) &&
+           h.replicates >= 1 && h.first <= h.last && h.last <= h.whole;
+}
+
+// Requires the tile's mutex to be held.
+void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes, std::vector<std::byte>& bytes) {
+    bytes.clear();
+    ByteWriter out(bytes);
+    const TileState& tile = state.tile(i);
+    const PathTally& t = tile.tally;
+    out.number(static_cast<std::uint64_t>(i));
+    out.number(tile.reached);
+    for (const std::uint64_t v : {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1],
+                                  t.dropped[2], t.excess.lookups, t.excess.above})
+        out.number(v);
+    out.number(t.excess.most);
+    out.number(t.coreSeconds);
+    out.number(static_cast<std::uint32_t>(tile.examples.size()));
+    for (const DroppedSample& s : tile.examples) {
+        for (const int v : {s.x, s.y, s.replicate}) out.number(v);
+        out.number(s.index);
+        out.number(s.cause);
+    }
+    for (const auto& plane : planes) {
+        const std::size_t at = bytes.size();
+        out.number(std::uint64_t{0});
+        plane->store(state.pixels(i), bytes);
+        const std::uint64_t size = bytes.size() - at - sizeof size;
+        std::memcpy(bytes.data() + at, &size, sizeof size);
+    }
+}
+
+TileState readTile(ByteReader& in) {
+    TileState tile;
+    PathTally& t = tile.tally;
+    tile.reached = in.number<std::uint32_t>();
+    for (std::uint64_t* v : {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1],
+                             &t.dropped[2], &t.excess.lookups, &t.excess.above})
+        *v = in.number<std::uint64_t>();
+    t.excess.most = in.number<float>();
+    t.coreSeconds = in.number<double>();
+    for (auto n = in.number<std::uint32_t>(); n > 0 && in.sound(); --n) {
+        DroppedSample& s = tile.examples.emplace_back();
+        for (int* v : {&s.x, &s.y, &s.replicate}) *v = in.number<int>();
+        s.index = in.number<std::uint32_t>();
+        s.cause = in.number<DropCause>();
+    }
+    return tile;
+}
+
+} // namespace
+
+void writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
+                     RenderState& state) {
+    AtomicFile file(path);
+    writeBytes(file, kMagic, sizeof kMagic);
+    const std::uint32_t version[2] = {kVersion, 0};
+    writeBytes(file, version, sizeof version);
+    writeBlock(file, headerBlock, bytesOf(header));
+    std::vector<std::size_t> left(state.tileCount()), busy;
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    std::vector<std::byte> bytes;
+    // Tiles in hand come last: waiting for one of them is then waiting for few.
+    for (const bool wait : {false, true}) {
+        for (const std::size_t i : left) {
+            {
+                std::unique_lock hold(state.mutex(i), std::defer_lock);
+                if (wait) hold.lock();
+                if (!wait && !hold.try_lock()) {
+                    busy.push_back(i);
+                    continue;
+                }
+                copyTile(i, state, planes, bytes);
+            }
+            writeBlock(file, tileBlock, bytes);
+        }
+        left = std::exchange(busy, {});
+    }
+    bytes.clear();
+    ByteWriter(bytes).number(static_cast<std::uint64_t>(state.tileCount()));
+    writeBlock(file, endBlock, bytes);
+    file.commit();
+}
+
+CheckpointReader::CheckpointReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+    std::error_code error;
+    if (file_) size_ = std::filesystem::file_size(path, error);
+    if (!file_ || error)
+        throw IoError(fmt::format("cannot read `{}`: {}", path, error ? error.message() : std::strerror(errno)));
+    readHeader();
+}
+
+void CheckpointReader::damaged(std::uint64_t at, const char* how) const {
+    throw CheckpointFault("E0662", fmt::format("`{}` is damaged: {} at byte {} of {}", path_, how, at, size_),
+                          "the render can only be begun again: leave out `--resume`, or render this part anew");
+}
+
+const CheckpointReader::Block& CheckpointReader::next() {
+    block_.begin = position_;
+    BlockHead head;
+    std::uint64_t hash = 0;
+    file_.read(reinterpret_cast<char*>(&head), sizeof head);
+    const std::uint64_t left = size_ - std::min(size_, position_ + sizeof head + sizeof hash);
+    if (!file_ || head.size > left) damaged(position_, "the file ends within a block");
+    block_.kind = head.kind;
+    block_.bytes.resize(head.size);
+    file_.read(reinterpret_cast<char*>(block_.bytes.data()), static_cast<std::streamsize>(head.size));
+    file_.read(reinterpret_cast<char*>(&hash), sizeof hash);
+    if (!file_) damaged(position_, "the file ends within a block");
+    if (hash != hashOfBlock(head, block_.bytes)) damaged(position_, "the checksum of a block is wrong");
+    position_ += sizeof head + head.size + sizeof hash;
+    return block_;
+}
+
+void CheckpointReader::readHeader() {
+    char magic[sizeof kMagic] = {};
+    std::uint32_t version[2] = {};
+    file_.read(magic, sizeof magic);
+    file_.read(reinterpret_cast<char*>(version), sizeof version);
+    if (!file_ || std::memcmp(magic, kMagic, sizeof magic) != 0)
+        throw CheckpointFault("E0661", fmt::format("`{}` is no checkpoint of a render", path_),
+                              "checkpoints end in `.ckpt`, parts of renders in `.abbe`");
+    if (version[0] != kVersion)
+        throw CheckpointFault("E0661",
+                              fmt::format("`{}` is a checkpoint of version {}; this program knows version {}", path_,
+                                          version[0], kVersion),
+                              "continue it with the program that made it");
+    position_ = sizeof magic + sizeof version;
+    const Block& block = next();
+    if (block.kind != headerBlock || !readHeaderBytes(block.bytes, header_)) damaged(block.begin, "no header");
+    // Before anything of that size is made: a tile takes far more than this.
+    if (static_cast<std::uint64_t>(header_.bounds.area()) / 256 > size_ / 64) damaged(block.begin, "too few tiles");
+}
+
+void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, RenderState& state,
+                               std::vector<bool>& seen) {
+    ByteReader in(block.bytes);
+    const auto i = in.number<std::uint64_t>();
+    if (block.kind != tileBlock || i >= state.tileCount() || seen[i]) damaged(block.begin, "an unexpected block");
+    seen[i] = true;
+    state.tile(i) = readTile(in);
+    if (state.tile(i).reached < header_.first) damaged(block.begin, "a tile before its first sample");
+    for (const auto& plane : planes)
+        if (const auto bytes = in.take(in.number<std::uint64_t>()); !in.sound() || !plane->add(state.pixels(i), bytes))
+            damaged(block.begin, "a tile of another size");
+    if (!in.atEnd()) damaged(block.begin, "a tile of another size");
+}
+
+RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
+    RenderState state(header_.bounds, header_.first);
+    std::vector<bool> seen(state.tileCount());
+    for (std::size_t i = 0; i < state.tileCount(); ++i) addTile(next(), planes, state, seen);
+    if (const Block& end = next(); end.kind != endBlock || position_ != size_) damaged(end.begin, "no end");
+    state.seconds = header_.seconds;
+    return state;
+}
+
+} // namespace abbe

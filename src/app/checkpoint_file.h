@@ -1,0 +1,76 @@
+// Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
+#pragma once
+
+#include "film/film_planes.h"
+#include "render/render_state.h"
+
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// Something that renders must have in common to be one: "seed", "7".
+struct Fact {
+    std::string name, value;
+    bool operator==(const Fact&) const = default;
+};
+
+// What a checkpoint says about its render.
+struct CheckpointHeader {
+    std::vector<Fact> identity;     // what the samples depend on, besides the pixels
+    std::vector<std::string> words; // of the command line that made it
+    std::string folder;             // where it was given
+    PixelBounds bounds;             // what is rendered of the frame
+    int replicates = 1;
+    std::uint32_t first = 0, last = 0; // samples of each replicate that are meant to be in it
+    std::uint32_t whole = 0;           // samples of each replicate of the render that this is a part of
+    double seconds = 0;                // wall clock so far
+    std::vector<std::string> planes;   // names
+};
+
+// A file that is no checkpoint, is damaged, or does not belong.
+struct CheckpointFault : std::runtime_error {
+    CheckpointFault(std::string diagnosticCode, const std::string& message, std::string advice)
+        : std::runtime_error(message), code(std::move(diagnosticCode)), help(std::move(advice)) {}
+    std::string code, help;
+};
+
+// Writes the film's planes and the tiles in step with them; a render may go on meanwhile and is held up for one tile at
+// a time, while that is copied. The file is complete and on disk when it appears under its name. Throws IoError, and
+// then an older file is as it was.
+void writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&);
+
+// Reads without holding more than a tile in memory.
+class CheckpointReader {
+  public:
+    // Throws IoError if the file cannot be read and CheckpointFault if it is no sound checkpoint as far as its header.
+    explicit CheckpointReader(const std::string& path);
+
+    const std::string& path() const { return path_; }
+    const CheckpointHeader& header() const { return header_; }
+    // Adds everything to a film whose planes have the header's names and whose bounds contain the header's; says how
+    // far that render had come. Once. Throws as the constructor; the film is then good for nothing.
+    RenderState addTo(const FilmPlanes&);
+
+  private:
+    struct Block {
+        std::uint32_t kind = 0;
+        std::uint64_t begin = 0; // in the file
+        std::vector<std::byte> bytes;
+    };
+    const Block& next();
+    [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
+    void readHeader();
+    void addTile(const Block&, const FilmPlanes&, RenderState&, std::vector<bool>& seen);
+
+    std::string path_;
+    std::ifstream file_;
+    std::uint64_t size_ = 0, position_ = 0;
+    Block block_;
+    CheckpointHeader header_;
+};
+
+} // namespace abbe

@@ -1,0 +1,120 @@
+#include "app/render_checkpoint.h"
+
+#include "app/render_identity.h"
+#include "io/io_error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+RenderCheckpoint::RenderCheckpoint(std::string path, CheckpointHeader header,
+                                   std::function<std::vector<Fact>()> identity)
+    : path_(std::move(path)), header_(std::move(header)), identity_(std::move(identity)) {}
+
+RenderCheckpoint::~RenderCheckpoint() { stop(); }
+
+bool RenderCheckpoint::exists() const {
+    std::error_code error;
+    return std::filesystem::exists(path_, error);
+}
+
+void RenderCheckpoint::identify() {
+    if (header_.identity.empty()) header_.identity = identity_();
+}
+
+// Everything that differs, in one message.
+void RenderCheckpoint::check(const CheckpointHeader& theirs) const {
+    const auto pixels = [](const PixelBounds& b) { return fmt::format("{} {} {} {}", b.x0, b.y0, b.x1, b.y1); };
+    const auto samples = [](const CheckpointHeader& h) {
+        const bool part = h.first != 0 || h.last != h.whole;
+        return part ? fmt::format("{} to {} of {}", h.first, h.last, h.whole) : std::string("from the first");
+    };
+    const auto facts = [&](const CheckpointHeader& h) {
+        std::vector<Fact> list = h.identity;
+        list.push_back({"crop", pixels(h.bounds)});
+        list.push_back({"samples", samples(h)});
+        list.push_back({"layers", fmt::format("{}", fmt::join(h.planes, " "))});
+        return list;
+    };
+    const auto lines = differences(facts(theirs), facts(header_), "the checkpoint", "this render");
+    if (lines.empty()) return;
+    throw CheckpointFault("E0663", fmt::format("`{}` is of another render: {}", path_, fmt::join(lines, "; ")),
+                          "undo the difference to continue it, or leave out `--resume` to begin anew");
+}
+
+RenderState RenderCheckpoint::resume(const FilmPlanes& planes) {
+    CheckpointReader reader(path_);
+    identify();
+    header_.planes.clear();
+    for (const auto& plane : planes) header_.planes.push_back(plane->name());
+    check(reader.header());
+    ours_ = true;
+    return reader.addTo(planes);
+}
+
+void RenderCheckpoint::start(FilmPlanes planes, RenderState& state, double interval) {
+    planes_ = std::move(planes);
+    header_.planes.clear();
+    for (const auto& plane : planes_) header_.planes.push_back(plane->name());
+    state_ = &state;
+    watch_.lap();
+    if (interval > 0) thread_ = std::thread([this, interval] { keep(interval); });
+}
+
+void RenderCheckpoint::keep(double interval) {
+    std::unique_lock lock(mutex_);
+    const auto period = std::chrono::duration<double>(interval);
+    auto due = std::chrono::steady_clock::now() + period;
+    while (!changed_.wait_until(lock, due, [this] { return stopping_; })) {
+        // From beginning to beginning, so that no more than the interval and the writing is lost; where that takes the
+        // whole interval a pause all the same.
+        due = std::chrono::steady_clock::now() + period;
+        try {
+            write();
+        } catch (const std::exception& e) { // a full disk may have room the next time; no memory, too
+            fault_ = e.what();
+        }
+        due = std::max(due, std::chrono::steady_clock::now() + period / 4);
+    }
+}
+
+// Requires the mutex.
+void RenderCheckpoint::write() {
+    const Stopwatch writing;
+    identify();
+    CheckpointHeader header = header_;
+    header.seconds = state_->seconds + watch_.seconds();
+    writeCheckpoint(path_, header, planes_, *state_);
+    ours_ = true;
+    writingSeconds_ += writing.seconds();
+    ++writes_;
+}
+
+void RenderCheckpoint::save() {
+    const std::lock_guard lock(mutex_);
+    write();
+}
+
+void RenderCheckpoint::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
+}
+
+std::optional<std::string> RenderCheckpoint::takeFault() {
+    std::unique_lock lock(mutex_, std::try_to_lock); // not while it is being written
+    return lock ? std::exchange(fault_, std::nullopt) : std::nullopt;
+}
+
+void RenderCheckpoint::remove() {
+    std::error_code ignored;
+    if (ours_) std::filesystem::remove(path_, ignored);
+}
+
+} // namespace abbe

@@ -1,0 +1,71 @@
+// The checkpoint of a render that is going on: where it is, when it is written, and how it is taken up again.
+#pragma once
+
+#include "app/checkpoint_file.h"
+#include "app/stopwatch.h"
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace abbe {
+
+// One for each render, used from one thread. `header` lacks identity and planes; `identity` is called once at most, and
+// not before it is needed, because it reads all files of the scene.
+class RenderCheckpoint {
+  public:
+    RenderCheckpoint(std::string path, CheckpointHeader header, std::function<std::vector<Fact>()> identity);
+    // Ends the writing; what is on disk stays.
+    ~RenderCheckpoint();
+    RenderCheckpoint(const RenderCheckpoint&) = delete;
+    RenderCheckpoint& operator=(const RenderCheckpoint&) = delete;
+
+    const std::string& path() const { return path_; }
+    // Whether there is a file to go on from.
+    bool exists() const;
+    // Adds what the file holds to an empty film, and says how far it had come. Throws CheckpointFault, IoError.
+    RenderState resume(const FilmPlanes&);
+
+    // From now on writes every `interval` seconds, in a thread of its own (0: only when told to). Planes and state must
+    // outlive this or stop().
+    void start(FilmPlanes, RenderState&, double interval);
+    // Writes now. Requires start() and that nobody holds a tile's mutex. Throws IoError.
+    void save();
+    // Nothing is written any more.
+    void stop();
+    // The last sentence about why it could not be written in the background, once. Of any thread.
+    std::optional<std::string> takeFault();
+    // The file is not needed any more, if this render made it or went on from it.
+    void remove();
+
+    // What writing took so far, in seconds of the clock, and how often it was.
+    double writingSeconds() const { return writingSeconds_; }
+    int writes() const { return writes_; }
+
+  private:
+    void check(const CheckpointHeader& theirs) const;
+    void identify();
+    void keep(double interval);
+    void write();
+
+    std::string path_;
+    CheckpointHeader header_;
+    std::function<std::vector<Fact>()> identity_;
+    FilmPlanes planes_;
+    RenderState* state_ = nullptr;
+    Stopwatch watch_; // since start()
+    std::thread thread_;
+    std::mutex mutex_; // of everything below, and of writing
+    std::condition_variable changed_;
+    bool stopping_ = false;
+    bool ours_ = false; // the file
+    std::optional<std::string> fault_;
+    double writingSeconds_ = 0;
+    int writes_ = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,103 @@
+// How far a render has come, tile by tile: with the film's sums all that is needed to go on with it.
+#pragma once
+
+#include "render/integrator.h"
+
+#include <algorithm>
+#include <mutex>
+#include <vector>
+
+namespace abbe {
+
+// What the samples of a tile came to. Whole numbers: the same in any order.
+struct PathTally {
+    std::uint64_t paths = 0, vertices = 0, shadowRays = 0, cappedPaths = 0;
+    std::array<std::uint64_t, 3> dropped{}; // by DropCause
+    DensityExcess excess;
+    double coreSeconds = 0;
+
+    void add(const PathTally& t) {
+        paths += t.paths;
+        vertices += t.vertices;
+        shadowRays += t.shadowRays;
+        cappedPaths += t.cappedPaths;
+        for (std::size_t i = 0; i < dropped.size(); ++i) dropped[i] += t.dropped[i];
+        excess.add(t.excess);
+        coreSeconds += t.coreSeconds;
+    }
+};
+
+// The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and no
+// others.
+struct TileState {
+    static constexpr std::size_t kExamples = 4;
+
+    std::uint32_t reached = 0;
+    PathTally tally;
+    std::vector<DroppedSample> examples = {}; // kExamples at most
+};
+
+// The tiles of a film's bounds, row by row. While a render goes on, a tile and the film's pixels in it are changed by
+// the holder of its mutex alone: who holds it finds both in step, at any moment and without stopping the render.
+class RenderState {
+  public:
+    static constexpr int kTileSize = 16;
+
+    // Nothing is done yet; samples will begin at `first`. Requires a non-empty rectangle.
+    RenderState(PixelBounds bounds, std::uint32_t first)
+        : bounds_(bounds), first_(first), columns_((bounds.width() + kTileSize - 1) / kTileSize),
+          tiles_(static_cast<std::size_t>(columns_) *
+                 static_cast<std::size_t>((bounds.height() + kTileSize - 1) / kTileSize)),
+          mutexes_(tiles_.size()) {
+        for (TileState& tile : tiles_) tile.reached = first;
+    }
+
+    std::uint32_t first() const { return first_; }
+    PixelBounds bounds() const { return bounds_; }
+    std::size_t tileCount() const { return tiles_.size(); }
+    TileState& tile(std::size_t i) { return tiles_[i]; }
+    const TileState& tile(std::size_t i) const { return tiles_[i]; }
+    std::mutex& mutex(std::size_t i) { return mutexes_[i]; }
+    PixelBounds pixels(std::size_t i) const {
+        const int x = bounds_.x0 + static_cast<int>(i) % columns_ * kTileSize;
+        const int y = bounds_.y0 + static_cast<int>(i) / columns_ * kTileSize;
+        return {x, y, std::min(x + kTileSize, bounds_.x1), std::min(y + kTileSize, bounds_.y1)};
+    }
+
+    // Where the slowest tile stands. No render may be going on, here and below.
+    std::uint32_t reached() const {
+        return std::min_element(tiles_.begin(), tiles_.end(),
+                                [](const TileState& a, const TileState& b) { return a.reached < b.reached; })
+            ->reached;
+    }
+    // Whether all tiles stand at the same sample.
+    bool even() const {
+        return std::all_of(tiles_.begin(), tiles_.end(),
+                           [&](const TileState& t) { return t.reached == tiles_[0].reached; });
+    }
+    PathTally tally() const {
+        PathTally sum;
+        for (const TileState& tile : tiles_) sum.add(tile.tally);
+        return sum;
+    }
+
+    // The first few, in the order of the tiles.
+    std::vector<DroppedSample> examples() const {
+        std::vector<DroppedSample> list;
+        for (const TileState& tile : tiles_)
+            for (const DroppedSample& s : tile.examples)
+                if (list.size() < TileState::kExamples) list.push_back(s);
+        return list;
+    }
+
+    double seconds = 0; // wall clock of the runs before this one
+
+  private:
+    PixelBounds bounds_;
+    std::uint32_t first_;
+    int columns_;
+    std::vector<TileState> tiles_;
+    std::vector<std::mutex> mutexes_;
+};
+
+} // namespace abbe
