@@ -198,7 +198,7 @@ void CheckpointReader::readHeader() {
     if (!file_ || std::memcmp(magic, kMagic, sizeof magic) != 0)
         throw CheckpointFault("E0661", fmt::format("`{}` is no checkpoint of a render", path_),
                               "checkpoints end in `.ckpt`, parts of renders in `.abbe`");
-    if (version[0] != kVersion)
+    if (version[0] != kVersion || version[1] != 0)
         throw CheckpointFault("E0661",
                               fmt::format("`{}` is a checkpoint of version {}; this program knows version {}", path_,
                                           version[0], kVersion),

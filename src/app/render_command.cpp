@@ -61,6 +61,7 @@ class RenderRun {
     void renderFrom(PixelFilm&, RenderState&, const InterruptGuard&);
     void snapshot(const PixelFilm&, const RenderStatistics&);
     void closeCheckpoint();
+    void tellFault();
     void tellHowToResume() const;
     void warn(const char* code, std::string message, std::string help);
     void write(const PixelFilm&);
@@ -222,7 +223,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
     } else if (options.resume) {
         warn("W0664", fmt::format("there is no checkpoint `{}`; the render begins anew", path), {});
     } else if (!options_.part && checkpoint_->exists()) {
-        warn("W0663", fmt::format("`{}` holds a render that was not finished; this one will replace it", path),
+        warn("W0663", fmt::format("`{}` holds an earlier state of a render; this one will replace it", path),
              "`--resume` goes on with it");
     }
     checkpoint_->start(film.planes(), state, options.off ? 0 : options.interval);
@@ -236,11 +237,15 @@ void RenderRun::warn(const char* code, std::string message, std::string help) {
     ++summary_.warnings;
 }
 
+// Of writing in the background.
+void RenderRun::tellFault() {
+    const auto fault = checkpoint_ ? checkpoint_->takeFault() : std::nullopt;
+    if (fault) warn("W0662", fmt::format("the checkpoint was not written: {}", *fault), "the render goes on");
+}
+
 void RenderRun::renderFrom(PixelFilm& film, RenderState& state, const InterruptGuard& interrupt) {
     const auto progress = [this](const Progress& p) {
-        if (checkpoint_)
-            if (const auto fault = checkpoint_->takeFault())
-                warn("W0662", fmt::format("the checkpoint was not written: {}", *fault), "the render goes on");
+        tellFault();
         report_->progress(p);
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
@@ -273,6 +278,7 @@ void RenderRun::render(PixelFilm& film, RenderState& state, const InterruptGuard
 void RenderRun::closeCheckpoint() {
     if (!checkpoint_) return;
     checkpoint_->stop();
+    tellFault();
     if (options_.part) {
         checkpoint_->save();
         report_->image(summary_.image, summary_.partial);

@@ -76,6 +76,8 @@ class RenderJob {
             endPass();
         }
         describe(statistics_);
+        statistics_.stopped =
+            control_.stop && control_.stop->load() && state_.reached() < range_.last && !quietEnough();
         report(1);
         return std::move(statistics_);
     }
@@ -99,11 +101,10 @@ class RenderJob {
         if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return true;
         return settings_.timeLimit > 0 && pass_ > 0 && elapsed() > settings_.timeLimit;
     }
-    bool ended() const {
-        if (settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget)
-            return true;
-        return stopRequested();
+    bool quietEnough() const {
+        return settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget;
     }
+    bool ended() const { return quietEnough() || stopRequested(); }
 
     // Samples of a seed of its own, which are never part of the image.
     void lookAhead() {
@@ -131,7 +132,6 @@ class RenderJob {
             std::erase_if(open, [&](std::size_t i) { return state_.tile(i).reached >= last; });
         } while (!open.empty() && !stopRequested());
         unfinished_ = !open.empty();
-        statistics_.stopped = unfinished_ && control_.stop && control_.stop->load();
     }
 
     void advance(std::size_t i, std::uint32_t last) {

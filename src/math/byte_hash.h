@@ -11,8 +11,8 @@
 
 namespace abbe {
 
-// 64 bits over bytes that come in portions; the portions do not matter. Four lanes, because one multiplication takes
-// longer than reading the next word.
+// 64 bits over bytes that come in portions; the portions do not matter. Four lanes, because a multiplication takes
+// longer than reading the next word; a round is that of xxHash64 [Collet2012].
 class ByteHash {
   public:
     void add(std::span<const std::byte> bytes) {
@@ -48,7 +48,8 @@ class ByteHash {
         for (std::size_t i = 0; i < kLanes; ++i) {
             std::uint64_t word;
             std::memcpy(&word, bytes + 8 * i, sizeof word);
-            lanes_[i] = std::rotl((lanes_[i] ^ word) * 0x9e3779b97f4a7c15ull, 29) + word;
+            // Two multiplications: after one alone a change of the upper bits is undone by one in the next block.
+            lanes_[i] = std::rotl(lanes_[i] + word * 0xc2b2ae3d27d4eb4full, 31) * 0x9e3779b185ebca87ull;
         }
     }
 
