@@ -128,8 +128,8 @@ TileState readTile(ByteReader& in) {
 
 } // namespace
 
-void writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
-                     RenderState& state) {
+bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
+                     RenderState& state, const std::function<bool()>& sound) {
     AtomicFile file(path);
     writeBytes(file, kMagic, sizeof kMagic);
     const std::uint32_t version[2] = {kVersion, 0};
@@ -157,7 +157,9 @@ void writeCheckpoint(const std::string& path, const CheckpointHeader& header, co
     bytes.clear();
     ByteWriter(bytes).number(static_cast<std::uint64_t>(state.tileCount()));
     writeBlock(file, endBlock, bytes);
+    if (sound && !sound()) return false;
     file.commit();
+    return true;
 }
 
 CheckpointReader::CheckpointReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,9 +40,11 @@ struct CheckpointFault : std::runtime_error {
 };
 
 // Writes the film's planes and the tiles in step with them; a render may go on meanwhile and is held up for one tile at
-// a time, while that is copied. The file is complete and on disk when it appears under its name. Throws IoError, and
-// then an older file is as it was.
-void writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&);
+// a time, while that is copied. The file is complete and on disk when it appears under its name, which it does only if
+// `sound` still says so after the last tile; returns whether it did. Throws IoError, and then an older file is as it
+// was.
+bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&,
+                     const std::function<bool()>& sound = {});
 
 // Reads without holding more than a tile in memory.
 class CheckpointReader {

@@ -48,6 +48,8 @@ const std::atomic<bool>& InterruptGuard::stop() const { return stopRequested; }
 
 std::atomic<bool>& InterruptGuard::snapshot() const { return snapshotRequested; }
 
+void InterruptGuard::requestStop() { stopRequested = true; }
+
 int InterruptGuard::signal() const { return receivedSignal; }
 
 } // namespace abbe

@@ -18,6 +18,8 @@ class InterruptGuard {
     const std::atomic<bool>& stop() const;
     // Set when a snapshot is asked for; whoever takes it resets it.
     std::atomic<bool>& snapshot() const;
+    // As a signal would, without one.
+    void requestStop();
     // The signal that came to end it, or 0.
     int signal() const;
 };

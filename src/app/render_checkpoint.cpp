@@ -87,7 +87,7 @@ void RenderCheckpoint::write() {
     identify();
     CheckpointHeader header = header_;
     header.seconds = state_->seconds + watch_.seconds();
-    writeCheckpoint(path_, header, planes_, *state_);
+    if (!writeCheckpoint(path_, header, planes_, *state_, sound_)) return;
     ours_ = true;
     writingSeconds_ += writing.seconds();
     ++writes_;

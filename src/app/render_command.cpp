@@ -14,6 +14,7 @@
 #include "io/io_error.h"
 #include "render/render_state.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ class RenderRun {
         if (const ExitCode code = prepare(); code != ExitCode::done) return code;
         if (options_.pixel) return renderPixel();
         if (!options_.parts.empty()) return merge();
-        const InterruptGuard interrupt;
+        InterruptGuard interrupt;
         PixelFilm film = makeFilm(film_.crop);
         RenderState state(film.bounds(), settings_.range(film.replicates()).first);
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
@@ -57,11 +58,13 @@ class RenderRun {
     ExitCode openCheckpoint(PixelFilm&, RenderState&);
     CheckpointHeader checkpointHeader() const;
     std::vector<Fact> identity() const;
-    void render(PixelFilm&, RenderState&, const InterruptGuard&);
-    void renderFrom(PixelFilm&, RenderState&, const InterruptGuard&);
+    void render(PixelFilm&, RenderState&, InterruptGuard&);
+    void renderFrom(PixelFilm&, RenderState&, InterruptGuard&);
     void snapshot(const PixelFilm&, const RenderStatistics&);
     void closeCheckpoint();
     void tellFault();
+    bool texturesReadable() const;
+    void watchTextures(InterruptGuard&, const Progress&);
     void tellHowToResume() const;
     void warn(const char* code, std::string message, std::string help);
     void write(const PixelFilm&);
@@ -85,6 +88,8 @@ class RenderRun {
     std::unique_ptr<const Integrator> integrator_;
     std::optional<RenderCheckpoint> checkpoint_;
     bool outOfMemory_ = false; // while rendering
+    bool lostTexture_ = false;
+    double watchedUntil_ = 0; // s, the textures
     RenderSummary summary_;
     Stopwatch watch_;
 };
@@ -226,6 +231,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
         warn("W0663", fmt::format("`{}` holds an earlier state of a render; this one will replace it", path),
              "`--resume` goes on with it");
     }
+    checkpoint_->writeOnlyIf([this] { return texturesReadable(); });
     checkpoint_->start(film.planes(), state, options.off ? 0 : options.interval);
     return ExitCode::done;
 }
@@ -237,15 +243,31 @@ void RenderRun::warn(const char* code, std::string message, std::string help) {
     ++summary_.warnings;
 }
 
+// What is rendered without a texture that was there is worth nothing, and must not get into a checkpoint.
+bool RenderRun::texturesReadable() const {
+    Diagnostics found;
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(found);
+    return std::none_of(found.all().begin(), found.all().end(), [](const Diagnostic& d) { return d.code == "W0458"; });
+}
+
+// Once a second, and at the end.
+void RenderRun::watchTextures(InterruptGuard& interrupt, const Progress& p) {
+    if (lostTexture_ || (p.fraction < 1 && p.elapsed < watchedUntil_ + 1)) return;
+    watchedUntil_ = p.elapsed;
+    lostTexture_ = !texturesReadable();
+    if (lostTexture_) interrupt.requestStop();
+}
+
 // Of writing in the background.
 void RenderRun::tellFault() {
     const auto fault = checkpoint_ ? checkpoint_->takeFault() : std::nullopt;
     if (fault) warn("W0662", fmt::format("the checkpoint was not written: {}", *fault), "the render goes on");
 }
 
-void RenderRun::renderFrom(PixelFilm& film, RenderState& state, const InterruptGuard& interrupt) {
-    const auto progress = [this](const Progress& p) {
+void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& interrupt) {
+    const auto progress = [this, &interrupt](const Progress& p) {
         tellFault();
+        watchTextures(interrupt, p);
         report_->progress(p);
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
@@ -263,12 +285,13 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, const InterruptG
     }
 }
 
-void RenderRun::render(PixelFilm& film, RenderState& state, const InterruptGuard& interrupt) {
+void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& interrupt) {
     report_->start({options_.input.path, summary_.image, film_.crop.width(), film_.crop.height(), threadCount(),
                     settings_.samples, settings_.noiseTarget, settings_.timeLimit});
     watch_.lap();
     renderFrom(film, state, interrupt);
-    summary_.partial = summary_.statistics.stopped;
+    summary_.partial = summary_.statistics.stopped || lostTexture_;
+    summary_.statistics.stopped = summary_.partial;
     closeCheckpoint();
     endPhase("rendering", watch_.lap());
     summary_.noise = film.relativeNoise();
@@ -408,6 +431,15 @@ ExitCode RenderRun::finish(int signal) {
     if (outOfMemory_)
         summary_.exit = refuse("E0665", fmt::format("memory ran out; the image so far is in `{}`", summary_.image),
                                "give it more memory, fewer layers, or a smaller `crop`", ExitCode::memory);
+    if (lostTexture_)
+        summary_.exit = refuse("E0666",
+                               fmt::format("a texture could not be read any more (W0458), so the render was ended; the "
+                                           "image so far is in `{}`, black where the texture should be",
+                                           summary_.image),
+                               checkpoint_ && checkpoint_->writes() > 0
+                                   ? "the checkpoint is of before that: bring the file back and go on with `--resume`"
+                                   : "bring the file back and render again",
+                               ExitCode::faulty);
     if (signal != 0) summary_.exit = static_cast<ExitCode>(128 + signal);
     if (checkpoint_ && summary_.partial && !options_.checkpoint.off)
         tellHowToResume();

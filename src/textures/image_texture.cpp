@@ -146,16 +146,16 @@ Spectrum ImageTexture::lightFactor(const TextureQuery& query, const Wavelengths&
 
 void ImageTexture::reportLookups(Diagnostics& diagnostics) const {
     const std::string name = std::filesystem::path(asked_.value).filename().string();
-    const auto warn = [&](LookupFaults::Kind kind, const char* what) {
+    const auto warn = [&](LookupFaults::Kind kind, const char* what, const char* code = "W0457") {
         if (const std::uint64_t n = faults_.count(kind))
-            return &diagnostics.warning("W0457", asked_.span, fmt::format("{} lookups in `{}` {}", n, name, what),
+            return &diagnostics.warning(code, asked_.span, fmt::format("{} lookups in `{}` {}", n, name, what),
                                         "black there");
         return static_cast<Diagnostic*>(nullptr);
     };
     warn(LookupFaults::coordinates, "had texture coordinates that are infinite or not a number");
     if (Diagnostic* d = warn(LookupFaults::missingTile, "fell into tiles that have no file"))
         d->help = "give every tile that the shape's texture coordinates reach a file";
-    if (Diagnostic* d = warn(LookupFaults::failedRead, "failed, because the file could not be read"))
+    if (Diagnostic* d = warn(LookupFaults::failedRead, "failed, because the file could not be read", "W0458"))
         if (const std::string why = faults_.example(); !why.empty()) d->notes.push_back(why);
     warn(LookupFaults::notFinite, "met values that are infinite or not a number");
 }

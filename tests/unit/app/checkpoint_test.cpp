@@ -245,6 +245,9 @@ TEST_CASE("checkpoints in the background are of a moment: every tile in step wit
         CHECK(identified == 1);
         checkpoint.remove();
         CHECK_FALSE(checkpoint.exists());
+        checkpoint.writeOnlyIf([] { return false; });
+        checkpoint.save();
+        CHECK_FALSE(checkpoint.exists());
     }
     // Where it cannot be written the reason is told once, and nothing ends.
     RenderCheckpoint nowhere(folder / "absent/x.ckpt", header, [] { return std::vector<Fact>{{"seed", "7"}}; });

@@ -386,7 +386,7 @@ TEST_CASE("image texture: a file that breaks while rendering is counted, and mad
     Diagnostics found;
     t->reportLookups(found);
     REQUIRE(found.all().size() == 1);
-    CHECK(found.all()[0].code == "W0457");
+    CHECK(found.all()[0].code == "W0458");
     CHECK(s.cached() == 0);
     CHECK(s.numbers(path));
     CHECK(s.cached() == 1);
