@@ -34,7 +34,7 @@ class HumanReport final : public RenderReport {
 
     void image(const std::string& path, bool partial) override {
         clearBar();
-        if (!quiet_ && partial) console_.line(fmt::format("interrupted; {} holds the image so far", path));
+        if (!quiet_ && partial) console_.line(fmt::format("{} holds the image so far", path));
     }
 
     void diagnostics(const Diagnostics& d, const SourceMap& sources) override {
