@@ -18,16 +18,17 @@ constexpr Names kRgb{"R", "G", "B"}, kXyz{"X", "Y", "Z"};
 constexpr const char* kLayers = "add `aov denoise` to the film of the scene and render again: the halves and the "
                                 "features of its surfaces are then in the image";
 
-// The channels of a layer; without `mean` if not all are there. The second prefix `half.` holds the first half.
-std::array<DenoiseChannel, 3> layer(const ExrPlanes& planes, const std::string& prefix, const Names& names) {
+// The channels of a layer, without `mean` if not all are there, and of its first half.
+std::array<DenoiseChannel, 3> layer(const ExrPlanes& planes, const std::string& prefix, const Names& names,
+                                    const Names& halfNames) {
     std::array<DenoiseChannel, 3> channels;
-    const auto complete = [&](const std::string& before) {
-        return std::all_of(names.begin(), names.end(), [&](const char* n) { return planes.find(before + n); });
+    const auto complete = [&](const std::string& before, const Names& all) {
+        return std::all_of(all.begin(), all.end(), [&](const char* n) { return planes.find(before + n); });
     };
-    const bool mean = complete(prefix), half = complete("half." + prefix);
+    const bool mean = complete(prefix, names), half = complete("half." + prefix, halfNames);
     for (std::size_t c = 0; mean && c < 3; ++c) {
         channels[c].mean = *planes.find(prefix + names[c]);
-        if (half) channels[c].half = *planes.find("half." + prefix + names[c]);
+        if (half) channels[c].half = *planes.find("half." + prefix + halfNames[c]);
     }
     return channels;
 }
@@ -84,14 +85,14 @@ DenoiseInput DenoiseRun::collect(const ExrPlanes& planes) {
     DenoiseInput input;
     input.width = planes.info.window.width();
     input.height = planes.info.window.height();
-    input.colour = layer(planes, "", kRgb);
+    input.colour = layer(planes, "", kRgb, kRgb);
     if (input.colour[0].mean.empty()) {
         names_ = kXyz;
-        input.colour = layer(planes, "", kXyz);
+        input.colour = layer(planes, "", kXyz, kRgb); // the halves of a picture in XYZ have these names too
     }
     checkHalves(input);
-    input.features.albedo = layer(planes, "albedo.", kRgb);
-    input.features.normal = layer(planes, "normal.", kXyz);
+    input.features.albedo = layer(planes, "albedo.", kRgb, kRgb);
+    input.features.normal = layer(planes, "normal.", kXyz, kXyz);
     if (const auto* depth = planes.find("depth.Z")) input.features.depth.mean = *depth;
     if (const auto* half = planes.find("half.depth.Z")) input.features.depth.half = *half;
     if (!diagnostics_.hasErrors()) warnOfMissing(input.features);
