@@ -11,10 +11,10 @@ Examples:
   abbe denoise room.exr -o clean.exr           leaves room.exr alone
   abbe denoise room.exr --preview              rough, in a fraction of the time
 
-The scene asks for what it needs: film { aov denoise })";
+The scene asks for what it needs: film { layers { denoise } })";
 
 void addDenoiseArguments(CLI::App& command, DenoiseOptions& options, CommonOptions& common) {
-    command.add_option("image", options.input, "EXR of a render with `aov denoise`")->required()->type_name("");
+    command.add_option("image", options.input, "EXR of a render with `layers { denoise }`")->required()->type_name("");
     command.add_option("-o,--output", options.output, "EXR to write; without it the image itself gets the layer")
         ->type_name("FILE");
     command.add_flag_callback(

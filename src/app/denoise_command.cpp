@@ -15,8 +15,9 @@ namespace {
 using Names = std::array<const char*, 3>;
 
 constexpr Names kRgb{"R", "G", "B"}, kXyz{"X", "Y", "Z"};
-constexpr const char* kLayers = "add `aov denoise` to the film of the scene and render again: the halves and the "
-                                "features of its surfaces are then in the image";
+constexpr const char* kLayers =
+    "add `layers { denoise }` to the film of the scene and render again: the halves and the "
+    "features of its surfaces are then in the image";
 
 // The channels of a layer, without `mean` if not all are there, and of its first half.
 std::array<DenoiseChannel, 3> layer(const ExrPlanes& planes, const std::string& prefix, const Names& names,

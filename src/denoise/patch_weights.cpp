@@ -53,7 +53,8 @@ void PatchWeights::measure(const Guide& guide, const Tile& tile, int dx, int dy)
 }
 
 void PatchWeights::average(const Tile& tile, int dx, int dy) {
-    constexpr float kScale = 1.f / (kPatch * kPatch);
+    constexpr float kBandwidth = 2; // k
+    constexpr float kScale = 1 / (kBandwidth * kBandwidth * kPatch * kPatch);
     for (int y = 0; y < tile.height + kPatch - 1; ++y) {
         float* const d = distances_.data() + y * kStride;
         for (int x = 0; x < tile.width; x += kLanes) { // in place: what is read lies at or right of what is written

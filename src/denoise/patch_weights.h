@@ -15,8 +15,8 @@ struct Guide {
     float epsilon = 0; // squared difference that counts as none, > 0
 };
 
-// The weights of one tile against a window of neighbours, at k = 1 of [Bitterli2016, eq. 5]; the weights of another k
-// are these to the power of 1/k².
+// The weights of one tile against a window of neighbours, at the bandwidth k = 2 of [Bitterli2016, eq. 5]; the weights
+// of another k are these to the power of 4/k².
 class PatchWeights {
   public:
     static constexpr int kPatchRadius = 1;

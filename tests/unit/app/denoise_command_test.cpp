@@ -11,7 +11,7 @@ using namespace abbe;
 
 namespace {
 
-// Writes a synthetic picture as a render with `aov denoise` would be; only channels that `keep` accepts.
+// Writes a synthetic picture as a render with `layers { denoise }` would be; only channels that `keep` accepts.
 template <typename Keep> void writeLayers(const std::string& path, const SyntheticPicture& p, const Keep& keep) {
     ExrPicture picture;
     picture.window = picture.display = {0, 0, p.width, p.height};

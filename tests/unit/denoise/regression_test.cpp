@@ -1,4 +1,4 @@
-#include "denoise/half_buffers.h"
+#include "denoise/error_estimate.h"
 #include "denoise/regression.h"
 
 #include <cmath>
@@ -118,6 +118,11 @@ TEST_CASE("weights: 1 among pixels that differ by noise alone, 0 across an edge,
     CHECK(weights.row(-5, 0, 16)[4] == 0);
     CHECK(weights.row(-5, 0, 16)[5] > 0);
     CHECK(weights.row(0, -1, 0)[10] == 0);
+    const Plane narrow = makePlane(37, 9, [](int, int) { return 1; });
+    weights.compute({{&narrow}, {&narrow}, 1e-6f}, {32, 0, 8, 9}); // three columns of the tile lie outside
+    CHECK(weights.row(0, 0, 3)[4] == 1);
+    CHECK(weights.row(0, 0, 3)[5] == 0);
+    CHECK(weights.row(-1, 0, 3)[5] == 0);
     // (A − B)²/2 is the variance of a half.
     const Plane other = makePlane(kSize, kSize, [&](int x, int) { return (x < 20 ? 0 : 3) + noise(random); });
     const HalfBuffers halves({value}, {other});
@@ -125,4 +130,25 @@ TEST_CASE("weights: 1 among pixels that differ by noise alone, 0 across an edge,
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) mean += halves.variances[0].row(y)[x] / (kSize * kSize);
     CHECK(mean == doctest::Approx(0.01).epsilon(0.1));
+}
+
+// Where the truth is 0, the estimate is ((D_A + D_B)/2)² and products of independent deviations.
+TEST_CASE("the squared error of the mean of two halves") {
+    std::mt19937 random(17);
+    std::normal_distribution<float> noise(0, 1);
+    std::array<std::vector<Plane>, 4> planes; // A, B, D_A, D_B
+    for (auto& kind : planes)
+        for (int c = 0; c < 3; ++c) kind.push_back(makePlane(20, 12, [&](int, int) { return noise(random); }));
+    const HalfBuffers noisy(planes[0], planes[1]);
+    const DenoisedHalves denoised{ColourPlanes{planes[2][0], planes[2][1], planes[2][2]},
+                                  ColourPlanes{planes[3][0], planes[3][1], planes[3][2]}};
+    const ColourPlanes error = squaredError(noisy, denoised);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Plane expected = makePlane(20, 12, [&](int x, int y) {
+            const double a = planes[0][c].row(y)[x], b = planes[1][c].row(y)[x];
+            const double da = planes[2][c].row(y)[x], db = planes[3][c].row(y)[x];
+            return (da + db) * (da + db) / 4 + a * b - da * b - db * a;
+        });
+        CHECK(largestError(error[c], expected) < 1e-5);
+    }
 }
