@@ -73,7 +73,7 @@ std::string writeFault(const std::string& path) {
 }
 
 ResolvedImage resolveImage(const PixelFilm& film, const FilmSettings& settings, double exposure) {
-    return film.resolve(rgbSpace(settings.space).fromXyz(), exposure);
+    return film.resolve(rgbSpace(settings.space).fromXyz() * settings.whiteBalance, exposure);
 }
 
 void writeImage(const std::string& path, const ResolvedImage& image, const FilmSettings& film,
@@ -92,6 +92,10 @@ void writeImage(const std::string& path, const ResolvedImage& image, const FilmS
     picture.compression = findExrCompression(film.compression).value_or(ExrCompression::zip);
     picture.half = film.half;
     picture.attributes = std::move(attributes);
+    picture.attributes.push_back({"abbe.sensor", film.sensor});
+    if (film.adoptedWhite)
+        picture.attributes.push_back(
+            {"abbe.whiteBalance", fmt::format("{:.5f} {:.5f} bradford", film.adoptedWhite->x, film.adoptedWhite->y)});
     picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
     warnOfLosses(writeExr(path, picture), path, diagnostics);
 }

@@ -1,6 +1,7 @@
 #include "film/film_params.h"
 
 #include "base/check.h"
+#include "spectrum/named_spectra.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,17 @@ void checkContainer(const FilmParams& p, std::vector<FilmFault>& faults) {
     }
 }
 
+// A light whose colour the eye cannot take for white has no response in one of Bradford's cones.
+void checkWhiteBalance(const FilmParams& p, std::vector<FilmFault>& faults) {
+    if (!p.whiteBalance) return;
+    const Xyz white = integrate(*p.whiteBalance);
+    const Vec3d cones = coneResponse(white);
+    if (white.y > 0 && cones.x > 0 && cones.y > 0 && cones.z > 0) return;
+    faults.push_back({"white-balance", "no eye takes this light for white",
+                      "use a light with a broad spectrum: white-balance illuminant A, white-balance blackbody 3200 K",
+                      "E0454"});
+}
+
 OutputSpace spaceOf(const schema::Text& output) {
     const std::string_view space = keyOf(output, "space");
     return space == "acescg"   ? OutputSpace::acescg
@@ -117,6 +129,18 @@ schema::TypeInfo filmType() {
                                     {"exr", "aces"},
                                     "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
                               .synonyms({"filename", "file"}));
+    std::vector<std::string_view> sensors = sensorNames();
+    sensors.insert(sensors.begin(), "cie");
+    type.fields.push_back(field(FieldType::choice, "sensor", &FilmParams::sensor)
+                              .doc("The CIE observer, or a camera by its measured sensitivities.")
+                              .example("sensor nikon-d850")
+                              .byDefault("cie")
+                              .choices(std::move(sensors)));
+    type.fields.push_back(field(FieldType::spectrum, "white-balance", &FilmParams::whiteBalance)
+                              .role(schema::SpectrumRole::shape)
+                              .doc("Light that shall look neutral; without it colours stay as they are.")
+                              .example("white-balance blackbody 3200 K")
+                              .synonyms({"whitebalance", "white", "adopted-white"}));
     return type;
 }
 
@@ -148,7 +172,15 @@ std::vector<FilmFault> findFaults(const FilmParams& p) {
     if (faults.empty()) checkCrop(p, faults);
     checkFilter(p, faults);
     checkContainer(p, faults);
+    checkWhiteBalance(p, faults);
     return faults;
+}
+
+Sensor makeSensor(const FilmParams& p) {
+    const CameraSensitivities* camera = findSensitivities(p.sensor.word);
+    if (!camera) return {};
+    if (p.whiteBalance) return Sensor(*camera, *p.whiteBalance);
+    return Sensor(*camera, *illuminantCurve(*findIlluminant("D65")));
 }
 
 FilmSettings filmSettings(const FilmParams& p) {
@@ -169,6 +201,12 @@ FilmSettings filmSettings(const FilmParams& p) {
     s.space = spaceOf(p.output);
     if (const auto compression = keyOf(p.output, "compression"); !compression.empty()) s.compression = compression;
     s.half = keyOf(p.output, "half") == "on";
+    s.sensor = p.sensor.word;
+    if (p.whiteBalance) {
+        const Xyz white = integrate(*p.whiteBalance);
+        s.adoptedWhite = chromaticity(white);
+        s.whiteBalance = adaptation(whiteXyz(*s.adoptedWhite), whiteXyz(adoptedNeutral(s.space)));
+    }
     s.acesContainer = keyOf(p.output, "container") == "aces";
     if (s.acesContainer) {
         s.compression = "none";

@@ -5,6 +5,7 @@
 #include "render/film.h"
 #include "schema/type.h"
 #include "spectrum/color_space.h"
+#include "spectrum/sensor.h"
 
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ struct FilmParams {
     std::optional<std::vector<double>> crop;      // x0 y0 x1 y1, half-open, pixels from the top left
     schema::Choice filter{"blackman-harris", {}}; // radius in pixels; unset: defaultRadius of the filter
     schema::Text output;                          // empty: named after the scene
+    schema::Choice sensor{"cie", {}};             // or a name of sensorNames()
+    const Curve* whiteBalance = nullptr;          // light that shall look neutral; null: colours stay as they are
 };
 
 schema::TypeInfo filmType();
@@ -40,6 +43,9 @@ struct FilmSettings {
     OutputSpace space = OutputSpace::aces2065_1;
     std::string compression = "zip"; // as in the scene; a name of io/exr_writer.h
     bool half = false;
+    std::string sensor = "cie";
+    std::optional<Chromaticity> adoptedWhite; // of the light that shall look neutral
+    Matrix3 whiteBalance;       // on XYZ: takes that white to the space's neutral, by Bradford's transform
     bool acesContainer = false; // SMPTE ST 2065-4; then the three above are what that asks for
 };
 
@@ -52,7 +58,9 @@ struct FilmFault {
 };
 std::vector<FilmFault> findFaults(const FilmParams&);
 
-// Requires findFaults(params).empty().
+// Of the observer, or of a camera fitted for the light that shall look neutral, or else for D65.
+// Both: require findFaults(params).empty().
+Sensor makeSensor(const FilmParams&);
 FilmSettings filmSettings(const FilmParams& params);
 
 } // namespace abbe

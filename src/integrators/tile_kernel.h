@@ -2,7 +2,6 @@
 #pragma once
 
 #include "integrators/path_loop.h"
-#include "spectrum/observer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -105,7 +104,7 @@ template <EffectBits E> class TileKernel {
         const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
         maySubtract_ = signedWeights() != before;
-        return toXyz(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
+        return context_.scene.sensor(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
     }
 
     std::uint64_t signedWeights() const {

@@ -10,6 +10,7 @@
 #include "render/medium.h"
 #include "render/shape.h"
 #include "render/texture.h"
+#include "spectrum/sensor.h"
 #include "spectrum/wavelength_density.h"
 
 #include <memory>
@@ -31,6 +32,7 @@ struct Scene {
                              // partly open, or lies hidden in a dielectric
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
+    Sensor sensor;                 // what a pixel's three numbers are
     PixelBounds frame;             // the whole picture, of which a film may hold a part
     WavelengthDensity wavelengths; // of paths
     Effects effects;

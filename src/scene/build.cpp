@@ -82,6 +82,7 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
                 diagnostics_.error(std::string(fault.code), film->span, fault.message, std::string(fault.field)).help =
                     fault.help;
         }
+    if (findFaults(built.film).empty()) built.scene.sensor = makeSensor(built.film);
     if (const Definition* render = only(Kind::render, ""))
         if (const auto params = bound<RenderParams>(*render)) built.render = *params;
     if (options_.size) {

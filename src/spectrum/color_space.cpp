@@ -84,11 +84,18 @@ double linearToSrgb(double linear) {
     return std::copysign(encoded, linear);
 }
 
+namespace {
+constexpr Matrix3 kBradford{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+constexpr Matrix3 kCat02{{{0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}}};
+
+const Matrix3& toCones(ConeModel model) { return model == ConeModel::bradford ? kBradford : kCat02; }
+} // namespace
+
+Vec3d coneResponse(const Xyz& colour, ConeModel model) { return toCones(model).apply<Vec3d>(colour); }
+
 Matrix3 adaptation(const Xyz& fromWhite, const Xyz& toWhite, ConeModel model) {
-    constexpr Matrix3 bradford{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
-    constexpr Matrix3 cat02{{{0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}}};
-    const Matrix3& cones = model == ConeModel::bradford ? bradford : cat02;
-    const Vec3d from = cones.apply<Vec3d>(fromWhite), to = cones.apply<Vec3d>(toWhite);
+    const Vec3d from = coneResponse(fromWhite, model), to = coneResponse(toWhite, model);
+    const Matrix3& cones = toCones(model);
     return cones.inverse() * Matrix3::diagonal(to.x / from.x, to.y / from.y, to.z / from.z) * cones;
 }
 

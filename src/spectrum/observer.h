@@ -27,16 +27,16 @@ Spectrum xbar(const Wavelengths&);
 Spectrum ybar(const Wavelengths&);
 Spectrum zbar(const Wavelengths&);
 
-// One path's estimate of ∫ L (x̄, ȳ, z̄) dλ / ∫ ȳ dλ, unbiased over Wavelengths::sample(u) for uniform u.
-inline Xyz toXyz(const Spectrum& radiance, const Wavelengths& w) {
+// One path's estimate of ∫ L (x̄, ȳ, z̄) dλ / ∫ ȳ dλ, unbiased over Wavelengths::sample(u) for uniform u. Other tables of
+// 470 cells than the observer's: sensor.h.
+inline Xyz toXyz(const Spectrum& radiance, const Wavelengths& w,
+                 const detail::ObserverCell* table = detail::kObserver.data()) {
     constexpr float scale = static_cast<float>(1 / (kLanes * kYIntegral));
     const Float8 weight = radiance.v / w.pdf.v * scale;
     const Float8 end = weight * w.fraction.v, start = weight - end;
     // Lane j's weights of both ends of its cell, four times each, are one in-half permutation of these.
     const __m256 low = _mm256_permute2f128_ps(start, end, 0x20), high = _mm256_permute2f128_ps(start, end, 0x31);
-    const auto cell = [&](int j) {
-        return _mm256_load_ps(detail::kObserver[static_cast<std::size_t>(w.cell[j])].value);
-    };
+    const auto cell = [&](int j) { return _mm256_load_ps(table[w.cell[j]].value); };
     const __m256 even =
         _mm256_fmadd_ps(cell(0), _mm256_permute_ps(low, 0x00), _mm256_mul_ps(cell(2), _mm256_permute_ps(low, 0xaa)));
     const __m256 odd =
