@@ -1,5 +1,6 @@
 #include "spectrum/color_space.h"
 
+#include "spectrum/cone_response.h"
 #include "spectrum/names.h"
 
 #include <cmath>

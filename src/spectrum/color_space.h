@@ -54,8 +54,6 @@ double linearToSrgb(double linear);
 enum class ConeModel { bradford, cat02 };
 // The matrix on XYZ that takes colours seen under one white to corresponding colours under another (von Kries in the
 // model's cone space). Only for declared uses: the film never applies it by itself.
-// Requires whites whose cone responses are above 0.
 Matrix3 adaptation(const Xyz& fromWhite, const Xyz& toWhite, ConeModel = ConeModel::bradford);
-Vec3d coneResponse(const Xyz&, ConeModel = ConeModel::bradford);
 
 } // namespace abbe
