@@ -127,6 +127,8 @@ TEST_CASE("film fields store what is written") {
 
 TEST_CASE("every choice of a field has a meaning") {
     for (const schema::FieldInfo& f : filmType().fields)
-        if (f.name == "filter")
-            for (const std::string_view word : f.choices) CHECK(findFilter(word).has_value());
+        for (const std::string_view word : f.choices) {
+            if (f.name == "filter") CHECK(findFilter(word).has_value());
+            if (f.name == "sensor") CHECK((word == "cie" || findSensitivities(word)));
+        }
 }
