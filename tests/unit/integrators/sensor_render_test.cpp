@@ -49,7 +49,7 @@ TEST_CASE("white balance: the light that is named has R = G = B in every space a
             CAPTURE(space);
             const TestScene scene = skyScene(std::string("sensor ") + sensor +
                                                  "; white-balance illuminant FL2; output \"x.exr\" space=" + space,
-                                             "spectrum illuminant FL2; luminance 72983 nits");
+                                             "color illuminant FL2; luminance 72983 nits");
             REQUIRE(scene.report() == "");
             // Exactly, of the exact light; and of the paths, whose wavelengths are random, within their noise.
             const auto light = illuminantCurve(*findIlluminant("FL2"));
