@@ -159,6 +159,12 @@ class SceneFactWriter {
     std::map<std::string, std::filesystem::path> files_;
 };
 
+// A camera is fitted to the light that is balanced; for the observer the balance comes after the sums.
+std::string sensorText(const FilmSettings& film) {
+    if (film.sensor == "cie" || !film.adoptedWhite) return film.sensor;
+    return fmt::format("{} for {} {}", film.sensor, film.adoptedWhite->x, film.adoptedWhite->y);
+}
+
 std::string quoted(const std::string& value) { return value.empty() ? "nothing" : fmt::format("`{}`", value); }
 
 } // namespace
@@ -172,6 +178,7 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
         {"program", fmt::format("abbe {} language {} samples {}", versionNumber(), kLanguageEdition, kSampleEdition)},
         {"size", fmt::format("{}x{}", in.film->width, in.film->height)},
         {"filter", fmt::format("{} {}", static_cast<int>(in.film->filter), in.film->filterRadius)},
+        {"sensor", sensorText(*in.film)},
         {"seed", number(s.seed)},
         {"replicates", number(in.replicates)},
         {"sampler", s.randomSampler ? "random" : "sobol"},
