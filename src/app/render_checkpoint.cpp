@@ -74,8 +74,9 @@ void RenderCheckpoint::keep(double interval) {
         due = std::chrono::steady_clock::now() + period;
         try {
             write();
+            lastFault_.clear();
         } catch (const std::exception& e) { // a full disk may have room the next time; no memory, too
-            fault_ = e.what();
+            if (lastFault_ != e.what()) fault_ = lastFault_ = e.what();
         }
         due = std::max(due, std::chrono::steady_clock::now() + period / 4);
     }

@@ -65,8 +65,9 @@ class RenderCheckpoint {
     std::mutex mutex_; // of everything below, and of writing
     std::condition_variable changed_;
     bool stopping_ = false;
-    bool ours_ = false; // the file
-    std::optional<std::string> fault_;
+    bool ours_ = false;                // the file
+    std::optional<std::string> fault_; // not yet taken
+    std::string lastFault_;            // so that a disk that stays full is told once
     double writingSeconds_ = 0;
     int writes_ = 0;
 };

@@ -11,7 +11,7 @@ small=(--size 40x24 --samples 120)
 expect 0 "$scene" "${small[@]}" --quiet -o whole.exr
 [[ ! -e whole.exr.ckpt ]] || fault "a finished render leaves its checkpoint"
 
-long=(--size 40x24 --samples 800)
+long=(--size 40x24 --samples $((270 * kills)))
 expect 0 "$scene" "${long[@]}" --quiet -o long.exr --checkpoint off
 # Killed at any moment, as often as need be.
 RANDOM=7
@@ -164,6 +164,7 @@ says err W0663
 mkdir full.exr.ckpt
 expect 0 "$scene" "${small[@]}" -o full.exr --checkpoint 1ms
 says err W0662
+[[ $(grep -c 'W0662\]' err) -eq 1 ]] || fault "told more than once"
 same_pixels whole.exr full.exr
 [[ -z $(find . -name '*.tmp') ]] || fault "temporary files are left"
 
