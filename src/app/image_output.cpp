@@ -76,8 +76,17 @@ ResolvedImage resolveImage(const PixelFilm& film, const FilmSettings& settings, 
     return film.resolve(rgbSpace(settings.space).fromXyz() * settings.whiteBalance, exposure);
 }
 
-void writeImage(const std::string& path, const ResolvedImage& image, const FilmSettings& film,
+FilmPicture resolvePicture(const PixelFilm& film, const FilmSettings& settings, double exposure, Vec3d origin) {
+    FilmPicture picture{resolveImage(film, settings, exposure), {}};
+    const RgbSpace& space = rgbSpace(settings.space);
+    picture.layers =
+        layerPlanes(film, picture.image, {&space, space.fromXyz() * settings.whiteBalance, exposure, origin});
+    return picture;
+}
+
+void writeImage(const std::string& path, const FilmPicture& shot, const FilmSettings& film,
                 std::vector<ImageAttribute> attributes, Diagnostics& diagnostics) {
+    const auto& [image, layers] = shot;
     ExrPicture picture;
     const PixelBounds& b = image.bounds;
     picture.window = {b.x0, b.y0, b.x1, b.y1};
@@ -86,6 +95,8 @@ void writeImage(const std::string& path, const ResolvedImage& image, const FilmS
     picture.g = image.g;
     picture.b = image.b;
     if (!image.variance.empty()) picture.more.push_back({"variance.Y", image.variance});
+    for (const NamedPlane& plane : layers.planes) picture.more.push_back({plane.name, plane.values});
+    for (const auto& [name, value] : layers.header) attributes.push_back({name, value});
     picture.chromaticities = Chromaticities::of(rgbSpace(film.space));
     picture.adoptedNeutral = adoptedNeutral(film.space);
     picture.acesContainer = film.acesContainer;
@@ -98,6 +109,11 @@ void writeImage(const std::string& path, const ResolvedImage& image, const FilmS
             {"abbe.whiteBalance", fmt::format("{:.5f} {:.5f} bradford", film.adoptedWhite->x, film.adoptedWhite->y)});
     picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
     warnOfLosses(writeExr(path, picture), path, diagnostics);
+    if (layers.unequalSums > 0)
+        diagnostics.warning(
+            "W0656", {},
+            fmt::format("{} values of the light groups or components of `{}` do not add up to the picture",
+                        layers.unequalSums, path));
 }
 
 void checkView(const ViewOptions& options, bool png) {

@@ -4,6 +4,7 @@
 #include "app/options.h"
 #include "base/diagnostic.h"
 #include "film/film_params.h"
+#include "film/layer_planes.h"
 #include "film/pixel_film.h"
 #include "io/exr_writer.h"
 
@@ -22,11 +23,17 @@ std::string pngPath(const RenderOptions&, const std::string& imagePath);
 // The reason, or empty.
 std::string writeFault(const std::string& path);
 
-// The pixels in the film's space, with the camera's exposure applied.
+// The picture in the film's space, with the camera's exposure applied, and the channels beside it.
+struct FilmPicture {
+    ResolvedImage image;
+    LayerPlanes layers;
+};
 ResolvedImage resolveImage(const PixelFilm&, const FilmSettings&, double exposure);
+// `origin`: world position of the origin of render space.
+FilmPicture resolvePicture(const PixelFilm&, const FilmSettings&, double exposure, Vec3d origin);
 
 // Throws IoError. Warnings (values that half floats cannot hold, channels left out) go to the list.
-void writeImage(const std::string& path, const ResolvedImage&, const FilmSettings&, std::vector<ImageAttribute>,
+void writeImage(const std::string& path, const FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>,
                 Diagnostics&);
 
 // The configuration that PNGs are made with: `--ocio`, else the environment's $OCIO, else the built-in one, which

@@ -51,7 +51,10 @@ class RenderRun {
     ExitCode checkOutputs();
     ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
     PixelFilm makeFilm(PixelBounds bounds) const {
-        return {bounds, PixelFilter(film_.filter, film_.filterRadius), static_cast<int>(built_.render.replicates)};
+        PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
+                       static_cast<int>(built_.render.replicates));
+        if (!options_.pixel) film.keepLayers(built_.layers, built_.scene.names);
+        return film;
     }
     ExitCode renderPixel();
     ExitCode merge();
@@ -70,7 +73,10 @@ class RenderRun {
     void write(const PixelFilm&);
     std::vector<ImageAttribute> attributes(const PixelFilm&) const;
     void writePng(const ResolvedImage&);
-    void writeRescued(const ResolvedImage&, std::vector<ImageAttribute>, const IoError&);
+    void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
+    FilmPicture pictureOf(const PixelFilm& film) const {
+        return resolvePicture(film, film_, built_.exposure, built_.scene.origin);
+    }
     ExitCode finish(int signal);
 
     void endPhase(const char* name, double seconds) {
@@ -131,7 +137,8 @@ ExitCode RenderRun::checkFilm() {
     }
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
     constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
-    const double bytes = pixels * (kResolved + 52.0 * static_cast<double>(built_.render.replicates));
+    const double bytes = pixels * (kResolved + 52.0 * static_cast<double>(built_.render.replicates)) +
+                         static_cast<double>(FilmLayers::memoryBytes(film_.crop, built_.layers));
     if (bytes > physicalMemory())
         return refuse("E0650",
                       fmt::format("an image of {}×{} pixels needs {:.3g} GB; this machine has {:.3g} GB of memory",
@@ -331,10 +338,10 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
             Diagnostics ignored; // told at the end
             summary_.partial = true;
             summary_.noise = film.relativeNoise();
-            const ResolvedImage image = resolveImage(film, film_, built_.exposure);
-            writeImage(summary_.image, image, film_, attributes(film), ignored);
+            const FilmPicture picture = pictureOf(film);
+            writeImage(summary_.image, picture, film_, attributes(film), ignored);
             report_->image(summary_.image, true);
-            writePng(image);
+            writePng(picture.image);
         }
     } catch (const IoError& e) {
         warn("W0662", fmt::format("the snapshot was not written: {}", e.what()), "the render goes on");
@@ -365,20 +372,20 @@ void RenderRun::writePng(const ResolvedImage& image) {
 }
 
 void RenderRun::write(const PixelFilm& film) {
-    const ResolvedImage image = resolveImage(film, film_, built_.exposure);
+    const FilmPicture picture = pictureOf(film);
     Diagnostics warnings;
     try {
-        writeImage(summary_.image, image, film_, attributes(film), warnings);
+        writeImage(summary_.image, picture, film_, attributes(film), warnings);
     } catch (const IoError& e) {
-        writeRescued(image, attributes(film), e);
+        writeRescued(picture, attributes(film), e);
     }
     report_->image(summary_.image, summary_.partial);
-    writePng(image);
+    writePng(picture.image);
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
-    warnOfBlackImage(image, warnings);
+    warnOfBlackImage(picture.image, warnings);
     report_->diagnostics(warnings, loaded_->sources);
     summary_.warnings += warnings.warningCount();
 }
@@ -403,12 +410,12 @@ ExitCode RenderRun::merge() {
 
 // The disk filled up or went away while rendering: what was computed is saved where temporary files go, and a
 // checkpoint beside the image if there is room for that.
-void RenderRun::writeRescued(const ResolvedImage& image, std::vector<ImageAttribute> attributes, const IoError& why) {
+void RenderRun::writeRescued(const FilmPicture& picture, std::vector<ImageAttribute> attributes, const IoError& why) {
     const auto rescued = std::filesystem::temp_directory_path() / std::filesystem::path(summary_.image).filename();
     std::string saved;
     try {
         Diagnostics ignored;
-        writeImage(rescued.string(), image, film_, std::move(attributes), ignored);
+        writeImage(rescued.string(), picture, film_, std::move(attributes), ignored);
         saved = fmt::format("; the image was saved as `{}`", rescued.string());
     } catch (const IoError&) {
         saved = "; nor is there room in the folder of temporary files";

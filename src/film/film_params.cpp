@@ -116,6 +116,13 @@ schema::TypeInfo filmType() {
                               .choices({"box", "triangle", "gaussian", "blackman-harris", "mitchell"})
                               .range(0, 16)
                               .synonyms({"pixelfilter", "rfilter", "reconstruction-filter"}));
+    type.fields.push_back(
+        field(FieldType::table, "layers", &FilmParams::layers)
+            .namedRows()
+            .doc("What the file holds beside the picture: albedo, normal, position, depth, uv, object-id, "
+                 "material-id, samples, seconds, invalid, components, cryptomatte, light-group, spectral, denoise.")
+            .example("layers { albedo; normal; light-group key; spectral 380 780 10; cryptomatte }")
+            .synonyms({"aov", "aovs", "passes", "outputs", "channels"}));
     type.fields.push_back(field(FieldType::text, "output", &FilmParams::output)
                               .doc("OpenEXR file to write; without it, the scene's name with .exr.")
                               .example("output \"hero.exr\" space=acescg compression=dwab")

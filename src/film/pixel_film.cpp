@@ -38,21 +38,31 @@ void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint3
     ABBE_DCHECK(samples_[cell] >= samples); // no overflow of the count
 }
 
-Xyz PixelFilm::mean(int x, int y) const noexcept {
-    const std::size_t first = firstCell(x, y);
+void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names) {
+    if (!plan.empty()) layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names);
+}
+
+Xyz PixelFilm::mean(int x, int y) const noexcept { return mean(x, y, 0, replicates_); }
+
+std::uint64_t PixelFilm::samples(int x, int y) const noexcept { return samples(x, y, 0, replicates_); }
+
+Xyz PixelFilm::mean(int x, int y, int first, int last) const noexcept {
+    const std::size_t start = firstCell(x, y);
     ExactXyz sum;
     std::uint64_t count = 0;
-    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell) {
+    for (std::size_t cell = start + static_cast<std::size_t>(first); cell < start + static_cast<std::size_t>(last);
+         ++cell) {
         sum += sums_[cell];
         count += samples_[cell];
     }
     return count == 0 ? Xyz{} : sum.value() * (1 / static_cast<double>(count));
 }
 
-std::uint64_t PixelFilm::samples(int x, int y) const noexcept {
-    const std::size_t first = firstCell(x, y);
+std::uint64_t PixelFilm::samples(int x, int y, int first, int last) const noexcept {
+    const std::size_t start = firstCell(x, y);
     std::uint64_t count = 0;
-    for (std::size_t cell = first; cell < first + static_cast<std::size_t>(replicates_); ++cell)
+    for (std::size_t cell = start + static_cast<std::size_t>(first); cell < start + static_cast<std::size_t>(last);
+         ++cell)
         count += samples_[cell];
     return count;
 }
@@ -136,6 +146,7 @@ FilmPlanes PixelFilm::planes() {
     planes.push_back(std::make_unique<DensePlane<ExactXyz>>("xyz", bounds_, replicates, std::span<ExactXyz>(sums_)));
     planes.push_back(std::make_unique<DensePlane<std::uint32_t>>("samples", bounds_, replicates,
                                                                  std::span<std::uint32_t>(samples_)));
+    if (layers_) layers_->appendPlanes(planes);
     return planes;
 }
 

@@ -1,6 +1,7 @@
 // The film of the renderer: 52 bytes per pixel and replicate, and no other plane of the image's size.
 #pragma once
 
+#include "film/film_layers.h"
 #include "film/film_planes.h"
 #include "film/pixel_filter.h"
 #include "render/film.h"
@@ -25,6 +26,11 @@ class PixelFilm final : public Film {
     // `bounds` is the part of the image that is made (the crop). Requires a non-empty one and replicates >= 1.
     // Throws std::bad_alloc.
     PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates);
+    // Before the first sample: what else to keep. Throws std::bad_alloc.
+    void keepLayers(const LayerPlan&, const SceneNames&);
+    // Null if nothing else is kept.
+    const FilmLayers* layers() const { return layers_.get(); }
+    std::unique_ptr<SampleRecorder> makeRecorder() override { return layers_ ? layers_->makeRecorder() : nullptr; }
     // What a film of this size takes.
     static std::uint64_t memoryBytes(PixelBounds, int replicates);
 
@@ -35,6 +41,9 @@ class PixelFilm final : public Film {
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override;
     Xyz mean(int x, int y) const noexcept override;
     std::uint64_t samples(int x, int y) const noexcept;
+    // The same of the replicates [first, last) alone.
+    Xyz mean(int x, int y, int first, int last) const noexcept;
+    std::uint64_t samples(int x, int y, int first, int last) const noexcept;
 
     // Variance of mean(x, y).y, unbiased for replicates of equal size: s²/R of the R replicate means, hence R − 1
     // degrees of freedom: a 95 % interval is ± studentFactor95(R − 1) standard errors. Nothing unless two replicates
@@ -70,6 +79,7 @@ class PixelFilm final : public Film {
     PixelFilter filter_;
     std::vector<ExactXyz> sums_;         // [pixel][replicate]
     std::vector<std::uint32_t> samples_; // [pixel][replicate]
+    std::unique_ptr<FilmLayers> layers_;
 };
 
 // Two-sided 95 % quantile of Student's t; requires degreesOfFreedom >= 1.

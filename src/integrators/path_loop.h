@@ -11,6 +11,7 @@
 #include "integrators/surroundings_at.h"
 #include "math/equiangular.h"
 #include "render/integrator.h"
+#include "render/path_observer.h"
 #include "render/scene.h"
 
 namespace abbe {
@@ -77,7 +78,9 @@ template <EffectBits E> class PathLoop {
     PathLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
         : context_(context), sampler_(sampler), arena_(arena), counters_(counters), media_(media) {}
 
-    // To be called before radiance(). The camera ray is that of the hero alone:
+    // To be called before radiance(). Somebody watches, or nobody (null):
+    void watch(PathObserver* observer) { observer_ = observer; }
+    // The camera ray is that of the hero alone:
     void startWithHero() { startWithHero_ = true; }
     // The camera is immersed:
     void startIn(const Surroundings& around) requires(kInterfaces) { path_.nested.here = around; }
@@ -116,6 +119,12 @@ template <EffectBits E> class PathLoop {
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
     Spectrum transmittance(Vec3 origin, const LightSample&, path_detail::Nested, RandomStream);
     Spectrum clearness(const Surroundings&, float distance) const;
+    // Light that reached the eye from a Light or a MediumEmission.
+    void gather(const Spectrum& light, const void* source, bool passing = false) {
+        path_.radiance += light;
+        if (observer_) [[unlikely]]
+            observer_->gathers(light, source, passing);
+    }
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
@@ -162,6 +171,7 @@ template <EffectBits E> class PathLoop {
     PathCounters& counters_;
     Media& media_;
     PathState<E> path_;
+    PathObserver* observer_ = nullptr;
     bool startWithHero_ = false;
     const Medium* collided_ = nullptr; // after Arrival::collision
 };
@@ -201,6 +211,8 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const VertexSample sample = sampler_.vertex(depth);
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
+        if (observer_) [[unlikely]]
+            observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
         sampleLight(hit, bsdf, eye, sample, depth);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
@@ -221,6 +233,8 @@ template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 dire
     if constexpr (kTextures || kInterfaces) hit.arrival = direction;
     // Beside samples of the light, which are points, light is looked up at points: the two must see the same.
     if constexpr (kTextures) hit.footprint = path_.delta ? path_.cone.radius : 0;
+    if (observer_) [[unlikely]]
+        observer_->arrives(hit, path_.beta);
     if (hit.light) meetLight(hit, direction);
     if constexpr (kTextures) hit.footprint = path_.cone.radius;
     if constexpr (kTextures)
@@ -267,7 +281,7 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
         lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
-    path_.radiance = fma(path_.beta * weight, emitted, path_.radiance);
+    gather(path_.beta * weight * emitted, hit.light);
 }
 
 template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
@@ -279,7 +293,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
             lightPdf = context_.lights.probability(light, 0, path_.from, path_.scatters) *
                        light->pdfEscaped(path_.from, direction, path_.time);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
-        path_.radiance = fma(path_.beta * scatteringWeight(lightPdf), arriving, path_.radiance);
+        gather(path_.beta * scatteringWeight(lightPdf) * arriving, light);
     }
 }
 
@@ -313,7 +327,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
         const Curve* medium = through ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
         if (medium && light->distance < kInfinity) contribution *= exp(medium->at(path_.lambda) * -light->distance);
     }
-    path_.radiance += contribution;
+    gather(contribution, picked.light);
 }
 
 template <EffectBits E>

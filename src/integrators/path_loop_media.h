@@ -19,7 +19,7 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
         arriving *= loop_.clearness(path.nested.here, t);
-        path.radiance += arriving;
+        loop_.gather(arriving, &emission);
     }
 
   private:
@@ -65,6 +65,8 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     if (!anyNonZero(path_.beta)) return false;
     const PhaseFunction& phase = collided_->phase();
     const VertexSample sample = sampler_.vertex(depth);
+    if (observer_) [[unlikely]]
+        observer_->collides(ray.origin, path_.beta);
     sampleLightInMedium(ray.origin, ray.direction, sample, depth);
     const float cosine = phase.sampleCosine(sample.bsdf.x);
     const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
@@ -101,7 +103,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);
-    path_.radiance += contribution * trackingShare(picked);
+    gather(contribution * trackingShare(picked), picked.light);
 }
 
 } // namespace abbe

@@ -56,7 +56,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     passing *= media_.tracker.transmittance(ray, t, path_.nested.here.media(), path_.lambda, random);
     passing *= clearness(path_.nested.here, t);
     const float density = kept * pdf * picked.probability * light->pdfSolidAngle;
-    path_.radiance += path_.beta * light->radiance * scattered * passing * (share / density);
+    gather(path_.beta * light->radiance * scattered * passing * (share / density), picked.light, true);
 }
 
 // Of the leg, around where the light is; nothing where it is not looked for or does not arrive.

@@ -4,7 +4,9 @@
 #include "integrators/path_loop.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <memory>
 
 namespace abbe {
 
@@ -28,7 +30,8 @@ struct TileResult {
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)
-        : context_(context), film_(film), job_(job), media_(PathLoop<E>::makeMedia(context.scene)) {}
+        : context_(context), film_(film), job_(job), media_(PathLoop<E>::makeMedia(context.scene)),
+          recorder_(film.makeRecorder()) {}
 
     TileResult run() {
         for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
@@ -43,6 +46,7 @@ template <EffectBits E> class TileKernel {
 
   private:
     using Media = typename PathLoop<E>::Media;
+    using Clock = std::chrono::steady_clock;
     // Rays of a pinhole share their origin, and what is around it.
     const Surroundings& around(const Ray& ray) {
         const auto contains = [&](const Bounds3& filled) { return filled.contains(ray.origin); };
@@ -72,17 +76,22 @@ template <EffectBits E> class TileKernel {
         ExactXyz sum;
         std::uint32_t counted = 0;
         sampler_.startPixel(seed, context_.settings.randomSampler, context_.choices);
+        const auto started = recorder_ ? Clock::now() : Clock::time_point();
+        if (recorder_) recorder_->pixel(x, y, r);
         for (std::uint32_t i = job_.first; i < job_.last; ++i) {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
                 drop({x, y, r, i, static_cast<DropCause>(cause)});
+                if (recorder_) recorder_->drop();
                 continue;
             }
+            if (recorder_) recorder_->keep(radiance_, context_.scene.sensor, factor_);
             sum += value;
             ++counted;
         }
         film_.add(x, y, r, sum, counted);
+        if (recorder_) recorder_->pixelDone(std::chrono::duration<double>(Clock::now() - started).count());
         result_.counters.paths += job_.last - job_.first;
     }
 
@@ -95,8 +104,11 @@ template <EffectBits E> class TileKernel {
         const CameraRay camera = context_.scene.camera->ray(at);
         radiance_ = Spectrum(0.f);
         maySubtract_ = false;
+        factor_ = static_cast<double>(camera.weight * filter.weight);
+        if (recorder_) recorder_->start(camera.ray.origin, lambda);
         if (!(camera.weight > 0)) return {};
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
+        loop.watch(recorder_.get());
         if constexpr (PathLoop<E>::kInterfaces) loop.startIn(around(camera.ray));
         if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(at, camera.ray));
         if constexpr (hasEffect(E, Effect::dispersion))
@@ -104,7 +116,7 @@ template <EffectBits E> class TileKernel {
         const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
         maySubtract_ = signedWeights() != before;
-        return context_.scene.sensor(radiance_, lambda) * static_cast<double>(camera.weight * filter.weight);
+        return context_.scene.sensor(radiance_, lambda) * factor_;
     }
 
     std::uint64_t signedWeights() const {
@@ -139,6 +151,7 @@ template <EffectBits E> class TileKernel {
     Sampler sampler_;
     Arena arena_;
     [[no_unique_address]] Media media_;
+    const std::unique_ptr<SampleRecorder> recorder_; // null: nobody wants to know more
     struct Around {
         Vec3 origin{kInfinity, kInfinity, kInfinity};
         Surroundings surroundings;
@@ -146,6 +159,7 @@ template <EffectBits E> class TileKernel {
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, Around, path_detail::Nothing> around_;
     TileResult result_;
     Spectrum radiance_; // of the last sample
+    double factor_ = 0; // of the camera and the pixel filter, likewise
     bool maySubtract_ = false;
 };
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "math/vec.h"
+#include "render/sample_recorder.h"
 #include "spectrum/exact_xyz.h"
 
 #include <cstdint>
+#include <memory>
 
 namespace abbe {
 
@@ -38,6 +40,8 @@ class Film {
     virtual Xyz mean(int x, int y) const noexcept = 0;
     // Estimated relative error of the image from the spread of the replicates; 0 with a single replicate or sample.
     virtual double relativeNoise() const = 0;
+    // What else is to be kept of samples, for one thread; null: nothing. The film outlives it.
+    virtual std::unique_ptr<SampleRecorder> makeRecorder() { return nullptr; }
 };
 
 } // namespace abbe

@@ -14,6 +14,8 @@
 #include "spectrum/wavelength_density.h"
 
 #include <memory>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace abbe {
@@ -38,6 +40,9 @@ struct Scene {
     Effects effects;
     std::vector<EffectReason> reasons;
     Vec3d origin; // world position of the origin of render space
+    // What the file calls shapes, materials, lights and media that shine: their names or, for those without one, type
+    // and number.
+    std::unordered_map<const void*, std::string> names;
 };
 
 } // namespace abbe

@@ -1,13 +1,16 @@
 #include "scene/build.h"
 
+#include "film/layer_rows.h"
 #include "lights/emitted_spectrum.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
+#include "schema/suggest.h"
 #include "spectrum/observer.h"
 
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 namespace abbe {
 
@@ -81,6 +84,8 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
             for (const FilmFault& fault : findFaults(built.film))
                 diagnostics_.error(std::string(fault.code), film->span, fault.message, std::string(fault.field)).help =
                     fault.help;
+            built.layers = layerPlan(built.film.layers, diagnostics_);
+            checkMattes(built);
         }
     if (findFaults(built.film).empty()) built.scene.sensor = makeSensor(built.film);
     if (const Definition* render = only(Kind::render, ""))
@@ -119,6 +124,31 @@ void SceneBuilder::noteEffects(BuiltScene& built) {
     }
 }
 
+// Identifiers are the bits of floats, which lossy compression changes.
+void SceneBuilder::checkMattes(const BuiltScene& built) {
+    if (!built.layers.objects && !built.layers.materials) return;
+    for (const auto& [key, value] : built.film.output.keys)
+        if (key == "compression" && (value == "pxr24" || value == "dwaa" || value == "dwab"))
+            diagnostics_
+                .error("E0655", built.film.output.span, fmt::format("compression `{}` would damage Cryptomatte", value))
+                .help = "`zip`, `zips` and `piz` lose nothing";
+}
+
+void SceneBuilder::checkLightGroups(const BuiltScene& built) {
+    std::set<std::string_view> known;
+    for (const auto& light : lights_) known.insert(built.scene.names.at(light.get()));
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    for (const LightGroup& group : built.layers.groups)
+        for (const std::string& member : group.members)
+            if (!known.contains(member)) {
+                const std::string_view near = schema::nearest(member, names);
+                diagnostics_
+                    .error("E0655", built.film.layers.span, fmt::format("no light is called `{}`", member),
+                           fmt::format("in the light group `{}`", group.name))
+                    .help = near.empty() ? "give the light a name: `light NAME quad { … }`" : schema::didYouMean(near);
+            }
+}
+
 void SceneBuilder::finish(BuiltScene& built) {
     built.facts.lights = lights_.size();
     built.facts.materials = materials_.size();
@@ -131,6 +161,7 @@ void SceneBuilder::finish(BuiltScene& built) {
         emitted += lights_[i]->power();
         built.facts.lightList.push_back({lightNames_[i].first, lightNames_[i].second, lights_[i]->power()});
     }
+    checkLightGroups(built);
     if (!(emitted > 0) && !diagnostics_.hasErrors())
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "film/film_params.h"
+#include "film/layer_plan.h"
 #include "integrators/render_params.h"
 #include "math/interval.h"
 #include "render/scene.h"
@@ -45,6 +46,7 @@ struct SceneFacts {
 struct BuiltScene {
     Scene scene;
     FilmParams film;
+    LayerPlan layers;
     RenderParams render;
     Interval shutter;    // when the camera's shutter is open, from its first light to its last
     double exposure = 1; // factor from the camera's exposure in stops

@@ -30,6 +30,8 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
 void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
     if (!light) return;
     if (!(light->power() > 0)) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
+    built_->scene.names[light.get()] = nameOf(d);
+    if (const MediumEmission* glow = light->emission()) built_->scene.names[glow] = nameOf(d);
     lights_.push_back(std::move(light));
     lightNames_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
@@ -84,6 +86,7 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
     else
         lights_.push_back(std::make_unique<AreaLight>(placed, emission.radiance, false, std::move(texture)));
     lightNames_.emplace_back(d.name, "shape");
+    built_->scene.names[lights_.back().get()] = nameOf(d);
     return lights_.back().get();
 }
 
@@ -247,8 +250,9 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
         auto light = makeAreaLight(amount, *shape, context, diagnostics_);
         if (!light) return;
         // A lamp emits and reflects nothing.
-        addPlaced(*keepShape(std::move(shape)), {plainMaterial(0), light.get(), toOwn, context.texture != nullptr},
-                  place);
+        const Shape* const placed = keepShape(std::move(shape));
+        built_->scene.names[placed] = nameOf(d);
+        addPlaced(*placed, {plainMaterial(0), light.get(), toOwn, context.texture != nullptr}, place);
         addLight(std::move(light), d);
     });
 }

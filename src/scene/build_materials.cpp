@@ -44,6 +44,7 @@ schema::Reference SceneBuilder::materialReference(const Definition& d) {
     if (!material) return {};
     if (made.dress.normal) askers.push_back({made.dress.normal->reference.index, made.dress.normal->span});
     if (made.dress.bump) askers.push_back({made.dress.bumpMap.index, made.dress.bump->span});
+    built_->scene.names[material.get()] = nameOf(d);
     const schema::Reference kept{keepMaterial(std::move(material), d.span)};
     if (!askers.empty()) textureAskers_.emplace(kept.index, std::move(askers));
     return kept;

@@ -109,6 +109,7 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
     if (!index) {
         index = static_cast<std::uint32_t>(materials_.size());
         materials_.push_back(std::make_unique<FilledMaterial>(*surface, medium));
+        built_->scene.names[materials_.back().get()] = built_->scene.names[surface];
         usedMaterials_.insert(*index);
         noteInterior(medium);
     }

@@ -12,6 +12,17 @@ const Shape* SceneBuilder::keepShape(std::unique_ptr<const Shape> shape) {
     return shapes_.emplace_back(std::move(shape)).get();
 }
 
+const std::string& SceneBuilder::nameOf(const Definition& d) {
+    if (!d.name.empty()) return d.name;
+    // Inline definitions have no lasting address.
+    std::string& name = givenNames_[{static_cast<std::uint32_t>(d.span.file), d.span.begin}];
+    if (name.empty()) {
+        const auto type = std::string(d.type ? d.type->name : schema::keyword(d.kind));
+        name = fmt::format("{}-{}", type, ++nameless_[type]);
+    }
+    return name;
+}
+
 KeyedTransform SceneBuilder::ownTransform(const Definition& d) {
     KeyedTransform result;
     for (const schema::Node& property : d.properties) {
@@ -157,6 +168,7 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     countShape(loaded);
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
+    built_->scene.names[placed] = nameOf(*loaded.definition);
     if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
     addPlaced(*placed,
               {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse(),

@@ -258,6 +258,10 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
     bool takeTexture(const AreaLightParams&, const Shape&, const Definition&, LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
+    void checkMattes(const BuiltScene&);
+    void checkLightGroups(const BuiltScene&);
+    // Its name or, without one, its type and a number.
+    const std::string& nameOf(const Definition&);
     void addLight(std::unique_ptr<Light>, const Definition&);
     struct Emission {
         ScaledCurve radiance; // no curve: none
@@ -321,7 +325,9 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::unique_ptr<Light>> lights_;
     std::vector<Span> lightTextures_; // where lights ask for theirs
     std::map<const RgbSpace*, const Curve*> textureWhites_;
-    std::vector<std::pair<std::string, std::string>> lightNames_; // name and type, like lights_
+    std::vector<std::pair<std::string, std::string>> lightNames_;               // name and type, like lights_
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> givenNames_; // of definitions without one, by place
+    std::unordered_map<std::string, int> nameless_;                             // definitions without a name, by type
     std::map<const Definition*, LoadedShape> loaded_;
     std::map<const Definition*, std::unique_ptr<const PlacedCamera>> dicingCameras_; // null: being made, or faulty
     std::map<const Definition*, ObjectGeometry> objects_;

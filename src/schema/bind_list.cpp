@@ -95,9 +95,10 @@ class ListBinder {
             table.scale = scale->factor;
         }
         for (const Node child : entry_.node()->children()) {
-            if (!isRow(child)) return std::nullopt;
+            if (field_.namedRows ? !isNamedRow(child) : !isRow(child)) return std::nullopt;
             TableRow& row = table.rows.emplace_back();
             row.span = child.headSpan();
+            if (field_.namedRows) row.cells.push_back({std::nullopt, std::string(child.name()), child.nameSpan()});
             for (std::size_t i = 0; i < child.valueCount(); ++i) {
                 const Value value = child.value(i);
                 TableCell& cell = row.cells.emplace_back();
@@ -122,6 +123,14 @@ class ListBinder {
             report(diagnostics_, entry_.span(), "E0306", fmt::format("`{}` needs numbers", field_.name), "has none");
         if (!field_.example.empty()) d.help = fmt::format("for example `{}`", field_.example);
         return std::nullopt;
+    }
+
+    bool isNamedRow(const Node& node) {
+        if (!node.hasBlock() && node.keys().empty()) return true;
+        report(diagnostics_, node.headSpan(), "E0309",
+               fmt::format("a row of `{}` is a word and what follows it", field_.name), "no block and no keys")
+            .help = fmt::format("for example `{}`", field_.example);
+        return false;
     }
 
     bool isRow(const Node& node) {

@@ -284,7 +284,7 @@ std::string describeUntextured(const FieldInfo& field) {
                    ? "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`, or keys `at TIME { … }`"
                    : "a block of `translate`, `rotate`, `scale`, `matrix` and `look-at`";
     case FieldType::table:
-        return "a unit and a block of rows";
+        return field.namedRows ? "a block of rows" : "a unit and a block of rows";
     case FieldType::moments:
         return "a time and a block; may be repeated, in the order of time";
     case FieldType::place:

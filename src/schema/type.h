@@ -192,8 +192,9 @@ enum class FieldType : std::uint8_t {
                // list and which may be repeated with other groups -> GroupReference
     transform, // block of translate/rotate/scale/matrix/look-at, top to bottom; with keys `at TIME { … }` where the
                // member is a KeyedTransform -> KeyedTransform (or, without keys, a Transform)
-    table,     // `[unit]` and a block of rows of words and numbers -> TableRows
-    place,     // a quantity, or `on=NAME` of a shape -> Location
+    table,   // `[unit]` and a block of rows of words and numbers, which start with `-` or, with namedRows, with a word
+             // -> TableRows
+    place,   // a quantity, or `on=NAME` of a shape -> Location
     moments, // `at TIME { … }`, once for each moment in their order -> a std::vector of structs with `double time` and
              // `Span span`, whose other fields stand in the block
     weighted, // a reference with a key `weight=` (or of another name), 1 when absent; may be repeated where the member
@@ -234,6 +235,7 @@ struct FieldInfo {
     bool tiles = false;           // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
     std::vector<FieldInfo> block; // what may stand in a block behind the value: `f-stop 2.8 { blades 9 }`
     int argument = -1;            // position among the type's arguments (`mesh "a.ply"`), or -1: only as a property
+    bool namedRows = false;       // a table: rows start with a word, which is their first cell
     bool canMove = false;         // a transform that may have keys
     bool texturable = false;      // a spectrum or number that a texture may stand for: by the type of the member
     std::function<void(void* params, const BoundValue&)> store;
@@ -298,6 +300,7 @@ template <typename Params, typename Member> class Field {
     }
     Field& required() { return info_.required = true, *this; }
     Field& tiles() { return info_.tiles = true, *this; }
+    Field& namedRows() { return info_.namedRows = true, *this; }
     Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
     Field& argument(int position) { return info_.argument = position, *this; }
     operator FieldInfo() const { return info_; }

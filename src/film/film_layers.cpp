@@ -1,0 +1,153 @@
+#include "film/film_layers.h"
+
+#include "base/check.h"
+#include "film/layer_recorder.h"
+
+#include <algorithm>
+
+namespace abbe {
+
+FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names)
+    : bounds_(bounds), plan_(std::move(plan)), replicates_(replicates),
+      stride_(static_cast<std::size_t>(plan_.offsets().total)) {
+    const auto pixels = static_cast<std::size_t>(bounds.area());
+    sums_.resize(pixels * static_cast<std::size_t>(halves()) * stride_);
+    if (plan_.seconds) seconds_.resize(pixels);
+    if (plan_.invalid) invalid_.resize(pixels);
+    for (const auto& [thing, name] : names)
+        for (std::size_t g = 0; g < plan_.groups.size(); ++g)
+            if (std::ranges::find(plan_.groups[g].members, name) != plan_.groups[g].members.end())
+                groups_.emplace(thing, static_cast<int>(g));
+    if (!plan_.coversObjects() && !plan_.coversMaterials()) return;
+    for (const auto& entry : names) names_.push_back(entry.second);
+    std::ranges::sort(names_);
+    names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
+    for (const auto& [thing, name] : names)
+        things_.emplace(thing, static_cast<std::uint32_t>(std::ranges::lower_bound(names_, name) - names_.begin()));
+    if (plan_.coversObjects()) mattes(Matte::objects).resize(pixels);
+    if (plan_.coversMaterials()) mattes(Matte::materials).resize(pixels);
+}
+
+std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan) {
+    const auto pixels = static_cast<std::uint64_t>(bounds.area());
+    const auto sums = static_cast<std::uint64_t>(plan.offsets().total) * (plan.halves ? 2 : 1);
+    return pixels * (sums * sizeof(ExactSum) + plan.seconds * sizeof(double) + plan.invalid * sizeof(std::uint32_t));
+}
+
+std::unique_ptr<SampleRecorder> FilmLayers::makeRecorder() { return std::make_unique<LayerRecorder>(*this); }
+
+std::span<ExactSum> FilmLayers::sums(std::size_t pixel, int half) {
+    return std::span(sums_).subspan(
+        (pixel * static_cast<std::size_t>(halves()) + static_cast<std::size_t>(half)) * stride_, stride_);
+}
+
+std::span<const ExactSum> FilmLayers::sums(std::size_t pixel, int half) const {
+    return std::span(sums_).subspan(
+        (pixel * static_cast<std::size_t>(halves()) + static_cast<std::size_t>(half)) * stride_, stride_);
+}
+
+int FilmLayers::groupOf(const void* source) const {
+    const auto found = groups_.find(source);
+    return found == groups_.end() ? static_cast<int>(plan_.groups.size()) : found->second;
+}
+
+std::vector<std::string> FilmLayers::groupNames() const {
+    std::vector<std::string> names;
+    for (const LightGroup& g : plan_.groups) names.push_back(g.name);
+    if (!names.empty()) names.emplace_back("rest");
+    return names;
+}
+
+void FilmLayers::cover(std::size_t pixel, Matte matte, const void* thing) {
+    if (const auto found = things_.find(thing); found != things_.end()) cover(pixel, matte, Coverage{found->second, 1});
+}
+
+void FilmLayers::cover(std::size_t pixel, Matte matte, const Coverage& c) {
+    auto& list = mattes(matte)[pixel];
+    const auto place = std::ranges::lower_bound(list, c.thing, {}, &Coverage::thing);
+    if (place != list.end() && place->thing == c.thing)
+        place->samples += c.samples;
+    else
+        list.insert(place, c);
+}
+
+std::span<const Coverage> FilmLayers::coverage(std::size_t pixel, Matte matte) const {
+    return mattes_[static_cast<std::size_t>(matte)][pixel];
+}
+
+// Lists of different lengths: of each pixel how many, then they.
+class FilmLayers::CoveragePlane final : public FilmPlane {
+  public:
+    CoveragePlane(FilmLayers& layers, Matte matte) : layers_(layers), matte_(matte) {}
+
+    std::string name() const override {
+        return std::string(matte_ == Matte::objects ? "objects" : "materials") + "/" +
+               std::to_string(layers_.names_.size());
+    }
+
+    void store(PixelBounds b, std::vector<std::byte>& out) const override {
+        const auto put = [&](std::uint32_t word) {
+            const auto bytes = std::as_bytes(std::span(&word, 1));
+            out.insert(out.end(), bytes.begin(), bytes.end());
+        };
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x) {
+                const auto list = layers_.coverage(layers_.pixelIndex(x, y), matte_);
+                put(static_cast<std::uint32_t>(list.size()));
+                for (const Coverage& c : list) {
+                    put(c.thing);
+                    put(c.samples);
+                }
+            }
+    }
+
+    bool add(PixelBounds b, std::span<const std::byte> bytes) override {
+        std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+        std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+        if (bytes.size() % sizeof(std::uint32_t) != 0 || !sound(b, words)) return false;
+        std::size_t at = 0;
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x)
+                for (std::uint32_t left = words[at++]; left > 0; --left, at += 2)
+                    layers_.cover(layers_.pixelIndex(x, y), matte_, Coverage{words[at], words[at + 1]});
+        return true;
+    }
+
+  private:
+    bool sound(PixelBounds b, const std::vector<std::uint32_t>& words) const {
+        std::size_t at = 0;
+        for (std::int64_t pixel = 0; pixel < b.area(); ++pixel) {
+            if (at >= words.size() || words[at] > (words.size() - at - 1) / 2) return false;
+            for (std::uint32_t i = 0; i < words[at]; ++i)
+                if (words[at + 1 + 2 * i] >= layers_.names_.size()) return false;
+            at += 1 + 2 * static_cast<std::size_t>(words[at]);
+        }
+        return at == words.size();
+    }
+
+    FilmLayers& layers_;
+    Matte matte_;
+};
+
+void FilmLayers::appendPlanes(FilmPlanes& planes) {
+    if (stride_ > 0)
+        planes.push_back(std::make_unique<DensePlane<ExactSum>>(
+            "layers", bounds_, stride_ * static_cast<std::size_t>(halves()), std::span<ExactSum>(sums_)));
+    if (!invalid_.empty())
+        planes.push_back(
+            std::make_unique<DensePlane<std::uint32_t>>("invalid", bounds_, 1, std::span<std::uint32_t>(invalid_)));
+    if (!seconds_.empty())
+        planes.push_back(std::make_unique<DensePlane<double>>("seconds", bounds_, 1, std::span<double>(seconds_)));
+    for (const Matte matte : {Matte::objects, Matte::materials})
+        if (!mattes(matte).empty()) planes.push_back(std::make_unique<CoveragePlane>(*this, matte));
+}
+
+void FilmLayers::addSeconds(std::size_t pixel, double seconds) {
+    if (!seconds_.empty()) seconds_[pixel] += seconds;
+}
+
+void FilmLayers::addInvalid(std::size_t pixel) {
+    if (!invalid_.empty()) ++invalid_[pixel];
+}
+
+} // namespace abbe

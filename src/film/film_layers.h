@@ -1,0 +1,93 @@
+// The sums behind an image's layers.
+#pragma once
+
+#include "film/film_planes.h"
+#include "film/layer_plan.h"
+#include "math/exact_sum.h"
+#include "render/film.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+class SampleRecorder;
+
+// How many samples of a pixel saw one thing.
+struct Coverage {
+    std::uint32_t thing = 0; // index into the names
+    std::uint32_t samples = 0;
+    bool operator==(const Coverage&) const = default;
+};
+
+// A plane of the film's bounds, row by row from the top, and its channel's name in a file.
+struct NamedPlane {
+    std::string name;
+    std::vector<float> values;
+};
+
+// Exact like the film itself: sums, counts and coverage are the same in any order. Different pixels may be written from
+// different threads at once.
+class FilmLayers {
+  public:
+    // Things that the scene's names do not list are not covered by Cryptomatte. Throws std::bad_alloc.
+    FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&);
+    // What layers of this size take, without Cryptomatte.
+    static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&);
+
+    const LayerPlan& plan() const { return plan_; }
+    PixelBounds bounds() const { return bounds_; }
+    // A recorder for one thread; refers to this.
+    std::unique_ptr<SampleRecorder> makeRecorder();
+
+    // Requires a pixel within bounds().
+    std::size_t pixelIndex(int x, int y) const {
+        return static_cast<std::size_t>(y - bounds_.y0) * static_cast<std::size_t>(bounds_.width()) +
+               static_cast<std::size_t>(x - bounds_.x0);
+    }
+    int halves() const { return plan_.halves ? 2 : 1; }
+    // Which of them a replicate belongs to.
+    int halfOf(int replicate) const { return plan_.halves && replicate >= (replicates_ + 1) / 2 ? 1 : 0; }
+    // LayerPlan::offsets().total sums.
+    std::span<ExactSum> sums(std::size_t pixel, int half);
+    std::span<const ExactSum> sums(std::size_t pixel, int half) const;
+
+    // Group of a Light or a MediumEmission; the last one for what no group names.
+    int groupOf(const void* source) const;
+    // Names of groups in the order of their sums.
+    std::vector<std::string> groupNames() const;
+
+    enum class Matte : std::uint8_t { objects, materials };
+    void cover(std::size_t pixel, Matte, const void* thing);
+    std::span<const Coverage> coverage(std::size_t pixel, Matte) const;
+    // By the index in Coverage, sorted.
+    const std::vector<std::string>& names() const { return names_; }
+
+    // Everything, to be stored and added to that of other films.
+    void appendPlanes(FilmPlanes&);
+
+    void addSeconds(std::size_t pixel, double seconds);
+    void addInvalid(std::size_t pixel);
+    double seconds(std::size_t pixel) const { return seconds_.empty() ? 0 : seconds_[pixel]; }
+    std::uint32_t invalid(std::size_t pixel) const { return invalid_.empty() ? 0 : invalid_[pixel]; }
+
+  private:
+    class CoveragePlane;
+    void cover(std::size_t pixel, Matte, const Coverage&);
+    std::vector<std::vector<Coverage>>& mattes(Matte m) { return mattes_[static_cast<std::size_t>(m)]; }
+
+    PixelBounds bounds_;
+    LayerPlan plan_;
+    int replicates_;
+    std::size_t stride_; // sums per pixel and half
+    std::vector<ExactSum> sums_;
+    std::unordered_map<const void*, int> groups_;
+    std::vector<std::string> names_;
+    std::unordered_map<const void*, std::uint32_t> things_;
+    std::vector<std::vector<Coverage>> mattes_[2];
+    std::vector<double> seconds_;
+    std::vector<std::uint32_t> invalid_;
+};
+
+} // namespace abbe

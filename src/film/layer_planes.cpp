@@ -1,0 +1,229 @@
+#include "film/layer_planes.h"
+
+#include "base/parallel.h"
+#include "film/cryptomatte.h"
+#include "film/sum_rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+
+namespace abbe {
+
+namespace {
+
+constexpr const char* kRgb[] = {"R", "G", "B"};
+constexpr const char* kXyz[] = {"X", "Y", "Z"};
+constexpr const char* kComponents[] = {"direct", "indirect", "caustic"};
+
+class PlaneMaker {
+  public:
+    PlaneMaker(const PixelFilm& film, ResolvedImage& picture, const LayerView& view)
+        : film_(film), layers_(*film.layers()), plan_(layers_.plan()), at_(plan_.offsets()), picture_(picture),
+          view_(view) {}
+
+    LayerPlanes make() {
+        countSamples();
+        features(layers_.halves(), "");
+        if (plan_.halves) half();
+        parts();
+        work();
+        if (plan_.spectral) spectrum();
+        mattes();
+        return std::move(result_);
+    }
+
+  private:
+    using Values = std::function<void(std::size_t pixel, float* const* out)>;
+
+    // Adds planes NAME.channel and fills them.
+    template <std::size_t N> void add(const std::string& name, const char* const (&channels)[N], const Values& values) {
+        const std::size_t first = result_.planes.size();
+        for (const char* channel : channels)
+            result_.planes.push_back(
+                {name.empty() ? channel : name + "." + channel, std::vector<float>(total_.size())});
+        fill(first, N, values);
+    }
+    void fill(std::size_t first, std::size_t count, const Values& values) {
+        parallelFor(total_.size(), [&](std::size_t pixel) {
+            float* out[9];
+            for (std::size_t c = 0; c < count; ++c) out[c] = &result_.planes[first + c].values[pixel];
+            values(pixel, out);
+        });
+    }
+
+    void countSamples() {
+        const PixelBounds b = layers_.bounds();
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x) {
+                total_.push_back(static_cast<float>(film_.samples(x, y)));
+                if (plan_.halves)
+                    inHalf_.push_back(static_cast<float>(film_.samples(x, y, 0, (film_.replicates() + 1) / 2)));
+            }
+    }
+
+    // Sums of a pixel over halves [0, halves).
+    double sum(std::size_t pixel, int offset, int halves) const {
+        ExactSum total;
+        for (int h = 0; h < halves; ++h) total += layers_.sums(pixel, h)[static_cast<std::size_t>(offset)];
+        return total.value();
+    }
+    Xyz three(std::size_t pixel, int offset, int halves) const {
+        return {sum(pixel, offset, halves), sum(pixel, offset + 1, halves), sum(pixel, offset + 2, halves)};
+    }
+    static void store(const Vec3d& v, float* const* out) {
+        *out[0] = static_cast<float>(v.x);
+        *out[1] = static_cast<float>(v.y);
+        *out[2] = static_cast<float>(v.z);
+    }
+    static double inverse(double count) { return count > 0 ? 1 / count : 0; }
+
+    // Means over those samples that met something.
+    void features(int halves, const std::string& prefix) {
+        const auto& samples = prefix.empty() ? total_ : inHalf_;
+        if (plan_.albedo) {
+            // Under the white of the space, so that what reflects everything is (1, 1, 1).
+            const Xyz white = whiteXyz(view_.space->white);
+            const Matrix3 toSpace = view_.space->fromXyz() * adaptation({1, 1, 1}, white);
+            add(prefix + "albedo", kRgb, [&, toSpace](std::size_t i, float* const* out) {
+                const Xyz mean = three(i, at_.albedo, halves) * inverse(samples[i]);
+                store(toSpace.apply<Vec3d>(mean), out);
+            });
+        }
+        if (plan_.normal)
+            add(prefix + "normal", kXyz, [&](std::size_t i, float* const* out) {
+                const Xyz n = three(i, at_.normal, halves) * inverse(sum(i, at_.looks, halves));
+                store({n.x, n.y, n.z}, out);
+            });
+        if (plan_.depth) {
+            constexpr const char* kZ[] = {"Z"};
+            add(prefix + "depth", kZ, [&](std::size_t i, float* const* out) {
+                *out[0] = static_cast<float>(sum(i, at_.depth, halves) * inverse(sum(i, at_.surface, halves)));
+            });
+        }
+        if (!prefix.empty()) return;
+        if (plan_.position)
+            add("position", kXyz, [&](std::size_t i, float* const* out) {
+                const double met = sum(i, at_.surface, halves);
+                const Xyz p = three(i, at_.position, halves) * inverse(met);
+                store(met > 0 ? Vec3d{p.x, p.y, p.z} + view_.origin : Vec3d{}, out);
+            });
+        if (plan_.uv) {
+            constexpr const char* kUv[] = {"U", "V"};
+            add("uv", kUv, [&](std::size_t i, float* const* out) {
+                for (int c = 0; c < 2; ++c)
+                    *out[c] = static_cast<float>(sum(i, at_.uv + c, halves) * inverse(sum(i, at_.surface, halves)));
+            });
+        }
+    }
+
+    void half() {
+        const PixelBounds b = layers_.bounds();
+        const int end = (film_.replicates() + 1) / 2;
+        constexpr const char* kHalf[] = {"R", "G", "B"};
+        add("half", kHalf, [&](std::size_t i, float* const* out) {
+            const int x = b.x0 + static_cast<int>(i % static_cast<std::size_t>(b.width()));
+            const int y = b.y0 + static_cast<int>(i / static_cast<std::size_t>(b.width()));
+            store(view_.fromXyz.apply<Vec3d>(film_.mean(x, y, 0, end) * view_.scale), out);
+        });
+        features(1, "half.");
+    }
+
+    void part(const std::string& name, int offset) {
+        add(name, kRgb, [&](std::size_t i, float* const* out) {
+            const Xyz mean = three(i, offset, layers_.halves()) * (inverse(total_[i]) * view_.scale);
+            store(view_.fromXyz.apply<Vec3d>(mean), out);
+        });
+    }
+
+    void parts() {
+        const std::size_t first = result_.planes.size();
+        const auto names = layers_.groupNames();
+        for (std::size_t g = 0; g < names.size(); ++g) part("group_" + names[g], at_.groups + 3 * static_cast<int>(g));
+        const std::size_t components = result_.planes.size();
+        if (plan_.components)
+            for (int c = 0; c < 3; ++c) part(kComponents[c], at_.components + 3 * c);
+        std::span<float> wholes[] = {picture_.r, picture_.g, picture_.b};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto partition = [&](std::size_t start, std::size_t end) {
+                Partition planes;
+                for (std::size_t p = start + c; p < end; p += 3) planes.emplace_back(result_.planes[p].values);
+                return planes;
+            };
+            std::vector<Partition> partitions{partition(first, components),
+                                              partition(components, result_.planes.size())};
+            std::erase_if(partitions, [](const Partition& p) { return p.empty(); });
+            if (!partitions.empty()) result_.unequalSums += roundToSum(wholes[c], partitions);
+        }
+    }
+
+    void work() {
+        constexpr const char *kCount[] = {"N"}, *kSeconds[] = {"S"};
+        if (plan_.samples) add("samples", kCount, [&](std::size_t i, float* const* out) { *out[0] = total_[i]; });
+        if (plan_.seconds)
+            add("seconds", kSeconds,
+                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.seconds(i)); });
+        if (plan_.invalid)
+            add("invalid", kCount,
+                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.invalid(i)); });
+    }
+
+    // Names and attributes of [Fichet2021].
+    void spectrum() {
+        const SpectralBins& bins = *plan_.spectral;
+        for (int b = 0; b < bins.count(); ++b) {
+            std::string wavelength = fmt::format("{}", bins.centre(b));
+            std::ranges::replace(wavelength, '.', ',');
+            const std::string channel = wavelength + "nm";
+            const char* const channels[] = {channel.c_str()};
+            add("S0", channels, [&, b](std::size_t i, float* const* out) {
+                *out[0] =
+                    static_cast<float>(sum(i, at_.spectral + b, layers_.halves()) * inverse(total_[i]) * view_.scale);
+            });
+        }
+        result_.header.emplace_back("spectralLayoutVersion", "1.0");
+        result_.header.emplace_back("emissiveUnits", "W.m^-2.sr^-1.nm^-1");
+    }
+
+    void mattes() {
+        using Matte = FilmLayers::Matte;
+        const auto matte = [&](Matte m, const char* name) {
+            for (NamedPlane& plane : cryptomattePlanes(layers_, m, name, total_))
+                result_.planes.push_back(std::move(plane));
+            for (auto& entry : cryptomatteHeader(layers_, m, name)) result_.header.push_back(std::move(entry));
+        };
+        if (plan_.objects) matte(Matte::objects, "CryptoObject");
+        if (plan_.materials) matte(Matte::materials, "CryptoMaterial");
+        const auto ids = [&](Matte m, const std::string& name) {
+            constexpr const char* kId[] = {"id"};
+            add(name, kId, [&](std::size_t i, float* const* out) {
+                const auto seen = layers_.coverage(i, m);
+                const auto most = std::ranges::max_element(seen, {}, &Coverage::samples);
+                *out[0] = most == seen.end() ? 0.f : static_cast<float>(most->thing + 1);
+            });
+        };
+        if (plan_.objectIds) ids(Matte::objects, "object");
+        if (plan_.materialIds) ids(Matte::materials, "material");
+        if (plan_.objectIds || plan_.materialIds)
+            result_.header.emplace_back("abbe.ids", fmt::format("{}", fmt::join(layers_.names(), "\n")));
+    }
+
+    const PixelFilm& film_;
+    const FilmLayers& layers_;
+    const LayerPlan& plan_;
+    const LayerPlan::Offsets at_;
+    ResolvedImage& picture_;
+    const LayerView& view_;
+    std::vector<float> total_, inHalf_; // samples of pixels
+    LayerPlanes result_;
+};
+
+} // namespace
+
+LayerPlanes layerPlanes(const PixelFilm& film, ResolvedImage& picture, const LayerView& view) {
+    if (!film.layers()) return {};
+    return PlaneMaker(film, picture, view).make();
+}
+
+} // namespace abbe

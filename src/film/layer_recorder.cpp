@@ -1,0 +1,149 @@
+#include "film/layer_recorder.h"
+
+#include "spectrum/observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace abbe {
+
+namespace {
+
+// A term that is out of range counts as nothing: the sample itself was sound.
+void add(ExactSum& sum, double term) {
+    if (std::abs(term) < ExactSum::kLargest) sum += ExactSum(term);
+}
+
+void add(std::span<ExactSum> three, Xyz v) {
+    add(three[0], v.x);
+    add(three[1], v.y);
+    add(three[2], v.z);
+}
+
+Xyz xyz(Vec3 v) { return {v.x, v.y, v.z}; }
+
+std::span<ExactSum> threeAt(std::span<ExactSum> sums, int offset) {
+    return sums.subspan(static_cast<std::size_t>(offset), 3);
+}
+
+} // namespace
+
+LayerRecorder::LayerRecorder(FilmLayers& layers)
+    : layers_(layers), plan_(layers.plan()), at_(plan_.offsets()),
+      groups_(static_cast<std::size_t>(plan_.groupCount())) {}
+
+void LayerRecorder::pixel(int x, int y, int replicate) noexcept {
+    pixel_ = layers_.pixelIndex(x, y);
+    half_ = layers_.halfOf(replicate);
+}
+
+void LayerRecorder::start(Vec3 eye, const Wavelengths& lambda) noexcept {
+    eye_ = eye;
+    lambda_ = lambda;
+    first_.met = looked_ = passedMedium_ = specularSince_ = false;
+    first_.shape = first_.material = nullptr;
+    diffuse_ = 0;
+    for (Part& part : groups_) part = {};
+    for (Part& part : components_) part = {};
+}
+
+void LayerRecorder::arrives(const SurfaceHit& hit, const Spectrum&) noexcept {
+    if (first_.met || passedMedium_) return;
+    first_ = {true, hit.p, length(hit.p - eye_), hit.uv, hit.shape, hit.material};
+}
+
+void LayerRecorder::gathers(const Spectrum& radiance, const void* source, bool passing) noexcept {
+    if (!groups_.empty()) {
+        Part& part = groups_[static_cast<std::size_t>(layers_.groupOf(source))];
+        part.radiance += radiance;
+        part.lit = true;
+    }
+    if (plan_.components) {
+        Part& part = components_[component(passing)];
+        part.radiance += radiance;
+        part.lit = true;
+    }
+}
+
+void LayerRecorder::scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum& beta,
+                             const BsdfSample* next) noexcept {
+    if (lobes.has(Lobe::diffuse)) {
+        ++diffuse_;
+        specularSince_ = false;
+    } else {
+        specularSince_ = true;
+    }
+    if (looked_ || !lobes.any(Lobes(Lobe::diffuse) | Lobe::glossy)) return;
+    looked_ = true;
+    normal_ = hit.shading.z;
+    // Weights of samples have the albedo as their mean.
+    albedo_ = next ? beta * next->weight * (1 / mean(next->pdfRatio)) : Spectrum(0.f);
+}
+
+void LayerRecorder::collides(Vec3, const Spectrum& beta) noexcept {
+    ++diffuse_;
+    specularSince_ = false;
+    passedMedium_ = true;
+    if (looked_) return;
+    looked_ = true;
+    normal_ = {};
+    albedo_ = beta;
+}
+
+void LayerRecorder::keepFeatures(std::span<ExactSum> sums, double factor) const noexcept {
+    const auto at = [&](int offset) -> ExactSum& { return sums[static_cast<std::size_t>(offset)]; };
+    if (first_.met && (plan_.position || plan_.depth || plan_.uv)) {
+        at(at_.surface) += ExactSum(1);
+        if (plan_.position) add(threeAt(sums, at_.position), xyz(first_.p));
+        if (plan_.depth) add(at(at_.depth), first_.depth);
+        if (plan_.uv) {
+            add(at(at_.uv), first_.uv.x);
+            add(at(at_.uv + 1), first_.uv.y);
+        }
+    }
+    if (!looked_) return;
+    if (plan_.normal) {
+        at(at_.looks) += ExactSum(1);
+        add(threeAt(sums, at_.normal), xyz(normal_));
+    }
+    if (plan_.albedo) add(threeAt(sums, at_.albedo), toXyz(albedo_, lambda_) * factor);
+}
+
+void LayerRecorder::keepParts(std::span<ExactSum> sums, const Sensor& sensor, double factor) const noexcept {
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        if (groups_[g].lit)
+            add(threeAt(sums, at_.groups + 3 * static_cast<int>(g)), sensor(groups_[g].radiance, lambda_) * factor);
+    if (!plan_.components) return;
+    for (int c = 0; c < 3; ++c)
+        if (components_[c].lit)
+            add(threeAt(sums, at_.components + 3 * c), sensor(components_[c].radiance, lambda_) * factor);
+}
+
+// Each lane is an estimate of the radiance at its wavelength with a density of its own; a bin gets those within it, so
+// that it holds the mean spectral radiance over its width, without bias, also where all lanes but the hero's ended.
+void LayerRecorder::keepSpectrum(std::span<ExactSum> sums, const Spectrum& radiance, double factor) const noexcept {
+    const SpectralBins& bins = *plan_.spectral;
+    const double scale = factor / (kLanes * bins.width);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const double place = (static_cast<double>(lambda_.nm[lane]) - bins.first) / bins.width;
+        if (place < 0 || place >= bins.count()) continue;
+        const auto bin = static_cast<std::size_t>(at_.spectral) + static_cast<std::size_t>(place);
+        add(sums[bin], static_cast<double>(radiance[lane]) / static_cast<double>(lambda_.pdf[lane]) * scale);
+    }
+}
+
+void LayerRecorder::keep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept {
+    const std::span<ExactSum> sums = layers_.sums(pixel_, half_);
+    keepFeatures(sums, factor);
+    keepParts(sums, sensor, factor);
+    if (plan_.spectral) keepSpectrum(sums, radiance, factor);
+    if (!first_.met) return;
+    if (plan_.coversObjects()) layers_.cover(pixel_, FilmLayers::Matte::objects, first_.shape);
+    if (plan_.coversMaterials()) layers_.cover(pixel_, FilmLayers::Matte::materials, first_.material);
+}
+
+void LayerRecorder::drop() noexcept { layers_.addInvalid(pixel_); }
+
+void LayerRecorder::pixelDone(double seconds) noexcept { layers_.addSeconds(pixel_, seconds); }
+
+} // namespace abbe

@@ -1,0 +1,70 @@
+// From the events of a path to the sums of the layers.
+#pragma once
+
+#include "film/film_layers.h"
+#include "render/sample_recorder.h"
+
+namespace abbe {
+
+// Refers to the layers, which outlive it.
+class LayerRecorder final : public SampleRecorder {
+  public:
+    explicit LayerRecorder(FilmLayers&);
+
+    void pixel(int x, int y, int replicate) noexcept override;
+    void start(Vec3 eye, const Wavelengths&) noexcept override;
+    void arrives(const SurfaceHit&, const Spectrum& beta) noexcept override;
+    void gathers(const Spectrum& radiance, const void* source, bool passing) noexcept override;
+    void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept override;
+    void collides(Vec3 p, const Spectrum& beta) noexcept override;
+    void keep(const Spectrum& radiance, const Sensor&, double factor) noexcept override;
+    void drop() noexcept override;
+    void pixelDone(double seconds) noexcept override;
+
+  private:
+    // Paths by what they meet between the light and the eye; D scatters diffusely or in a medium, S does not.
+    enum Component : std::uint8_t {
+        direct,   // E S* D? L: at most one D, and no S between it and the light
+        indirect, // more than one D
+        caustic,  // E … D S+ L
+    };
+    Component component(bool passing) const {
+        const int diffuse = diffuse_ + passing;
+        if (!passing && specularSince_ && diffuse > 0) return caustic;
+        return diffuse <= 1 ? direct : indirect;
+    }
+    struct FirstSurface {
+        bool met = false;
+        Vec3 p;
+        float depth = 0;
+        Vec2 uv;
+        const void *shape = nullptr, *material = nullptr;
+    };
+    void keepFeatures(std::span<ExactSum>, double factor) const noexcept;
+    void keepParts(std::span<ExactSum>, const Sensor&, double factor) const noexcept;
+    void keepSpectrum(std::span<ExactSum>, const Spectrum& radiance, double factor) const noexcept;
+
+    FilmLayers& layers_;
+    const LayerPlan& plan_;
+    const LayerPlan::Offsets at_;
+    std::size_t pixel_ = 0;
+    int half_ = 0;
+
+    Vec3 eye_;
+    Wavelengths lambda_;
+    FirstSurface first_;
+    bool looked_ = false; // met something that is no mirror
+    bool passedMedium_ = false;
+    Vec3 normal_;
+    Spectrum albedo_;
+    int diffuse_ = 0;            // scatterings so far
+    bool specularSince_ = false; // a mirror since the last of them
+    struct Part {
+        Spectrum radiance{0.f};
+        bool lit = false;
+    };
+    std::vector<Part> groups_;
+    Part components_[3];
+};
+
+} // namespace abbe

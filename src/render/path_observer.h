@@ -1,0 +1,27 @@
+// Who wants to know more of a path than the light that it found: the layers of a film.
+#pragma once
+
+#include "render/bsdf.h"
+#include "render/surface_hit.h"
+#include "spectrum/wavelengths.h"
+
+namespace abbe {
+
+// Called by the path loop in the order of events. Watching changes nothing of the path. All spectra are per lane of the
+// wavelengths that the path started with, over their density: as the radiance that the path returns.
+class PathObserver {
+  public:
+    virtual ~PathObserver() = default;
+    // The path met a surface that scatters, or that shines. `beta`: its throughput until there.
+    virtual void arrives(const SurfaceHit&, const Spectrum& beta) noexcept = 0;
+    // Light of `source`, a Light or a MediumEmission, reaches the eye by this path: part of its radiance.
+    // `passing`: after one more scattering in a medium, which the path itself does not make.
+    virtual void gathers(const Spectrum& radiance, const void* source, bool passing = false) noexcept = 0;
+    // It is scattered by the surface at which it arrived, whose lobes are given, in the sampled direction; null where
+    // the path ends. Light gathered from here on came by way of this scattering.
+    virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;
+    // It is scattered in a medium.
+    virtual void collides(Vec3 p, const Spectrum& beta) noexcept = 0;
+};
+
+} // namespace abbe
