@@ -38,9 +38,9 @@ void checkFurnace(const std::string& scene, std::uint32_t samples, double tolera
 
 RecordingFilm rendered(const std::string& scene, std::uint32_t samples) {
     INFO(scene);
-    const TestImage image = render(TestScene::parse(scene), samples);
+    TestImage image = render(TestScene::parse(scene), samples);
     checkHealth(image);
-    return image.film;
+    return std::move(image.film);
 }
 
 } // namespace

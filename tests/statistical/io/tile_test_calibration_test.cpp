@@ -64,7 +64,7 @@ TEST_CASE("tile test: false alarms are as rare as they should be, and a bias of 
                                << deviation);
             CHECK(alarms <= 8);
             CHECK(std::abs(deviation - 1) < (noise == Noise::normal ? 0.015 : 0.025)); // ± 0.004, one standard error
-            CHECK(fivePercent <= 22);                                                // 10 expected
+            CHECK(fivePercent <= 22);                                                  // 10 expected
             int found = 0;
             for (int i = 0; i < 10; ++i) found += test(random, replicates, 1.01, noise).probability() < 0.01;
             CHECK(found >= 9);

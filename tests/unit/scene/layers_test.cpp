@@ -19,7 +19,7 @@ camera { from 0 1 4; look-at 0 0.5 0; fov 40 deg }
 shape floor quad { points -3 0 -3  -3 0 3  3 0 3  3 0 -3; material diffuse { reflectance rgb 0.6 0.3 0.1 space=acescg } }
 shape ball sphere { center 0 0.6 0; radius 0.6; material )" +
            material + R"( }
-light key quad { points -1 2 -1  -1 2 1  1 2 1  1 2 -1; luminance 3000 nits }
+light key quad { points -1 2 -1  1 2 -1  1 2 1  -1 2 1; luminance 3000 nits }
 light lamp sphere { center 1.2 0.3 0.5; radius 0.1; power 300 lm }
 light sky { luminance 100 nits }
 )";
@@ -147,6 +147,7 @@ TEST_CASE("a light group is the picture with its lights alone") {
         text.erase(text.find(light), std::string(light).size());
     const Layered key(text, 256);
     CHECK(meanOf(all.plane("group_key.G")) == doctest::Approx(meanOf(key.picture.g)).epsilon(0.01));
+    CHECK(meanOf(key.picture.g) > 0.5 * meanOf(all.picture.g));
     CHECK(meanOf(key.plane("group_rest.G")) == 0);
     CHECK(meanOf(all.plane("group_warm.G")) > 0);
 }
