@@ -53,7 +53,7 @@ class RenderRun {
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
-        if (!options_.pixel) film.keepLayers(built_.layers, built_.scene.names);
+        if (!options_.pixel) film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space));
         return film;
     }
     ExitCode renderPixel();

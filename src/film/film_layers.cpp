@@ -2,14 +2,17 @@
 
 #include "base/check.h"
 #include "film/layer_recorder.h"
+#include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>
 
 namespace abbe {
 
-FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names)
+FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names,
+                       const RgbSpace& space)
     : bounds_(bounds), plan_(std::move(plan)), replicates_(replicates),
       stride_(static_cast<std::size_t>(plan_.offsets().total)) {
+    if (plan_.albedo) white_ = emissionFromRgb({1, 1, 1}, space).curve;
     const auto pixels = static_cast<std::size_t>(bounds.area());
     sums_.resize(pixels * static_cast<std::size_t>(halves()) * stride_);
     if (plan_.seconds) seconds_.resize(pixels);

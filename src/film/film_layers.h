@@ -5,6 +5,8 @@
 #include "film/layer_plan.h"
 #include "math/exact_sum.h"
 #include "render/film.h"
+#include "spectrum/color_space.h"
+#include "spectrum/curve.h"
 
 #include <memory>
 #include <span>
@@ -32,7 +34,8 @@ struct NamedPlane {
 class FilmLayers {
   public:
     // Things that the scene's names do not list are not covered by Cryptomatte. Throws std::bad_alloc.
-    FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&);
+    // Albedos are seen by the white of `space`. Requires a space of the project.
+    FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&, const RgbSpace& space);
     // What layers of this size take, without Cryptomatte.
     static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&);
 
@@ -46,6 +49,8 @@ class FilmLayers {
         return static_cast<std::size_t>(y - bounds_.y0) * static_cast<std::size_t>(bounds_.width()) +
                static_cast<std::size_t>(x - bounds_.x0);
     }
+    // Light under which what reflects everything is (1, 1, 1) of the space, with Y = 1; null if no albedo is kept.
+    const Curve* white() const { return white_.get(); }
     int halves() const { return plan_.halves ? 2 : 1; }
     // Which of them a replicate belongs to.
     int halfOf(int replicate) const { return plan_.halves && replicate >= (replicates_ + 1) / 2 ? 1 : 0; }
@@ -80,6 +85,7 @@ class FilmLayers {
     PixelBounds bounds_;
     LayerPlan plan_;
     int replicates_;
+    std::unique_ptr<const Curve> white_;
     std::size_t stride_; // sums per pixel and half
     std::vector<ExactSum> sums_;
     std::unordered_map<const void*, int> groups_;

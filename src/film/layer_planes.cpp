@@ -83,9 +83,7 @@ class PlaneMaker {
     void features(int halves, const std::string& prefix) {
         const auto& samples = prefix.empty() ? total_ : inHalf_;
         if (plan_.albedo) {
-            // Under the white of the space, so that what reflects everything is (1, 1, 1).
-            const Xyz white = whiteXyz(view_.space->white);
-            const Matrix3 toSpace = view_.space->fromXyz() * adaptation({1, 1, 1}, white);
+            const Matrix3 toSpace = view_.space->fromXyz(); // seen by its white: no balance, no exposure
             add(prefix + "albedo", kRgb, [&, toSpace](std::size_t i, float* const* out) {
                 const Xyz mean = three(i, at_.albedo, halves) * inverse(samples[i]);
                 store(toSpace.apply<Vec3d>(mean), out);

@@ -106,7 +106,7 @@ void LayerRecorder::keepFeatures(std::span<ExactSum> sums, double factor) const 
         at(at_.looks) += ExactSum(1);
         add(threeAt(sums, at_.normal), xyz(normal_));
     }
-    if (plan_.albedo) add(threeAt(sums, at_.albedo), toXyz(albedo_, lambda_) * factor);
+    if (plan_.albedo) add(threeAt(sums, at_.albedo), toXyz(albedo_ * layers_.white()->at(lambda_), lambda_) * factor);
 }
 
 void LayerRecorder::keepParts(std::span<ExactSum> sums, const Sensor& sensor, double factor) const noexcept {

@@ -33,7 +33,8 @@ TEST_CASE("mattes: ranks by coverage, shares of samples, a manifest of what is s
     const int* const things[] = {&place[0], &place[1], &place[2]};
     LayerPlan plan;
     plan.objects = true;
-    FilmLayers layers({4, 2, 6, 3}, plan, 2, {{things[0], "ball"}, {things[1], "a \"floor\""}, {things[2], "unseen"}});
+    FilmLayers layers({4, 2, 6, 3}, plan, 2, {{things[0], "ball"}, {things[1], "a \"floor\""}, {things[2], "unseen"}},
+                      rgb::ap0);
     using Matte = FilmLayers::Matte;
     const std::size_t left = layers.pixelIndex(4, 2), right = layers.pixelIndex(5, 2);
     for (int i = 0; i < 3; ++i) layers.cover(left, Matte::objects, things[0]);

@@ -43,7 +43,7 @@ struct Layered {
     static PixelFilm makeFilm(const TestScene& scene, int replicates) {
         const FilmSettings s = filmSettings(scene.built().film);
         PixelFilm film(s.crop, PixelFilter(s.filter, s.filterRadius), replicates);
-        film.keepLayers(scene.built().layers, scene.scene().names);
+        film.keepLayers(scene.built().layers, scene.scene().names, rgb::ap1);
         return film;
     }
     const std::vector<float>& plane(std::string_view name) const {
@@ -90,6 +90,15 @@ TEST_CASE("features: what is seen where") {
     CHECK(image.plane("albedo.R")[floor] == doctest::Approx(0.6).epsilon(0.02));
     CHECK(image.plane("albedo.G")[floor] == doctest::Approx(0.3).epsilon(0.02));
     CHECK(image.plane("albedo.B")[floor] == doctest::Approx(0.1).epsilon(0.04));
+    // Over many pixels: one alone has the noise of its wavelengths.
+    const double wanted[] = {0.6, 0.3, 0.1};
+    for (int c = 0; c < 3; ++c) {
+        double sum = 0;
+        int count = 0;
+        for (int y = 12; y < 16; ++y)
+            for (int x = 0; x < 24; ++x, ++count) sum += image.plane(std::string("albedo.") + "RGB"[c])[image.at(x, y)];
+        CHECK(sum / count == doctest::Approx(wanted[c]).epsilon(0.003));
+    }
     CHECK(image.plane("normal.Y")[floor] == doctest::Approx(1));
     CHECK(image.plane("position.Y")[floor] == doctest::Approx(0).epsilon(1e-5));
     CHECK(image.plane("normal.Z")[ball] > 0.9f);
@@ -157,6 +166,11 @@ TEST_CASE("components: what one scattering lights is direct, what glass focuses 
     CHECK(meanOf(diffuse.plane("caustic.G")) == 0);
     CHECK(meanOf(diffuse.plane("indirect.G")) > 0.01 * meanOf(diffuse.picture.g));
     CHECK(meanOf(glass.plane("caustic.G")) > 0.01 * meanOf(glass.picture.g));
+    // What a mirror shows of the sky has met no diffuse surface, though it came by a mirror.
+    const Layered mirror(sceneText("components", "conductor { index metal Ag }"), 64);
+    const auto top = mirror.at(12, 4);
+    CHECK(mirror.picture.g[top] > 0);
+    CHECK(mirror.plane("direct.G")[top] == mirror.picture.g[top]);
     std::string once = sceneText("components");
     once += "render { max-depth 1 }\n";
     const Layered direct(once, 64);
