@@ -1,0 +1,99 @@
+// One run of `abbe render` or `abbe merge`.
+#pragma once
+
+#include "app/image_output.h"
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/render_checkpoint.h"
+#include "app/render_report.h"
+#include "app/stopwatch.h"
+#include "io/io_error.h"
+#include "render/integrator.h"
+#include "render/render_state.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// One render from the command line to the files. The phases follow each other and are timed.
+class RenderRun {
+  public:
+    RenderRun(const RenderOptions& options, const CommonOptions& common)
+        : options_(options), common_(common),
+          report_(common.json ? makeJsonReport(common.console)
+                              : makeHumanReport(common.console, options.quiet || options.pixel)) {}
+
+    ExitCode run() {
+        if (const ExitCode code = load(); code != ExitCode::done) return code;
+        if (const ExitCode code = prepare(); code != ExitCode::done) return code;
+        if (options_.pixel) return renderPixel();
+        if (!options_.parts.empty()) return merge();
+        InterruptGuard interrupt;
+        PixelFilm film = makeFilm(film_.crop);
+        RenderState state(film.bounds(), settings_.range(film.replicates()).first);
+        if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
+        render(film, state, interrupt);
+        if (!options_.part) write(film);
+        return finish(interrupt.signal());
+    }
+
+  private:
+    ExitCode load();
+    ExitCode prepare();
+    ExitCode checkFilm();
+    ExitCode checkOutputs();
+    ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
+    PixelFilm makeFilm(PixelBounds bounds) const {
+        PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
+                       static_cast<int>(built_.render.replicates));
+        if (!options_.pixel) film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space));
+        return film;
+    }
+    ExitCode renderPixel();
+    ExitCode merge();
+    ExitCode openCheckpoint(PixelFilm&, RenderState&);
+    CheckpointHeader checkpointHeader() const;
+    std::vector<Fact> identity() const;
+    void render(PixelFilm&, RenderState&, InterruptGuard&);
+    void renderFrom(PixelFilm&, RenderState&, InterruptGuard&);
+    void snapshot(const PixelFilm&, const RenderStatistics&);
+    void closeCheckpoint();
+    void tellFault();
+    bool texturesReadable() const;
+    void watchTextures(InterruptGuard&, const Progress&);
+    void tellHowToResume() const;
+    void warn(const char* code, std::string message, std::string help);
+    void write(const PixelFilm&);
+    std::vector<ImageAttribute> attributes(const PixelFilm&) const;
+    void writePng(const ResolvedImage&);
+    void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
+    FilmPicture pictureOf(const PixelFilm& film) const {
+        return resolvePicture(film, film_, built_.exposure, built_.scene.origin);
+    }
+    ExitCode finish(int signal);
+
+    void endPhase(const char* name, double seconds) {
+        summary_.phases.emplace_back(name, seconds);
+        report_->phase(name, seconds);
+    }
+
+    const RenderOptions& options_;
+    const CommonOptions& common_;
+    std::unique_ptr<RenderReport> report_;
+    std::unique_ptr<LoadedScene> loaded_;
+    BuiltScene built_;
+    FilmSettings film_;
+    RenderSettings settings_;
+    std::unique_ptr<const Integrator> integrator_;
+    std::optional<RenderCheckpoint> checkpoint_;
+    bool outOfMemory_ = false; // while rendering
+    bool lostTexture_ = false;
+    double watchedUntil_ = 0; // s, the textures
+    RenderSummary summary_;
+    Stopwatch watch_;
+};
+
+} // namespace abbe

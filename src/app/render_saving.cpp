@@ -1,0 +1,177 @@
+// What a render writes: checkpoints, snapshots, the image, and what can be rescued when that fails.
+#include "app/provenance.h"
+#include "app/render_identity.h"
+#include "app/render_run.h"
+#include "app/render_warnings.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+std::vector<Fact> RenderRun::identity() const {
+    return renderIdentity(
+        {loaded_.get(), &film_, &settings_, static_cast<int>(built_.render.replicates), options_.build.camera});
+}
+
+CheckpointHeader RenderRun::checkpointHeader() const {
+    CheckpointHeader header;
+    header.words = common_.words;
+    header.folder = std::filesystem::current_path().string();
+    header.bounds = film_.crop;
+    header.replicates = static_cast<int>(built_.render.replicates);
+    const SampleRange range = settings_.range(header.replicates);
+    header.first = range.first;
+    header.last = range.last;
+    header.whole = settings_.samplesPerReplicate(header.replicates);
+    return header;
+}
+
+// Of a part the checkpoint is the file that is wanted in the end.
+ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
+    const CheckpointOptions& options = options_.checkpoint;
+    if (options.off && !options.resume && !options_.part) return ExitCode::done;
+    const std::string path = options_.part ? summary_.image : summary_.image + ".ckpt";
+    checkpoint_.emplace(path, checkpointHeader(), [this] { return identity(); });
+    if (options.resume && checkpoint_->exists()) {
+        try {
+            state = checkpoint_->resume(film.planes());
+        } catch (const CheckpointFault& fault) {
+            return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);
+        }
+    } else if (options.resume) {
+        warn("W0664", fmt::format("there is no checkpoint `{}`; the render begins anew", path), {});
+    } else if (!options_.part && checkpoint_->exists()) {
+        warn("W0663", fmt::format("`{}` holds an earlier state of a render; this one will replace it", path),
+             "`--resume` goes on with it");
+    }
+    checkpoint_->writeOnlyIf([this] { return texturesReadable(); });
+    checkpoint_->start(film.planes(), state, options.off ? 0 : options.interval);
+    return ExitCode::done;
+}
+
+// What is rendered without a texture that was there is worth nothing, and must not get into a checkpoint.
+bool RenderRun::texturesReadable() const {
+    Diagnostics found;
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(found);
+    return std::none_of(found.all().begin(), found.all().end(), [](const Diagnostic& d) { return d.code == "W0458"; });
+}
+
+// Of writing in the background.
+void RenderRun::tellFault() {
+    const auto fault = checkpoint_ ? checkpoint_->takeFault() : std::nullopt;
+    if (fault) warn("W0662", fmt::format("the checkpoint was not written: {}", *fault), "the render goes on");
+}
+
+// What is most dear is saved first: the image can be made from it.
+void RenderRun::closeCheckpoint() {
+    if (!checkpoint_) return;
+    checkpoint_->stop();
+    tellFault();
+    if (options_.part) {
+        checkpoint_->save();
+        report_->image(summary_.image, summary_.partial);
+        return;
+    }
+    if (!summary_.partial && !options_.checkpoint.keep) return; // it goes when the image is there
+    if (options_.checkpoint.off) return;
+    try {
+        checkpoint_->save();
+    } catch (const IoError& e) {
+        warn("W0662", fmt::format("the checkpoint was not written: {}", e.what()), "the image follows");
+    }
+}
+
+void RenderRun::tellHowToResume() const {
+    if (options_.quiet) return;
+    common_.console.line(
+        fmt::format("to go on:  {}{}", common_.commandLine, options_.checkpoint.resume ? "" : " --resume"));
+}
+
+// In the middle of a render that goes on; whatever fails is told and no reason to end it.
+void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statistics) {
+    const RenderStatistics before = std::exchange(summary_.statistics, statistics);
+    try {
+        if (checkpoint_) checkpoint_->save();
+        if (!options_.part) {
+            Diagnostics ignored; // told at the end
+            summary_.partial = true;
+            summary_.noise = film.relativeNoise();
+            const FilmPicture picture = pictureOf(film);
+            writeImage(summary_.image, picture, film_, attributes(film), ignored);
+            report_->image(summary_.image, true);
+            writePng(picture.image);
+        }
+    } catch (const IoError& e) {
+        warn("W0662", fmt::format("the snapshot was not written: {}", e.what()), "the render goes on");
+    }
+    summary_.partial = false;
+    summary_.statistics = before;
+}
+
+std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
+    double seconds = 0;
+    for (const auto& phase : summary_.phases) seconds += phase.second;
+    auto list =
+        provenance({loaded_.get(), &options_.input, &built_, &settings_, &summary_.statistics, common_.commandLine,
+                    std::string(spaceName(film_.space)), summary_.noise, seconds, film.replicates()});
+    for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
+    if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
+    return list;
+}
+
+void RenderRun::writePng(const ResolvedImage& image) {
+    if (summary_.png.empty()) return;
+    DisplayPicture picture{image.bounds.width(), image.bounds.height(), {}, film_.space};
+    picture.rgb.reserve(3 * image.r.size());
+    for (std::size_t i = 0; i < image.r.size(); ++i)
+        picture.rgb.insert(picture.rgb.end(), {image.r[i], image.g[i], image.b[i]});
+    writeDisplayPng(summary_.png, std::move(picture), options_.view, 8);
+    report_->image(summary_.png, summary_.partial);
+}
+
+void RenderRun::write(const PixelFilm& film) {
+    const FilmPicture picture = pictureOf(film);
+    Diagnostics warnings;
+    try {
+        writeImage(summary_.image, picture, film_, attributes(film), warnings);
+    } catch (const IoError& e) {
+        writeRescued(picture, attributes(film), e);
+    }
+    report_->image(summary_.image, summary_.partial);
+    writePng(picture.image);
+    endPhase("writing", watch_.lap());
+    warnOfDroppedSamples(summary_.statistics, warnings);
+    warnOfDensities(summary_.statistics.excess, warnings);
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
+    warnOfBlackImage(picture.image, warnings);
+    report_->diagnostics(warnings, loaded_->sources);
+    summary_.warnings += warnings.warningCount();
+}
+
+// The disk filled up or went away while rendering: what was computed is saved where temporary files go, and a
+// checkpoint beside the image if there is room for that.
+void RenderRun::writeRescued(const FilmPicture& picture, std::vector<ImageAttribute> attributes, const IoError& why) {
+    const auto rescued = std::filesystem::temp_directory_path() / std::filesystem::path(summary_.image).filename();
+    std::string saved;
+    try {
+        Diagnostics ignored;
+        writeImage(rescued.string(), picture, film_, std::move(attributes), ignored);
+        saved = fmt::format("; the image was saved as `{}`", rescued.string());
+    } catch (const IoError&) {
+        saved = "; nor is there room in the folder of temporary files";
+    }
+    if (checkpoint_) {
+        try {
+            checkpoint_->save();
+            saved += fmt::format("; the render was saved as `{}`", checkpoint_->path());
+        } catch (const IoError&) {
+            if (checkpoint_->writes() > 0)
+                saved += fmt::format("; an earlier state of the render is in `{}`", checkpoint_->path());
+        }
+    }
+    throw IoError(why.what() + saved);
+}
+
+} // namespace abbe
