@@ -21,8 +21,10 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <string_view>
 
 namespace abbe {
 
@@ -33,8 +35,7 @@ bool isLossless(Imf::Compression c) {
            c == Imf::ZIP_COMPRESSION || c == Imf::PIZ_COMPRESSION;
 }
 
-void setAttribute(Imf::Header& header, const ImageAttribute& a) {
-    header.erase(a.name.c_str()); // it may be of another type
+void addAttribute(Imf::Header& header, const ImageAttribute& a) {
     if (const auto* text = std::get_if<std::string>(&a.value))
         header.insert(a.name.c_str(), Imf::StringAttribute(*text));
     if (const auto* number = std::get_if<int>(&a.value)) header.insert(a.name.c_str(), Imf::IntAttribute(*number));
@@ -45,13 +46,19 @@ void setAttribute(Imf::Header& header, const ImageAttribute& a) {
 // The header of the first part with what is added.
 Imf::Header extended(const Imf::Header& old, std::span<const ExrChannel> channels,
                      std::span<const ImageAttribute> attributes) {
-    Imf::Header header = old;
-    for (const char* name : {"tiles", "chunkCount", "acesImageContainerFlag"}) header.erase(name);
+    // What is replaced may be of another type, and OpenEXR 3.1 leaks what is erased: it is not taken over at all.
+    const auto replaced = [&](std::string_view name) {
+        return name == "tiles" || name == "chunkCount" || name == "acesImageContainerFlag" ||
+               std::ranges::find(attributes, name, &ImageAttribute::name) != attributes.end();
+    };
+    Imf::Header header;
+    for (auto a = old.begin(); a != old.end(); ++a)
+        if (!replaced(a.name())) header.insert(a.name(), a.attribute());
     if (header.hasType()) header.setType(Imf::SCANLINEIMAGE);
     header.lineOrder() = Imf::INCREASING_Y;
     if (!isLossless(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
     for (const ExrChannel& c : channels) header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
-    for (const ImageAttribute& a : attributes) setAttribute(header, a);
+    for (const ImageAttribute& a : attributes) addAttribute(header, a);
     return header;
 }
 
