@@ -3,32 +3,7 @@
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 
-# start OUTPUT: renders for ever in the background, and returns when samples are being taken.
-start() {
-    : >events # not those of the last one
-    "$program" "$scenes/room.scene" --size 256x256 --samples 4000000000 -o "$1" --json >events 2>err &
-    job=$!
-    for _ in {1..300}; do
-        grep -q '"progress"' events && return
-        kill -0 "$job" 2>/dev/null || break
-        sleep 0.1
-    done
-    fault "rendering did not begin"
-}
-
-ended_with() { # CODE
-    local code
-    for _ in {1..300}; do
-        kill -0 "$job" 2>/dev/null || break
-        sleep 0.1
-    done
-    kill -KILL "$job" 2>/dev/null # after half a minute
-    wait "$job"
-    code=$?
-    [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
-}
-
-start int.exr
+start int.exr "$scenes/room.scene" --size 256x256
 kill -INT "$job"
 ended_with 130
 expect 0 info int.exr
@@ -38,14 +13,14 @@ says events '"partial":true'
 "$json_lines" <events >/dev/null || fault "events are no JSON lines"
 [[ -z $(find . -name '*.tmp') ]] || fault "temporary files are left"
 
-start term.exr
+start term.exr "$scenes/room.scene" --size 256x256
 kill -TERM "$job"
 ended_with 143
 expect 0 info term.exr
 says out "abbe.partial = 1"
 
 # A broken contract of the program itself ends with its own code.
-start abort.exr
+start abort.exr "$scenes/room.scene" --size 256x256
 kill -ABRT "$job"
 ended_with 70
 [[ ! -e abort.exr ]] || fault "an image in spite of a bug"
@@ -54,7 +29,7 @@ ended_with 70
 # can be late; the order in which they are delivered does not matter.
 expect 0 "$scenes/room.scene" --quiet -o old.exr
 before=$(pixels old.exr)
-start old.exr
+start old.exr "$scenes/room.scene" --size 256x256
 kill -STOP "$job"
 kill -INT "$job"
 kill -TERM "$job"

@@ -54,6 +54,33 @@ same_pixels() { # A B
     [[ -n $a && $a == "$b" ]] || fault "$1 and $2 differ: $a, $b"
 }
 
+# start OUTPUT SCENE ARGUMENT…: renders for ever in the background as $job, and returns when samples are being taken.
+start() {
+    local output=$1
+    shift
+    : >events # not those of the last one
+    "$program" "$@" --samples 4000000000 -o "$output" --json >events 2>err &
+    job=$!
+    for _ in {1..300}; do
+        grep -q '"progress"' events && return
+        kill -0 "$job" 2>/dev/null || break
+        sleep 0.1
+    done
+    fault "rendering did not begin"
+}
+
+ended_with() { # CODE
+    local code
+    for _ in {1..300}; do
+        kill -0 "$job" 2>/dev/null || break
+        sleep 0.1
+    done
+    kill -KILL "$job" 2>/dev/null # after half a minute
+    wait "$job"
+    code=$?
+    [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
+}
+
 finish() {
     [[ $faults -eq 0 ]] || printf '%d faults\n' "$faults"
     exit $((faults > 0))

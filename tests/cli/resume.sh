@@ -103,34 +103,8 @@ says err E0661
 expect 0 "$scene" --size 8x8 --samples 1 -o none.exr --resume
 says err W0664
 
-# start OUTPUT ARGUMENT…: renders for ever in the background, and returns when samples are being taken.
-start() {
-    local output=$1
-    shift
-    : >events
-    "$program" "$scene" --size 40x24 --samples 4000000000 -o "$output" --json "$@" >events 2>err &
-    job=$!
-    for _ in {1..300}; do
-        grep -q '"progress"' events && return
-        kill -0 "$job" 2>/dev/null || break
-        sleep 0.1
-    done
-    fault "rendering did not begin"
-}
-ended_with() { # CODE
-    local code
-    for _ in {1..300}; do
-        kill -0 "$job" 2>/dev/null || break
-        sleep 0.1
-    done
-    kill -KILL "$job" 2>/dev/null
-    wait "$job"
-    code=$?
-    [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
-}
-
 # SIGUSR1 and SIGHUP write a snapshot and the render goes on; Ctrl-C saves and says how to go on.
-start signals.exr
+start signals.exr "$scene" --size 40x24
 for signal in USR1 HUP; do
     rm -f signals.exr signals.exr.ckpt
     kill -$signal "$job"
@@ -151,7 +125,7 @@ says err "--resume"
 expect 0 "$scene" --size 40x24 --samples 4 -o signals.exr --resume --quiet # it has many more
 expect 0 info signals.exr
 says out "abbe.partial = 0"
-start term.exr
+start term.exr "$scene" --size 40x24
 kill -TERM "$job"
 ended_with 143
 expect 0 "$scene" --size 40x24 --samples 4 -o fresh.exr --quiet --checkpoint keep

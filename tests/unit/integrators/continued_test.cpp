@@ -2,6 +2,7 @@
 // whole.
 #include "integrators/pass_schedule.h"
 #include "render/render_state.h"
+#include "support/same_bits.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>
@@ -17,22 +18,6 @@ shape sphere { center 0 0.5 0; radius 0.5; material dielectric { ior 1.5; roughn
 light quad { points -1 2 -1  -1 2 1  1 2 1  1 2 -1; luminance 3000 nits }
 light sky { luminance 100 nits }
 )";
-
-bool sameBits(const RecordingFilm& a, const RecordingFilm& b) {
-    const PixelBounds bounds = a.bounds();
-    for (int y = bounds.y0; y < bounds.y1; ++y)
-        for (int x = bounds.x0; x < bounds.x1; ++x)
-            for (int r = 0; r < a.replicates(); ++r) {
-                const auto [s, n] = a.replicate(x, y, r);
-                const auto [t, m] = b.replicate(x, y, r);
-                if (s.x != t.x || s.y != t.y || s.z != t.z || n != m) return false;
-            }
-    return true;
-}
-
-bool sameTally(const RenderStatistics& a, const RenderStatistics& b) {
-    return a.paths == b.paths && a.vertices == b.vertices && a.shadowRays == b.shadowRays;
-}
 
 // Sets a flag after so many additions to another film.
 class StoppingFilm final : public Film {
@@ -83,7 +68,7 @@ TEST_CASE("a render stopped at any moment and continued has the bits and counts 
     CHECK(state.reached() == 20);
     CHECK(statistics.samplesPerPixel == 40);
     CHECK(sameBits(whole.film, film));
-    CHECK(sameTally(whole.statistics, statistics));
+    CHECK(sameCounts(whole.statistics, statistics));
 
     // Continued beyond what was the end; and asked again for less.
     RenderSettings more = settings;
@@ -92,7 +77,7 @@ TEST_CASE("a render stopped at any moment and continued has the bits and counts 
     statistics = tracer->render(scene.scene(), film, more, control);
     const TestImage longer = render(scene, more, {}, 2);
     CHECK(sameBits(longer.film, film));
-    CHECK(sameTally(longer.statistics, statistics));
+    CHECK(sameCounts(longer.statistics, statistics));
     statistics = tracer->render(scene.scene(), film, settings, control);
     CHECK(statistics.samplesPerPixel == 64);
     CHECK(sameBits(longer.film, film));
@@ -123,7 +108,7 @@ TEST_CASE("snapshots are taken between portions and change nothing") {
     CHECK(taken == 5);
     CHECK_FALSE(statistics.stopped);
     CHECK(sameBits(whole.film, film));
-    CHECK(sameTally(whole.statistics, statistics));
+    CHECK(sameCounts(whole.statistics, statistics));
 }
 
 TEST_CASE("parts of the samples add up to the whole, wherever their boundaries are") {
@@ -143,7 +128,7 @@ TEST_CASE("parts of the samples add up to the whole, wherever their boundaries a
         sum.shadowRays += s.shadowRays;
     }
     CHECK(sameBits(whole.film, film));
-    CHECK(sameTally(whole.statistics, sum));
+    CHECK(sameCounts(whole.statistics, sum));
     settings.parts = 99; // more than samples: some parts are empty
     std::uint32_t count = 0;
     for (settings.part = 1; settings.part <= 99; ++settings.part) {

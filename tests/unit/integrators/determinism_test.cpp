@@ -1,6 +1,7 @@
 // The image is a function of scene and seed alone: the same bits from any kernel that suffices, any number of threads,
 // and any goal.
 #include "base/parallel.h"
+#include "support/same_bits.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>
@@ -22,22 +23,6 @@ light sphere { center 1.2 0.3 0.5; radius 0.1; power 300 lm; transform { at 0 s 
 at 1 s { rotate y 30 deg } } }
 light sky { luminance 100 nits }
 )";
-}
-
-bool sameBits(const RecordingFilm& a, const RecordingFilm& b) {
-    const PixelBounds bounds = a.bounds();
-    for (int y = bounds.y0; y < bounds.y1; ++y)
-        for (int x = bounds.x0; x < bounds.x1; ++x)
-            for (int r = 0; r < a.replicates(); ++r) {
-                const auto [s, n] = a.replicate(x, y, r);
-                const auto [t, m] = b.replicate(x, y, r);
-                if (s.x != t.x || s.y != t.y || s.z != t.z || n != m) return false;
-            }
-    return true;
-}
-
-bool sameCounts(const RenderStatistics& a, const RenderStatistics& b) {
-    return a.paths == b.paths && a.vertices == b.vertices && a.shadowRays == b.shadowRays;
 }
 
 const Effects kAbsorption = Effect::absorption;

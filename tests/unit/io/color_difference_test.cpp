@@ -1,23 +1,13 @@
 #include "io/color_difference.h"
 #include "spectrum/lab.h"
+#include "support/constant_image.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
 #include <random>
 
 using namespace abbe;
-
-namespace {
-
-RgbImage constant(int width, int height, const Vec3d& value) {
-    RgbImage image;
-    image.window = image.display = {0, 0, width, height};
-    for (std::size_t i = 0; i < image.window.area(); ++i)
-        for (const double v : {value.x, value.y, value.z}) image.rgb.push_back(static_cast<float>(v));
-    return image;
-}
-
-} // namespace
+using abbe::test::constant;
 
 TEST_CASE("colour differences of images are seen from the white of their space and at one brightness") {
     // 5 % less light at the 18 % that the mean is shown as, in any space and at any exposure.

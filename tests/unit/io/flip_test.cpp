@@ -1,21 +1,15 @@
 #include "io/flip.h"
 #include "io/flip_filters.h"
+#include "support/constant_image.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
 #include <numeric>
 
 using namespace abbe;
+using abbe::test::constant;
 
 namespace {
-
-RgbImage constant(int width, int height, const Vec3d& value) {
-    RgbImage image;
-    image.window = image.display = {0, 0, width, height};
-    for (std::size_t i = 0; i < image.window.area(); ++i)
-        for (const double v : {value.x, value.y, value.z}) image.rgb.push_back(static_cast<float>(v));
-    return image;
-}
 
 // Slopes, textures and a chequerboard, in numbers that are exact in any precision.
 RgbImage pattern() {
