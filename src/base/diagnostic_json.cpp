@@ -1,27 +1,12 @@
 #include "base/diagnostic_format.h"
 #include "base/diagnostic_order.h"
+#include "base/json_text.h"
 
 #include <fmt/format.h>
 
 namespace abbe {
 
 namespace {
-
-std::string quoted(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\')
-            out += fmt::format("\\{}", c);
-        else if (c == '\n')
-            out += "\\n";
-        else if (byte < 0x20 || byte == 0x7f)
-            out += fmt::format("\\u{:04x}", byte);
-        else
-            out += c;
-    }
-    return out + "\"";
-}
 
 // LSP counts lines from 0 and characters in UTF-16 units.
 std::string position(const SourceMap& sources, FileId file, std::uint32_t offset) {
@@ -47,19 +32,19 @@ std::string relatedInformation(const Diagnostic& d, const SourceMap& sources) {
     for (const Label& label : d.related) {
         if (!label.span.valid()) continue;
         list += fmt::format("{}{{\"location\":{{\"uri\":{},\"range\":{}}},\"message\":{}}}", list.empty() ? "" : ",",
-                            quoted(sources.path(label.span.file)), range(sources, label.span), quoted(label.text));
+                            jsonText(sources.path(label.span.file)), range(sources, label.span), jsonText(label.text));
     }
     return list;
 }
 
 std::string extraData(const Diagnostic& d, const SourceMap& sources) {
     std::string notes, fixes;
-    for (const std::string& note : d.notes) notes += fmt::format("{}{}", notes.empty() ? "" : ",", quoted(note));
+    for (const std::string& note : d.notes) notes += fmt::format("{}{}", notes.empty() ? "" : ",", jsonText(note));
     for (const FixIt& fix : d.fixes)
         fixes += fmt::format("{}{{\"range\":{},\"newText\":{}}}", fixes.empty() ? "" : ",", range(sources, fix.span),
-                             quoted(fix.replacement));
-    return fmt::format("{{\"label\":{},\"notes\":[{}],\"help\":{},\"fixes\":[{}]}}", quoted(d.label), notes,
-                       quoted(d.help), fixes);
+                             jsonText(fix.replacement));
+    return fmt::format("{{\"label\":{},\"notes\":[{}],\"help\":{},\"fixes\":[{}]}}", jsonText(d.label), notes,
+                       jsonText(d.help), fixes);
 }
 
 } // namespace
@@ -68,14 +53,14 @@ std::string formatJson(const Diagnostics& diagnostics, const SourceMap& sources)
     std::string list;
     for (const Diagnostic* d : sortedByPlace(diagnostics)) {
         list += list.empty() ? "\n" : ",\n";
-        const std::string path = d->span.valid() ? quoted(sources.path(d->span.file)) : "null";
+        const std::string path = d->span.valid() ? jsonText(sources.path(d->span.file)) : "null";
         const std::string place = d->span.valid() ? range(sources, d->span)
                                                   : "{\"start\":{\"line\":0,\"character\":0},\"end\":{\"line\":0,"
                                                     "\"character\":0}}";
         const std::string message = d->label.empty() ? d->message : fmt::format("{} ({})", d->message, d->label);
         list += fmt::format("{{\"path\":{},\"range\":{},\"severity\":{},\"code\":{},\"source\":\"abbe\",\"message\":{},"
                             "\"relatedInformation\":[{}],\"data\":{}}}",
-                            path, place, d->severity == Severity::error ? 1 : 2, quoted(d->code), quoted(message),
+                            path, place, d->severity == Severity::error ? 1 : 2, jsonText(d->code), jsonText(message),
                             relatedInformation(*d, sources), extraData(*d, sources));
     }
     return fmt::format("[{}{}]\n", list, list.empty() ? "" : "\n");

@@ -1,5 +1,6 @@
 #include "film/cryptomatte.h"
 
+#include "base/json_text.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -21,18 +22,6 @@ std::vector<Coverage> ranked(std::span<const Coverage> seen) {
     std::vector<Coverage> order(seen.begin(), seen.end());
     std::ranges::stable_sort(order, std::ranges::greater{}, &Coverage::samples);
     return order;
-}
-
-std::string jsonText(std::string_view text) {
-    std::string quoted = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') quoted += '\\';
-        if (static_cast<unsigned char>(c) < 0x20)
-            quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            quoted += c;
-    }
-    return quoted + '"';
 }
 
 } // namespace
