@@ -34,7 +34,9 @@ std::optional<Vec2i> readPixel(std::string_view text) { return readPair(text, ",
 std::optional<PixelBounds> readCrop(std::string_view text) {
     const std::size_t first = text.find(','), second = text.find(',', std::min(first, text.size() - 1) + 1);
     if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
-    const auto from = readPair(text.substr(0, second), ",", 0), to = readPair(text.substr(second + 1), ",", 1);
+    constexpr int kLowest = -65536; // in the overscan
+    const auto from = readPair(text.substr(0, second), ",", kLowest);
+    const auto to = readPair(text.substr(second + 1), ",", kLowest);
     if (!from || !to || to->x <= from->x || to->y <= from->y) return std::nullopt;
     return PixelBounds{from->x, from->y, to->x, to->y};
 }

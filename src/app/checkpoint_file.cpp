@@ -75,7 +75,10 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
         fact.name = in.text();
         fact.value = in.text();
     }
-    const auto sideOk = [](std::int64_t from, std::int64_t to) { return from >= 0 && from < to; };
+    // Of the largest image with its overscan.
+    const auto sideOk = [](std::int64_t from, std::int64_t to) {
+        return from >= -65536 && from < to && to <= 2 * 65536;
+    };
     return in.sound() && in.atEnd() && sideOk(h.bounds.x0, h.bounds.x1) && sideOk(h.bounds.y0, h.bounds.y1) &&
            h.replicates >= 1 && h.first <= h.last && h.last <= h.whole;
 }

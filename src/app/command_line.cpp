@@ -2,6 +2,7 @@
 
 #include "app/argument_values.h"
 #include "app/command_line_compare.h"
+#include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
@@ -70,12 +71,6 @@ constexpr const char* kInfoHelp = R"(Tells what is in a scene or in an image.
 Examples:
   abbe info room.scene
   abbe info --json room.exr)";
-
-constexpr const char* kConvertHelp = R"(Turns an EXR into a PNG through a display view of OpenColorIO.
-
-Examples:
-  abbe convert room.exr room.png
-  abbe convert room.exr room.png --exposure 1.5 --view Raw)";
 
 constexpr const char* kVolumeHelp = R"(Inspects, makes and converts OpenVDB volumes.
 
@@ -322,12 +317,8 @@ void Reader::addInfo() {
 
 void Reader::addConvert() {
     CLI::App* c = add("convert", kConvertHelp);
-    c->add_option("input", convert_.input, "EXR in ACES2065-1 or ACEScg")->required()->type_name("");
-    c->add_option("output", convert_.output, "PNG")->required()->type_name("");
+    addConvertArguments(*c, convert_);
     addView(c, convert_.view);
-    c->add_option("--bits", convert_.bits, "8 or 16 bits per component")
-        ->check(CLI::IsMember({8, 16}).description(""))
-        ->type_name("N");
 }
 
 // The flag that an unknown one probably means.

@@ -1,8 +1,15 @@
 #include "app/image_output.h"
+#include "app/layer_view.h"
 #include "app/options.h"
+#include "app/version.h"
+#include "io/exr_deep.h"
 #include "io/image.h"
+#include "io/png_writer.h"
+#include "schema/scene_tree.h"
+#include "schema/suggest.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -21,10 +28,38 @@ std::string spaceFault(const std::string& path, const RgbImage& image) {
 
 bool same(Chromaticity a, Chromaticity b) { return std::abs(a.x - b.x) < 1e-5 && std::abs(a.y - b.y) < 1e-5; }
 
-} // namespace
+// Deep samples are put over each other.
+RgbImage readFlat(const std::string& path, const ExrInfo& info) {
+    const DeepPicture deep = readDeepExr(path);
+    const FlatPicture flat = flatten(deep);
+    RgbImage image;
+    image.window = deep.window;
+    image.display = deep.display;
+    image.chromaticities = info.chromaticities;
+    image.adoptedNeutral = info.adoptedNeutral;
+    for (std::size_t i = 0; i < flat.r.size(); ++i)
+        image.rgb.insert(image.rgb.end(), {flat.r[i], flat.g[i], flat.b[i]});
+    countFaults(image);
+    return image;
+}
 
-ExitCode run(const ConvertOptions& options, const CommonOptions& common) {
-    RgbImage image = readImage(options.input);
+void cutToDisplay(const ConvertOptions& options, const RgbImage& image, DisplayPicture& picture) {
+    if (!options.overscan) cutOut(picture, image.window, image.display);
+}
+
+void noSuchLayer(const ConvertOptions& options, const ExrInfo& info, const CommonOptions& common) {
+    const std::vector<std::string> names = layerNames(info);
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string_view near = schema::nearest(options.layer, views);
+    Diagnostics diagnostics;
+    diagnostics.error("E0657", {}, fmt::format("`{}` has no layer and no channel `{}`", options.input, options.layer))
+        .help = names.empty()  ? "it has no layers"
+                : near.empty() ? fmt::format("its layers are {}", fmt::join(names, ", "))
+                               : schema::didYouMean(near);
+    common.console.report(diagnostics, {});
+}
+
+ExitCode showColours(RgbImage image, const ConvertOptions& options, const CommonOptions& common) {
     if (const std::string fault = spaceFault(options.input, image); !fault.empty()) {
         common.console.error(fault);
         return ExitCode::faulty;
@@ -39,9 +74,47 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common) {
     picture.width = image.width();
     picture.height = image.height();
     picture.rgb = std::move(image.rgb);
+    cutToDisplay(options, image, picture);
     writeDisplayPng(options.output, std::move(picture), options.view, options.bits);
     common.console.line(fmt::format("image {}", options.output));
     return ExitCode::done;
+}
+
+// Numbers that are no light are shown as they are, without a view.
+ExitCode showLayer(const ConvertOptions& options, const CommonOptions& common) {
+    const ExrInfo info = readExrInfo(options.input);
+    const auto gain = static_cast<float>(std::exp2(options.view.exposure));
+    auto layer = layerPicture(options.input, info, options.layer, gain);
+    if (!layer) {
+        noSuchLayer(options, info, common);
+        return ExitCode::faulty;
+    }
+    RgbImage image;
+    image.window = info.window;
+    image.display = info.display;
+    image.rgb = std::move(layer->rgb);
+    if (layer->colours) {
+        image.chromaticities = info.chromaticities;
+        image.adoptedNeutral = info.adoptedNeutral;
+        return showColours(std::move(image), options, common);
+    }
+    DisplayPicture picture{image.width(), image.height(), std::move(image.rgb), OutputSpace::aces2065_1};
+    cutToDisplay(options, image, picture);
+    PngPicture png{picture.width, picture.height, picture.rgb,
+                   options.bits,  false,          {{"Software", "abbe " + versionNumber()}, {"Layer", options.layer}}};
+    writePng(options.output, png);
+    common.console.line(fmt::format("image {}", options.output));
+    return ExitCode::done;
+}
+
+} // namespace
+
+ExitCode run(const ConvertOptions& options, const CommonOptions& common) {
+    if (!options.layer.empty()) return showLayer(options, common);
+    if (std::filesystem::path(options.input).extension() == ".exr")
+        if (const ExrInfo info = readExrInfo(options.input); info.deep)
+            return showColours(readFlat(options.input, info), options, common);
+    return showColours(readImage(options.input), options, common);
 }
 
 } // namespace abbe

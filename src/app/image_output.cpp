@@ -2,6 +2,7 @@
 
 #include "app/version.h"
 #include "io/atomic_file.h"
+#include "io/exr_deep.h"
 #include "io/io_error.h"
 #include "io/ocio_view.h"
 #include "io/png_writer.h"
@@ -77,19 +78,37 @@ ResolvedImage resolveImage(const PixelFilm& film, const FilmSettings& settings, 
 }
 
 FilmPicture resolvePicture(const PixelFilm& film, const FilmSettings& settings, double exposure, Vec3d origin) {
-    FilmPicture picture{resolveImage(film, settings, exposure), {}};
+    FilmPicture picture{resolveImage(film, settings, exposure), {}, {}};
     const RgbSpace& space = rgbSpace(settings.space);
-    picture.layers =
-        layerPlanes(film, picture.image, {&space, space.fromXyz() * settings.whiteBalance, exposure, origin});
+    const LayerView view{&space, space.fromXyz() * settings.whiteBalance, exposure, origin};
+    picture.layers = layerPlanes(film, picture.image, view);
+    if (film.layers() && film.layers()->deep()) picture.deep = deepImage(film, view);
     return picture;
 }
 
+std::string deepPath(const std::string& imagePath) {
+    return std::filesystem::path(imagePath).replace_extension(".deep.exr").string();
+}
+
+namespace {
+
+PixelWindow windowOf(const PixelBounds& b) { return {b.x0, b.y0, b.x1, b.y1}; }
+
+void writeDeep(const std::string& path, const DeepImage& deep, const ExrPicture& flat) {
+    DeepPicture picture{
+        flat.window, flat.display, deep.counts, deep.front,          deep.back,           deep.a,
+        deep.r,      deep.g,       deep.b,      flat.chromaticities, flat.adoptedNeutral, flat.attributes};
+    std::erase_if(picture.attributes, [](const ImageAttribute& a) { return a.name.starts_with("cryptomatte/"); });
+    writeDeepExr(path, picture);
+}
+
+} // namespace
+
 void writeImage(const std::string& path, const FilmPicture& shot, const FilmSettings& film,
                 std::vector<ImageAttribute> attributes, Diagnostics& diagnostics) {
-    const auto& [image, layers] = shot;
+    const auto& [image, layers, deep] = shot;
     ExrPicture picture;
-    const PixelBounds& b = image.bounds;
-    picture.window = {b.x0, b.y0, b.x1, b.y1};
+    picture.window = windowOf(image.bounds);
     picture.display = {0, 0, film.width, film.height};
     picture.r = image.r;
     picture.g = image.g;
@@ -102,6 +121,7 @@ void writeImage(const std::string& path, const FilmPicture& shot, const FilmSett
     picture.acesContainer = film.acesContainer;
     picture.compression = findExrCompression(film.compression).value_or(ExrCompression::zip);
     picture.half = film.half;
+    picture.parts = film.parts;
     picture.attributes = std::move(attributes);
     picture.attributes.push_back({"abbe.sensor", film.sensor});
     if (film.adoptedWhite)
@@ -109,6 +129,7 @@ void writeImage(const std::string& path, const FilmPicture& shot, const FilmSett
             {"abbe.whiteBalance", fmt::format("{:.5f} {:.5f} bradford", film.adoptedWhite->x, film.adoptedWhite->y)});
     picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
     warnOfLosses(writeExr(path, picture), path, diagnostics);
+    if (deep) writeDeep(deepPath(path), *deep, picture);
     if (layers.unequalSums > 0)
         diagnostics.warning(
             "W0656", {},
@@ -136,6 +157,20 @@ void convertToAces(std::span<float> rgb, const RgbSpace& space, Chromaticity neu
         rgb[i + 1] = static_cast<float>(v.y);
         rgb[i + 2] = static_cast<float>(v.z);
     }
+}
+
+void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindow& display) {
+    const PixelWindow inside{std::max(window.x0, display.x0), std::max(window.y0, display.y0),
+                             std::min(window.x1, display.x1), std::min(window.y1, display.y1)};
+    if (inside == window || inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
+    std::vector<float> rgb;
+    rgb.reserve(3 * inside.area());
+    for (int y = inside.y0; y < inside.y1; ++y) {
+        const auto row = static_cast<std::ptrdiff_t>(y - window.y0) * window.width();
+        const auto first = picture.rgb.begin() + 3 * (row + (inside.x0 - window.x0));
+        rgb.insert(rgb.end(), first, first + 3 * inside.width());
+    }
+    picture = {inside.width(), inside.height(), std::move(rgb), picture.space};
 }
 
 void writeDisplayPng(const std::string& path, DisplayPicture picture, const ViewOptions& options, int bits) {

@@ -3,6 +3,7 @@
 
 #include "app/options.h"
 #include "base/diagnostic.h"
+#include "film/deep_image.h"
 #include "film/film_params.h"
 #include "film/layer_planes.h"
 #include "film/pixel_film.h"
@@ -27,12 +28,17 @@ std::string writeFault(const std::string& path);
 struct FilmPicture {
     ResolvedImage image;
     LayerPlanes layers;
+    std::optional<DeepImage> deep;
 };
 ResolvedImage resolveImage(const PixelFilm&, const FilmSettings&, double exposure);
 // `origin`: world position of the origin of render space.
 FilmPicture resolvePicture(const PixelFilm&, const FilmSettings&, double exposure, Vec3d origin);
 
-// Throws IoError. Warnings (values that half floats cannot hold, channels left out) go to the list.
+// Where the deep samples of an image go: x.deep.exr beside x.exr.
+std::string deepPath(const std::string& imagePath);
+
+// With the deep image, if there is one. Throws IoError. Warnings (values that half floats cannot hold, channels left
+// out) go to the list.
 void writeImage(const std::string& path, const FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>,
                 Diagnostics&);
 
@@ -54,6 +60,8 @@ struct DisplayPicture {
     std::vector<float> rgb;
     OutputSpace space = OutputSpace::aces2065_1;
 };
+// Leaves the pixels within `display`, of those of `window`; all if there are none.
+void cutOut(DisplayPicture&, const PixelWindow& window, const PixelWindow& display);
 void writeDisplayPng(const std::string& path, DisplayPicture, const ViewOptions&, int bits);
 
 } // namespace abbe

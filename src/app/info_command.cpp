@@ -4,6 +4,7 @@
 #include "app/provenance.h"
 #include "io/aces_container.h"
 #include "io/exr_channels.h"
+#include "io/exr_deep.h"
 #include "io/file_bytes.h"
 
 #include <algorithm>
@@ -114,16 +115,37 @@ ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
 
 // --- images
 
-// Fingerprint of the values of all channels but the time they took: equal for equal pictures, whatever the header says.
-std::string pixelHash(const std::string& path, const ExrInfo& info) {
+template <typename Number> void add(Hash128& hash, const std::vector<Number>& values) {
+    hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)});
+}
+
+std::string deepHash(const std::string& path) {
+    const DeepPicture deep = readDeepExr(path);
     Hash128 hash;
-    for (const ExrInfo::Channel& channel : info.channels) {
-        if (channel.name == "seconds.S") continue;
-        hash.addField(channel.name);
-        const std::vector<float> values = readExrChannel(path, channel.name);
-        hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+    add(hash, deep.counts);
+    for (const auto* plane : {&deep.z, &deep.zBack, &deep.a, &deep.r, &deep.g, &deep.b}) add(hash, *plane);
+    return hash.digits();
+}
+
+// Fingerprint of the values of all channels but the time they took: equal for equal pictures, whatever the header says
+// and however the channels are spread over parts.
+std::string pixelHash(const std::string& path, const ExrInfo& info) {
+    if (info.deep) return deepHash(path);
+    Hash128 hash;
+    std::vector<std::string> names;
+    for (const ExrInfo::Channel& channel : info.channels) names.push_back(channel.name);
+    std::ranges::sort(names);
+    for (const std::string& name : names) {
+        if (name == "seconds.S") continue;
+        hash.addField(name);
+        add(hash, readExrChannel(path, name));
     }
     return hash.digits();
+}
+
+std::string layoutOf(const ExrInfo& info) {
+    if (info.parts > 1) return fmt::format("parts        {}\n", info.parts);
+    return info.deep ? "samples      deep\n" : "";
 }
 
 std::string_view spaceOf(const ExrInfo& info) {
@@ -159,6 +181,8 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"display", json(info.display)},
                                           {"channels", std::move(channels)},
                                           {"compression", info.compression},
+                                          {"parts", info.parts},
+                                          {"deep", info.deep},
                                           {"space", spaceOf(info)},
                                           {"aces_container", aces.valid()},
                                           {"aces_faults", std::move(faults)},
@@ -170,7 +194,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     std::string s = fmt::format("size         {}×{}\nspace        {}\ncompression  {}\nchannels    ",
                                 info.window.width(), info.window.height(), spaceOf(info), info.compression);
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
-    s += fmt::format("\n{}pixels       {}\n", containerText(aces), hash);
+    s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
     for (const ImageAttribute& a : info.attributes) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;

@@ -75,6 +75,8 @@ struct InfoOptions {
 
 struct ConvertOptions {
     std::string input, output;
+    std::string layer;     // or a channel; empty: the picture
+    bool overscan = false; // the whole data window
     ViewOptions view;
     int bits = 8;
 };

@@ -34,15 +34,36 @@ ExitCode RenderRun::refuse(std::string_view code, std::string message, std::stri
     return exit;
 }
 
+// Located, since `deep MOST` is the way out.
+void RenderRun::warnOfDeepMemory() {
+    if (!built_.layers.deep || options_.pixel) return;
+    const std::uint64_t most =
+        DeepSums::mostBytes(film_.crop, *built_.layers.deep, static_cast<std::uint64_t>(built_.render.samples));
+    if (static_cast<double>(most) <= physicalMemory()) return;
+    Span span;
+    for (const schema::TableRow& row : built_.film.layers.rows)
+        if (!row.cells.empty() && row.cells[0].text == "deep") span = row.span;
+    Diagnostics diagnostics;
+    diagnostics
+        .warning("W0657", span,
+                 fmt::format("the deep samples may take up to {:.3g} GB; this machine has {:.3g} GB of memory",
+                             static_cast<double>(most) / 1e9, physicalMemory() / 1e9),
+                 "where media fill the picture")
+        .help = "keep fewer of them, `deep 8`, or render parts with `crop`";
+    report_->diagnostics(diagnostics, loaded_->sources);
+    ++summary_.warnings;
+}
+
 ExitCode RenderRun::checkFilm() {
     for (const FilmFault& fault : findFaults(built_.film))
         return refuse(fault.code, fault.message, fault.help, options_.build.size ? ExitCode::usage : ExitCode::faulty);
     film_ = filmSettings(built_.film);
     if (const auto c = options_.crop) {
-        if (c->x1 > film_.width || c->y1 > film_.height)
+        const PixelBounds& all = film_.overscan;
+        if (c->x0 < all.x0 || c->y0 < all.y0 || c->x1 > all.x1 || c->y1 > all.y1)
             return refuse("E0609",
-                          fmt::format("--crop ends at {},{}, outside the image of {}×{} pixels", c->x1, c->y1,
-                                      film_.width, film_.height),
+                          fmt::format("--crop {},{},{},{} reaches outside the image, which is {},{},{},{}", c->x0,
+                                      c->y0, c->x1, c->y1, all.x0, all.y0, all.x1, all.y1),
                           "left and top are inside, right and bottom exclusive", ExitCode::usage);
         film_.crop = *c;
     }
@@ -55,6 +76,7 @@ ExitCode RenderRun::checkFilm() {
                       fmt::format("an image of {}×{} pixels needs {:.3g} GB; this machine has {:.3g} GB of memory",
                                   film_.crop.width(), film_.crop.height(), bytes / 1e9, physicalMemory() / 1e9),
                       "render parts of it with `crop` in the film", ExitCode::memory);
+    warnOfDeepMemory();
     if (const auto p = options_.pixel; p && (p->x >= film_.width || p->y >= film_.height)) {
         common_.console.error(
             fmt::format("--pixel {},{} is outside the image of {}×{} pixels", p->x, p->y, film_.width, film_.height));
@@ -74,7 +96,8 @@ ExitCode RenderRun::checkOutputs() {
     if (!options_.part && std::filesystem::path(summary_.image).extension() != ".exr")
         return refuse("E0431", fmt::format("the image `{}` must be an EXR", summary_.image),
                       "name it `….exr`; `--png=FILE` adds a PNG", ExitCode::usage);
-    for (const std::string& path : {summary_.image, summary_.png}) {
+    const std::string deep = built_.layers.deep && !options_.part ? deepPath(summary_.image) : "";
+    for (const std::string& path : {summary_.image, summary_.png, deep}) {
         if (path.empty()) continue;
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);

@@ -44,12 +44,15 @@ class RenderRun {
     ExitCode load();
     ExitCode prepare();
     ExitCode checkFilm();
+    void warnOfDeepMemory();
     ExitCode checkOutputs();
     ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
-        if (!options_.pixel) film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space));
+        if (!options_.pixel)
+            film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space),
+                            {built_.scene.intersector.get(), built_.scene.camera.get()});
         return film;
     }
     ExitCode renderPixel();

@@ -127,6 +127,8 @@ void RenderRun::writePng(const ResolvedImage& image) {
     picture.rgb.reserve(3 * image.r.size());
     for (std::size_t i = 0; i < image.r.size(); ++i)
         picture.rgb.insert(picture.rgb.end(), {image.r[i], image.g[i], image.b[i]});
+    const PixelBounds& b = image.bounds;
+    cutOut(picture, {b.x0, b.y0, b.x1, b.y1}, {0, 0, film_.width, film_.height});
     writeDisplayPng(summary_.png, std::move(picture), options_.view, 8);
     report_->image(summary_.png, summary_.partial);
 }

@@ -151,6 +151,18 @@ CameraRay LensSystemCamera::ray(const CameraSample& sample) const noexcept {
     return result;
 }
 
+// The ray through the middle of the entrance pupil, followed to the film.
+std::optional<Vec2d> LensSystemCamera::project(Vec3d p, double, Vec2d) const noexcept {
+    const Vec3d place = axes_.toLocal(p) + Vec3d{0, 0, optics_.pupil};
+    const Vec3d pupil{0, 0, optics_.pupil};
+    if (!(place.z < 0)) return std::nullopt;
+    LensRay ray{place, normalize(pupil - place)};
+    if (!train_.toFilm(ray, kReference, optics_.opening)) return std::nullopt;
+    const double way = (optics_.film - ray.p.z) / ray.d.z;
+    const Vec2d upright{-(ray.p.x + ray.d.x * way), -(ray.p.y + ray.d.y * way)};
+    return Vec2d{(upright.x - corner_.x) / pixel_, (corner_.y - upright.y) / pixel_};
+}
+
 std::optional<PlacedCamera> makeLensSystem(const LensSystemParams& params, const CameraContext& context,
                                            Diagnostics& diagnostics) {
     const auto place = placeCamera(params, context, diagnostics);

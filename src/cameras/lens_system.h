@@ -31,6 +31,7 @@ class LensSystemCamera final : public Camera {
     // The weight is the illuminance at the film per radiance over π / (4 N²): 1 on the axis for a lens that obeys the
     // sine condition and is focused at infinity, less towards the corners and at close range.
     CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
     bool disperses() const override { return train_.disperses(); }
     const LensTrain& train() const { return train_; }
     const Optics& optics() const { return optics_; }

@@ -51,6 +51,13 @@ CameraRay OrthographicCamera::ray(const CameraSample& sample) const noexcept {
     return result;
 }
 
+std::optional<Vec2d> OrthographicCamera::project(Vec3d p, double, Vec2d) const noexcept {
+    const Vec3d seen = axes_.toLocal(p);
+    if (!(seen.z < 0)) return std::nullopt;
+    const auto scale = static_cast<double>(scale_);
+    return Vec2d{(seen.x - static_cast<double>(corner_.x)) / scale, (static_cast<double>(corner_.y) - seen.y) / scale};
+}
+
 std::optional<PlacedCamera> makeOrthographic(const OrthographicParams& params, const CameraContext& context,
                                              Diagnostics& diagnostics) {
     const auto place = placeCamera(params, context, diagnostics);

@@ -17,6 +17,7 @@ class OrthographicCamera final : public Camera {
     // `pixel` is the size of one in m. Requires: pixel > 0.
     OrthographicCamera(const Frame& axes, Vec2i filmSize, double pixel);
     CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
     bool usesLens() const override { return false; }
 
   private:

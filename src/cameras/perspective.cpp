@@ -147,6 +147,14 @@ CameraRay PerspectiveCamera::ray(const CameraSample& sample) const noexcept {
     return result;
 }
 
+std::optional<Vec2d> PerspectiveCamera::project(Vec3d p, double, Vec2d) const noexcept {
+    const Vec3d seen = axes_.toLocal(p);
+    if (!(seen.z < 0)) return std::nullopt;
+    const Vec2d at{seen.x / -seen.z, seen.y / -seen.z}; // at distance 1
+    const auto scale = static_cast<double>(scale_);
+    return Vec2d{(at.x - static_cast<double>(corner_.x)) / scale, (static_cast<double>(corner_.y) - at.y) / scale};
+}
+
 std::optional<PlacedCamera> makePerspective(const PerspectiveParams& params, const CameraContext& context,
                                             Diagnostics& diagnostics) {
     const auto place = placeCamera(params, context, diagnostics);

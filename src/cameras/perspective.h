@@ -39,6 +39,7 @@ class PerspectiveCamera final : public Camera {
     PerspectiveCamera(const Frame& axes, Vec2i filmSize, double tanHalfFov, double lensRadius, double focus)
         : PerspectiveCamera(axes, filmSize, ThinLens{tanHalfFov, Aperture(lensRadius), 1, focus, {}, {}, 1}) {}
     CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
     bool usesLens() const override { return lensRadius_ > 0; }
 
   private:

@@ -11,6 +11,12 @@ ShutterCamera::ShutterCamera(std::unique_ptr<const Camera> inner, const Motion& 
     fromOpening_ = *inverse;
 }
 
+std::optional<Vec2d> ShutterCamera::project(Vec3d p, double time, Vec2d near) const noexcept {
+    if (!toRender_.moves()) return inner_->project(p, time, near);
+    const auto back = fromOpening_.then(toRender_.at(shutter_.timeAt(time))).inverse();
+    return back ? inner_->project(back->point(p), time, near) : std::nullopt;
+}
+
 CameraRay ShutterCamera::ray(const CameraSample& sample) const noexcept {
     CameraRay result = inner_->ray(sample);
     const double position = shutter_.position(static_cast<double>(sample.time));

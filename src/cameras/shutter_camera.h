@@ -18,6 +18,7 @@ class ShutterCamera final : public Camera {
     ShutterCamera(std::unique_ptr<const Camera> inner, const Motion& toRender, const Shutter& shutter);
 
     CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
     bool usesLens() const override { return inner_->usesLens(); }
     bool disperses() const override { return inner_->disperses(); }
 

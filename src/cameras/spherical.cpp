@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace abbe {
@@ -49,6 +50,16 @@ CameraRay SphericalCamera::ray(const CameraSample& sample) const noexcept {
         axes_.toWorld(Vec3(Vec3d{across * std::sin(longitude), std::sin(latitude), -across * std::cos(longitude)})));
     result.ray.time = sample.time;
     return result;
+}
+
+std::optional<Vec2d> SphericalCamera::project(Vec3d p, double, Vec2d near) const noexcept {
+    const Vec3d seen = axes_.toLocal(p);
+    const double distance = length(seen);
+    if (!(distance > 0)) return std::nullopt;
+    const double longitude = std::atan2(seen.x, -seen.z);
+    const double latitude = std::asin(std::clamp(seen.y / distance, -1.0, 1.0));
+    const double x = (longitude - corner_.x) / scale_.x, turn = 2 * kPiD / scale_.x;
+    return Vec2d{x + turn * std::round((near.x - x) / turn), (corner_.y - latitude) / scale_.y};
 }
 
 std::optional<PlacedCamera> makeSpherical(const SphericalParams& params, const CameraContext& context,

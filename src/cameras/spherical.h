@@ -19,6 +19,7 @@ class SphericalCamera final : public Camera {
     // Requires: 0 < width <= 2π, 0 < height <= π.
     SphericalCamera(const Frame& axes, Vec2i filmSize, double width, double height);
     CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
     bool usesLens() const override { return false; }
 
   private:

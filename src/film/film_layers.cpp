@@ -9,9 +9,11 @@
 namespace abbe {
 
 FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names,
-                       const RgbSpace& space)
-    : bounds_(bounds), plan_(std::move(plan)), replicates_(replicates),
+                       const RgbSpace& space, LayerSight sight)
+    : bounds_(bounds), plan_(std::move(plan)), replicates_(replicates), sight_(sight),
       stride_(static_cast<std::size_t>(plan_.offsets().total)) {
+    ABBE_CHECK(!plan_.motion || (sight.world && sight.camera));
+    if (plan_.deep) deep_ = std::make_unique<DeepSums>(bounds, *plan_.deep);
     if (plan_.albedo) white_ = emissionFromRgb({1, 1, 1}, space).curve;
     const auto pixels = static_cast<std::size_t>(bounds.area());
     sums_.resize(pixels * static_cast<std::size_t>(halves()) * stride_);
@@ -34,7 +36,8 @@ FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const
 std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan) {
     const auto pixels = static_cast<std::uint64_t>(bounds.area());
     const auto sums = static_cast<std::uint64_t>(plan.offsets().total) * (plan.halves ? 2 : 1);
-    return pixels * (sums * sizeof(ExactSum) + plan.seconds * sizeof(double) + plan.invalid * sizeof(std::uint32_t));
+    return pixels * (sums * sizeof(ExactSum) + (plan.deep ? 2 * sizeof(DeepSums::Bins) : 0) +
+                     plan.seconds * sizeof(double) + plan.invalid * sizeof(std::uint32_t));
 }
 
 std::unique_ptr<SampleRecorder> FilmLayers::makeRecorder() { return std::make_unique<LayerRecorder>(*this); }
@@ -143,6 +146,7 @@ void FilmLayers::appendPlanes(FilmPlanes& planes) {
         planes.push_back(std::make_unique<DensePlane<double>>("seconds", bounds_, 1, std::span<double>(seconds_)));
     for (const Matte matte : {Matte::objects, Matte::materials})
         if (!mattes(matte).empty()) planes.push_back(std::make_unique<CoveragePlane>(*this, matte));
+    if (deep_) planes.push_back(deep_->plane());
 }
 
 void FilmLayers::addSeconds(std::size_t pixel, double seconds) {

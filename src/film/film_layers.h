@@ -1,6 +1,7 @@
 // The sums behind an image's layers.
 #pragma once
 
+#include "film/deep_sums.h"
 #include "film/film_planes.h"
 #include "film/layer_plan.h"
 #include "math/exact_sum.h"
@@ -15,6 +16,14 @@
 namespace abbe {
 
 class SampleRecorder;
+class Camera;
+class Intersector;
+
+// What the layers look at, beside what paths meet: for motion.
+struct LayerSight {
+    const Intersector* world = nullptr;
+    const Camera* camera = nullptr;
+};
 
 // How many samples of a pixel saw one thing.
 struct Coverage {
@@ -34,9 +43,9 @@ struct NamedPlane {
 class FilmLayers {
   public:
     // Things that the scene's names do not list are not covered by Cryptomatte. Throws std::bad_alloc.
-    // Albedos are seen by the white of `space`. Requires a space of the project.
-    FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&, const RgbSpace& space);
-    // What layers of this size take, without Cryptomatte.
+    // Albedos are seen by the white of `space`. Requires a space of the project, and for motion both of the sight.
+    FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&, const RgbSpace& space, LayerSight = {});
+    // What layers of this size take, without Cryptomatte and what a deep image has seen.
     static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&);
 
     const LayerPlan& plan() const { return plan_; }
@@ -69,6 +78,11 @@ class FilmLayers {
     // By the index in Coverage, sorted.
     const std::vector<std::string>& names() const { return names_; }
 
+    const LayerSight& sight() const { return sight_; }
+    // Null if no deep image is kept.
+    DeepSums* deep() { return deep_.get(); }
+    const DeepSums* deep() const { return deep_.get(); }
+
     // Everything, to be stored and added to that of other films.
     void appendPlanes(FilmPlanes&);
 
@@ -85,6 +99,8 @@ class FilmLayers {
     PixelBounds bounds_;
     LayerPlan plan_;
     int replicates_;
+    LayerSight sight_;
+    std::unique_ptr<DeepSums> deep_;
     std::unique_ptr<const Curve> white_;
     std::size_t stride_; // sums per pixel and half
     std::vector<ExactSum> sums_;

@@ -33,6 +33,27 @@ void checkSize(const FilmParams& p, std::vector<FilmFault>& faults) {
                           "width times height may be 2147483648 at most; render parts of it with `crop`"});
 }
 
+// The frame with its overscan. Requires that checkOverscan() finds no fault.
+PixelBounds withOverscan(const FilmParams& p) {
+    const auto width = static_cast<int>(p.size.x), height = static_cast<int>(p.size.y);
+    if (p.overscan.empty()) return {0, 0, width, height};
+    const auto by = [&](std::size_t side) { return static_cast<int>(p.overscan[p.overscan.size() == 1 ? 0 : side]); };
+    return {-by(0), -by(1), width + by(2), height + by(3)};
+}
+
+void checkOverscan(const FilmParams& p, std::vector<FilmFault>& faults) {
+    if (p.overscan.empty()) return;
+    const auto bad = [](double v) { return !(v >= 0 && v <= kMaxSide && isWhole(v)); };
+    if ((p.overscan.size() != 1 && p.overscan.size() != 4) || std::any_of(p.overscan.begin(), p.overscan.end(), bad))
+        return faults.push_back({"overscan", "`overscan` must be one or four whole numbers of pixels, none below 0",
+                                 "left, top, right, bottom, or one for all sides: overscan 64", "E0656"});
+    const PixelBounds all = withOverscan(p);
+    if (static_cast<double>(all.area()) > kMaxArea)
+        faults.push_back({"overscan",
+                          fmt::format("an image of {} by {} pixels is too large", all.width(), all.height()),
+                          "width times height may be 2147483648 at most, with the overscan", "E0656"});
+}
+
 void checkCrop(const FilmParams& p, std::vector<FilmFault>& faults) {
     if (!p.crop) return;
     const auto& c = *p.crop;
@@ -41,9 +62,12 @@ void checkCrop(const FilmParams& p, std::vector<FilmFault>& faults) {
                           "right and bottom are the first column and row that are left out: crop 0 0 640 360"});
         return;
     }
-    if (!(c[0] >= 0 && c[1] >= 0 && c[2] <= p.size.x && c[3] <= p.size.y))
-        faults.push_back(
-            {"crop", fmt::format("the crop reaches outside the image of {} by {}", p.size.x, p.size.y), ""});
+    const PixelBounds all = withOverscan(p);
+    if (!(c[0] >= all.x0 && c[1] >= all.y0 && c[2] <= all.x1 && c[3] <= all.y1))
+        faults.push_back({"crop",
+                          fmt::format("the crop reaches outside the image of {} by {}{}", p.size.x, p.size.y,
+                                      p.overscan.empty() ? "" : " and its overscan"),
+                          p.overscan.empty() ? "`overscan` renders pixels beyond the edges" : ""});
     else if (!(c[0] < c[2] && c[1] < c[3]))
         faults.push_back(
             {"crop", "the crop is empty", "give left, top, right, bottom with left < right, top < bottom"});
@@ -58,7 +82,7 @@ void checkFilter(const FilmParams& p, std::vector<FilmFault>& faults) {
 void checkContainer(const FilmParams& p, std::vector<FilmFault>& faults) {
     if (keyOf(p.output, "container") != "aces") return;
     constexpr std::pair<std::string_view, std::string_view> kDemanded[] = {
-        {"space", "aces2065-1"}, {"compression", "none"}, {"half", "on"}};
+        {"space", "aces2065-1"}, {"compression", "none"}, {"half", "on"}, {"parts", "one"}};
     for (const auto& [key, demanded] : kDemanded) {
         const std::string_view given = keyOf(p.output, key);
         if (given.empty() || given == demanded) continue;
@@ -107,8 +131,14 @@ schema::TypeInfo filmType() {
     type.fields.push_back(field(FieldType::numbers, "crop", &FilmParams::crop)
                               .doc("Part that is rendered: left, top, right, bottom, the last two exclusive.")
                               .example("crop 0 0 640 360")
-                              .range(0, kMaxSide)
+                              .range(-kMaxSide, 2 * kMaxSide)
                               .synonyms({"cropwindow", "pixelbounds", "region"}));
+    type.fields.push_back(
+        field(FieldType::numbers, "overscan", &FilmParams::overscan)
+            .doc("Pixels to render beyond the edges: left, top, right, bottom, or one number for all.")
+            .example("overscan 64")
+            .range(0, kMaxSide)
+            .synonyms({"bleed", "margin", "padding"}));
     type.fields.push_back(field(FieldType::choice, "filter", &FilmParams::filter)
                               .doc("Pixel filter and, if wanted, its radius in pixels.")
                               .example("filter blackman-harris 1.5")
@@ -119,24 +149,27 @@ schema::TypeInfo filmType() {
     type.fields.push_back(
         field(FieldType::table, "layers", &FilmParams::layers)
             .namedRows()
-            .doc("What the file holds beside the picture: albedo, normal, position, depth, uv, object-id, "
-                 "material-id, samples, seconds, invalid, components, cryptomatte, light-group, spectral, denoise.")
+            .doc("What the file holds beside the picture: albedo, normal, position, depth, uv, motion, "
+                 "object-id, material-id, samples, seconds, invalid, components, cryptomatte, light-group, spectral, "
+                 "deep, denoise.")
             .example("layers { albedo; normal; light-group key; spectral 380 780 10; cryptomatte }")
             .synonyms({"aov", "aovs", "passes", "outputs", "channels"}));
-    type.fields.push_back(field(FieldType::text, "output", &FilmParams::output)
-                              .doc("OpenEXR file to write; without it, the scene's name with .exr.")
-                              .example("output \"hero.exr\" space=acescg compression=dwab")
-                              .key({"space",
-                                    {"aces2065-1", "acescg", "rec709", "xyz"},
-                                    "Linear encoding; aces2065-1 (AP0) if not given. Of xyz, R G B hold X Y Z."})
-                              .key({"compression",
-                                    {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
-                                    "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
-                              .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
-                              .key({"container",
-                                    {"exr", "aces"},
-                                    "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
-                              .synonyms({"filename", "file"}));
+    type.fields.push_back(
+        field(FieldType::text, "output", &FilmParams::output)
+            .doc("OpenEXR file to write; without it, the scene's name with .exr.")
+            .example("output \"hero.exr\" space=acescg compression=dwab")
+            .key({"space",
+                  {"aces2065-1", "acescg", "rec709", "xyz"},
+                  "Linear encoding; aces2065-1 (AP0) if not given. Of xyz, R G B hold X Y Z."})
+            .key({"compression",
+                  {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
+                  "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
+            .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
+            .key({"parts", {"one", "layers"}, "layers: each layer is a part of the file by itself; one if not given."})
+            .key({"container",
+                  {"exr", "aces"},
+                  "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
+            .synonyms({"filename", "file"}));
     std::vector<std::string_view> sensors = sensorNames();
     sensors.insert(sensors.begin(), "cie");
     type.fields.push_back(field(FieldType::choice, "sensor", &FilmParams::sensor)
@@ -177,6 +210,7 @@ Chromaticity adoptedNeutral(OutputSpace space) {
 std::vector<FilmFault> findFaults(const FilmParams& p) {
     std::vector<FilmFault> faults;
     checkSize(p, faults);
+    if (faults.empty()) checkOverscan(p, faults);
     if (faults.empty()) checkCrop(p, faults);
     checkFilter(p, faults);
     checkContainer(p, faults);
@@ -196,7 +230,8 @@ FilmSettings filmSettings(const FilmParams& p) {
     FilmSettings s;
     s.width = static_cast<int>(p.size.x);
     s.height = static_cast<int>(p.size.y);
-    s.crop = {0, 0, s.width, s.height};
+    s.overscan = withOverscan(p);
+    s.crop = s.overscan;
     if (p.crop) {
         const auto at = [&](std::size_t i) { return static_cast<int>((*p.crop)[i]); };
         s.crop = {at(0), at(1), at(2), at(3)};
@@ -209,6 +244,7 @@ FilmSettings filmSettings(const FilmParams& p) {
     s.space = spaceOf(p.output);
     if (const auto compression = keyOf(p.output, "compression"); !compression.empty()) s.compression = compression;
     s.half = keyOf(p.output, "half") == "on";
+    s.parts = keyOf(p.output, "parts") == "layers";
     s.sensor = p.sensor.word;
     if (p.whiteBalance) {
         const Xyz white = integrate(*p.whiteBalance);

@@ -17,6 +17,7 @@ namespace abbe {
 struct FilmParams {
     Vec2d size{1280, 720};                        // pixels
     std::optional<std::vector<double>> crop;      // x0 y0 x1 y1, half-open, pixels from the top left
+    std::vector<double> overscan;                 // pixels beyond the edges: left, top, right, bottom, or one for all
     schema::Choice filter{"blackman-harris", {}}; // radius in pixels; unset: defaultRadius of the filter
     schema::Text output;                          // empty: named after the scene
     schema::Choice sensor{"cie", {}};             // or a name of sensorNames()
@@ -37,13 +38,15 @@ Chromaticity adoptedNeutral(OutputSpace);
 // FilmParams as the renderer uses them.
 struct FilmSettings {
     int width = 0, height = 0; // pixels
-    PixelBounds crop;          // what is rendered; within 0 0 width height
+    PixelBounds overscan;      // the whole frame with what is seen beyond its edges
+    PixelBounds crop;          // what is rendered; within that
     FilterShape filter = FilterShape::blackmanHarris;
     double filterRadius = 0; // pixels
     std::string output;      // path; empty: named after the scene
     OutputSpace space = OutputSpace::aces2065_1;
     std::string compression = "zip"; // as in the scene; a name of io/exr_writer.h
     bool half = false;
+    bool parts = false; // each layer in a part of its own
     std::string sensor = "cie";
     std::optional<Chromaticity> adoptedWhite; // of the light that shall look neutral
     Matrix3 whiteBalance;       // on XYZ: takes that white to the space's neutral, by Bradford's transform

@@ -7,7 +7,7 @@ namespace abbe {
 int SpectralBins::count() const { return static_cast<int>(std::lround((last - first) / width)); }
 
 bool LayerPlan::empty() const {
-    return offsets().total == 0 && !samples && !seconds && !invalid && !halves && !coversObjects() &&
+    return offsets().total == 0 && !samples && !seconds && !invalid && !halves && !deep && !coversObjects() &&
            !coversMaterials();
 }
 
@@ -22,6 +22,8 @@ LayerPlan::Offsets LayerPlan::offsets() const {
     o.position = take(position, 3);
     o.depth = take(depth, 1);
     o.uv = take(uv, 2);
+    o.followed = take(motion, 1);
+    o.motion = take(motion, 2);
     o.looks = take(normal, 1);
     o.normal = take(normal, 3);
     o.albedo = take(albedo, 3);

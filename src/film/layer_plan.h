@@ -25,6 +25,7 @@ struct LightGroup {
 struct LayerPlan {
     bool albedo = false, normal = false;                    // of the first surface that is no mirror
     bool position = false, depth = false, uv = false;       // of the first surface
+    bool motion = false;                                    // of it on the film, while the shutter is open
     bool samples = false, seconds = false, invalid = false; // of the work
     bool components = false;                                // direct, indirect, caustic
     bool halves = false;                                    // half of the replicates by themselves
@@ -32,13 +33,15 @@ struct LayerPlan {
     bool objectIds = false, materialIds = false;            // of what most samples saw
     std::vector<LightGroup> groups;                         // without the last one: all other lights
     std::optional<SpectralBins> spectral;
+    std::optional<int> deep; // bins of a pixel at most, of surfaces and of media each: film/deep_sums.h
 
     bool empty() const;
-    // Values per pixel and half that are sums over samples, in this order: hits of a surface, position, depth, uv, hits
-    // of what is no mirror, normal, albedo, groups (with the rest), components, bins.
+    // Values per pixel and half that are sums over samples, in this order: hits of a surface, position, depth, uv,
+    // surfaces that were followed, motion, hits of what is no mirror, normal, albedo, groups (with the rest),
+    // components, bins.
     struct Offsets {
-        int surface = 0, position = 0, depth = 0, uv = 0, looks = 0, normal = 0, albedo = 0, groups = 0, components = 0,
-            spectral = 0, total = 0;
+        int surface = 0, position = 0, depth = 0, uv = 0, followed = 0, motion = 0, looks = 0, normal = 0, albedo = 0,
+            groups = 0, components = 0, spectral = 0, total = 0;
     };
     Offsets offsets() const;
     bool coversObjects() const { return objects || objectIds; }

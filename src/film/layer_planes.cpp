@@ -107,6 +107,15 @@ class PlaneMaker {
                 const Xyz p = three(i, at_.position, halves) * inverse(met);
                 store(met > 0 ? Vec3d{p.x, p.y, p.z} + view_.origin : Vec3d{}, out);
             });
+        // Right and up, as compositing programs count.
+        if (plan_.motion) {
+            constexpr const char* kMotion[] = {"u", "v"};
+            add("forward", kMotion, [&](std::size_t i, float* const* out) {
+                const double followed = inverse(sum(i, at_.followed, halves));
+                *out[0] = static_cast<float>(sum(i, at_.motion, halves) * followed);
+                *out[1] = static_cast<float>(0 - sum(i, at_.motion + 1, halves) * followed);
+            });
+        }
         if (plan_.uv) {
             constexpr const char* kUv[] = {"U", "V"};
             add("uv", kUv, [&](std::size_t i, float* const* out) {

@@ -1,5 +1,7 @@
 #include "film/layer_recorder.h"
 
+#include "render/camera.h"
+#include "render/intersector.h"
 #include "spectrum/observer.h"
 
 #include <algorithm>
@@ -34,14 +36,19 @@ LayerRecorder::LayerRecorder(FilmLayers& layers)
 
 void LayerRecorder::pixel(int x, int y, int replicate) noexcept {
     pixel_ = layers_.pixelIndex(x, y);
+    middle_ = {x + 0.5, y + 0.5};
     half_ = layers_.halfOf(replicate);
 }
 
-void LayerRecorder::start(Vec3 eye, const Wavelengths& lambda) noexcept {
-    eye_ = eye;
+void LayerRecorder::start(const Ray& fromEye, const Wavelengths& lambda) noexcept {
+    ray_ = fromEye;
     lambda_ = lambda;
-    first_.met = looked_ = passedMedium_ = specularSince_ = false;
-    first_.shape = first_.material = nullptr;
+    along_.clear();
+    litDepth_.reset();
+    end_.reset();
+    left_ = 1;
+    first_ = {};
+    looked_ = passedMedium_ = specularSince_ = false;
     diffuse_ = 0;
     for (Part& part : groups_) part = {};
     for (Part& part : components_) part = {};
@@ -49,7 +56,31 @@ void LayerRecorder::start(Vec3 eye, const Wavelengths& lambda) noexcept {
 
 void LayerRecorder::arrives(const SurfaceHit& hit, const Spectrum&) noexcept {
     if (first_.met || passedMedium_) return;
-    first_ = {true, hit.p, length(hit.p - eye_), hit.uv, hit.shape, hit.material};
+    const float depth = depthOf(hit.p);
+    first_ = {true, hit.p, depth, hit.uv, hit.shape, hit.material, {}};
+    end_ = {DeepSums::Kind::surface, depth};
+    if (plan_.motion) first_.motion = motionOf(hit, depth);
+}
+
+// From where the point is seen when the shutter opens to where it is seen when it closes.
+std::optional<Vec2d> LayerRecorder::motionOf(const SurfaceHit& hit, float depth) const noexcept {
+    const LayerSight& sight = layers_.sight();
+    const Ray onto{ray_.origin, (hit.p - ray_.origin) / depth, kInfinity, ray_.time};
+    const auto passage = sight.world->passage(onto, hit, depth);
+    if (!passage) return std::nullopt;
+    const auto from = sight.camera->project(Vec3d(passage->opening), 0, middle_);
+    if (!from) return std::nullopt;
+    const auto to = sight.camera->project(Vec3d(passage->closing), 1, *from);
+    return to ? std::optional(*to - *from) : std::nullopt;
+}
+
+void LayerRecorder::lightsUp(Vec3 p) noexcept { litDepth_ = depthOf(p); }
+
+void LayerRecorder::absorbs(Vec3 p, float share) noexcept {
+    if (!plan_.deep || end_ || !(share > 0)) return;
+    const float absorbed = left_ * std::min(share, 1.f);
+    left_ -= absorbed;
+    along_.push_back({depthOf(p), absorbed, Spectrum(0.f)});
 }
 
 void LayerRecorder::gathers(const Spectrum& radiance, const void* source, bool passing) noexcept {
@@ -63,6 +94,8 @@ void LayerRecorder::gathers(const Spectrum& radiance, const void* source, bool p
         part.radiance += radiance;
         part.lit = true;
     }
+    if (plan_.deep && litDepth_ && !end_) along_.push_back({*litDepth_, 0, radiance});
+    litDepth_.reset();
 }
 
 void LayerRecorder::scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum& beta,
@@ -80,7 +113,8 @@ void LayerRecorder::scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum&
     albedo_ = next ? beta * next->weight * (1 / mean(next->pdfRatio)) : Spectrum(0.f);
 }
 
-void LayerRecorder::collides(Vec3, const Spectrum& beta) noexcept {
+void LayerRecorder::collides(Vec3 p, const Spectrum& beta) noexcept {
+    if (!end_) end_ = {DeepSums::Kind::medium, depthOf(p)};
     ++diffuse_;
     specularSince_ = false;
     passedMedium_ = true;
@@ -100,6 +134,11 @@ void LayerRecorder::keepFeatures(std::span<ExactSum> sums, double factor) const 
             add(at(at_.uv), first_.uv.x);
             add(at(at_.uv + 1), first_.uv.y);
         }
+    }
+    if (first_.motion) {
+        at(at_.followed) += ExactSum(1);
+        add(at(at_.motion), first_.motion->x);
+        add(at(at_.motion + 1), first_.motion->y);
     }
     if (!looked_) return;
     if (plan_.normal) {
@@ -132,11 +171,23 @@ void LayerRecorder::keepSpectrum(std::span<ExactSum> sums, const Spectrum& radia
     }
 }
 
+// Light that reaches the eye although nothing was met, as that of the sky, is of no depth.
+void LayerRecorder::keepDeep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept {
+    DeepSums& sums = *layers_.deep();
+    Spectrum rest = radiance;
+    for (const Along& a : along_) {
+        sums.add(pixel_, DeepSums::Kind::medium, a.depth, a.share, sensor(a.light, lambda_) * factor);
+        rest = rest - a.light;
+    }
+    if (end_) sums.add(pixel_, end_->kind, end_->depth, left_, sensor(rest, lambda_) * factor);
+}
+
 void LayerRecorder::keep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept {
     const std::span<ExactSum> sums = layers_.sums(pixel_, half_);
     keepFeatures(sums, factor);
     keepParts(sums, sensor, factor);
     if (plan_.spectral) keepSpectrum(sums, radiance, factor);
+    if (plan_.deep) keepDeep(radiance, sensor, factor);
     if (!first_.met) return;
     if (plan_.coversObjects()) layers_.cover(pixel_, FilmLayers::Matte::objects, first_.shape);
     if (plan_.coversMaterials()) layers_.cover(pixel_, FilmLayers::Matte::materials, first_.material);

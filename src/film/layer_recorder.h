@@ -12,9 +12,11 @@ class LayerRecorder final : public SampleRecorder {
     explicit LayerRecorder(FilmLayers&);
 
     void pixel(int x, int y, int replicate) noexcept override;
-    void start(Vec3 eye, const Wavelengths&) noexcept override;
+    void start(const Ray& fromEye, const Wavelengths&) noexcept override;
     void arrives(const SurfaceHit&, const Spectrum& beta) noexcept override;
     void gathers(const Spectrum& radiance, const void* source, bool passing) noexcept override;
+    void lightsUp(Vec3 p) noexcept override;
+    void absorbs(Vec3 p, float share) noexcept override;
     void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept override;
     void collides(Vec3 p, const Spectrum& beta) noexcept override;
     void keep(const Spectrum& radiance, const Sensor&, double factor) noexcept override;
@@ -39,7 +41,21 @@ class LayerRecorder final : public SampleRecorder {
         float depth = 0;
         Vec2 uv;
         const void *shape = nullptr, *material = nullptr;
+        std::optional<Vec2d> motion; // pixels, down the film
     };
+    // What is seen in media on the way to where the path ends for the eye: share that is absorbed, light given off.
+    struct Along {
+        float depth = 0, share = 0;
+        Spectrum light{0.f};
+    };
+    // There all that is left of it ends, and from there comes all other light.
+    struct End {
+        DeepSums::Kind kind = DeepSums::Kind::surface;
+        float depth = 0;
+    };
+    float depthOf(Vec3 p) const { return length(p - ray_.origin); }
+    std::optional<Vec2d> motionOf(const SurfaceHit&, float depth) const noexcept;
+    void keepDeep(const Spectrum& radiance, const Sensor&, double factor) noexcept;
     void keepFeatures(std::span<ExactSum>, double factor) const noexcept;
     void keepParts(std::span<ExactSum>, const Sensor&, double factor) const noexcept;
     void keepSpectrum(std::span<ExactSum>, const Spectrum& radiance, double factor) const noexcept;
@@ -48,9 +64,10 @@ class LayerRecorder final : public SampleRecorder {
     const LayerPlan& plan_;
     const LayerPlan::Offsets at_;
     std::size_t pixel_ = 0;
+    Vec2d middle_; // of the pixel
     int half_ = 0;
 
-    Vec3 eye_;
+    Ray ray_; // from the eye
     Wavelengths lambda_;
     FirstSurface first_;
     bool looked_ = false; // met something that is no mirror
@@ -63,6 +80,10 @@ class LayerRecorder final : public SampleRecorder {
         Spectrum radiance{0.f};
         bool lit = false;
     };
+    std::vector<Along> along_;
+    std::optional<float> litDepth_; // of what is gathered next, if it comes from the way
+    std::optional<End> end_;
+    float left_ = 1; // of the share that ends there
     std::vector<Part> groups_;
     Part components_[3];
 };

@@ -24,6 +24,7 @@ constexpr Flag kFlags[] = {
     {"position", [](LayerPlan& p) { p.position = true; }},
     {"depth", [](LayerPlan& p) { p.depth = true; }},
     {"uv", [](LayerPlan& p) { p.uv = true; }},
+    {"motion", [](LayerPlan& p) { p.motion = true; }},
     {"samples", [](LayerPlan& p) { p.samples = true; }},
     {"seconds", [](LayerPlan& p) { p.seconds = true; }},
     {"invalid", [](LayerPlan& p) { p.invalid = true; }},
@@ -32,7 +33,7 @@ constexpr Flag kFlags[] = {
     {"material-id", [](LayerPlan& p) { p.materialIds = true; }},
     {"denoise", [](LayerPlan& p) { p.halves = p.albedo = p.normal = p.depth = true; }},
 };
-constexpr std::string_view kOther[] = {"cryptomatte", "light-group", "spectral"};
+constexpr std::string_view kOther[] = {"cryptomatte", "deep", "light-group", "spectral"};
 
 class RowReader {
   public:
@@ -52,6 +53,8 @@ class RowReader {
             readGroup(row);
         } else if (first.text == "spectral") {
             readBins(row);
+        } else if (first.text == "deep") {
+            readDeep(row);
         } else {
             unknown(first);
         }
@@ -103,6 +106,19 @@ class RowReader {
             group.members.push_back(member);
         }
         plan_.groups.push_back(std::move(group));
+    }
+
+    void readDeep(const TableRow& row) {
+        constexpr double kLeast = 2, kMost = 4096;
+        plan_.deep = 32;
+        if (row.cells.size() == 1) return;
+        const auto most = row.cells[1].number.value_or(0);
+        if (row.cells.size() > 2 || !(most >= kLeast && most <= kMost) || most != std::floor(most))
+            return fault(row.cells[1].span,
+                         fmt::format("a deep layer takes the most samples of a pixel, {} to {}", kLeast, kMost),
+                         "of surfaces, and as many of media",
+                         "for example `deep 32`, which is what `deep` alone means");
+        plan_.deep = static_cast<int>(most);
     }
 
     void readBins(const TableRow& row) {

@@ -38,8 +38,8 @@ void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint3
     ABBE_DCHECK(samples_[cell] >= samples); // no overflow of the count
 }
 
-void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space) {
-    if (!plan.empty()) layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space);
+void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space, LayerSight sight) {
+    if (!plan.empty()) layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space, sight);
 }
 
 Xyz PixelFilm::mean(int x, int y) const noexcept { return mean(x, y, 0, replicates_); }

@@ -27,7 +27,7 @@ class PixelFilm final : public Film {
     // Throws std::bad_alloc.
     PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates);
     // Before the first sample: what else to keep. Throws std::bad_alloc.
-    void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&);
+    void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&, LayerSight = {});
     // Null if nothing else is kept.
     const FilmLayers* layers() const { return layers_.get(); }
     std::unique_ptr<SampleRecorder> makeRecorder() override { return layers_ ? layers_->makeRecorder() : nullptr; }

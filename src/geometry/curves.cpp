@@ -180,6 +180,21 @@ void Curves::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) con
     hit.local = Vec3(Vec3d(hit.p) + moved);
 }
 
+// With the point of the axis that it lies around.
+Vec3 Curves::carried(const RawHit& raw, const Ray& ray, const SurfaceHit& hit, float time) const {
+    if (data_.later.empty()) return hit.p;
+    const std::uint32_t needed = leastPoints(data_.basis), primitive = firstPoints_[raw.primitive];
+    const std::uint32_t strand = strand_[raw.primitive], first = strandFirst_[strand];
+    const double segments = (strandFirst_[strand + 1] - first - needed) / pointStep(data_.basis) + 1;
+    const double before = (primitive - first) / pointStep(data_.basis);
+    const double u = std::clamp(static_cast<double>(hit.uv.x) * segments - before, 0.0, 1.0);
+    const auto axisAt = [&](float t) {
+        std::array<SizedPoint, 4> room;
+        return CurveSegment(data_.basis, pointsAt(primitive, needed, t, room.data())).position(u);
+    };
+    return Vec3(Vec3d(hit.p) + (axisAt(time) - axisAt(ray.time)));
+}
+
 double Curves::area() const {
     // Simpson's rule per quarter of a segment is far closer than anyone needs.
     double sum = 0;

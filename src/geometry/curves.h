@@ -41,6 +41,7 @@ class Curves final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     // dp/dv is taken as twice the radius across the curve: exact for ribbons and in the middle of tubes.
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     double area() const override; // of tubes without ends; of ribbons seen from the side; at first
 
     // Curves do not emit.

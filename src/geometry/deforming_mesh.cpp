@@ -117,6 +117,15 @@ void DeformingMesh::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& h
     hit.local = first[corner.a] * (1 - corner.s - corner.t) + first[corner.b] * corner.s + first[corner.c] * corner.t;
 }
 
+Vec3 DeformingMesh::carried(const RawHit& raw, const Ray&, const SurfaceHit&, float time) const {
+    const MeshCorners corner = cornersOf(faces_, raw);
+    const StepPosition at = stepAt(time, steps_.size());
+    const MovedTriangle t = moved(steps_[at.step].positions, steps_[at.step + 1].positions, corner, at.fraction);
+    Vec3 p, error;
+    trianglePoint(t.a, t.b, t.c, corner.s, corner.t, p, error);
+    return p;
+}
+
 double DeformingMesh::area() const {
     double largest = 0;
     for (const MeshStep& step : steps_) {

@@ -33,6 +33,7 @@ class DeformingMesh final : public Shape {
     // Primitives are numbered triangles first, then quads.
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     bool hasTextureCoordinates() const override { return !faces_.uvs.empty(); }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;

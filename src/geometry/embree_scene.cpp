@@ -49,6 +49,7 @@ class EmbreeScene final : public Intersector {
         return occluded({from, to - from, kBeforeEnd, time});
     }
     std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
+    std::optional<Passage> passage(const Ray&, const SurfaceHit&, float distance) const noexcept override;
     Bounds3 bounds() const override { return bounds_; }
     std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 
@@ -69,6 +70,7 @@ class EmbreeScene final : public Intersector {
     void parametrize(const GeometryRecord&, const RawHit&, const Ray&, SurfaceHit&) const;
     bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
     bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
+    Passage passage(const RTCHit&, Path, float distance, const Ray&, const SurfaceHit&) const;
 
     mutable std::atomic<std::uint64_t> rejected_{0};
 };
@@ -238,6 +240,42 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     }
     distance = static_cast<float>(best);
     return std::isfinite(best) && best <= static_cast<double>(ray.tMax);
+}
+
+// Met again, because hits do not keep the way to their object: of this shape, nothing else lies so near to the point.
+std::optional<Passage> EmbreeScene::passage(const Ray& ray, const SurfaceHit& hit, float distance) const noexcept {
+    const float cosine = std::max(std::abs(dot(ray.direction, hit.ng)), 0.01f);
+    const float rounding = (4 * dot(abs(hit.ng), hit.pError) + 0x1p-20f * distance) / cosine;
+    Ray window = ray;
+    window.tMax = distance + rounding;
+    RayContext context(rejected_);
+    float near = std::max(distance - rounding, kNearestHit);
+    for (int i = 0; i < kMaxRecasts && near < window.tMax; ++i) {
+        RTCRayHit rayHit;
+        fill(rayHit.ray, window, near);
+        cast(scene.get(), context, rayHit);
+        if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+        const Path path = context.path(rayHit.hit);
+        if (recordOf(rayHit.hit, path).shape == hit.shape) return passage(rayHit.hit, path, rayHit.ray.tfar, ray, hit);
+        near = std::nextafter(rayHit.ray.tfar, kInfinity);
+    }
+    return std::nullopt;
+}
+
+Passage EmbreeScene::passage(const RTCHit& h, Path path, float distance, const Ray& ray, const SurfaceHit& hit) const {
+    const GeometryRecord& record = recordOf(h, path);
+    if (path.empty() && record.steps == 1) return {hit.p, hit.p};
+    const RawHit raw{h.u, h.v, distance, h.primID, record.part};
+    Ray inside = ray;
+    for (const PlacementStep& step : path) inside = step.placement(ray.time).toObject(inside);
+    SurfaceHit own;
+    record.shape->surface(raw, inside, own);
+    const auto at = [&](float time) {
+        Vec3d p(record.shape->carried(raw, inside, own, time));
+        for (std::size_t i = path.size(); i-- > 0;) p = path[i].placement(time).map().point(p);
+        return Vec3(p);
+    };
+    return {at(0), at(1)};
 }
 
 // Within the offset of the origins of rays that go on, on both sides, or a film of air that light crosses as if it were

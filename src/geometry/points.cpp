@@ -130,6 +130,12 @@ void Points::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) con
     hit.local = hit.p - point.position + data_.points[raw.primitive].position;
 }
 
+// Of what grows or turns, the point goes along with the middle.
+Vec3 Points::carried(const RawHit& raw, const Ray& ray, const SurfaceHit& hit, float time) const {
+    if (data_.later.empty()) return hit.p;
+    return hit.p - pointAt(raw.primitive, ray.time).position + pointAt(raw.primitive, time).position;
+}
+
 void Points::sphere(const SizedPoint& point, Vec3d o, Vec3d d, double t, SurfaceHit& hit) const {
     const Vec3d c(point.position);
     const auto r = static_cast<double>(point.radius);

@@ -36,6 +36,7 @@ class Points final : public Shape {
     void commit(GeometrySink&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     double area() const override; // at first
 
     // Points do not emit.

@@ -74,7 +74,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
             if (!advance(*a)) a->walk = nullptr;
             continue;
         }
-        if (collide(*a, lambda, random, weights)) {
+        if (collide(*a, lambda, random, weights, listener)) {
             shareDistance(t, weights);
             return {a->medium, t};
         }
@@ -117,7 +117,8 @@ void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWe
 
 // A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that
 // leaves their densities alone. True if it scatters.
-bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& random, TrackedWeights weights) {
+bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& random, TrackedWeights weights,
+                            EmissionListener* listener) {
     ++counters.collisions;
     const float bound = a.segment.maximum;
     const float density = a.walk->density(a.next);
@@ -126,6 +127,8 @@ bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& 
     // both events are possible: their probabilities are in proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
     const float nothing = bound - density;
     const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(a.next, lambda) : a.albedo;
+    if (listener && listener->minds) [[unlikely]]
+        listener->absorbs(a.next, mean(Spectrum(1.f) - albedo) * density / bound);
     const Spectrum scattering = albedo * density;
     const Spectrum kept = scattering + Spectrum(std::abs(nothing));
     const float scatters = mean(select(kept.v > 0, scattering / kept, Spectrum(0.f)));

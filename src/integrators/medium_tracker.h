@@ -24,6 +24,10 @@ struct MediumCollision {
 // Is told what shines along a ray: estimates whose sum over the ray is the light that its media add to it.
 class EmissionListener {
   public:
+    // Whether to tell it what media absorb, too:
+    bool minds = false;
+    // Of the weight of the path this share, in the mean over its wavelengths, is absorbed at `t`.
+    virtual void absorbs(float /*t*/, float /*share*/) {}
     // `amount`: radiance given off around the distance `t`, not yet weighed; the weights are those of the path at `t`.
     virtual void shines(const MediumEmission&, float t, const Spectrum& amount, const Spectrum& beta,
                         const Spectrum& density) = 0;
@@ -110,7 +114,7 @@ class MediumTracker {
     void shine(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
     static void schedule(Active&, float from);
     static bool advance(Active&);
-    bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights);
+    bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
     void shareDistance(float t, TrackedWeights) const;
     void note(float density, float bound);
     Spectrum ratioTracking(Active&, RandomStream&);

@@ -6,7 +6,9 @@ namespace abbe {
 // Adds up what media give off along a ray, weighed against sampling them as lights.
 template <EffectBits E> class PathLoop<E>::GlowCollector final : public EmissionListener {
   public:
-    GlowCollector(PathLoop& loop, const Ray& ray) : loop_(loop), ray_(ray) {}
+    GlowCollector(PathLoop& loop, const Ray& ray) : loop_(loop), ray_(ray) { minds = loop.observer_ != nullptr; }
+
+    void absorbs(float t, float share) override { loop_.observer_->absorbs(ray_.origin + ray_.direction * t, share); }
 
     void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
                 const Spectrum& density) override {
@@ -19,6 +21,8 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
         arriving *= loop_.clearness(path.nested.here, t);
+        if (loop_.observer_) [[unlikely]]
+            loop_.observer_->lightsUp(ray_.origin + ray_.direction * t);
         loop_.gather(arriving, &emission);
     }
 

@@ -55,6 +55,8 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     RandomStream random = sampler_.stream(2 * set);
     passing *= media_.tracker.transmittance(ray, t, path_.nested.here.media(), path_.lambda, random);
     passing *= clearness(path_.nested.here, t);
+    if (observer_) [[unlikely]]
+        observer_->lightsUp(p);
     const float density = kept * pdf * picked.probability * light->pdfSolidAngle;
     gather(path_.beta * light->radiance * scattered * passing * (share / density), picked.light, true);
 }

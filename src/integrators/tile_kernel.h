@@ -105,7 +105,7 @@ template <EffectBits E> class TileKernel {
         radiance_ = Spectrum(0.f);
         maySubtract_ = false;
         factor_ = static_cast<double>(camera.weight * filter.weight);
-        if (recorder_) recorder_->start(camera.ray.origin, lambda);
+        if (recorder_) recorder_->start(camera.ray, lambda);
         if (!(camera.weight > 0)) return {};
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
         loop.watch(recorder_.get());

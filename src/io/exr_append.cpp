@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "io/exr_channels.h"
+#include "io/exr_header.h"
 #include "io/exr_stream.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -9,16 +10,12 @@
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
 #include <OpenEXR/ImfDeepTiledInputPart.h>
 #include <OpenEXR/ImfDeepTiledOutputPart.h>
-#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
-#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <algorithm>
@@ -33,14 +30,6 @@ namespace {
 bool isLossless(Imf::Compression c) {
     return c == Imf::NO_COMPRESSION || c == Imf::RLE_COMPRESSION || c == Imf::ZIPS_COMPRESSION ||
            c == Imf::ZIP_COMPRESSION || c == Imf::PIZ_COMPRESSION;
-}
-
-void addAttribute(Imf::Header& header, const ImageAttribute& a) {
-    if (const auto* text = std::get_if<std::string>(&a.value))
-        header.insert(a.name.c_str(), Imf::StringAttribute(*text));
-    if (const auto* number = std::get_if<int>(&a.value)) header.insert(a.name.c_str(), Imf::IntAttribute(*number));
-    if (const auto* number = std::get_if<double>(&a.value))
-        header.insert(a.name.c_str(), Imf::DoubleAttribute(*number));
 }
 
 // The header of the first part with what is added.
@@ -133,21 +122,9 @@ void copyWith(const std::string& source, AtomicStream& stream, std::span<const E
 
 void appendExr(const std::string& source, const std::string& target, std::span<const ExrChannel> channels,
                std::span<const ImageAttribute> attributes) {
-    AtomicFile file(target);
-    AtomicStream stream(file);
-    try {
-        copyWith(source, stream, channels, attributes);
-        if (stream.error().empty() && !Imf::MultiPartInputFile(file.temporaryPath().c_str(), 0).partComplete(0))
-            throw IoError(fmt::format("cannot write `{}`: the file came out incomplete", target));
-    } catch (const IoError&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw IoError(stream.error().empty() ? fmt::format("cannot write `{}`: {}", target, e.what()) : stream.error());
-    }
-    if (!stream.error().empty()) throw IoError(stream.error());
-    file.commit();
+    writeWhole(
+        target, [&](AtomicStream& stream) { copyWith(source, stream, channels, attributes); },
+        [](const std::string& written) { return Imf::MultiPartInputFile(written.c_str(), 0).partComplete(0); });
 }
 
 } // namespace abbe

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <sys/stat.h>
 
 namespace abbe {
@@ -118,18 +119,32 @@ std::string_view compressionName(Imf::Compression c) {
     }
 }
 
-ExrInfo describe(const Imf::Header& header, int parts) {
+std::string nameIn(const Imf::Header& header, int part, std::string_view channel) {
+    const bool own = part == 0 || !header.hasName() || channel.find('.') != std::string_view::npos;
+    return own ? std::string(channel) : fmt::format("{}.{}", header.name(), channel);
+}
+
+void addChannels(const Imf::Header& header, int part, ExrInfo& info) {
+    if (part > 0 && header.hasType() && Imf::isDeepData(header.type())) return;
+    if (fromImf(header.dataWindow()) != info.window) return;
+    constexpr std::array<const char*, 3> kTypes{"uint", "half", "float"};
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        if (std::string name = nameIn(header, part, c.name()); !info.has(name))
+            info.channels.push_back({std::move(name), kTypes.at(static_cast<std::size_t>(c.channel().type)), part});
+}
+
+ExrInfo describe(const Imf::MultiPartInputFile& file) {
+    const Imf::Header& header = file.header(0);
     ExrInfo info;
-    info.parts = parts;
+    info.parts = file.parts();
+    info.deep = header.hasType() && Imf::isDeepData(header.type());
     info.window = fromImf(header.dataWindow());
     info.display = fromImf(header.displayWindow());
     info.compression = compressionName(header.compression());
     info.chromaticities = chromaticitiesOf(header);
     if (const auto* neutral = header.findTypedAttribute<Imf::V2fAttribute>("adoptedNeutral"))
         info.adoptedNeutral = Chromaticity{neutral->value().x, neutral->value().y};
-    constexpr std::array<const char*, 3> kTypes{"uint", "half", "float"};
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-        info.channels.push_back({c.name(), kTypes.at(static_cast<std::size_t>(c.channel().type))});
+    for (int part = 0; part < file.parts(); ++part) addChannels(file.header(part), part, info);
     for (auto a = header.begin(); a != header.end(); ++a)
         if (const auto attribute = fromImf(a.name(), a.attribute())) info.attributes.push_back(*attribute);
     const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag");
@@ -139,25 +154,30 @@ ExrInfo describe(const Imf::Header& header, int parts) {
 
 ExrPlanes readPlanes(const std::string& path, const std::function<bool(std::string_view)>& wanted) {
     Imf::MultiPartInputFile file(path.c_str(), 0);
-    const Imf::Header& header = file.header(0);
-    ExrPlanes planes{describe(header, file.parts()), {}};
+    ExrPlanes planes{describe(file), {}};
     const PixelWindow& window = planes.info.window;
     checkSize(path, window);
+    // OpenEXR would put them over each other, with media in its own way.
+    if (planes.info.deep) refuse(path, "it is a deep image; `abbe convert` shows it");
     planes.values.resize(planes.info.channels.size());
     std::uint64_t values = 0;
-    Imf::FrameBuffer buffer;
+    std::map<int, Imf::FrameBuffer> buffers; // of parts
     for (std::size_t i = 0; i < planes.values.size(); ++i) {
-        const std::string& name = planes.info.channels[i].name;
+        const auto& [name, type, part] = planes.info.channels[i];
         if (wanted && !wanted(name)) continue;
-        checkChannel(path, header.channels()[name.c_str()], name);
+        const Imf::Header& header = file.header(part);
+        const Imf::Channel* stored = header.channels().findChannel(name);
+        const std::string inPart = stored ? name : name.substr(header.name().size() + 1);
+        checkChannel(path, stored ? *stored : header.channels()[inPart.c_str()], name);
         if ((values += window.area()) > kMaxValues) refuse(path, "its channels are more than 16 GiB");
         planes.values[i].resize(window.area());
-        buffer.insert(name, slice(window, planes.values[i].data()));
+        buffers[part].insert(inPart, slice(window, planes.values[i].data()));
     }
-    if (values == 0) return planes;
-    Imf::InputPart part(file, 0);
-    part.setFrameBuffer(buffer);
-    part.readPixels(window.y0, window.y1 - 1);
+    for (const auto& [part, buffer] : buffers) {
+        Imf::InputPart input(file, part);
+        input.setFrameBuffer(buffer);
+        input.readPixels(window.y0, window.y1 - 1);
+    }
     return planes;
 }
 
@@ -182,7 +202,7 @@ const std::vector<float>* ExrPlanes::find(std::string_view name) const {
 ExrInfo readExrInfo(const std::string& path) {
     return guarded(path, [&] {
         const Imf::MultiPartInputFile file(path.c_str(), 0, false);
-        return describe(file.header(0), file.parts());
+        return describe(file);
     });
 }
 

@@ -12,18 +12,22 @@
 
 namespace abbe {
 
+// Of the first part; the channels are those of all parts that are no deep image and have its data window. Channels of
+// later parts without a layer in their name ("R") are named after the part ("left.R"); of equal names the first counts.
 struct ExrInfo {
     struct Channel {
         std::string name;
         std::string type; // "half", "float", "uint"
+        int part = 0;
     };
     PixelWindow window, display;
     std::vector<Channel> channels;
     std::string compression; // as in ExrCompression, or what the file says
     std::optional<Chromaticities> chromaticities;
     std::optional<Chromaticity> adoptedNeutral;
-    bool acesContainer = false;             // as the file claims: see io/aces_container.h
-    int parts = 1;                          // only the first one is described
+    bool acesContainer = false; // as the file claims: see io/aces_container.h
+    int parts = 1;
+    bool deep = false;                      // the first part has several samples per pixel, each at a depth
     std::vector<ImageAttribute> attributes; // the ones of types text, int, float and double
 
     bool has(std::string_view channel) const;
@@ -32,7 +36,7 @@ struct ExrInfo {
 // Reads the header alone. Throws IoError.
 ExrInfo readExrInfo(const std::string& path);
 
-// Channels of the first part, each a plane of the data window, row by row from the top.
+// Channels, each a plane of the data window, row by row from the top.
 struct ExrPlanes {
     ExrInfo info;
     std::vector<std::vector<float>> values; // one for each of info.channels, empty for those that were not wanted

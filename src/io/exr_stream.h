@@ -5,6 +5,8 @@
 #include "io/io_error.h"
 
 #include <OpenEXR/ImfIO.h>
+#include <fmt/format.h>
+#include <new>
 #include <string>
 
 namespace abbe {
@@ -32,5 +34,27 @@ class AtomicStream final : public Imf::OStream {
     AtomicFile& file_;
     std::string error_;
 };
+
+// Has `write` put an OpenEXR file into the stream it is given, and the file at `path` when it is whole: `isWhole` looks
+// at it under the name that it has until then. Throws IoError.
+template <typename Write, typename IsWhole>
+void writeWhole(const std::string& path, const Write& write, const IsWhole& isWhole) {
+    AtomicFile file(path);
+    AtomicStream stream(file);
+    try {
+        write(stream);
+        // Ends with what a damaged disk or a full one would have spoilt: the offsets of all lines.
+        if (stream.error().empty() && !isWhole(file.temporaryPath()))
+            throw IoError(fmt::format("cannot write `{}`: the file came out incomplete", path));
+    } catch (const IoError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw IoError(stream.error().empty() ? fmt::format("cannot write `{}`: {}", path, e.what()) : stream.error());
+    }
+    if (!stream.error().empty()) throw IoError(stream.error());
+    file.commit();
+}
 
 } // namespace abbe

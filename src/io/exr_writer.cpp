@@ -1,19 +1,18 @@
 #include "io/exr_writer.h"
 
 #include "base/check.h"
+#include "io/exr_header.h"
 #include "io/exr_stream.h"
 #include "io/io_error.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
-#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -35,32 +34,55 @@ constexpr std::array<std::pair<std::string_view, Imf::Compression>, 8> kCompress
 
 Imf::Compression toImf(ExrCompression c) { return kCompressions[static_cast<std::size_t>(c)].second; }
 
-Imath::V2f toImf(Chromaticity c) { return {static_cast<float>(c.x), static_cast<float>(c.y)}; }
+// Channels that are one part of a file, from R G B on or [first, last) of those beside them.
+struct Part {
+    std::string name; // none where there is no other
+    bool colours = false;
+    std::size_t first = 0, last = 0;
+};
 
-Imf::Chromaticities toImf(const Chromaticities& c) {
-    return {toImf(c.red), toImf(c.green), toImf(c.blue), toImf(c.white)};
+// What stands before the last dot; the levels of a Cryptomatte are one layer.
+std::string_view layerOf(std::string_view channel) {
+    const std::string_view layer = channel.substr(0, std::min(channel.rfind('.'), channel.size()));
+    const std::size_t end = layer.find_last_not_of("0123456789");
+    return layer.starts_with("Crypto") && layer.size() - end == 3 ? layer.substr(0, end + 1) : layer;
 }
 
-Imath::Box2i toImf(const PixelWindow& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
-
-void addAttribute(Imf::Header& header, const ImageAttribute& a) {
-    const char* name = a.name.c_str();
-    if (const auto* text = std::get_if<std::string>(&a.value)) header.insert(name, Imf::StringAttribute(*text));
-    if (const auto* number = std::get_if<int>(&a.value)) header.insert(name, Imf::IntAttribute(*number));
-    if (const auto* number = std::get_if<double>(&a.value)) header.insert(name, Imf::DoubleAttribute(*number));
+std::vector<Part> partsOf(const ExrPicture& p) {
+    if (p.acesContainer) return {{"", true, 0, 0}};
+    if (!p.parts) return {{"", true, 0, p.more.size()}};
+    std::vector<Part> parts{{"beauty", true, 0, 0}};
+    for (std::size_t i = 0; i < p.more.size(); ++i) {
+        const std::string_view layer = layerOf(p.more[i].name);
+        if (i == 0 || layer != parts.back().name) parts.push_back({std::string(layer), false, i, i});
+        parts.back().last = i + 1;
+    }
+    return parts;
 }
 
-Imf::Header makeHeader(const ExrPicture& p) {
+// Attributes of a Cryptomatte or a spectrum stand beside their channels, too.
+bool belongs(const ImageAttribute& a, const Part& part) {
+    if (part.colours) return true;
+    if (part.name.starts_with("Crypto")) return a.name.starts_with("cryptomatte/");
+    return part.name == "S0" && (a.name == "spectralLayoutVersion" || a.name == "emissiveUnits");
+}
+
+Imf::Header makeHeader(const ExrPicture& p, const Part& part) {
     Imf::Header header(toImf(p.display), toImf(p.window));
     header.compression() = toImf(p.compression);
-    for (const ImageAttribute& a : p.attributes) addAttribute(header, a);
-    Imf::addChromaticities(header, toImf(p.chromaticities));
-    Imf::addAdoptedNeutral(header, toImf(p.adoptedNeutral.value_or(p.chromaticities.white)));
+    if (!part.name.empty()) {
+        header.setName(part.name);
+        header.setType(Imf::SCANLINEIMAGE);
+    }
+    for (const ImageAttribute& a : p.attributes)
+        if (belongs(a, part)) addAttribute(header, a);
+    addColours(header, p.chromaticities, p.adoptedNeutral);
     if (p.acesContainer) header.insert("acesImageContainerFlag", Imf::IntAttribute(1));
-    const Imf::PixelType colour = p.half ? Imf::HALF : Imf::FLOAT;
-    for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(colour));
-    if (!p.acesContainer)
-        for (const ExrChannel& c : p.more) header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
+    if (part.colours)
+        for (const char* name : {"R", "G", "B"})
+            header.channels().insert(name, Imf::Channel(p.half ? Imf::HALF : Imf::FLOAT));
+    for (std::size_t i = part.first; i < part.last; ++i)
+        header.channels().insert(p.more[i].name, Imf::Channel(Imf::FLOAT));
     return header;
 }
 
@@ -86,24 +108,47 @@ template <typename T> Imf::Slice slice(const PixelWindow& w, const T* values) {
     return Imf::Slice::Make(type, values, toImf(w), sizeof(T), sizeof(T) * static_cast<std::size_t>(w.width()));
 }
 
-void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
-    Imf::OutputFile file(stream, makeHeader(p), 0);
+// `halves`: of R G B, in 16 bits.
+using Halves = std::array<std::vector<Imath::half>, 3>;
+
+Imf::FrameBuffer bufferOf(const ExrPicture& p, const Part& part, const Halves& halves) {
     Imf::FrameBuffer buffer;
-    std::array<std::vector<Imath::half>, 3> halves;
     const std::array<std::span<const float>, 3> planes{p.r, p.g, p.b};
     constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (p.half) halves[i] = toHalf(planes[i], report);
+    for (std::size_t i = 0; part.colours && i < 3; ++i)
         buffer.insert(kNames[i], p.half ? slice(p.window, halves[i].data()) : slice(p.window, planes[i].data()));
+    for (std::size_t i = part.first; i < part.last; ++i)
+        buffer.insert(p.more[i].name, slice(p.window, p.more[i].values.data()));
+    return buffer;
+}
+
+void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
+    Halves halves;
+    if (p.half) halves = {toHalf(p.r, report), toHalf(p.g, report), toHalf(p.b, report)};
+    if (p.acesContainer)
+        for (const ExrChannel& c : p.more) report.leftOut.push_back(c.name);
+    const std::vector<Part> parts = partsOf(p);
+    if (!p.parts || p.acesContainer) {
+        Imf::OutputFile file(stream, makeHeader(p, parts[0]), 0);
+        file.setFrameBuffer(bufferOf(p, parts[0], halves));
+        file.writePixels(p.window.height());
+        return;
     }
-    for (const ExrChannel& c : p.more) {
-        if (p.acesContainer)
-            report.leftOut.push_back(c.name);
-        else
-            buffer.insert(c.name, slice(p.window, c.values.data()));
+    std::vector<Imf::Header> headers;
+    for (const Part& part : parts) headers.push_back(makeHeader(p, part));
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Imf::OutputPart part(file, static_cast<int>(i));
+        part.setFrameBuffer(bufferOf(p, parts[i], halves));
+        part.writePixels(p.window.height());
     }
-    file.setFrameBuffer(buffer);
-    file.writePixels(p.window.height());
+}
+
+bool isWhole(const std::string& path) {
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    for (int part = 0; part < file.parts(); ++part)
+        if (!file.partComplete(part)) return false;
+    return true;
 }
 
 void checkPicture(const ExrPicture& p) {
@@ -127,20 +172,8 @@ std::string_view name(ExrCompression c) { return kCompressions[static_cast<std::
 ExrReport writeExr(const std::string& path, const ExrPicture& picture) {
     checkPicture(picture);
     ExrReport report;
-    AtomicFile file(path);
-    AtomicStream stream(file);
-    try {
-        writePixels(stream, picture, report);
-        // Ends with what a damaged disk or a full one would have spoilt: the offsets of all lines.
-        if (stream.error().empty() && !Imf::InputFile(file.temporaryPath().c_str(), 0).isComplete())
-            throw IoError(fmt::format("cannot write `{}`: the file came out incomplete", path));
-    } catch (const IoError&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw IoError(stream.error().empty() ? fmt::format("cannot write `{}`: {}", path, e.what()) : stream.error());
-    }
-    if (!stream.error().empty()) throw IoError(stream.error());
-    file.commit();
+    writeWhole(
+        path, [&](AtomicStream& stream) { writePixels(stream, picture, report); }, isWhole);
     return report;
 }
 

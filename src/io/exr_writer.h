@@ -40,6 +40,9 @@ struct ExrPicture {
     bool half = false;          // R G B in 16 bits
     bool acesContainer = false; // SMPTE ST 2065-4. Requires half, no compression and the primaries of ACES2065-1
     std::vector<ImageAttribute> attributes = {};
+    // One part for R G B, with all attributes, and one for each layer of `more` ("albedo" of albedo.R; that of
+    // CryptoObject00.R is CryptoObject) in their order, named after it. Channels keep their names.
+    bool parts = false;
 };
 
 struct ExrReport {

@@ -25,6 +25,7 @@ struct Frame {
     }
 
     Vec3 toLocal(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
+    Vec3d toLocal(Vec3d v) const { return {dot(v, Vec3d(x)), dot(v, Vec3d(y)), dot(v, Vec3d(z))}; }
     Vec3 toWorld(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
 };
 

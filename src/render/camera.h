@@ -3,6 +3,8 @@
 
 #include "render/ray.h"
 
+#include <optional>
+
 namespace abbe {
 
 struct CameraSample {
@@ -23,6 +25,13 @@ class Camera {
   public:
     virtual ~Camera() = default;
     virtual CameraRay ray(const CameraSample&) const noexcept = 0;
+    // Where on the film the point is seen through the middle of the lens at a time (Ray::time), as CameraSample::film;
+    // nothing if the camera does not look at it. Panoramas count on beyond their edges: of several places it is the
+    // one nearest to `near`.
+    virtual std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept {
+        static_cast<void>(p), static_cast<void>(time), static_cast<void>(near);
+        return std::nullopt;
+    }
     // False if ray() does not look at CameraSample::lens.
     virtual bool usesLens() const { return true; }
     // True if ray() may set CameraRay::heroOnly. A scene seen by such a camera has Effect::dispersion.

@@ -6,9 +6,15 @@
 #include "render/surface_hit.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace abbe {
+
+// Where one point of a surface is when the shutter opens and when it closes.
+struct Passage {
+    Vec3 opening, closing;
+};
 
 // Thread-safe. Rays that are not finite are never traced: they miss, and are counted.
 class Intersector {
@@ -21,6 +27,11 @@ class Intersector {
     virtual std::size_t coincident(const Ray&, const SurfaceHit& hit, std::span<SurfaceHit> others) const noexcept {
         static_cast<void>(hit), static_cast<void>(others);
         return 0;
+    }
+    // Of the point of `hit`, which the ray meets at the end of `distance`; nothing if it is not found again.
+    virtual std::optional<Passage> passage(const Ray&, const SurfaceHit& hit, float distance) const noexcept {
+        static_cast<void>(hit), static_cast<void>(distance);
+        return std::nullopt;
     }
     // True if anything lies in (0, tMax).
     virtual bool occluded(const Ray&) const noexcept = 0;

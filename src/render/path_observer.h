@@ -17,6 +17,10 @@ class PathObserver {
     // Light of `source`, a Light or a MediumEmission, reaches the eye by this path: part of its radiance.
     // `passing`: after one more scattering in a medium, which the path itself does not make.
     virtual void gathers(const Spectrum& radiance, const void* source, bool passing = false) noexcept = 0;
+    // What it gathers next does not come from where it arrived last but from `p`, on its way in media.
+    virtual void lightsUp(Vec3 /*p*/) noexcept {}
+    // Of what is on its way, this share is absorbed by a medium at `p`, where the path goes on with the rest.
+    virtual void absorbs(Vec3 /*p*/, float /*share*/) noexcept {}
     // It is scattered by the surface at which it arrived, whose lobes are given, in the sampled direction; null where
     // the path ends. Light gathered from here on came by way of this scattering.
     virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;

@@ -114,6 +114,8 @@ class Shape {
     // before; uv where those of surface() do not turn with the shape; and `local`, the point before, where the shape
     // deforms: as it was when the shutter opened. All in the shape's coordinates.
     virtual void parametrize(const RawHit&, const Ray&, SurfaceHit&) const {}
+    // Where the point of a hit that surface() has filled is at another time (Ray::time), in the shape's coordinates.
+    virtual Vec3 carried(const RawHit&, const Ray&, const SurfaceHit& hit, float /*time*/) const { return hit.p; }
     // Whether uv are texture coordinates of the whole shape.
     virtual bool hasTextureCoordinates() const { return true; }
     // The attribute of that name at a hit of this shape, found by part, element and barycentric; nothing if it has

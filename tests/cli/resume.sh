@@ -38,6 +38,7 @@ for ((run = 0; run < 500; ++run)); do
 done
 ((killed > 0)) || fault "never killed"
 same_pixels long.exr killed.exr
+same_pixels long.deep.exr killed.deep.exr
 [[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
 printf '%d kills, %d runs\n' "$killed" $((run + 1))
 
@@ -45,6 +46,7 @@ printf '%d kills, %d runs\n' "$killed" $((run + 1))
 for part in 3 1 4 2; do expect 0 "$scene" "${small[@]}" --quiet -o split.exr --part $part/4; done
 expect 0 merge split.part4.abbe split.part1.abbe split.part3.abbe split.part2.abbe -o merged.exr
 same_pixels whole.exr merged.exr
+same_pixels whole.deep.exr merged.deep.exr
 expect 0 info merged.exr
 says out "abbe.parts = 4"
 says out "abbe.samples = 120"
@@ -65,6 +67,7 @@ expect 0 "$scene" "${small[@]}" --quiet -o right.exr --part 1/2 --crop 21,0,40,2
 expect 0 "$scene" "${small[@]}" --quiet -o right.exr --part 2/2 --crop 21,0,40,24
 expect 0 merge left.part1.abbe right.part{1,2}.abbe -o crops.exr
 same_pixels whole.exr crops.exr
+same_pixels whole.deep.exr crops.deep.exr
 expect 1 merge left.part1.abbe right.part1.abbe -o no.exr
 says err "at pixel 21,0"
 

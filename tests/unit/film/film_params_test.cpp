@@ -23,7 +23,35 @@ FilmParams cropped(std::vector<double> crop) {
     return p;
 }
 
+FilmParams withOverscan(std::vector<double> overscan) {
+    FilmParams p;
+    p.overscan = std::move(overscan);
+    return p;
+}
+
 } // namespace
+
+TEST_CASE("overscan: one number or four, and crops that reach into it") {
+    const auto cropOf = [](const FilmParams& p) {
+        const PixelBounds b = filmSettings(p).crop;
+        return std::vector{b.x0, b.y0, b.x1, b.y1};
+    };
+    CHECK(cropOf(withOverscan({16})) == std::vector{-16, -16, 1296, 736});
+    FilmParams p = withOverscan({1, 2, 3, 4});
+    CHECK(cropOf(p) == std::vector{-1, -2, 1283, 724});
+    CHECK(filmSettings(p).width == 1280);
+    p.crop = {{-1, 0, 1283, 724}};
+    CHECK(faultyField(p).empty());
+    CHECK(cropOf(p) == std::vector{-1, 0, 1283, 724});
+    p.crop = {{-2, 0, 10, 10}};
+    CHECK(faultyField(p) == "crop");
+    p.crop = {{0, 0, 10, 725}};
+    CHECK(faultyField(p) == "crop");
+    for (const std::vector<double>& bad :
+         {std::vector<double>{1, 2}, {1, 2, 3}, {-1}, {0.5}, {1, 2, 3, std::nan("")}, {65537}, {40000}})
+        CHECK(faultyField(withOverscan(bad)) == "overscan");
+    CHECK(faultyField(withOverscan({0})).empty());
+}
 
 TEST_CASE("film defaults") {
     const FilmSettings s = filmSettings({});
