@@ -78,22 +78,34 @@ class Layer {
         }
     }
 
+    // Of three coordinates.
+    bool nothingSeen(std::size_t i) const {
+        return (*find("X"))[i] == 0 && (*find("Y"))[i] == 0 && (*find("Z"))[i] == 0;
+    }
+    void blackenNothing() {
+        for (std::size_t i = 0; i < pixels(); ++i)
+            if (nothingSeen(i)) std::fill_n(&result_.rgb[3 * i], 3, 0.f);
+    }
+
     // -1 to 1 as 0 to 1; black where nothing is seen.
     void showDirections() {
         each([](float v) { return 0.5f + 0.5f * v; }, {"X", "Y", "Z"});
-        const Plane &x = *find("X"), &y = *find("Y"), &z = *find("Z");
-        for (std::size_t i = 0; i < pixels(); ++i)
-            if (x[i] == 0 && y[i] == 0 && z[i] == 0) std::fill_n(&result_.rgb[3 * i], 3, 0.f);
+        blackenNothing();
     }
 
-    // From the least to the largest of each coordinate.
+    // From the least to the largest of each coordinate; likewise.
     void showPlaces() {
+        std::size_t c = 0;
         for (const std::string_view channel : {"X", "Y", "Z"}) {
-            const auto [least, most] = std::ranges::minmax(*find(channel));
+            const Plane& plane = *find(channel);
+            float least = INFINITY, most = -INFINITY;
+            for (std::size_t i = 0; i < pixels(); ++i)
+                if (!nothingSeen(i)) least = std::min(least, plane[i]), most = std::max(most, plane[i]);
             const float scale = most > least ? 1 / (most - least) : 0;
-            const std::size_t c = channel == "X" ? 0 : channel == "Y" ? 1 : 2;
-            for (std::size_t i = 0; i < pixels(); ++i) result_.rgb[3 * i + c] = ((*find(channel))[i] - least) * scale;
+            for (std::size_t i = 0; i < pixels(); ++i) result_.rgb[3 * i + c] = (plane[i] - least) * scale;
+            ++c;
         }
+        blackenNothing();
     }
 
     // Grey stands still; the longest way is as far from it as there are colours.
