@@ -110,6 +110,25 @@ OutputSpace spaceOf(const schema::Text& output) {
                                : OutputSpace::aces2065_1;
 }
 
+schema::FieldInfo outputField() {
+    using schema::field, schema::FieldType;
+    return field(FieldType::text, "output", &FilmParams::output)
+        .doc("OpenEXR file to write; without it, the scene's name with .exr.")
+        .example("output \"hero.exr\" space=acescg compression=dwab")
+        .key({"space",
+              {"aces2065-1", "acescg", "rec709", "xyz"},
+              "Linear encoding; aces2065-1 (AP0) if not given. Of xyz, R G B hold X Y Z."})
+        .key({"compression",
+              {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
+              "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
+        .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
+        .key({"parts", {"one", "layers"}, "layers: each layer is a part of the file by itself; one if not given."})
+        .key({"container",
+              {"exr", "aces"},
+              "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
+        .synonyms({"filename", "file"});
+}
+
 } // namespace
 
 schema::TypeInfo filmType() {
@@ -154,22 +173,7 @@ schema::TypeInfo filmType() {
                  "deep, denoise.")
             .example("layers { albedo; normal; light-group key; spectral 380 780 10; cryptomatte }")
             .synonyms({"aov", "aovs", "passes", "outputs", "channels"}));
-    type.fields.push_back(
-        field(FieldType::text, "output", &FilmParams::output)
-            .doc("OpenEXR file to write; without it, the scene's name with .exr.")
-            .example("output \"hero.exr\" space=acescg compression=dwab")
-            .key({"space",
-                  {"aces2065-1", "acescg", "rec709", "xyz"},
-                  "Linear encoding; aces2065-1 (AP0) if not given. Of xyz, R G B hold X Y Z."})
-            .key({"compression",
-                  {"none", "rle", "zips", "zip", "piz", "pxr24", "dwaa", "dwab"},
-                  "OpenEXR compression; zip if not given. pxr24, dwaa and dwab lose precision."})
-            .key({"half", {"on", "off"}, "16-bit instead of 32-bit colour; off if not given."})
-            .key({"parts", {"one", "layers"}, "layers: each layer is a part of the file by itself; one if not given."})
-            .key({"container",
-                  {"exr", "aces"},
-                  "aces: as SMPTE ST 2065-4 demands: AP0, half, uncompressed; exr if not given."})
-            .synonyms({"filename", "file"}));
+    type.fields.push_back(outputField());
     std::vector<std::string_view> sensors = sensorNames();
     sensors.insert(sensors.begin(), "cie");
     type.fields.push_back(field(FieldType::choice, "sensor", &FilmParams::sensor)

@@ -72,7 +72,8 @@ Imf::Header makeHeader(const DeepPicture& p) {
     return header;
 }
 
-void writeSamples(Imf::OStream& stream, DeepPicture p) {
+void writeSamples(Imf::OStream& stream, const DeepPicture& picture) {
+    auto& p = const_cast<DeepPicture&>(picture); // OpenEXR reads from what it could also write to
     const Imf::Header header = makeHeader(p);
     Imf::MultiPartOutputFile file(stream, &header, 1, false, 0);
     Imf::DeepScanLineOutputPart part(file, 0);
