@@ -29,7 +29,7 @@ std::optional<Vec2i> readSize(std::string_view text) {
     return readPair(text, "×", 1);
 }
 
-std::optional<Vec2i> readPixel(std::string_view text) { return readPair(text, ",", 0); }
+std::optional<Vec2i> readPixel(std::string_view text, int least) { return readPair(text, ",", least); }
 
 std::optional<PixelBounds> readCrop(std::string_view text) {
     const std::size_t first = text.find(','), second = text.find(',', std::min(first, text.size() - 1) + 1);
@@ -39,6 +39,12 @@ std::optional<PixelBounds> readCrop(std::string_view text) {
     const auto to = readPair(text.substr(second + 1), ",", kLowest);
     if (!from || !to || to->x <= from->x || to->y <= from->y) return std::nullopt;
     return PixelBounds{from->x, from->y, to->x, to->y};
+}
+
+std::optional<SampleId> readSample(std::string_view text) {
+    const auto sample = readPair(text, ":", 0);
+    if (!sample) return std::nullopt;
+    return SampleId{0, 0, sample->x, static_cast<std::uint32_t>(sample->y)};
 }
 
 std::optional<Vec2i> readPart(std::string_view text) {
@@ -80,6 +86,25 @@ std::string shellQuoted(std::string_view argument) {
             quoted += c;
     }
     return quoted + "'";
+}
+
+std::vector<std::string> shellWords(std::string_view line) {
+    std::vector<std::string> words;
+    bool quoted = false, open = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == ' ' && !quoted) {
+            open = false;
+            continue;
+        }
+        if (!open) words.emplace_back();
+        open = true;
+        if (c == '\'')
+            quoted = !quoted;
+        else
+            words.back() += c == '\\' && !quoted && i + 1 < line.size() ? line[++i] : c;
+    }
+    return words;
 }
 
 } // namespace abbe

@@ -2,19 +2,20 @@
 #pragma once
 
 #include "math/vec.h"
-#include "render/film.h"
+#include "render/integrator.h"
 #include "schema/unit.h"
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace abbe {
 
 // "640x480", "640×480"; both positive.
 std::optional<Vec2i> readSize(std::string_view text);
-// "12,34"; not negative.
-std::optional<Vec2i> readPixel(std::string_view text);
+// "12,34"; not negative, or not below `least`.
+std::optional<Vec2i> readPixel(std::string_view text, int least = 0);
 // "0,0,640,360": left, top, right, bottom, the last two exclusive; not empty.
 std::optional<PixelBounds> readCrop(std::string_view text);
 // "2/4": the second of four.
@@ -25,7 +26,12 @@ std::optional<double> readQuantity(std::string_view text, schema::Dimension dime
 // "512MiB", "4 GiB", "512": in MiB; at least 16.
 std::optional<double> readMebibytes(std::string_view text);
 
+// "1:12": a replicate, and the index of a sample of it.
+std::optional<SampleId> readSample(std::string_view text);
+
 // The argument as a shell would need it.
 std::string shellQuoted(std::string_view argument);
+// The arguments of a line of them.
+std::vector<std::string> shellWords(std::string_view line);
 
 } // namespace abbe

@@ -4,6 +4,7 @@
 #include "app/command_line_compare.h"
 #include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
+#include "app/command_line_replay.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
@@ -20,7 +21,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr const char* kCommands[] = {"render",  "merge",   "check",  "explain", "info",
-                                     "convert", "compare", "volume", "denoise"};
+                                     "convert", "compare", "volume", "denoise", "replay"};
 
 constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
@@ -97,6 +98,7 @@ class Reader {
         addCompareArguments(*add("compare", kCompareHelp), compare_, common_.json);
         addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
         addDenoiseArguments(*add("denoise", kDenoiseHelp), denoise_, common_);
+        addReplayArguments(*add("replay", kReplayHelp), replay_, common_);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -193,6 +195,7 @@ class Reader {
     CompareOptions compare_;
     VolumeOptions volume_;
     DenoiseOptions denoise_;
+    ReplayOptions replay_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -209,6 +212,8 @@ void Reader::addGoals(CLI::App* c) {
             });
     addRead(c, "--texture-cache", b.textureCache, "SIZE", "Most memory for tiles of image textures: 512MiB, 4GiB",
             "an amount of memory such as 512MiB, 16MiB or more", readMebibytes);
+    addRead(c, "--memory", render_.memory, "SIZE", "Most memory to take: 4GiB; without it all there is",
+            "an amount of memory such as 4GiB, 16MiB or more", readMebibytes);
     addRead(c, "--time", b.timeLimit, "TIME", "Stop after this time: 90, 45min, 2h", "a time such as 45min",
             [](const std::string& text) -> std::optional<double> {
                 const auto value = readQuantity(text, schema::Dimension::time);
@@ -370,6 +375,7 @@ Command Reader::command(const Words& words) {
     if (name == "info") return {info_, common_};
     if (name == "convert") return {convert_, common_};
     if (name == "denoise") return {denoise_, common_};
+    if (name == "replay") return {replay_, common_};
     return {compare_, common_};
 }
 

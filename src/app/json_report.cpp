@@ -1,4 +1,4 @@
-#include "app/json.h"
+#include "app/fault_json.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -7,6 +7,12 @@ namespace abbe {
 namespace {
 
 Json positiveOrNull(double v) { return v > 0 ? Json(v) : Json(); }
+
+Json faultsJson(const std::vector<FoundFault>& faults) {
+    Json list = Json::list();
+    for (const FoundFault& f : faults) list.push(faultJson(f));
+    return list;
+}
 
 class JsonReport final : public RenderReport {
   public:
@@ -65,6 +71,7 @@ class JsonReport final : public RenderReport {
                            {"kernel", r.kernel},
                            {"memory_bytes", s.memoryBytes},
                            {"dropped", dropped},
+                           {"dropped_samples", faultsJson(s.faults)},
                            {"densities_above_bound", r.excess.above},
                            {"warnings", static_cast<std::uint64_t>(s.warnings)}}));
     }

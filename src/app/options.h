@@ -6,6 +6,7 @@
 #include "app/volume_options.h"
 #include "denoise/denoise.h"
 #include "io/flip.h"
+#include "render/integrator.h"
 #include "scene/build.h"
 
 #include <optional>
@@ -40,6 +41,7 @@ struct CheckpointOptions {
 };
 
 struct RenderOptions {
+    std::vector<SampleId> replay; // these are taken again, and told
     SceneInput input;
     std::string output;             // EXR; empty: from the scene
     std::optional<std::string> png; // empty text: named after the EXR
@@ -48,7 +50,8 @@ struct RenderOptions {
     bool largestKernel = false; // run the instantiation with all effects
     bool quiet = false;
     bool strict = false;
-    std::optional<Vec2i> pixel; // render this one alone and print it
+    std::optional<Vec2i> pixel;   // render this one alone and print it
+    std::optional<double> memory; // MiB, the most that may be taken
     CheckpointOptions checkpoint;
     std::optional<PixelBounds> crop;
     std::optional<Vec2i> part;      // x of y equal ranges of the samples; a file for MergeOptions is written
@@ -96,6 +99,13 @@ struct CompareOptions {
     double pixelsPerDegree = kFlipPixelsPerDegree;
 };
 
+// Samples of a render that are taken again and told vertex by vertex.
+struct ReplayOptions {
+    RenderOptions render;           // how the samples were taken; its input is a scene or an image
+    std::optional<Vec2i> pixel;     // absent, of an image: all that its header lists
+    std::optional<SampleId> sample; // its replicate and index
+};
+
 struct DenoiseOptions {
     std::string input, output; // no output: the input gets the layer
     DenoiseMethod method = DenoiseMethod::nfor;
@@ -110,7 +120,7 @@ struct MergeOptions {
 };
 
 using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
-                             CompareOptions, VolumeOptions, DenoiseOptions>;
+                             CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -123,5 +133,6 @@ ExitCode run(const ConvertOptions&, const CommonOptions&);
 ExitCode run(const CompareOptions&, const CommonOptions&);
 ExitCode run(const VolumeOptions&, const CommonOptions&);
 ExitCode run(const DenoiseOptions&, const CommonOptions&);
+ExitCode run(const ReplayOptions&, const CommonOptions&);
 
 } // namespace abbe

@@ -67,15 +67,7 @@ ExitCode RenderRun::checkFilm() {
                           "left and top are inside, right and bottom exclusive", ExitCode::usage);
         film_.crop = *c;
     }
-    const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
-    constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
-    const double bytes = pixels * (kResolved + 52.0 * static_cast<double>(built_.render.replicates)) +
-                         static_cast<double>(FilmLayers::memoryBytes(film_.crop, built_.layers));
-    if (bytes > physicalMemory())
-        return refuse("E0650",
-                      fmt::format("an image of {}×{} pixels needs {:.3g} GB; this machine has {:.3g} GB of memory",
-                                  film_.crop.width(), film_.crop.height(), bytes / 1e9, physicalMemory() / 1e9),
-                      "render parts of it with `crop` in the film", ExitCode::memory);
+    if (const ExitCode code = checkMemory(); code != ExitCode::done) return code;
     warnOfDeepMemory();
     if (const auto p = options_.pixel; p && (p->x >= film_.width || p->y >= film_.height)) {
         common_.console.error(
@@ -108,7 +100,7 @@ ExitCode RenderRun::checkOutputs() {
 
 ExitCode RenderRun::prepare() {
     if (const ExitCode code = checkFilm(); code != ExitCode::done) return code;
-    if (!options_.pixel)
+    if (!alone())
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
     settings_ = renderSettings(built_.render);
     if (options_.part) {
@@ -130,7 +122,9 @@ ExitCode RenderRun::renderPixel() {
                                      at.x, at.y, xyz.x, xyz.y, xyz.z, spaceName(film_.space), image.r[0], image.g[0],
                                      image.b[0], statistics.samplesPerPixel));
     Diagnostics warnings;
-    warnOfDroppedSamples(statistics, warnings);
+    summary_.statistics = statistics;
+    findDropped(film);
+    warnOfDroppedSamples(statistics, summary_.faults, replayCommand(), warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     report_->diagnostics(warnings, loaded_->sources);
     return ExitCode::done;
@@ -143,18 +137,23 @@ void RenderRun::warn(const char* code, std::string message, std::string help) {
     ++summary_.warnings;
 }
 
-// Once a second, and at the end.
-void RenderRun::watchTextures(InterruptGuard& interrupt, const Progress& p) {
-    if (lostTexture_ || (p.fraction < 1 && p.elapsed < watchedUntil_ + 1)) return;
+// Once a second, and textures at the end.
+void RenderRun::watch(InterruptGuard& interrupt, const Progress& p) {
+    if (lostTexture_ || outOfMemory_ || (p.fraction < 1 && p.elapsed < watchedUntil_ + 1)) return;
     watchedUntil_ = p.elapsed;
     lostTexture_ = !texturesReadable();
-    if (lostTexture_) interrupt.requestStop();
+    const auto taken = static_cast<double>(residentMemory());
+    if (p.fraction < 1 && taken > memoryBudget()) {
+        outOfMemory_ = true;
+        beyondBudget_ = taken;
+    }
+    if (lostTexture_ || outOfMemory_) interrupt.requestStop();
 }
 
 void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& interrupt) {
     const auto progress = [this, &interrupt](const Progress& p) {
         tellFault();
-        watchTextures(interrupt, p);
+        watch(interrupt, p);
         report_->progress(p);
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
@@ -165,6 +164,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
         // A tile in hand may be in the film in part: good enough for the image, which says that it is partial, but not
         // to go on from. The checkpoint stays as it was written last.
         outOfMemory_ = true;
+        if (checkpoint_ && checkpoint_->exists()) olderCheckpoint_ = checkpoint_->path();
         checkpoint_.reset();
         summary_.statistics.stopped = true;
         summary_.statistics.samplesPerPixel = (state.reached() - state.first()) * built_.render.replicates;
@@ -177,11 +177,12 @@ void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& inte
                     settings_.samples, settings_.noiseTarget, settings_.timeLimit});
     watch_.lap();
     renderFrom(film, state, interrupt);
-    summary_.partial = summary_.statistics.stopped || lostTexture_;
+    summary_.partial = summary_.statistics.stopped || lostTexture_ || outOfMemory_;
     summary_.statistics.stopped = summary_.partial;
     closeCheckpoint();
     endPhase("rendering", watch_.lap());
     summary_.noise = film.relativeNoise();
+    if (!interrupt.stop() && !outOfMemory_) findDropped(film);
 }
 
 // Parts that were rendered elsewhere, as if it had been here.
@@ -195,6 +196,7 @@ ExitCode RenderRun::merge() {
         summary_.statistics = parts.addTo(film.planes());
         summary_.noise = film.relativeNoise();
         endPhase("merging", watch_.lap());
+        findDropped(film);
         write(film);
     } catch (const CheckpointFault& fault) {
         return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);
@@ -205,9 +207,7 @@ ExitCode RenderRun::merge() {
 ExitCode RenderRun::finish(int signal) {
     summary_.exit = ExitCode::done;
     if (options_.strict && summary_.warnings > 0) summary_.exit = ExitCode::threshold;
-    if (outOfMemory_)
-        summary_.exit = refuse("E0665", fmt::format("memory ran out; the image so far is in `{}`", summary_.image),
-                               "give it more memory, fewer layers, or a smaller `crop`", ExitCode::memory);
+    if (outOfMemory_) summary_.exit = refuseForMemory();
     if (lostTexture_)
         summary_.exit = refuse("E0666",
                                fmt::format("a texture could not be read any more (W0458), so the render was ended; the "

@@ -3,6 +3,7 @@
 
 #include "app/console.h"
 #include "app/exit_code.h"
+#include "app/found_fault.h"
 #include "render/integrator.h"
 
 #include <cstdint>
@@ -31,7 +32,8 @@ struct RenderSummary {
     std::vector<std::pair<std::string, double>> phases; // name, seconds
     double totalSeconds = 0;
     RenderStatistics statistics;
-    double noise = 0; // relative error of what was written
+    double noise = 0;               // relative error of what was written
+    std::vector<FoundFault> faults; // of the examples of dropped samples, unless interrupted
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;
     ExitCode exit = ExitCode::done;

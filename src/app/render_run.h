@@ -23,24 +23,27 @@ class RenderRun {
   public:
     RenderRun(const RenderOptions& options, const CommonOptions& common)
         : options_(options), common_(common),
-          report_(common.json ? makeJsonReport(common.console)
-                              : makeHumanReport(common.console, options.quiet || options.pixel)) {}
+          report_(common.json && options.replay.empty() ? makeJsonReport(common.console)
+                                                        : makeHumanReport(common.console, options.quiet || alone())) {}
 
     ExitCode run() {
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         if (const ExitCode code = prepare(); code != ExitCode::done) return code;
         if (options_.pixel) return renderPixel();
+        if (!options_.replay.empty()) return replay();
         if (!options_.parts.empty()) return merge();
         InterruptGuard interrupt;
         PixelFilm film = makeFilm(film_.crop);
         RenderState state(film.bounds(), settings_.range(film.replicates()).first);
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
         render(film, state, interrupt);
-        if (!options_.part) write(film);
+        if (!options_.part) writeInMemory(film);
         return finish(interrupt.signal());
     }
 
   private:
+    // Whether nothing is written, but one pixel or a few samples are looked at.
+    bool alone() const { return options_.pixel || !options_.replay.empty(); }
     ExitCode load();
     ExitCode prepare();
     ExitCode checkFilm();
@@ -50,12 +53,18 @@ class RenderRun {
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
-        if (!options_.pixel)
+        if (!alone())
             film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space),
                             {built_.scene.intersector.get(), built_.scene.camera.get()});
         return film;
     }
     ExitCode renderPixel();
+    ExitCode replay();
+    ExitCode checkMemory();
+    double memoryBudget() const; // bytes
+    double filmBytes() const;
+    std::string replayCommand() const;
+    void findDropped(const Film&);
     ExitCode merge();
     ExitCode openCheckpoint(PixelFilm&, RenderState&);
     CheckpointHeader checkpointHeader() const;
@@ -66,10 +75,12 @@ class RenderRun {
     void closeCheckpoint();
     void tellFault();
     bool texturesReadable() const;
-    void watchTextures(InterruptGuard&, const Progress&);
+    void watch(InterruptGuard&, const Progress&);
     void tellHowToResume() const;
     void warn(const char* code, std::string message, std::string help);
     void write(const PixelFilm&);
+    void writeInMemory(const PixelFilm&);
+    ExitCode refuseForMemory();
     std::vector<ImageAttribute> attributes(const PixelFilm&) const;
     void writePng(const ResolvedImage&);
     void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
@@ -92,9 +103,12 @@ class RenderRun {
     RenderSettings settings_;
     std::unique_ptr<const Integrator> integrator_;
     std::optional<RenderCheckpoint> checkpoint_;
-    bool outOfMemory_ = false; // while rendering
+    bool outOfMemory_ = false;    // while rendering or writing
+    bool imageWritten_ = false;   // in the end
+    std::string olderCheckpoint_; // which stays when memory ran out
+    double beyondBudget_ = 0;     // bytes that were taken when that was too much
     bool lostTexture_ = false;
-    double watchedUntil_ = 0; // s, the textures
+    double watchedUntil_ = 0; // s, textures and memory
     RenderSummary summary_;
     Stopwatch watch_;
 };

@@ -117,6 +117,7 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
         provenance({loaded_.get(), &options_.input, &built_, &settings_, &summary_.statistics, common_.commandLine,
                     std::string(spaceName(film_.space)), summary_.noise, seconds, film.replicates()});
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
+    if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
     return list;
 }
@@ -144,7 +145,7 @@ void RenderRun::write(const PixelFilm& film) {
     report_->image(summary_.image, summary_.partial);
     writePng(picture.image);
     endPhase("writing", watch_.lap());
-    warnOfDroppedSamples(summary_.statistics, warnings);
+    warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     warnOfBlackImage(picture.image, warnings);

@@ -12,18 +12,23 @@ constexpr double kNotableExcess = 0.01;
 
 } // namespace
 
-void warnOfDroppedSamples(const RenderStatistics& statistics, Diagnostics& diagnostics) {
+void warnOfDroppedSamples(const RenderStatistics& statistics, std::span<const FoundFault> faults,
+                          const std::string& command, Diagnostics& diagnostics) {
     const auto& [nan, infinite, negative] = statistics.dropped;
     if (nan + infinite + negative > 0) {
         Diagnostic& d =
-            diagnostics.warning("W0640", {},
+            diagnostics.warning("W0640", faults.empty() ? Span{} : faults[0].declared,
                                 fmt::format("{} of {} samples were dropped: {} not a number, {} infinite, {} negative",
                                             nan + infinite + negative, statistics.paths, nan, infinite, negative));
-        for (const DroppedSample& s : statistics.examples)
-            d.notes.push_back(fmt::format("pixel {},{} replicate {} sample {}", s.x, s.y, s.replicate, s.index));
+        for (const FoundFault& f : faults)
+            d.notes.push_back(
+                fmt::format("pixel {} sample {}: {}", pixelText(f.sample), sampleText(f.sample), text(f)));
+        for (std::size_t i = faults.size(); i < statistics.examples.size(); ++i)
+            d.notes.push_back(fmt::format("pixel {} sample {}", pixelText(statistics.examples[i]),
+                                          sampleText(statistics.examples[i])));
         if (!statistics.examples.empty())
-            d.help = fmt::format("`--pixel {},{}` repeats the first one; please report the scene",
-                                 statistics.examples[0].x, statistics.examples[0].y);
+            d.help = fmt::format("`{} --pixel {} --sample {}` repeats the first one vertex by vertex", command,
+                                 pixelText(statistics.examples[0]), sampleText(statistics.examples[0]));
     }
     if (statistics.cappedPaths > 0)
         diagnostics.warning("W0642", {},

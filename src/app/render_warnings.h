@@ -1,14 +1,17 @@
 // What is suspicious about a finished image. Nothing that went wrong stays unsaid.
 #pragma once
 
+#include "app/found_fault.h"
 #include "base/diagnostic.h"
 #include "film/pixel_film.h"
 #include "render/integrator.h"
 
 namespace abbe {
 
-// Samples left out because they were not finite or negative, and paths that met the safety cap.
-void warnOfDroppedSamples(const RenderStatistics&, Diagnostics&);
+// Samples left out because they were not finite or negative, and paths that met the safety cap. `faults`: what was
+// found of the examples, if it was looked for; `command`: what repeats a sample that is named behind it.
+void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> faults, const std::string& command,
+                          Diagnostics&);
 // That bounds of procedural density are too low to be of use.
 void warnOfDensities(const DensityExcess&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);

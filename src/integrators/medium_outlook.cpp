@@ -1,6 +1,8 @@
 // What MediumTracker can say of a ray without tracking it.
 #include "integrators/medium_tracker.h"
 
+#include <limits>
+
 namespace abbe {
 
 namespace {
@@ -48,7 +50,9 @@ float MediumTracker::expected(const Ray& ray, float t, const MediumStack& inside
             rate += extinction * static_cast<double>(s.mean);
             if (!there) continue;
             const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(t, lambda) : a.albedo;
-            there->push_back({a.medium, a.extinction * albedo * a.walk->density(t)});
+            const float density = a.walk->density(t);
+            note(density, std::numeric_limits<float>::max(), *a.medium); // no bound counts here
+            there->push_back({a.medium, a.extinction * albedo * density});
         }
     }
     return static_cast<float>(rate * std::exp(-passed));

@@ -122,7 +122,7 @@ bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& 
     ++counters.collisions;
     const float bound = a.segment.maximum;
     const float density = a.walk->density(a.next);
-    note(density, bound);
+    note(density, bound, *a.medium);
     // Below 0 where the bound is none. The weight then has a sign and the estimate is unbiased all the same, as long as
     // both events are possible: their probabilities are in proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
     const float nothing = bound - density;
@@ -144,9 +144,15 @@ bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& 
     return real;
 }
 
-void MediumTracker::note(float density, float bound) {
-    if (!(density > bound)) [[likely]]
+void MediumTracker::note(float density, float bound, const Medium& medium) {
+    if (density >= 0 && density <= bound) [[likely]]
         return;
+    if (!(density >= 0 && density < kInfinity)) {
+        ++counters.faults;
+        counters.fault = density;
+        counters.faulty = &medium;
+        return;
+    }
     ++counters.signedWeights;
     if (!(density > bound * 1.001f)) return;
     ++counters.exceeded;
@@ -211,8 +217,10 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
          t += static_cast<double>(random.exponential()) / rate) {
         ++counters.lookups;
         const float density = a.walk->density(s.tNear + static_cast<float>(t));
-        note(density, s.maximum);
-        result *= Spectrum(1.f) - share * (density - s.mean);
+        note(density, s.maximum, *a.medium);
+        const Spectrum kept = Spectrum(1.f) - share * (density - s.mean);
+        // Below the bound only rounding makes it negative.
+        result *= density <= s.maximum ? max(Spectrum(0.f), kept) : kept;
         if (++count % kRouletteEvery != 0) continue;
         const float soFar =
             maxLane(abs(result) * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));

@@ -49,6 +49,9 @@ struct MediumCounters {
     std::uint64_t exceeded = 0;      // densities above their bound, by more than rounding
     std::uint64_t signedWeights = 0; // all densities above their bound: weights there may be below 0
     float mostExceeded = 0;          // the greatest of them over its bound
+    std::uint64_t faults = 0;        // densities that are negative or not finite
+    float fault = 0;                 // the last of them
+    const Medium* faulty = nullptr;  // where it was found
 };
 
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.
@@ -116,7 +119,7 @@ class MediumTracker {
     static bool advance(Active&);
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
     void shareDistance(float t, TrackedWeights) const;
-    void note(float density, float bound);
+    void note(float density, float bound, const Medium&);
     Spectrum ratioTracking(Active&, RandomStream&);
     bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
 

@@ -86,8 +86,11 @@ template <EffectBits E> class PathLoop {
     void startIn(const Surroundings& around) requires(kInterfaces) { path_.nested.here = around; }
     // The camera ray is a cone:
     void startWith(const path_detail::Cone& cone) requires(kTextures) { path_.cone = cone; }
-    // `rouletteScale` of the pixel, see RouletteReference.
+    // `rouletteScale` of the pixel, see RouletteReference. Lanes at fault are negative or not finite.
     Spectrum radiance(Ray ray, const Wavelengths& lambda, float rouletteScale);
+    // Of the last path: the least that any of the light in it came to, per lane; 0 at most. Without media, in which
+    // paths may subtract light, its radiance tells.
+    const Spectrum& least() const requires(kMedia) { return path_.least; }
 
   private:
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
@@ -107,7 +110,7 @@ template <EffectBits E> class PathLoop {
     Arrival arriveThrough(Ray&, SurfaceHit&, std::uint32_t depth);
     bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t depth, std::uint32_t crossings);
     bool hidden(SurfaceHit&, const Ray&, path_detail::Nested&) const;
-    float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&) const;
+    float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&);
     void meetSurface(SurfaceHit&, Vec3 direction);
     void turnCone(const SurfaceHit&, const BsdfSample&, float cosine);
     void scatterCone();
@@ -121,14 +124,36 @@ template <EffectBits E> class PathLoop {
     Spectrum clearness(const Surroundings&, float distance) const;
     // Light that reached the eye from a Light or a MediumEmission.
     void gather(const Spectrum& light, const void* source, bool passing = false) {
-        path_.radiance += light;
-        if (observer_) [[unlikely]]
-            observer_->gathers(light, source, passing);
+        gather(light, source, passing, [] {});
     }
+    // `tell` is what an observer is told before.
+    template <typename Tell> void gather(const Spectrum& light, const void* source, bool passing, Tell tell) {
+        path_.radiance += light;
+        path_.least = min(light, path_.least); // in this order NaN leaves it alone
+        if (observer_) [[unlikely]] {
+            tell();
+            observer_->gathers(light, source, passing);
+        }
+    }
+    // Numbers that a sample's light hides: what is divided by them, or chosen by them, is finite and positive again.
+    // path_loop_faults.h
+    struct Blame {
+        const void* who = nullptr; // null: other events tell
+        const char* what = "";
+    };
+    void checkDensities(float a, float b, Blame blame = {});
+    void checkDensity(float pdf, Blame blame = {}) { checkDensities(pdf, 0, blame); }
+    void checkRatios(const Spectrum&);
+    void checkWeight(const Spectrum&, Blame blame = {});
+    void checkDirection(Vec3 w, Blame blame = {}) {
+        if (!(lengthSquared(w) < 2)) [[unlikely]]
+            condemn(dot(w, w), blame);
+    }
+    void condemn(float fault, Blame);
     void meetLight(const SurfaceHit&, Vec3 direction);
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
-    bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
+    [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
     bool survives(std::uint32_t depth, float rouletteScale);
     bool occluded(Vec3 origin, const LightSample& light) const {
         const Intersector& world = *context_.scene.intersector;
@@ -216,7 +241,9 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         sampleLight(hit, bsdf, eye, sample, depth);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
-    return path_.radiance;
+    if constexpr (kMedia) return path_.radiance;
+    // Lanes in which any of the light was negative show it, even if the sum does not.
+    return Spectrum(_mm256_blendv_ps(path_.radiance.v, path_.least.v, path_.least.v));
 }
 
 template <EffectBits E>
@@ -243,8 +270,9 @@ template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 dire
 
 template <EffectBits E>
 bool PathLoop<E>::sidesAgree(const SurfaceHit& hit, const Directions& eye, Vec3 wi, Vec3 wiRender) {
-    const bool reflectsGeometrically = dot(eye.woRender, hit.ng) * dot(wiRender, hit.ng) > 0;
-    return (eye.wo.z * wi.z > 0) == reflectsGeometrically;
+    // A direction that is none agrees with nothing.
+    const float geometrically = dot(eye.woRender, hit.ng) * dot(wiRender, hit.ng);
+    return eye.wo.z * wi.z > 0 ? geometrically > 0 : geometrically <= 0;
 }
 
 template <EffectBits E>
@@ -280,11 +308,15 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
     if (!path_.delta && strategy == Strategy::mis)
         lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
+    checkDensities(lightPdf, path_.bsdfPdf);
     const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
-    gather(path_.beta * weight * emitted, hit.light);
+    gather(path_.beta * weight * emitted, hit.light, false, [&] { observer_->meets(hit.light, emitted, lightPdf); });
 }
 
 template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
+    if (observer_) [[unlikely]]
+        observer_->leaves(direction);
+    checkDirection(direction);
     const Strategy strategy = context_.settings.strategy;
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     for (const Light* light : context_.lights.infinite()) {
@@ -292,8 +324,10 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
         if (!path_.delta && strategy == Strategy::mis)
             lightPdf = context_.lights.probability(light, 0, path_.from, path_.scatters) *
                        light->pdfEscaped(path_.from, direction, path_.time);
+        checkDensities(lightPdf, path_.bsdfPdf);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
-        gather(path_.beta * scatteringWeight(lightPdf) * arriving, light);
+        gather(path_.beta * scatteringWeight(lightPdf) * arriving, light, false,
+               [&] { observer_->meets(light, arriving, lightPdf); });
     }
 }
 
@@ -307,7 +341,8 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
     const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
-    if (!anyNonZero(eval.fcos) || !sidesAgree(hit, eye, wi, light->wi)) return;
+    if (!anyNonZero(eval.fcos) || !sidesAgree(hit, eye, wi, light->wi))
+        return checkDirection(light->wi, {picked.light, "direction"});
     ++counters_.shadowRays;
     // From the moved origin to the light's own moved point: neither surface shadows itself.
     const Vec3 origin = spawnOrigin(hit, light->wi);
@@ -320,6 +355,8 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
         return;
     }
     const float pdf = picked.probability * light->pdfSolidAngle;
+    checkDensities(pdf, eval.pdfSolidAngle);
+    if constexpr (kDispersion) checkRatios(eval.pdfRatio);
     Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
     if constexpr (kInterfaces) {
         contribution *= passing;
@@ -327,11 +364,12 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
         const Curve* medium = through ? absorptionBeyond(hit, light->wi) : path_.interior.absorption;
         if (medium && light->distance < kInfinity) contribution *= exp(medium->at(path_.lambda) * -light->distance);
     }
-    gather(contribution, picked.light);
+    gather(contribution, picked.light, false, [&] { observer_->asks(picked.light, *light, eval, pdf); });
 }
 
 template <EffectBits E>
-bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const Directions& eye, Ray& ray) {
+inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const Directions& eye, Ray& ray) {
+    checkWeight(next.weight);
     path_.beta *= next.weight;
     path_.bsdfPdf = next.pdfSolidAngle;
     path_.delta = next.lobe.has(Lobe::delta);
@@ -340,11 +378,12 @@ bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const D
         auto& d = path_.densities;
         if (path_.delta && next.lobe.has(Lobe::dispersive)) endSecondaryWavelengths();
         d.before = d.unidirectional;
+        if (!path_.delta) checkRatios(next.pdfRatio);
         if (!path_.delta) d.unidirectional *= next.pdfRatio;
         if constexpr (kMedia) d.direction = d.unidirectional;
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
-    if (!sidesAgree(hit, eye, next.wi, direction)) return false;
+    if (!sidesAgree(hit, eye, next.wi, direction)) return checkDirection(direction), false;
     if (next.lobe.has(Lobe::transmission)) {
         if constexpr (kInterfaces)
             path_.nested.here = path_.nested.beyond;
@@ -412,6 +451,7 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 } // namespace abbe
 
 #include "integrators/path_loop_cone.h"
+#include "integrators/path_loop_faults.h"
 #include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_near_light.h"

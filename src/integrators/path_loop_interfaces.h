@@ -38,8 +38,7 @@ template <EffectBits E> bool PathLoop<E>::hidden(SurfaceHit& hit, const Ray& ray
 }
 
 // The share of the light at a surface that goes straight on, which has then crossed it.
-template <EffectBits E>
-float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nested& nested) const {
+template <EffectBits E> float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nested& nested) {
     const Material& material = *hit.material;
     if (material.isBoundary()) {
         nested.here.cross(hit, ray.direction);
@@ -49,7 +48,9 @@ float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nest
     if (material.mayBeOpen()) {
         hit.arrival = ray.direction;
         if constexpr (kTextures) hit.footprint = path_.cone.radius;
-        open = 1 - material.opacity(hit);
+        const float opacity = material.opacity(hit);
+        open = 1 - opacity;
+        if (!(opacity >= 0 && opacity <= 1)) condemn(opacity, {&material, "opacity"});
         if (open >= 1) return 1;
     }
     if (material.ior()) {

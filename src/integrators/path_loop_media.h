@@ -18,12 +18,14 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
         if (!path.delta && strategy != Strategy::bsdfOnly)
             lightPdf = loop_.context_.lights.probability(&emission, path.from, path.scatters) *
                        emission.pdfSolidAngle(path.from.p, ray_.origin + ray_.direction * t);
+        loop_.checkDensity(lightPdf);
         if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
         arriving *= loop_.clearness(path.nested.here, t);
-        if (loop_.observer_) [[unlikely]]
+        loop_.gather(arriving, &emission, false, [&] {
             loop_.observer_->lightsUp(ray_.origin + ray_.direction * t);
-        loop_.gather(arriving, &emission);
+            loop_.observer_->meets(&emission, amount, lightPdf);
+        });
     }
 
   private:
@@ -73,13 +75,20 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
         observer_->collides(ray.origin, path_.beta);
     sampleLightInMedium(ray.origin, ray.direction, sample, depth);
     const float cosine = phase.sampleCosine(sample.bsdf.x);
+    const Blame blame{collided_, "phase function"};
+    if (!(std::abs(cosine) < 1.001f)) condemn(cosine, blame);
     const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
     const Frame frame = Frame::fromNormal(ray.direction);
     path_.from = ray.origin;
     path_.scatters.outline.count = 0;
     path_.bsdfPdf = phase.value(cosine);
+    checkDensity(path_.bsdfPdf, blame);
     path_.delta = false;
-    if (phase.spectral()) path_.beta *= phase.ratio(cosine, path_.lambda);
+    if (phase.spectral()) {
+        const Spectrum ratio = phase.ratio(cosine, path_.lambda);
+        checkWeight(ratio, blame);
+        path_.beta *= ratio;
+    }
     if constexpr (kDispersion) {
         path_.densities.before = path_.densities.unidirectional;
         path_.densities.direction = path_.densities.unidirectional;
@@ -97,7 +106,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     if (!light) return;
     const PhaseFunction& phase = collided_->phase();
     const float cosine = dot(direction, light->wi), value = phase.value(cosine);
-    if (!(value > 0)) return;
+    if (value == 0) return;
     ++counters_.shadowRays;
     const Spectrum passing = transmittance(p, *light, {path_.nested.here, {}}, sampler_.stream(2 * depth + 1));
     if (!anyNonZero(passing)) return;
@@ -107,7 +116,11 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);
-    gather(contribution * trackingShare(picked), picked.light);
+    checkDensity(pdf);
+    checkDensity(value, {collided_, "phase function"});
+    gather(contribution * trackingShare(picked), picked.light, false, [&] {
+        observer_->asks(picked.light, *light, {Spectrum(value), value}, pdf);
+    });
 }
 
 } // namespace abbe

@@ -34,7 +34,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     const float share = picked.probability * pdf / (picked.probability * pdf + pickedThere * tracked);
     // Where tracking is as good there is no need to pay for both.
     const float kept = std::min(1.f, 4 * share);
-    if (media_.inScattering.empty() || !(sample.bsdf.y < kept)) return;
+    if (media_.inScattering.empty() || sample.bsdf.y >= kept) return;
     const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
 
@@ -44,6 +44,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
         const PhaseFunction& phase = at.medium->phase();
         BsdfEval eval;
         eval.pdfSolidAngle = phase.value(cosine);
+        checkDensity(eval.pdfSolidAngle, {at.medium, "phase function"});
         Spectrum value = at.coefficient * (eval.pdfSolidAngle * lightWeight(lightPdf, eval, light->delta));
         if (phase.spectral()) value *= phase.ratio(cosine, path_.lambda);
         scattered += value;
@@ -58,7 +59,10 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     if (observer_) [[unlikely]]
         observer_->lightsUp(p);
     const float density = kept * pdf * picked.probability * light->pdfSolidAngle;
-    gather(path_.beta * light->radiance * scattered * passing * (share / density), picked.light, true);
+    checkDensities(density, lightPdf);
+    gather(path_.beta * light->radiance * scattered * passing * (share / density), picked.light, true, [&] {
+        observer_->asks(picked.light, *light, {scattered, 0}, density);
+    });
 }
 
 // Of the leg, around where the light is; nothing where it is not looked for or does not arrive.
@@ -80,7 +84,7 @@ template <EffectBits E> float PathLoop<E>::trackingShare(const PickedLight& pick
     const auto& leg = media_.leg;
     const float pdf =
         distances->pdf(leg.collision) * context_.lights.probabilityAlong(picked.light, picked.part, leg.ray, leg.media);
-    if (!(pdf > 0)) return 1;
+    if (pdf <= 0) return 1;
     const float tracked = media_.tracker.expected(leg.ray, leg.collision, path_.nested.here.media(), path_.lambda);
     return picked.probability * tracked / (pdf + picked.probability * tracked);
 }

@@ -82,6 +82,12 @@ class RenderJob {
         return std::move(statistics_);
     }
 
+    void repeat(std::span<const SampleId> samples) {
+        lookAhead();
+        for (const SampleId& s : samples)
+            kernel_.render(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &roulette_});
+    }
+
   private:
     using Clock = std::chrono::steady_clock;
 
@@ -262,6 +268,10 @@ class PathTracer final : public Integrator {
     RenderStatistics render(const Scene& scene, Film& film, const RenderSettings& settings,
                             const RenderControl& control) const override {
         return RenderJob(kernel_, scene, film, settings, control).run();
+    }
+    void repeat(const Scene& scene, Film& film, const RenderSettings& settings,
+                std::span<const SampleId> samples) const override {
+        RenderJob(kernel_, scene, film, settings, {}).repeat(samples);
     }
 
   private:

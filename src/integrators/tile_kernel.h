@@ -82,8 +82,8 @@ template <EffectBits E> class TileKernel {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
-                drop({x, y, r, i, static_cast<DropCause>(cause)});
-                if (recorder_) recorder_->drop();
+                drop({{x, y, r, i}, static_cast<DropCause>(cause)});
+                if (recorder_) tellDrop();
                 continue;
             }
             if (recorder_) recorder_->keep(radiance_, context_.scene.sensor, factor_);
@@ -103,41 +103,68 @@ template <EffectBits E> class TileKernel {
         const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
         radiance_ = Spectrum(0.f);
-        maySubtract_ = false;
         factor_ = static_cast<double>(camera.weight * filter.weight);
         if (recorder_) recorder_->start(camera.ray, lambda);
-        if (!(camera.weight > 0)) return {};
+        if (!(camera.weight > 0)) return withoutRay(camera);
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
         loop.watch(recorder_.get());
         if constexpr (PathLoop<E>::kInterfaces) loop.startIn(around(camera.ray));
         if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(at, camera.ray));
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
-        const std::uint64_t before = signedWeights();
+        [[maybe_unused]] const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
-        maySubtract_ = signedWeights() != before;
+        if constexpr (PathLoop<E>::kMedia) {
+            // Where a density exceeded its bound light may be subtracted.
+            const float most = signedWeights() != before ? 0.5f * kNegativeFault : 0;
+            if (-maxLane(-loop.least()) < most && allFinite(radiance_)) radiance_ = Spectrum(kNegativeFault);
+            condemnDensities();
+        }
         return context_.scene.sensor(radiance_, lambda) * factor_;
     }
+
+    // Where the camera gives no ray there is no light, unless that is a fault of its own.
+    Xyz withoutRay(const CameraRay& camera) {
+        if (camera.weight == 0) return {};
+        const float fault = camera.weight;
+        if (recorder_) recorder_->blames(context_.scene.camera.get(), "weight", fault);
+        condemn(fault);
+        return {static_cast<double>(radiance_[0]), 0, 0};
+    }
+
+    // Tracking counts densities that are none: what it makes of them need not show.
+    void condemnDensities() {
+        const MediumCounters& media = media_.tracker.counters;
+        if (media.faults == densityFaults_) return;
+        densityFaults_ = media.faults;
+        if (recorder_) recorder_->blames(media.faulty, "density", media.fault);
+        condemn(media.fault);
+    }
+
+    void condemn(float fault) { radiance_ = Spectrum(fault < 0 && fault > -kInfinity ? kNegativeFault : fault); }
 
     std::uint64_t signedWeights() const {
         if constexpr (PathLoop<E>::kMedia) return media_.tracker.counters.signedWeights;
         return 0;
     }
 
-    static float minLane(Spectrum s) { return -maxLane(-s); }
-
     // Index of the DropCause, or 3 for a sound sample. The cause is looked for in the lanes: in XYZ an infinite one
     // times a matching function of 0 would be NaN.
     unsigned fault(Xyz v) const {
-        const bool negative = minLane(radiance_) < 0 && !maySubtract_;
-        const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-        if (largest < ExactSum::kLargest && std::isfinite(v.x + v.y + v.z) && !negative) [[likely]]
+        // In media a sound path may be negative, and one that is not is far beyond the largest.
+        const bool negative = !PathLoop<E>::kMedia && _mm256_movemask_ps(radiance_.v) != 0;
+        if (std::abs(v.x) + std::abs(v.y) + std::abs(v.z) < ExactSum::kLargest && !negative) [[likely]]
             return 3;
         const bool nan = _mm256_movemask_ps(_mm256_cmp_ps(radiance_.v, radiance_.v, _CMP_UNORD_Q)) != 0;
-        const DropCause cause = nan                                ? DropCause::nan
-                                : negative && allFinite(radiance_) ? DropCause::negative
-                                                                   : DropCause::infinite;
+        const bool below = _mm256_movemask_ps(radiance_.v) != 0 && allFinite(radiance_);
+        const DropCause cause = nan ? DropCause::nan : below ? DropCause::negative : DropCause::infinite;
         return static_cast<unsigned>(cause);
+    }
+
+    void tellDrop() {
+        if (!std::isfinite(factor_))
+            recorder_->blames(context_.scene.camera.get(), "weight", static_cast<float>(factor_));
+        recorder_->drop();
     }
 
     void drop(DroppedSample sample) {
@@ -159,8 +186,8 @@ template <EffectBits E> class TileKernel {
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, Around, path_detail::Nothing> around_;
     TileResult result_;
     Spectrum radiance_; // of the last sample
+    std::uint64_t densityFaults_ = 0;
     double factor_ = 0; // of the camera and the pixel filter, likewise
-    bool maySubtract_ = false;
 };
 
 using TileFunction = TileResult (*)(const PathContext&, Film&, const TileJob&);

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,11 +50,14 @@ struct RenderSettings {
 // Why samples were dropped.
 enum class DropCause : std::uint8_t { nan, infinite, negative }; // infinite: or beyond ExactSum::kLargest
 
-// A sample that can be repeated: `abbe render … --pixel x,y --sample i`.
-struct DroppedSample {
+// One sample of a render, which can be repeated by itself: `abbe replay … --pixel x,y --sample replicate:index`.
+struct SampleId {
     int x = 0, y = 0;
     int replicate = 0;
     std::uint32_t index = 0;
+};
+
+struct DroppedSample : SampleId {
     DropCause cause = DropCause::nan;
 };
 
@@ -114,6 +118,9 @@ class Integrator {
   public:
     virtual ~Integrator() = default;
     virtual RenderStatistics render(const Scene&, Film&, const RenderSettings&, const RenderControl&) const = 0;
+    // Takes samples again, one after the other, each to the bits that it has in a render with these settings and this
+    // number of replicates; with each the samples of the same index in the pixel's other replicates.
+    virtual void repeat(const Scene&, Film&, const RenderSettings&, std::span<const SampleId>) const = 0;
 };
 
 } // namespace abbe

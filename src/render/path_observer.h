@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/bsdf.h"
+#include "render/light.h"
 #include "render/surface_hit.h"
 #include "spectrum/wavelengths.h"
 
@@ -26,6 +27,16 @@ class PathObserver {
     virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;
     // It is scattered in a medium.
     virtual void collides(Vec3 p, const Spectrum& beta) noexcept = 0;
+
+    // What light is made of, before gathers() is told. Sampled on a light and scattered here; `pdf`: of the sample,
+    // with the choice of the light.
+    virtual void asks(const void* /*source*/, const LightSample&, const BsdfEval&, float /*pdf*/) noexcept {}
+    // Met by chance; `pdf`: with which it would have been sampled, 0 if that is not possible.
+    virtual void meets(const void* /*source*/, const Spectrum& /*emitted*/, float /*pdf*/) noexcept {}
+    // A number of `who`, a Material or a Medium, is at fault that the other events do not tell: its `what`.
+    virtual void blames(const void* /*who*/, const char* /*what*/, float /*number*/) noexcept {}
+    // The path leaves the scene.
+    virtual void leaves(Vec3 /*direction*/) noexcept {}
 };
 
 } // namespace abbe

@@ -60,6 +60,8 @@ class TestScene {
         if (diagnostics().hasErrors()) throw std::runtime_error(report());
         return parts_->built.scene;
     }
+    // For tests that put something else in place of a part of it.
+    Scene& changeable() { return parts_->built.scene; }
     // Puts another medium in place of the first volume of the scene.
     void standIn(std::unique_ptr<const Medium> medium) {
         parts_->built.scene.openMedia.at(0) = medium.get();

@@ -1,0 +1,12 @@
+// Dropped samples for programs.
+#pragma once
+
+#include "app/found_fault.h"
+#include "app/json.h"
+
+namespace abbe {
+
+Json faultJson(const FoundFault&);
+Json lanesJson(const Spectrum&);
+
+} // namespace abbe
