@@ -22,6 +22,8 @@ std::optional<Vec2i> readPair(std::string_view text, std::string_view separator,
     return Vec2i{*x, *y};
 }
 
+constexpr int kLowest = -65536; // in the overscan
+
 } // namespace
 
 std::optional<Vec2i> readSize(std::string_view text) {
@@ -29,12 +31,12 @@ std::optional<Vec2i> readSize(std::string_view text) {
     return readPair(text, "×", 1);
 }
 
-std::optional<Vec2i> readPixel(std::string_view text, int least) { return readPair(text, ",", least); }
+std::optional<Vec2i> readPixel(std::string_view text) { return readPair(text, ",", 0); }
+std::optional<Vec2i> readAnyPixel(std::string_view text) { return readPair(text, ",", kLowest); }
 
 std::optional<PixelBounds> readCrop(std::string_view text) {
     const std::size_t first = text.find(','), second = text.find(',', std::min(first, text.size() - 1) + 1);
     if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
-    constexpr int kLowest = -65536; // in the overscan
     const auto from = readPair(text.substr(0, second), ",", kLowest);
     const auto to = readPair(text.substr(second + 1), ",", kLowest);
     if (!from || !to || to->x <= from->x || to->y <= from->y) return std::nullopt;

@@ -14,8 +14,10 @@ namespace abbe {
 
 // "640x480", "640×480"; both positive.
 std::optional<Vec2i> readSize(std::string_view text);
-// "12,34"; not negative, or not below `least`.
-std::optional<Vec2i> readPixel(std::string_view text, int least = 0);
+// "12,34"; not negative.
+std::optional<Vec2i> readPixel(std::string_view text);
+// The same, but perhaps in the overscan: "-3,34".
+std::optional<Vec2i> readAnyPixel(std::string_view text);
 // "0,0,640,360": left, top, right, bottom, the last two exclusive; not empty.
 std::optional<PixelBounds> readCrop(std::string_view text);
 // "2/4": the second of four.

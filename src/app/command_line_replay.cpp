@@ -29,8 +29,7 @@ void addReplayArguments(CLI::App& command, ReplayOptions& options, CommonOptions
     command.add_option("input", options.render.input.path, "Scene, or an image that was rendered from one")
         ->required()
         ->type_name("");
-    read("--pixel", options.pixel, "X,Y", "The pixel", "a pixel such as 12,34",
-         [](const std::string& text) { return readPixel(text, -65536); }); // overscan
+    read("--pixel", options.pixel, "X,Y", "The pixel", "a pixel such as 12,34", readAnyPixel);
     read("--sample", options.sample, "R:I", "Sample I of replicate R, both from 0", "a sample such as 1:12",
          readSample);
     command.add_option("--camera", b.camera, "Camera of the render")->type_name("NAME");

@@ -3,6 +3,7 @@
 #include "integrators/watched_film.h"
 
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -50,6 +51,7 @@ FoundFault describeFault(const DroppedSample& sample, const PathRecord& record, 
     FoundFault f;
     f.sample = sample;
     f.cause = fault.cause;
+    f.number = fault.number;
     f.what = fmt::format("{} of the {}", fault.what, nounOf(fault.culprit));
     if (fault.culprit == Culprit::camera) return f;
     f.vertex = at.vertex;
@@ -89,7 +91,11 @@ std::string text(const FoundFault& f) {
     add("material", f.material);
     add("light", f.light);
     constexpr std::string_view kIs[] = {"not a number", "infinite", "negative"};
-    s += fmt::format(": the {} is {} at ", f.what, kIs[static_cast<std::size_t>(f.cause)]);
+    s += fmt::format(": the {} is ", f.what);
+    if (f.cause == DropCause::infinite && std::isfinite(f.number))
+        s += fmt::format("too large ({:.3g}) at ", f.number);
+    else
+        s += fmt::format("{} at ", kIs[static_cast<std::size_t>(f.cause)]);
     if (f.wavelengths.empty()) return s + "all wavelengths";
     for (std::size_t i = 0; i < f.wavelengths.size(); ++i)
         s += fmt::format("{}{:.1f}", i ? ", " : "", f.wavelengths[i]);

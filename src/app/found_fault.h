@@ -18,6 +18,7 @@ struct FoundFault {
     int vertex = 0;                      // from 1; 0: at the camera
     std::string object, material, light; // names; empty: none there
     std::uint32_t instance = SurfaceHit::kNoInstance;
+    float number = 0;               // itself, in the first lane
     std::string what;               // "density of the light"
     std::vector<float> wavelengths; // nm; empty: all of the sample
     Span declared;                  // where the scene declares the culprit, if it has a name

@@ -40,6 +40,7 @@ ExitCode guarded(const Command& command) {
 int main(int argc, char** argv) {
     std::signal(SIGABRT, onAbort);
     std::signal(SIGPIPE, SIG_IGN); // a closed reader must not lose the image
+    std::signal(SIGXFSZ, SIG_IGN); // nor a limit on the size of files, which is a full disk
     const auto result = readCommandLine(std::span<const char* const>(argv, static_cast<std::size_t>(argc)).subspan(1));
     if (const auto* end = std::get_if<EarlyEnd>(&result)) {
         std::fputs(end->text.c_str(), end->code == ExitCode::done ? stdout : stderr);

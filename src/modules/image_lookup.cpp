@@ -84,8 +84,12 @@ std::int32_t lookup(void* system, void* texture, const AbbeTextureLookup* l, flo
     OIIO::TextureOpt options;
     options.swrap = options.twrap = wrapOf(l->wrap);
     options.anisotropic = 16;
-    return s.textures->texture(static_cast<OIIO::TextureSystem::TextureHandle*>(texture), ofThread(s), options, l->s,
-                               l->t, l->dsdx, l->dtdx, l->dsdy, l->dtdy, l->channels, result);
+    try {
+        return s.textures->texture(static_cast<OIIO::TextureSystem::TextureHandle*>(texture), ofThread(s), options,
+                                   l->s, l->t, l->dsdx, l->dtdx, l->dsdy, l->dtdy, l->channels, result);
+    } catch (...) { // no memory for a tile: as one that cannot be read
+        return 0;
+    }
 }
 
 void lookupFault(void* system, AbbeImageFault* fault) {

@@ -29,6 +29,25 @@ TEST_CASE("quantities") {
         CHECK_MESSAGE(!readQuantity(wrong, Dimension::time), wrong);
 }
 
+TEST_CASE("lines of words are taken apart as they were put together") {
+    const std::vector<std::string> words = {"abbe", "a b.scene", "it's", "", "-D", "x=\"1 2\"", "back\\slash", "''"};
+    std::string line;
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + shellQuoted(word);
+    CHECK(shellWords(line) == words);
+    CHECK(shellWords("  a   b ") == std::vector<std::string>{"a", "b"});
+    CHECK(shellWords("").empty());
+}
+
+TEST_CASE("samples are named by replicate and index") {
+    const auto sample = readSample("1:12");
+    REQUIRE(sample);
+    CHECK(sample->replicate == 1);
+    CHECK(sample->index == 12);
+    for (const char* wrong : {"", "1", "1:", ":2", "1:-2", "-1:2", "1:2:3", "1,2"}) CHECK_FALSE(readSample(wrong));
+    CHECK(readAnyPixel("-3,40"));
+    CHECK_FALSE(readPixel("-3,40"));
+}
+
 TEST_CASE("shell quoting") {
     CHECK(shellQuoted("a.scene") == "a.scene");
     CHECK(shellQuoted("") == "''");
