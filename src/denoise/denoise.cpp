@@ -13,65 +13,114 @@ namespace {
 
 constexpr int kErrorRadius = 12;
 
-// What squared errors are relative to, as in relMSE: the mean of the picture is 0.25.
-float reference(float value) { return value * value + 0.01f; }
+// What squared errors are relative to, as relMSE has it: 0.01 where the mean of the picture is 0.25.
+class Reference {
+  public:
+    explicit Reference(const HalfBuffers& picture) {
+        double sum = 0;
+        for (const std::vector<Plane>& half : picture.halves)
+            for (const Plane& p : half)
+                for (int y = 0; y < p.height(); ++y)
+                    for (int x = 0; x < p.width(); ++x) sum += std::abs(p.row(y)[x]);
+        const Plane& plane = picture.halves[0][0];
+        const double mean = sum / (6. * plane.width() * plane.height());
+        floor_ = mean > 0 ? static_cast<float>(0.16 * mean * mean) : 1;
+    }
+    float operator()(float value) const { return value * value + floor_; }
 
-// Single estimates are as noisy as the picture. Relative to the brightness they are averaged over neighbours; what is
-// noise in the result bounds the error from below.
-Plane standardError(const ColourPlanes& squared, const DenoisedHalves& denoised) {
-    const int width = squared[0].width(), height = squared[0].height();
-    const Plane noise = remainingNoise(denoised);
-    Plane brightness(width, height), relative(width, height), relativeNoise(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            float error = 0, value = 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                error += squared[c].row(y)[x] / 3;
-                value += std::abs(denoised[0][c].row(y)[x] + denoised[1][c].row(y)[x]) / 6;
-            }
-            brightness.row(y)[x] = reference(value);
-            relative.row(y)[x] = error / reference(value);
-            relativeNoise.row(y)[x] = noise.row(y)[x] / reference(value);
-        }
-    relative.extend();
-    relativeNoise.extend();
-    Plane result = boxFilter(relative, kErrorRadius);
-    const Plane bound = boxFilter(relativeNoise, 2);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const float error = std::max(result.row(y)[x], bound.row(y)[x]);
-            result.row(y)[x] = std::sqrt(error * brightness.row(y)[x]);
-        }
-    return result;
-}
+  private:
+    float floor_;
+};
 
-// relMSE with the denoised picture in the place of the reference, and the squared errors as given.
+// Mean over pixels and channels.
 struct RelativeError {
     double sum = 0;
     std::uint64_t count = 0;
 
-    void add(double squared, double value) {
-        sum += squared / (value * value + 0.01);
+    void add(double squared, double reference) {
+        sum += squared / reference;
         ++count;
     }
     double mean() const { return sum / static_cast<double>(count); }
 };
 
-void estimateErrors(const HalfBuffers& noisy, const DenoisedHalves& denoised, float scale, DenoiseResult& result) {
-    const ColourPlanes squared = squaredError(noisy, denoised);
-    RelativeError before, after;
-    for (std::size_t c = 0; c < 3; ++c)
-        for (int y = 0; y < squared[c].height(); ++y)
-            for (int x = 0; x < squared[c].width(); ++x) {
-                const double value = (denoised[0][c].row(y)[x] + denoised[1][c].row(y)[x]) / 2;
-                const double difference = noisy.halves[0][c].row(y)[x] - noisy.halves[1][c].row(y)[x];
-                before.add(difference * difference / 4, value);
-                after.add(squared[c].row(y)[x], value);
+// The errors of one picture, from the halves before and after.
+class ErrorEstimate {
+  public:
+    ErrorEstimate(const HalfBuffers& noisy, const DenoisedHalves& denoised)
+        : noisy_(noisy), denoised_(denoised), reference_(noisy), squared_(squaredError(noisy, denoised)) {}
+
+    double relMseBefore() const;
+    // At least the part that is noise: what is estimated beyond it is a difference of large numbers.
+    double relMse() const;
+    // Of each pixel, such that its relMSE is the estimated one.
+    Plane standardError() const;
+
+  private:
+    int width() const { return squared_[0].width(); }
+    int height() const { return squared_[0].height(); }
+    float value(std::size_t c, int x, int y) const {
+        return (denoised_[0][c].row(y)[x] + denoised_[1][c].row(y)[x]) / 2;
+    }
+    template <typename F> double relativeMean(const F& squared) const {
+        RelativeError error;
+        for (std::size_t c = 0; c < 3; ++c)
+            for (int y = 0; y < height(); ++y)
+                for (int x = 0; x < width(); ++x) error.add(squared(c, x, y), reference_(value(c, x, y)));
+        return error.mean();
+    }
+
+    const HalfBuffers& noisy_;
+    const DenoisedHalves& denoised_;
+    Reference reference_;
+    ColourPlanes squared_;
+};
+
+double ErrorEstimate::relMseBefore() const {
+    return relativeMean([&](std::size_t c, int x, int y) {
+        const float difference = noisy_.halves[0][c].row(y)[x] - noisy_.halves[1][c].row(y)[x];
+        return difference * difference / 4;
+    });
+}
+
+double ErrorEstimate::relMse() const {
+    const double all = relativeMean([&](std::size_t c, int x, int y) { return squared_[c].row(y)[x]; });
+    const double noise = relativeMean([&](std::size_t c, int x, int y) {
+        const float difference = denoised_[0][c].row(y)[x] - denoised_[1][c].row(y)[x];
+        return difference * difference / 4;
+    });
+    return std::max(all, noise);
+}
+
+// Single estimates are as noisy as the picture. Relative to the brightness they are averaged over neighbours; what is
+// noise in the result bounds the error from below.
+Plane ErrorEstimate::standardError() const {
+    const Plane noise = remainingNoise(denoised_);
+    Plane brightness(width(), height()), relative(width(), height()), relativeNoise(width(), height());
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) {
+            float error = 0, mean = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                error += squared_[c].row(y)[x] / 3;
+                mean += std::abs(value(c, x, y)) / 3;
             }
-    result.relMseBefore = before.mean();
-    result.relMseAfter = std::max(after.mean(), 0.);
-    result.error = standardError(squared, denoised).pixels();
-    for (float& e : result.error) e /= scale;
+            brightness.row(y)[x] = reference_(mean);
+            relative.row(y)[x] = error / reference_(mean);
+            relativeNoise.row(y)[x] = noise.row(y)[x] / reference_(mean);
+        }
+    relative.extend();
+    relativeNoise.extend();
+    Plane result = boxFilter(relative, kErrorRadius);
+    const Plane bound = boxFilter(relativeNoise, 2);
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x)
+            result.row(y)[x] = std::max(result.row(y)[x], bound.row(y)[x]) * brightness.row(y)[x];
+    // The larger of two noisy numbers is too large on average.
+    const double sum = relativeMean([&](std::size_t, int x, int y) { return result.row(y)[x]; });
+    const double factor = sum > 0 ? relMse() / sum : 0;
+    for (int y = 0; y < height(); ++y)
+        for (int x = 0; x < width(); ++x) result.row(y)[x] = static_cast<float>(std::sqrt(factor * result.row(y)[x]));
+    return result;
 }
 
 void checkInput(const DenoiseInput& input) {
@@ -82,22 +131,29 @@ void checkInput(const DenoiseInput& input) {
 } // namespace
 
 std::string_view name(DenoiseMethod method) { return method == DenoiseMethod::nfor ? "nfor" : "preview"; }
-std::string_view version(DenoiseMethod) { return "1"; }
+std::string_view version(DenoiseMethod) { return "2"; }
 
 DenoiseResult denoise(const DenoiseInput& input, DenoiseMethod method) {
     checkInput(input);
     const PreparedInput prepared = prepare(input, method == DenoiseMethod::nfor);
-    const DenoisedHalves halves =
-        method == DenoiseMethod::nfor ? denoiseByRegression(prepared) : denoiseByWavelets(prepared);
+    Mixture mixture;
+    if (method == DenoiseMethod::nfor)
+        mixture = denoiseByRegression(prepared);
+    else
+        mixture.picture = mixture.validated = denoiseByWavelets(prepared);
     DenoiseResult result;
     result.repaired = prepared.repaired;
     for (std::size_t c = 0; c < 3; ++c) {
-        result.colour[c] = halves[0][c].pixels();
-        const std::vector<float> other = halves[1][c].pixels();
+        result.colour[c] = mixture.picture[0][c].pixels();
+        const std::vector<float> other = mixture.picture[1][c].pixels();
         for (std::size_t i = 0; i < other.size(); ++i)
             result.colour[c][i] = (result.colour[c][i] + other[i]) / (2 * prepared.scale);
     }
-    estimateErrors(prepared.colour, halves, prepared.scale, result);
+    const ErrorEstimate estimate(prepared.colour, mixture.validated);
+    result.relMseBefore = estimate.relMseBefore();
+    result.relMseAfter = estimate.relMse();
+    result.error = estimate.standardError().pixels();
+    for (float& e : result.error) e /= prepared.scale;
     return result;
 }
 

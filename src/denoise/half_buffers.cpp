@@ -6,7 +6,7 @@
 
 namespace abbe {
 
-HalfBuffers::HalfBuffers(std::vector<Plane> first, std::vector<Plane> second)
+HalfBuffers::HalfBuffers(std::vector<Plane> first, std::vector<Plane> second, int radius)
     : halves{std::move(first), std::move(second)} {
     for (std::size_t c = 0; c < halves[0].size(); ++c) {
         const Plane &a = halves[0][c], &b = halves[1][c];
@@ -19,14 +19,16 @@ HalfBuffers::HalfBuffers(std::vector<Plane> first, std::vector<Plane> second)
             }
         });
         variance.extend();
-        variances.push_back(boxFilter(variance, 4));
+        variances.push_back(boxFilter(variance, radius));
     }
 }
 
-Guide HalfBuffers::guide(std::size_t half, float epsilon) const {
+Guide HalfBuffers::guide(std::size_t half, float epsilon) const { return guideOf(halves[half], variances, epsilon); }
+
+Guide guideOf(const std::vector<Plane>& values, const std::vector<Plane>& variances, float epsilon) {
     Guide guide;
     guide.epsilon = epsilon;
-    for (const Plane& p : halves[half]) guide.values.push_back(&p);
+    for (const Plane& p : values) guide.values.push_back(&p);
     for (const Plane& p : variances) guide.variances.push_back(&p);
     return guide;
 }

@@ -1,65 +1,76 @@
 #include "denoise/nfor.h"
 
-#include "base/parallel.h"
 #include "denoise/regression.h"
+#include "denoise/wavelets.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace abbe {
 
 namespace {
 
-constexpr int kComparedRadius = 7, kBlendedRadius = 4;
+// Of the noise that a weight may overlook, what is left where the guide is denoised.
+constexpr float kGuideVariance = 0.06f;
+constexpr float kGuideEpsilon = 1e-4f; // squared difference of a denoised guide that counts as none
 
-// How much the first candidate is to be preferred, 0 to 1: where its estimated error, relative to the brightness and
-// averaged around the pixel, is smaller; blurred, so that the choice leaves no edges.
-Plane choose(const HalfBuffers& noisy, const DenoisedHalves& first, const DenoisedHalves& second) {
-    const int width = noisy.variances[0].width(), height = noisy.variances[0].height();
-    const ColourPlanes a = squaredError(noisy, first), b = squaredError(noisy, second);
-    Plane advantage(width, height), choice(width, height);
-    const auto rows = static_cast<std::size_t>(height);
-    parallelFor(rows, [&](std::size_t i) {
-        const int y = static_cast<int>(i);
-        for (std::size_t c = 0; c < 3; ++c)
-            for (int x = 0; x < width; ++x) {
-                const float value = (first[0][c].row(y)[x] + first[1][c].row(y)[x]) / 2;
-                advantage.row(y)[x] += (b[c].row(y)[x] - a[c].row(y)[x]) / (value * value + 0.01f);
-            }
-    });
-    advantage.extend();
-    const Plane smooth = boxFilter(advantage, kComparedRadius);
-    parallelFor(rows, [&](std::size_t i) {
-        const int y = static_cast<int>(i);
-        for (int x = 0; x < width; ++x) choice.row(y)[x] = smooth.row(y)[x] >= 0 ? 1.f : 0.f;
-    });
-    choice.extend();
-    return boxFilter(choice, kBlendedRadius);
+// The narrow weights of a pass are the wide ones to this power of two: k = 0.35 and k = 0.7 instead of 2.
+constexpr int kFirstNarrowing = 5, kSecondNarrowing = 3;
+
+using Candidates = std::vector<DenoisedHalves>;
+
+// Adds the results of both bandwidths. guides[half]: where the weights of that half come from, always itself, so that
+// the other half can tell how large the error is.
+void addPass(const PreparedInput& input, const std::array<Guide, 2>& guides, int narrowing, Candidates& candidates) {
+    DenoisedHalves wide, narrow;
+    for (std::size_t half = 0; half < 2; ++half) {
+        auto results = regress(input.colour.halves[half], input.modulation, input.features, guides[half], narrowing);
+        wide[half] = std::move(results[0]);
+        narrow[half] = std::move(results[1]);
+    }
+    candidates.push_back(std::move(wide));
+    candidates.push_back(std::move(narrow));
 }
 
-// to += weight · (from − to)
-void blend(const Plane& weight, const Plane& from, Plane& to) {
-    parallelFor(static_cast<std::size_t>(to.height()), [&](std::size_t i) {
-        const int y = static_cast<int>(i);
-        for (int x = 0; x < to.width(); ++x) to.row(y)[x] += weight.row(y)[x] * (from.row(y)[x] - to.row(y)[x]);
-    });
-    to.extend();
+std::vector<Plane> scaled(std::vector<Plane> planes, float factor) {
+    for (Plane& plane : planes) {
+        for (int y = 0; y < plane.height(); ++y)
+            for (int x = 0; x < plane.width(); ++x) plane.row(y)[x] *= factor;
+        plane.extend();
+    }
+    return planes;
+}
+
+void addSecondPass(const PreparedInput& input, const DenoisedHalves& first, Candidates& candidates) {
+    const std::vector<Plane> variances = scaled(input.guide.variances, kGuideVariance);
+    std::array<std::vector<Plane>, 2> values;
+    std::array<Guide, 2> guides;
+    for (std::size_t half = 0; half < 2; ++half) {
+        ColourPlanes shading = first[half];
+        divide(shading, input.divisor);
+        values[half] = compressed({shading[0], shading[1], shading[2]});
+        guides[half] = guideOf(values[half], variances, kGuideEpsilon);
+    }
+    addPass(input, guides, kSecondNarrowing, candidates);
+}
+
+DenoisedHalves untouched(const HalfBuffers& colour) {
+    DenoisedHalves result;
+    for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t c = 0; c < 3; ++c) result[half][c] = colour.halves[half][c];
+    return result;
 }
 
 } // namespace
 
-DenoisedHalves denoiseByRegression(const PreparedInput& input) {
-    DenoisedHalves smooth, sharp;
-    for (std::size_t half = 0; half < 2; ++half) {
-        // The weights come from the same half, so that the other one can tell how large the error is.
-        auto results = regress(input.colour.halves[half], input.features, input.guide.guide(half, kColourEpsilon));
-        smooth[half] = std::move(results[0]);
-        sharp[half] = std::move(results[1]);
-    }
-    const Plane choice = choose(input.colour, smooth, sharp);
-    for (std::size_t half = 0; half < 2; ++half)
-        for (std::size_t c = 0; c < 3; ++c) blend(choice, smooth[half][c], sharp[half][c]);
-    return sharp;
+Mixture denoiseByRegression(const PreparedInput& input) {
+    Candidates candidates;
+    addPass(input, {input.guide.guide(0, kColourEpsilon), input.guide.guide(1, kColourEpsilon)}, kFirstNarrowing,
+            candidates);
+    candidates.push_back(denoiseByWavelets(input));
+    const DenoisedHalves first = mix(input.colour, candidates).picture;
+    addSecondPass(input, first, candidates);
+    candidates.push_back(untouched(input.colour));
+    return mix(input.colour, candidates);
 }
 
 } // namespace abbe

@@ -9,6 +9,14 @@ namespace abbe {
 
 namespace {
 
+// What variances are averaged over. Features are noisy at edges alone, and noise there is no reason to blur beside
+// them.
+constexpr int kColourRadius = 2, kFeatureRadius = 1;
+constexpr float kLeastAlbedo = 0.003f; // is added, so that black surfaces can be divided by it
+constexpr float kNoSurface = 0.02f;    // an albedo below this is none
+constexpr float kBrightShading = 30;   // brighter is a lamp or its image; what most surfaces get is 0.5, say
+constexpr float kFading = 100;         // one such pixel of 100, and none is divided any more
+
 // Three planes of the means and three of the halves.
 struct Pairs {
     std::vector<Plane> mean, half;
@@ -86,19 +94,34 @@ float scaleTo(double wanted, const Pairs& pairs) {
     return sum > 0 ? static_cast<float>(wanted * count / sum) : 1.f;
 }
 
+// What makes the median brightness of the pixels that are not black kTypical: a mean would follow the few pixels that
+// show a lamp.
+float scaleToTypical(const Pairs& colour) {
+    std::vector<float> values;
+    for (int y = 0; y < colour.mean[0].height(); ++y)
+        for (int x = 0; x < colour.mean[0].width(); ++x) {
+            const float sum = colour.mean[0].row(y)[x] + colour.mean[1].row(y)[x] + colour.mean[2].row(y)[x];
+            if (sum > 0) values.push_back(sum / 3);
+        }
+    if (values.empty()) return 1;
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return kTypical / *middle;
+}
+
 // The mean of both halves gives way to the second one.
-HalfBuffers halvesOf(Pairs pairs) {
+HalfBuffers halvesOf(Pairs pairs, int radius) {
     for (std::size_t c = 0; c < pairs.mean.size(); ++c) {
         Plane& plane = pairs.mean[c];
         for (int y = 0; y < plane.height(); ++y)
             for (int x = 0; x < plane.width(); ++x) plane.row(y)[x] = 2 * plane.row(y)[x] - pairs.half[c].row(y)[x];
         plane.extend();
     }
-    return {std::move(pairs.half), std::move(pairs.mean)};
+    return {std::move(pairs.half), std::move(pairs.mean), radius};
 }
 
 std::vector<Plane> cleaned(Pairs pairs, bool filter) {
-    return filter ? filterFeature(halvesOf(std::move(pairs)), kFeatureEpsilon) : std::move(pairs.mean);
+    return filter ? filterFeature(halvesOf(std::move(pairs), kFeatureRadius), kFeatureEpsilon) : std::move(pairs.mean);
 }
 
 void addFeature(const DenoiseInput& input, std::span<const DenoiseChannel> channels, bool filter,
@@ -126,20 +149,97 @@ void addDepth(const DenoiseInput& input, bool filter, std::vector<Plane>& featur
     features.push_back(std::move(depth[0]));
 }
 
+template <typename F> void forEachPair(ColourPlanes& colours, const ColourPlanes& factors, const F& combined) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        Plane& plane = colours[c];
+        for (int y = 0; y < plane.height(); ++y)
+            for (int x = 0; x < plane.width(); ++x) plane.row(y)[x] = combined(plane.row(y)[x], factors[c].row(y)[x]);
+        plane.extend();
+    }
+}
+
+// How much of what is around a pixel is light that no albedo explains: lamps, skies, mirror images of lamps.
+Plane unexplained(const HalfBuffers& colour, const std::vector<Plane>& albedo) {
+    constexpr int kRadius = 10;
+    Plane found(albedo[0].width(), albedo[0].height());
+    for (int y = 0; y < found.height(); ++y)
+        for (int x = 0; x < found.width(); ++x) {
+            float light = 0, reflected = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                light += (colour.halves[0][c].row(y)[x] + colour.halves[1][c].row(y)[x]) / 6;
+                reflected += albedo[c].row(y)[x] / 3;
+            }
+            const bool explained = reflected > kNoSurface && light < kBrightShading * reflected;
+            found.row(y)[x] = explained ? 0.f : 1.f;
+        }
+    found.extend();
+    return boxFilter(boxFilter(found, kRadius), kRadius);
+}
+
+// Near unexplained light the albedo fades: at the rim of a lamp that of a pixel says nothing about its light. The first
+// three features are the albedo, if it is there.
+Modulation modulationOf(const HalfBuffers& colour, const std::vector<Plane>& features) {
+    const int width = colour.variances[0].width(), height = colour.variances[0].height();
+    Modulation modulation;
+    for (std::size_t c = 0; c < 3; ++c) {
+        modulation.albedo[c] = features.empty() ? Plane(width, height) : features[c];
+        forEachPixel(modulation.albedo[c],
+                     [&](float v) { return features.empty() ? 1.f : std::max(v, 0.f) + kLeastAlbedo; });
+    }
+    modulation.fade = features.empty() ? Plane(width, height) : unexplained(colour, features);
+    forEachPixel(modulation.fade, [](float v) { return std::min(1.f, kFading * v); });
+    return modulation;
+}
+
+ColourPlanes divisorOf(const Modulation& modulation) {
+    ColourPlanes divisor = modulation.albedo;
+    for (Plane& plane : divisor) {
+        for (int y = 0; y < plane.height(); ++y)
+            for (int x = 0; x < plane.width(); ++x)
+                plane.row(y)[x] += modulation.fade.row(y)[x] * (1 - plane.row(y)[x]);
+        plane.extend();
+    }
+    return divisor;
+}
+
+std::vector<Plane> divided(const std::vector<Plane>& colours, const ColourPlanes& albedo) {
+    ColourPlanes result{colours[0], colours[1], colours[2]};
+    divide(result, albedo);
+    return {std::move(result[0]), std::move(result[1]), std::move(result[2])};
+}
+
 } // namespace
+
+void multiply(ColourPlanes& colours, const ColourPlanes& factors) {
+    forEachPair(colours, factors, [](float a, float b) { return a * b; });
+}
+
+void divide(ColourPlanes& colours, const ColourPlanes& factors) {
+    forEachPair(colours, factors, [](float a, float b) { return a / b; });
+}
 
 PreparedInput prepare(const DenoiseInput& input, bool filterFeatures) {
     Pairs pairs = pairsOf(input, input.colour);
     const std::uint64_t repaired = repair(pairs);
-    const float scale = scaleTo(0.25, pairs);
+    const float scale = scaleToTypical(pairs);
     multiply(pairs, scale);
-    HalfBuffers colour = halvesOf(std::move(pairs));
-    HalfBuffers guide(compressed(colour.halves[0]), compressed(colour.halves[1]));
-    PreparedInput result{std::move(colour), std::move(guide), {}, scale, repaired};
-    addFeature(input, input.features.albedo, filterFeatures, result.features);
-    addFeature(input, input.features.normal, filterFeatures, result.features);
-    addDepth(input, filterFeatures, result.features);
-    return result;
+    HalfBuffers colour = halvesOf(std::move(pairs), kColourRadius);
+    std::vector<Plane> features;
+    addFeature(input, input.features.albedo, filterFeatures, features);
+    Modulation modulation = modulationOf(colour, features);
+    ColourPlanes divisor = divisorOf(modulation);
+    std::array<std::vector<Plane>, 2> shading{divided(colour.halves[0], divisor), divided(colour.halves[1], divisor)};
+    HalfBuffers guide(compressed(shading[0]), compressed(shading[1]), kColourRadius);
+    addFeature(input, input.features.normal, filterFeatures, features);
+    addDepth(input, filterFeatures, features);
+    return {std::move(colour),
+            std::move(modulation),
+            std::move(divisor),
+            std::move(shading),
+            std::move(guide),
+            std::move(features),
+            scale,
+            repaired};
 }
 
 } // namespace abbe

@@ -3,19 +3,28 @@
 
 #include "denoise/denoise.h"
 #include "denoise/half_buffers.h"
+#include "denoise/regression.h"
 
 namespace abbe {
 
 struct PreparedInput {
-    HalfBuffers colour;          // linear, scaled
-    HalfBuffers guide;           // compressed() colours, for weights
+    HalfBuffers colour; // linear, scaled
+    Modulation modulation;
+    // The modulation of each pixel by itself, and colours divided by it: mostly the light that falls on a surface.
+    // Textures do not hide in it what is noise.
+    ColourPlanes divisor;
+    std::array<std::vector<Plane>, 2> shading;
+    HalfBuffers guide;           // compressed() shading, for weights
     std::vector<Plane> features; // at most kMaxFeatures, free of noise as far as the halves tell, in units near 1
-    float scale = 1;             // of the colours: their mean is 0.25 after it, as in relMSE
+    float scale = 1;             // of the colours: their median is kTypical after it
     std::uint64_t repaired = 0;  // pixels of the colours that were not finite
 };
 
 // `filterFeatures`: the noise of features is removed; else they are taken as they are.
 PreparedInput prepare(const DenoiseInput&, bool filterFeatures);
+
+void multiply(ColourPlanes& colours, const ColourPlanes& factors);
+void divide(ColourPlanes& colours, const ColourPlanes& factors);
 
 // Squared differences of compressed colours and of features below this count as none.
 inline constexpr float kColourEpsilon = 1e-6f, kFeatureEpsilon = 1e-6f;

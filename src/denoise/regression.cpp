@@ -37,13 +37,14 @@ ColourPlanes Sums::means() && {
 // What the fits of one half read.
 struct Source {
     const std::vector<Plane>& colours;
+    const Modulation& modulation;
     const std::vector<Plane>& features;
     const PatchWeights& weights;
-    bool sharp; // k = 0.35: the 32nd power of the weights at k = 2
+    int narrowing; // how often the weights are squared
 
     Lanes weight(int dx, int dy, int x, int y) const {
         Lanes w = load(weights.row(dx, dy, y) + x);
-        for (int i = 0; sharp && i < 5; ++i) w *= w;
+        for (int i = 0; i < narrowing; ++i) w *= w;
         return w;
     }
 };
@@ -52,11 +53,12 @@ struct Source {
 template <int N> struct Window {
     const Source& source;
     int x, y, xt, yt;
-    Lanes centre[N > 0 ? N : 1];
+    Lanes centre[N > 0 ? N : 1], fade;
 
     Window(const Source& s, const Tile& tile, int tileX, int tileY)
         : source(s), x(tile.x0 + tileX), y(tile.y0 + tileY), xt(tileX), yt(tileY) {
         for (std::size_t i = 0; i < N; ++i) centre[i] = load(source.features[i].row(y) + x);
+        fade = load(source.modulation.fade.row(y) + x);
     }
     // Calls visit(weights, features relative to the centre, dx, dy) for all neighbours.
     template <typename Visit> void forEach(const Visit& visit) const {
@@ -67,11 +69,16 @@ template <int N> struct Window {
                 visit(source.weight(dx, dy, xt, yt), f, dx, dy);
             }
     }
+    Lanes divisor(std::size_t c, int dx, int dy) const {
+        const Lanes albedo = load(source.modulation.albedo[c].row(y + dy) + x + dx);
+        return albedo + fade * (1.f - albedo);
+    }
     LinearFit<N> fit() const {
         LinearFit<N> fit;
         forEach([&](Lanes w, const Lanes* f, int dx, int dy) {
             Lanes c[3];
-            for (std::size_t i = 0; i < 3; ++i) c[i] = load(source.colours[i].row(y + dy) + x + dx);
+            for (std::size_t i = 0; i < 3; ++i)
+                c[i] = load(source.colours[i].row(y + dy) + x + dx) / divisor(i, dx, dy);
             fit.add(w, f, c);
         });
         fit.solve();
@@ -79,9 +86,9 @@ template <int N> struct Window {
     }
     void predict(const LinearFit<N>& fit, Sums& sums) const {
         forEach([&](Lanes w, const Lanes* f, int dx, int dy) {
-            for (int i = 0; i < 3; ++i) {
-                float* const to = sums.colour[static_cast<std::size_t>(i)].row(y + dy) + x + dx;
-                store(to, load(to) + w * fit.at(f, i));
+            for (std::size_t i = 0; i < 3; ++i) {
+                float* const to = sums.colour[i].row(y + dy) + x + dx;
+                store(to, load(to) + w * divisor(i, dx, dy) * fit.at(f, static_cast<int>(i)));
             }
             float* const to = sums.weight.row(y + dy) + x + dx;
             store(to, load(to) + w);
@@ -106,8 +113,8 @@ template <int... N> RegressTile chooseFor(std::size_t features, std::integer_seq
 
 } // namespace
 
-std::array<ColourPlanes, 2> regress(const std::vector<Plane>& colours, const std::vector<Plane>& features,
-                                    const Guide& guide) {
+std::array<ColourPlanes, 2> regress(const std::vector<Plane>& colours, const Modulation& modulation,
+                                    const std::vector<Plane>& features, const Guide& guide, int narrowing) {
     ABBE_CHECK(colours.size() == 3 && features.size() <= kMaxFeatures);
     const int width = colours[0].width(), height = colours[0].height();
     const RegressTile run = chooseFor(features.size(), std::make_integer_sequence<int, kMaxFeatures + 1>());
@@ -115,7 +122,8 @@ std::array<ColourPlanes, 2> regress(const std::vector<Plane>& colours, const std
     forEachTile(width, height, [&](const Tile& tile) {
         PatchWeights weights(kWindowRadius);
         weights.compute(guide, tile);
-        for (std::size_t k = 0; k < 2; ++k) run({colours, features, weights, k == 1}, tile, sums[k]);
+        for (std::size_t k = 0; k < 2; ++k)
+            run({colours, modulation, features, weights, k == 1 ? narrowing : 0}, tile, sums[k]);
     });
     return {std::move(sums[0]).means(), std::move(sums[1]).means()};
 }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kLevels = 5;
 static_assert(2 << (kLevels - 1) <= Plane::kBorder - kLanes); // the farthest pixel that is looked at
-constexpr float kNoiseWidths = 3;      // standard deviations of noise that a difference of colour may have
+constexpr float kNoiseWidths = 3; // standard deviations of noise that a difference of colour may have
+constexpr int kVarianceRadius = 3;
 constexpr float kFeatureWidth = 0.05f; // difference of features that halves a weight, roughly
 
 // One half between two levels: its colours, and of the compressed ones the mean variance of a channel.
@@ -21,13 +22,14 @@ struct Level {
     Plane variance;
 };
 
+// Smoother than that of the guide: a pixel is compared with few others, and not with their surroundings.
 Plane meanVariance(const HalfBuffers& guide) {
     Plane variance(guide.variances[0].width(), guide.variances[0].height());
     for (int y = 0; y < variance.height(); ++y)
         for (int x = 0; x < variance.width(); ++x)
             for (const Plane& p : guide.variances) variance.row(y)[x] += p.row(y)[x] / 3;
     variance.extend();
-    return variance;
+    return boxFilter(variance, kVarianceRadius);
 }
 
 // The squared distance of pixels in units of what separates surfaces and of the noise of `guide`.
@@ -69,11 +71,11 @@ void filterPixels(const Level& from, const Distance& distance, int x, int y, int
     store(to.variance.row(y) + x, variance / (total * total));
 }
 
-Level nextLevel(const Level& from, const Level& guide, const std::vector<Plane>& features, int step) {
+Level nextLevel(const Level& from, const std::vector<Plane>& features, int step) {
     const int width = from.variance.width(), height = from.variance.height();
     Level to{{3, Plane(width, height)}, Plane(width, height)};
-    const std::vector<Plane> compressedGuide = compressed(guide.colours);
-    const Distance distance{features, compressedGuide, guide.variance};
+    const std::vector<Plane> guide = compressed(from.colours);
+    const Distance distance{features, guide, from.variance};
     parallelFor(static_cast<std::size_t>(height), [&](std::size_t y) {
         for (int x = 0; x < width; x += kLanes) filterPixels(from, distance, x, static_cast<int>(y), step, to);
     });
@@ -86,15 +88,15 @@ Level nextLevel(const Level& from, const Level& guide, const std::vector<Plane>&
 
 DenoisedHalves denoiseByWavelets(const PreparedInput& input) {
     const Plane variance = meanVariance(input.guide);
-    std::array<Level, 2> halves{Level{input.colour.halves[0], variance}, Level{input.colour.halves[1], variance}};
+    std::array<Level, 2> halves{Level{input.shading[0], variance}, Level{input.shading[1], variance}};
     for (int level = 0; level < kLevels; ++level) {
-        std::array<Level, 2> next{nextLevel(halves[0], halves[1], input.features, 1 << level),
-                                  nextLevel(halves[1], halves[0], input.features, 1 << level)};
-        halves = std::move(next);
+        for (Level& half : halves) half = nextLevel(half, input.features, 1 << level);
     }
     DenoisedHalves result;
-    for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t half = 0; half < 2; ++half) {
         for (std::size_t c = 0; c < 3; ++c) result[half][c] = std::move(halves[half].colours[c]);
+        multiply(result[half], input.divisor);
+    }
     return result;
 }
 

@@ -6,8 +6,9 @@
 
 namespace abbe {
 
-// Each half by the edge-avoiding wavelets of [Dammertz2010]; differences of colour count in units of the noise, which
-// is that of the other half and shrinks from level to level [Schied2017].
+// Each half by the edge-avoiding wavelets of [Dammertz2010]; differences of its own colours count in units of the
+// noise, which shrinks from level to level [Schied2017]. Weights from the other half leave less noise, but then it
+// cannot tell any more how large the error is.
 DenoisedHalves denoiseByWavelets(const PreparedInput&);
 
 } // namespace abbe

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <doctest/doctest.h>
 #include <limits>
+#include <utility>
 
 using namespace abbe;
 
@@ -62,7 +63,7 @@ TEST_CASE("noise goes, the picture stays") {
             const DenoiseResult r = denoise(picture.input(features), method);
             const double after = picture.relMse(r.colour);
             MESSAGE(name(method) << " features " << features << ": relMSE " << before << " -> " << after);
-            CHECK(after < before / (method == DenoiseMethod::preview ? 3 : features ? 12 : 3));
+            CHECK(after < before / (method == DenoiseMethod::preview ? 4 : features ? 20 : 10));
             CHECK(r.repaired == 0);
         }
 }
@@ -120,20 +121,42 @@ TEST_CASE("pixels that are not finite are replaced in the result alone, and coun
     CHECK(finite(hopeless));
 }
 
+// Colours are divided by the albedo before they are fitted: a product of texture and light is no affine function of
+// them.
+TEST_CASE("texture under uneven light: neither is blurred") {
+    SyntheticPicture picture(96, 80, 0.3f);
+    picture.repaint([](int x, int y) {
+        const int hash = (x * 7919 + y * 104729 + x * y * 31) % 97;
+        const float albedo = 0.05f + 0.8f * static_cast<float>(hash) / 96;
+        const float light =
+            0.6f + 0.5f * std::sin(0.08f * static_cast<float>(x)) * std::cos(0.06f * static_cast<float>(y));
+        return std::pair(albedo, albedo * light);
+    });
+    const double before = picture.relMse(picture.mean);
+    const double after = picture.relMse(denoise(picture.input(), DenoiseMethod::nfor).colour);
+    MESSAGE("relMSE " << before << " -> " << after);
+    CHECK(after < before / 10);
+}
+
 // Averaged over seeds, what the halves tell is what the truth tells. Both halves take part in the variances that the
-// weights are made of, and in the choice of the bandwidth, so that the estimate is somewhat too good.
+// weights are made of, so that the estimate is somewhat too good.
 TEST_CASE("the estimated error is the error") {
-    double before = 0, estimatedBefore = 0, after = 0, estimatedAfter = 0;
-    for (unsigned seed = 1; seed <= 4; ++seed) {
-        const SyntheticPicture picture(112, 96, 0.25f, seed);
-        const DenoiseResult r = denoise(picture.input(), DenoiseMethod::nfor);
-        before += picture.relMse(picture.mean);
-        estimatedBefore += r.relMseBefore;
-        after += picture.relMse(r.colour);
-        estimatedAfter += r.relMseAfter;
+    for (const DenoiseMethod method : kMethods) {
+        double before = 0, estimatedBefore = 0, after = 0, estimatedAfter = 0, pixels = 0;
+        for (unsigned seed = 1; seed <= 4; ++seed) {
+            const SyntheticPicture picture(112, 96, 0.25f, seed);
+            const DenoiseResult r = denoise(picture.input(), method);
+            before += picture.relMse(picture.mean);
+            estimatedBefore += r.relMseBefore;
+            after += picture.relMse(r.colour);
+            estimatedAfter += r.relMseAfter;
+            pixels += picture.relMse(r.error);
+        }
+        MESSAGE(name(method) << ": before " << before << " ~ " << estimatedBefore << ", after " << after << " ~ "
+                             << estimatedAfter << " ~ " << pixels);
+        CHECK(estimatedBefore / before == doctest::Approx(1).epsilon(0.03));
+        CHECK(estimatedAfter / after > (method == DenoiseMethod::nfor ? 0.8 : 0.7));
+        CHECK(estimatedAfter / after < 1.2);
+        CHECK(pixels / estimatedAfter == doctest::Approx(1).epsilon(0.05)); // denoised.error
     }
-    MESSAGE("before " << before << " ~ " << estimatedBefore << ", after " << after << " ~ " << estimatedAfter);
-    CHECK(estimatedBefore / before == doctest::Approx(1).epsilon(0.03));
-    CHECK(estimatedAfter / after > 0.55);
-    CHECK(estimatedAfter / after < 1.2);
 }

@@ -27,6 +27,11 @@ struct FlatGuide {
     }
 };
 
+Modulation plainModulation(int width, int height) {
+    const Plane one = makePlane(width, height, [](int, int) { return 1; });
+    return {{one, one, one}, Plane(width, height)};
+}
+
 double largestError(const Plane& a, const Plane& b) {
     double largest = 0;
     for (int y = 0; y < a.height(); ++y)
@@ -67,8 +72,25 @@ TEST_CASE("a picture that is an affine function of its features comes out as it 
                     value += (0.3 * static_cast<double>(i) - c) * features[i].row(y)[x];
                 return value;
             }));
-        for (const ColourPlanes& result : regress(colours, features, flat.guide))
+        for (const ColourPlanes& result : regress(colours, plainModulation(kWidth, kHeight), features, flat.guide, 5))
             for (std::size_t c = 0; c < 3; ++c) CHECK(largestError(result[c], colours[c]) < 2e-3);
+    }
+}
+
+TEST_CASE("the product of an affine function of the features and the modulation comes out as it is, faded or not") {
+    constexpr int kWidth = 45, kHeight = 38;
+    const FlatGuide flat(kWidth, kHeight);
+    const std::vector<Plane> features = makeFeatures(kWidth, kHeight, 3);
+    const Plane albedo = makePlane(kWidth, kHeight, [](int x, int y) { return 0.05 + 0.1 * ((x * 7 + y * 3) % 9); });
+    for (const float fade : {0.f, 0.4f, 1.f}) {
+        const Plane faded = makePlane(kWidth, kHeight, [&](int, int) { return fade; });
+        const std::vector<Plane> colours(3, makePlane(kWidth, kHeight, [&](int x, int y) {
+                                             const double light =
+                                                 2 + features[0].row(y)[x] - 0.5 * features[2].row(y)[x];
+                                             return light * (albedo.row(y)[x] + fade * (1 - albedo.row(y)[x]));
+                                         }));
+        for (const ColourPlanes& r : regress(colours, {{albedo, albedo, albedo}, faded}, features, flat.guide, 5))
+            for (std::size_t c = 0; c < 3; ++c) CHECK(largestError(r[c], colours[c]) < 2e-3);
     }
 }
 
@@ -81,7 +103,7 @@ TEST_CASE("features that say nothing are left out") {
     features.push_back(makePlane(kSize, kSize, [](int, int) { return 3; }));
     features.push_back(makePlane(kSize, kSize, [&](int x, int y) { return 1 - 2 * features[0].row(y)[x]; }));
     const std::vector<Plane> colours(3, makePlane(kSize, kSize, [](int x, int) { return 1 + 0.04 * x; }));
-    for (const ColourPlanes& result : regress(colours, features, flat.guide))
+    for (const ColourPlanes& result : regress(colours, plainModulation(kSize, kSize), features, flat.guide, 5))
         for (std::size_t c = 0; c < 3; ++c) CHECK(largestError(result[c], colours[c]) < 2e-3);
 }
 
@@ -91,7 +113,7 @@ TEST_CASE("without features and with equal weights the result is a mean of means
     std::mt19937 random(3);
     std::uniform_real_distribution<float> uniform(0, 1);
     const Plane noise = makePlane(kSize, kSize, [&](int, int) { return uniform(random); });
-    const ColourPlanes result = regress({noise, noise, noise}, {}, flat.guide)[0];
+    const ColourPlanes result = regress({noise, noise, noise}, plainModulation(kSize, kSize), {}, flat.guide, 5)[0];
     const Plane expected = boxFilter(boxFilter(noise, kRadius), kRadius);
     // Inside, where no window is cut by the edge.
     double largest = 0;
@@ -125,7 +147,7 @@ TEST_CASE("weights: 1 among pixels that differ by noise alone, 0 across an edge,
     CHECK(weights.row(-1, 0, 3)[5] == 0);
     // (A − B)²/2 is the variance of a half.
     const Plane other = makePlane(kSize, kSize, [&](int x, int) { return (x < 20 ? 0 : 3) + noise(random); });
-    const HalfBuffers halves({value}, {other});
+    const HalfBuffers halves({value}, {other}, 4);
     double mean = 0;
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) mean += halves.variances[0].row(y)[x] / (kSize * kSize);
@@ -139,7 +161,7 @@ TEST_CASE("the squared error of the mean of two halves") {
     std::array<std::vector<Plane>, 4> planes; // A, B, D_A, D_B
     for (auto& kind : planes)
         for (int c = 0; c < 3; ++c) kind.push_back(makePlane(20, 12, [&](int, int) { return noise(random); }));
-    const HalfBuffers noisy(planes[0], planes[1]);
+    const HalfBuffers noisy(planes[0], planes[1], 4);
     const DenoisedHalves denoised{ColourPlanes{planes[2][0], planes[2][1], planes[2][2]},
                                   ColourPlanes{planes[3][0], planes[3][1], planes[3][2]}};
     const ColourPlanes error = squaredError(noisy, denoised);

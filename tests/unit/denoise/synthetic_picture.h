@@ -61,6 +61,28 @@ struct SyntheticPicture {
         return sum / (3 * static_cast<double>(size()));
     }
 
+    // The same of estimated errors of the pixels.
+    double relMse(const std::vector<float>& error) const {
+        std::array<std::vector<float>, 3> wrong = truth;
+        for (auto& plane : wrong)
+            for (std::size_t i = 0; i < size(); ++i) plane[i] += error[i];
+        return relMse(wrong);
+    }
+    // Another picture, grey and with the same normals and depths: paint(x, y) is a pair of albedo and truth.
+    template <typename Paint> void repaint(const Paint& paint, float relativeNoise = 0.3f) {
+        for (auto* planes : {&truth, &albedo, &noisyAlbedo, &halfAlbedo, &mean, &half})
+            for (auto& plane : *planes) plane.clear();
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const auto [a, t] = paint(x, y);
+                    albedo[c].push_back(a);
+                    truth[c].push_back(t);
+                }
+        addNoise(truth, relativeNoise, 7, mean, half);
+        noisyAlbedo = halfAlbedo = albedo;
+    }
+
   private:
     using Colour = std::array<float, 3>;
 
