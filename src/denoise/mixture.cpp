@@ -13,6 +13,7 @@ namespace {
 constexpr int kComparedRadius = 5, kBlendedRadius = 3;
 constexpr float kSoftness = 0.7f;      // standard deviations of a difference that take a weight to 1/e
 constexpr float kBrightness = 0.01f;   // errors are relative to v² + this, where the typical v is kTypical
+constexpr float kInfluence = 0.1f;     // a pixel where a candidate is off by far shall not decide for its neighbours
 constexpr float kLeastSpread = 1e-12f; // below any difference that can be seen
 
 template <typename Body> void forEachRow(const Plane& like, const Body& body) {
@@ -32,7 +33,7 @@ Plane relativeError(const HalfBuffers& noisy, const DenoisedHalves& candidate, c
     return sum;
 }
 
-// Relative errors of all candidates, less their mean at each pixel: the noise of the picture that they share.
+// Relative errors of all candidates, less their mean at each pixel: the noise of the picture that they share. Bounded.
 std::vector<Plane> comparedErrors(const HalfBuffers& noisy, const std::vector<DenoisedHalves>& candidates) {
     std::vector<Plane> errors;
     for (const DenoisedHalves& c : candidates) errors.push_back(relativeError(noisy, c, candidates[0]));
@@ -40,7 +41,7 @@ std::vector<Plane> comparedErrors(const HalfBuffers& noisy, const std::vector<De
         for (int x = 0; x < errors[0].width(); ++x) {
             float mean = 0;
             for (const Plane& e : errors) mean += e.row(y)[x] / static_cast<float>(errors.size());
-            for (Plane& e : errors) e.row(y)[x] -= mean;
+            for (Plane& e : errors) e.row(y)[x] = std::clamp(e.row(y)[x] - mean, -kInfluence, kInfluence);
         }
     });
     return errors;

@@ -88,6 +88,20 @@ TEST_CASE("each candidate wins where it is better") {
     }
 }
 
+TEST_CASE("a pixel where a candidate is far off does not decide for its neighbours") {
+    Noise noise(3);
+    const HalfBuffers noisy = noisyPicture(noise);
+    const auto isSpot = [](int x, int y) { return x % 11 == 5 && y % 11 == 5; };
+    const DenoisedHalves spotted = makeHalves([&](int x, int y) { return truth(x, y) + (isSpot(x, y) ? 5 : 0); });
+    const DenoisedHalves wrong = makeHalves([](int x, int y) { return truth(x, y) + 0.15; });
+    const Mixture m = mix(noisy, {wrong, spotted});
+    double sum = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            if (!isSpot(x, y)) sum += std::pow(m.picture[0][0].row(y)[x] - truth(x, y), 2) / (kWidth * kHeight);
+    CHECK(sum < 0.1 * 0.15 * 0.15);
+}
+
 // Ten candidates that are equally good: their mean is better than any, and the choice among them is all chance.
 TEST_CASE("candidates that cannot be told apart are averaged, and the choice does not flatter the estimate") {
     double error = 0, single = 0, flattered = 0, validated = 0, real = 0;
