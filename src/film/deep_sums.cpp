@@ -62,14 +62,20 @@ void DeepSums::add(std::size_t pixel, Kind kind, float depth, float share, const
     add(bins, {key, term(s), term(light.x), term(light.y), term(light.z), term(s * static_cast<double>(depth))});
 }
 
+// A full list is made coarser before it is added to, so that it never takes more memory than it may.
 void DeepSums::add(Bins& bins, const DeepBin& bin) const {
-    const auto place = std::ranges::lower_bound(bins.list, bin.key, {}, &DeepBin::key);
-    if (place != bins.list.end() && place->key == bin.key) {
-        *place += bin;
-        return;
+    DeepBin added = bin;
+    for (;; added.key >>= 1, coarsen(bins)) {
+        const auto place = std::ranges::lower_bound(bins.list, added.key, {}, &DeepBin::key);
+        if (place != bins.list.end() && place->key == added.key) {
+            *place += added;
+            return;
+        }
+        if (bins.list.size() < most_) {
+            bins.list.insert(place, added);
+            return;
+        }
     }
-    bins.list.insert(place, bin);
-    while (bins.list.size() > most_) coarsen(bins);
 }
 
 void DeepSums::coarsen(Bins& bins) const {
