@@ -97,6 +97,7 @@ void HumanReport::done(const RenderSummary& s) {
         console_.line(fmt::format("  {} of {} densities of media above their bound, at most {:.3g} times",
                                   countText(static_cast<double>(r.excess.above)),
                                   countText(static_cast<double>(r.excess.lookups)), r.excess.most));
+    if (s.image.empty()) return;
     console_.line(
         fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
     if (!s.png.empty()) console_.line(fmt::format("image {}", s.png));

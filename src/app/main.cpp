@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace {
@@ -30,6 +31,11 @@ ExitCode guarded(const Command& command) {
         console.error("out of memory");
         return ExitCode::memory;
     } catch (const std::exception& e) {
+        const auto* const system = dynamic_cast<const std::system_error*>(&e);
+        if (system && system->code() == std::errc::resource_unavailable_try_again) {
+            console.error("out of memory: there is none for another thread");
+            return ExitCode::memory;
+        }
         console.error(fmt::format("internal error: {}. This is a bug; please report it.", e.what()));
         return ExitCode::internal;
     }

@@ -208,6 +208,7 @@ ExitCode RenderRun::finish(int signal) {
     summary_.exit = ExitCode::done;
     if (options_.strict && summary_.warnings > 0) summary_.exit = ExitCode::threshold;
     if (outOfMemory_) summary_.exit = refuseForMemory();
+    if (outOfMemory_ && !imageWritten_) summary_.image.clear();
     if (lostTexture_)
         summary_.exit = refuse("E0666",
                                fmt::format("a texture could not be read any more (W0458), so the render was ended; the "

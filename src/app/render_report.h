@@ -25,7 +25,7 @@ struct RenderStart {
 
 // Known at the end.
 struct RenderSummary {
-    std::string image, png; // paths; png empty: none
+    std::string image, png; // paths; empty: none
     std::string space;      // of the image
     int width = 0, height = 0;
     bool partial = false;

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <fmt/format.h>
+#include <new>
 #include <stdexcept>
 
 namespace abbe {
@@ -26,9 +27,12 @@ int buildThreads() { return threadCount(); }
 EmbreeDevice::EmbreeDevice()
     : firstError_(std::make_unique<std::string>()),
       device_(rtcNewDevice(fmt::format("threads={}", buildThreads()).c_str())) {
-    if (!device_)
-        throw std::runtime_error(fmt::format("Embree cannot start on this machine (error {})",
-                                             static_cast<int>(rtcGetDeviceError(nullptr))));
+    if (!device_) {
+        const RTCError error = rtcGetDeviceError(nullptr);
+        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+        throw std::runtime_error(
+            fmt::format("Embree cannot start on this machine (error {})", static_cast<int>(error)));
+    }
     rtcSetDeviceErrorFunction(device_.get(), remember, firstError_.get());
 }
 

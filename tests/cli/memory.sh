@@ -62,6 +62,23 @@ mv away/noise*.ppm .
 expect 0 "${long[@]}" --texture-cache 16MiB --resume --quiet -o lost.exr
 same_pixels whole.exr lost.exr
 
+# The system gives no more, just when the image is to be written: by the least memory with which a render begins.
+if [[ $(uname -m) == x86_64 ]] && ! grep -q -e asan -e tsan <<<"$program"; then # sanitizers reserve terabytes
+    large=("$room" --size 1000x1000 --samples 2 -t 1 --checkpoint 1h)
+    for ((kib = 200000; kib < 1000000; kib += 6000)); do
+        (ulimit -v $kib && timeout 120 "$program" "${large[@]}" -o short.exr >out 2>err)
+        code=$?
+        [[ $code -eq 5 ]] || fault "$kib KiB of memory ended with $code: $(cat err)"
+        [[ $code -ne 5 || -e short.exr.ckpt ]] && break
+    done
+    says err E0665
+    says err "memory ran out; the render was saved as \`short.exr.ckpt\`"
+    [[ ! -e short.exr ]] || fault "an image without the memory for it"
+    expect 0 "${large[@]}" --resume --quiet -o short.exr
+    expect 0 "${large[@]}" --quiet -o enough.exr
+    same_pixels enough.exr short.exr
+fi
+
 # No file may be larger than this: a full disk. The image does not fit anywhere; the message says so.
 (
     ulimit -f 16 # KiB
