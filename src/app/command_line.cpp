@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include "app/argument_values.h"
+#include "app/command_line_certify.h"
 #include "app/command_line_compare.h"
 #include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
@@ -20,8 +21,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render",  "merge",   "check",  "explain", "info",
-                                     "convert", "compare", "volume", "denoise", "replay"};
+constexpr const char* kCommands[] = {"render",  "merge",  "check",   "explain", "info",   "convert",
+                                     "compare", "volume", "denoise", "replay",  "certify"};
 
 constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
@@ -99,6 +100,9 @@ class Reader {
         addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
         addDenoiseArguments(*add("denoise", kDenoiseHelp), denoise_, common_);
         addReplayArguments(*add("replay", kReplayHelp), replay_, common_);
+        CLI::App* certify = add("certify", kCertifyHelp);
+        addCertifyArguments(*certify, certify_, common_.json);
+        addView(certify, certify_.view);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -196,6 +200,7 @@ class Reader {
     VolumeOptions volume_;
     DenoiseOptions denoise_;
     ReplayOptions replay_;
+    CertifyOptions certify_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -376,6 +381,7 @@ Command Reader::command(const Words& words) {
     if (name == "convert") return {convert_, common_};
     if (name == "denoise") return {denoise_, common_};
     if (name == "replay") return {replay_, common_};
+    if (name == "certify") return {certify_, common_};
     return {compare_, common_};
 }
 

@@ -1,3 +1,4 @@
+#include "app/display_view.h"
 #include "app/image_output.h"
 #include "app/layer_view.h"
 #include "app/options.h"
@@ -25,8 +26,6 @@ std::string spaceFault(const std::string& path, const RgbImage& image) {
     return fmt::format("`{}` contradicts itself: its colorInteropID is `{}`, its chromaticities are {}", path,
                        image.interopId, name.empty() ? "of no known space" : fmt::format("those of `{}`", name));
 }
-
-bool same(Chromaticity a, Chromaticity b) { return std::abs(a.x - b.x) < 1e-5 && std::abs(a.y - b.y) < 1e-5; }
 
 // Deep samples are put over each other.
 RgbImage readFlat(const std::string& path, const ExrInfo& info) {
@@ -65,12 +64,7 @@ ExitCode showColours(RgbImage image, const ConvertOptions& options, const Common
         return ExitCode::faulty;
     }
     DisplayPicture picture;
-    const RgbSpace space = image.chromaticities->space();
-    const Chromaticity neutral = image.adoptedNeutral.value_or(space.white);
-    if (same(neutral, rgb::ap0.white) && image.chromaticities->matches(rgb::ap1))
-        picture.space = OutputSpace::acescg;
-    else if (!same(neutral, rgb::ap0.white) || !image.chromaticities->matches(rgb::ap0))
-        convertToAces(image.rgb, space, neutral);
+    picture.space = makeViewable(image);
     picture.width = image.width();
     picture.height = image.height();
     picture.rgb = std::move(image.rgb);

@@ -1,3 +1,4 @@
+#include "app/certificate_file.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -90,9 +91,9 @@ void HumanReport::done(const RenderSummary& s) {
     console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
                               countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
                               countText(rate), r.samplesPerPixel, r.kernel));
-    const std::string noise = s.noise > 0 ? fmt::format("noise {:.3g} %   ", 100 * s.noise) : std::string();
-    console_.line(fmt::format("  {}memory {} MB   {} warning{}", noise, s.memoryBytes / 1000000, s.warnings,
-                              s.warnings == 1 ? "" : "s"));
+    if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
+    console_.line(
+        fmt::format("  memory {} MB   {} warning{}", s.memoryBytes / 1000000, s.warnings, s.warnings == 1 ? "" : "s"));
     if (r.excess.above > 0)
         console_.line(fmt::format("  {} of {} densities of media above their bound, at most {:.3g} times",
                                   countText(static_cast<double>(r.excess.above)),

@@ -1,15 +1,14 @@
 #include "app/image_output.h"
 
+#include "app/display_view.h"
 #include "app/version.h"
 #include "io/atomic_file.h"
 #include "io/exr_deep.h"
 #include "io/io_error.h"
-#include "io/ocio_view.h"
 #include "io/png_writer.h"
 #include "spectrum/color_space.h"
 
-#include <cmath>
-#include <cstdlib>
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -27,27 +26,6 @@ void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics&
         if (channel != "variance.Y") // which nobody asked for
             diagnostics.warning("W0631", {},
                                 fmt::format("`{}` is an ACES container, which cannot hold `{}`", path, channel));
-}
-
-// Calls `use` with the configuration's file, empty for the built-in one.
-template <typename Use> auto withConfig(const ViewOptions& options, const Use& use) {
-    if (options.config == OcioView::builtInConfig) return use(std::string());
-    if (!options.config.empty()) return use(options.config);
-    const char* variable = std::getenv("OCIO");
-    if (!variable || !*variable) return use(std::string());
-    try {
-        return use(std::string(variable));
-    } catch (const IoError& e) {
-        throw IoError(fmt::format("{}\n($OCIO names `{}`; `--ocio FILE` takes another configuration, `--ocio {}` the "
-                                  "built-in one)",
-                                  e.what(), variable, OcioView::builtInConfig));
-    }
-}
-
-OcioView makeView(ViewInput input, const ViewOptions& o) {
-    const std::string display = o.display.empty() ? OcioView::defaultDisplay : o.display;
-    const std::string view = o.view.empty() ? OcioView::defaultView : o.view;
-    return withConfig(o, [&](const std::string& file) { return OcioView(input, display, view, file); });
 }
 
 } // namespace
@@ -137,28 +115,6 @@ void writeImage(const std::string& path, const FilmPicture& shot, const FilmSett
                         layers.unequalSums, path));
 }
 
-void checkView(const ViewOptions& options, bool png) {
-    if (png)
-        makeView(ViewInput::aces2065_1, options);
-    else
-        viewIdentity(options);
-}
-
-std::vector<ImageAttribute> viewIdentity(const ViewOptions& options) {
-    const OcioIdentity config = withConfig(options, [](const std::string& file) { return OcioView::identify(file); });
-    return {{"abbe.ocio", config.name}, {"abbe.ocioHash", config.hash}};
-}
-
-void convertToAces(std::span<float> rgb, const RgbSpace& space, Chromaticity neutral) {
-    const Matrix3 m = rgb::ap0.fromXyz() * adaptation(whiteXyz(neutral), whiteXyz(rgb::ap0.white)) * space.toXyz();
-    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
-        const auto v = m.apply<Vec3d>(Vec3d(rgb[i], rgb[i + 1], rgb[i + 2]));
-        rgb[i] = static_cast<float>(v.x);
-        rgb[i + 1] = static_cast<float>(v.y);
-        rgb[i + 2] = static_cast<float>(v.z);
-    }
-}
-
 void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindow& display) {
     const PixelWindow inside{std::max(window.x0, display.x0), std::max(window.y0, display.y0),
                              std::min(window.x1, display.x1), std::min(window.y1, display.y1)};
@@ -174,14 +130,9 @@ void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindo
 }
 
 void writeDisplayPng(const std::string& path, DisplayPicture picture, const ViewOptions& options, int bits) {
-    const bool aces = picture.space == OutputSpace::aces2065_1 || picture.space == OutputSpace::acescg;
-    if (!aces) convertToAces(picture.rgb, rgbSpace(picture.space), adoptedNeutral(picture.space));
-    const OcioView view =
-        makeView(picture.space == OutputSpace::acescg ? ViewInput::acescg : ViewInput::aces2065_1, options);
-    const auto gain = static_cast<float>(std::exp2(options.exposure));
-    if (gain != 1)
-        for (float& v : picture.rgb) v *= gain;
-    view.apply(picture.rgb);
+    const DisplayView display(picture.space, options);
+    display.apply(picture.rgb);
+    const OcioView& view = display.view();
     PngPicture png;
     png.width = picture.width;
     png.height = picture.height;

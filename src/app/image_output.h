@@ -42,18 +42,6 @@ std::string deepPath(const std::string& imagePath);
 void writeImage(const std::string& path, const FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>,
                 Diagnostics&);
 
-// The configuration that PNGs are made with: `--ocio`, else the environment's $OCIO, else the built-in one, which
-// `--ocio abbe-aces-1.3` asks for in spite of $OCIO. Nothing takes the place of one that cannot be read: throws
-// IoError, and also for an unknown display or view if `png`. Checked before hours are spent.
-void checkView(const ViewOptions&, bool png);
-// Its name and digest, for the header of an image.
-std::vector<ImageAttribute> viewIdentity(const ViewOptions&);
-
-// Linear RGB to ACES2065-1: `neutral`, the chromaticity that looks neutral in these colours, becomes the white of ACES
-// by Bradford's transform, as the spaces of [ColorInterop2026] are related.
-// In place.
-void convertToAces(std::span<float> rgb, const RgbSpace&, Chromaticity neutral);
-
 // `rgb`: interleaved, linear, in `space`. Throws IoError.
 struct DisplayPicture {
     int width = 0, height = 0;

@@ -1,3 +1,4 @@
+#include "app/certificate_file.h"
 #include "app/hash128.h"
 #include "app/json.h"
 #include "app/options.h"
@@ -169,6 +170,7 @@ std::string containerText(const AcesVerdict& aces) {
 ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     const ExrInfo info = readExrInfo(options.path);
     const std::string hash = pixelHash(options.path, info);
+    const auto certificate = readCertificate(info.attributes);
     const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
     if (common.json) {
         Json channels = Json::list(), attributes = Json::object();
@@ -187,6 +189,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"aces_container", aces.valid()},
                                           {"aces_faults", std::move(faults)},
                                           {"pixels", hash},
+                                          {"error", certificate ? certificateJson(*certificate) : Json()},
                                           {"attributes", std::move(attributes)}});
         common.console.data(object.text(true) + "\n");
         return ExitCode::done;
@@ -195,6 +198,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                 info.window.width(), info.window.height(), spaceOf(info), info.compression);
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
     s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
+    if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
     for (const ImageAttribute& a : info.attributes) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;

@@ -1,3 +1,4 @@
+#include "app/certificate_file.h"
 #include "app/fault_json.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
@@ -68,6 +69,7 @@ class JsonReport final : public RenderReport {
                            {"paths", r.paths},
                            {"rays", r.rays()},
                            {"noise", positiveOrNull(s.noise)},
+                           {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
                            {"kernel", r.kernel},
                            {"memory_bytes", s.memoryBytes},
                            {"dropped", dropped},

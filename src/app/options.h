@@ -106,6 +106,12 @@ struct ReplayOptions {
     std::optional<SampleId> sample; // its replicate and index
 };
 
+struct CertifyOptions {
+    std::string image;
+    std::vector<std::string> references; // none, one, or two of different seeds
+    ViewOptions view;
+};
+
 struct DenoiseOptions {
     std::string input, output; // no output: the input gets the layer
     DenoiseMethod method = DenoiseMethod::nfor;
@@ -120,7 +126,7 @@ struct MergeOptions {
 };
 
 using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
-                             CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions>;
+                             CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -134,5 +140,6 @@ ExitCode run(const CompareOptions&, const CommonOptions&);
 ExitCode run(const VolumeOptions&, const CommonOptions&);
 ExitCode run(const DenoiseOptions&, const CommonOptions&);
 ExitCode run(const ReplayOptions&, const CommonOptions&);
+ExitCode run(const CertifyOptions&, const CommonOptions&);
 
 } // namespace abbe

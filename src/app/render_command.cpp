@@ -1,3 +1,4 @@
+#include "app/display_view.h"
 #include "app/machine.h"
 #include "app/render_parts.h"
 #include "app/render_run.h"

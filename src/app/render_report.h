@@ -4,10 +4,12 @@
 #include "app/console.h"
 #include "app/exit_code.h"
 #include "app/found_fault.h"
+#include "film/error_certificate.h"
 #include "render/integrator.h"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +34,9 @@ struct RenderSummary {
     std::vector<std::pair<std::string, double>> phases; // name, seconds
     double totalSeconds = 0;
     RenderStatistics statistics;
-    double noise = 0;               // relative error of what was written
-    std::vector<FoundFault> faults; // of the examples of dropped samples, unless interrupted
+    double noise = 0;                            // relative error of what was written
+    std::vector<FoundFault> faults;              // of the examples of dropped samples, unless interrupted
+    std::optional<ErrorCertificate> certificate; // of that
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;
     ExitCode exit = ExitCode::done;

@@ -78,6 +78,8 @@ class RenderRun {
     void watch(InterruptGuard&, const Progress&);
     void tellHowToResume() const;
     void warn(const char* code, std::string message, std::string help);
+    void certify(const PixelFilm&);
+    void writeCertificate();
     void write(const PixelFilm&);
     void writeInMemory(const PixelFilm&);
     ExitCode refuseForMemory();

@@ -1,4 +1,6 @@
 // What a render writes: checkpoints, snapshots, the image, and what can be rescued when that fails.
+#include "app/certificate_file.h"
+#include "app/display_view.h"
 #include "app/provenance.h"
 #include "app/render_identity.h"
 #include "app/render_run.h"
@@ -98,9 +100,11 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
             Diagnostics ignored; // told at the end
             summary_.partial = true;
             summary_.noise = film.relativeNoise();
+            certify(film);
             const FilmPicture picture = pictureOf(film);
             writeImage(summary_.image, picture, film_, attributes(film), ignored);
             report_->image(summary_.image, true);
+            writeCertificate();
             writePng(picture.image);
         }
     } catch (const IoError& e) {
@@ -116,6 +120,9 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
     auto list =
         provenance({loaded_.get(), &options_.input, &built_, &settings_, &summary_.statistics, common_.commandLine,
                     std::string(spaceName(film_.space)), summary_.noise, seconds, film.replicates()});
+    if (summary_.certificate)
+        for (ImageAttribute& a : certificateAttributes(*summary_.certificate, summary_.statistics))
+            list.push_back(std::move(a));
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
@@ -134,7 +141,35 @@ void RenderRun::writePng(const ResolvedImage& image) {
     report_->image(summary_.png, summary_.partial);
 }
 
+// Without a view that can be made, which nobody may have asked for, the error is stated in linear units alone.
+void RenderRun::certify(const PixelFilm& film) {
+    ErrorCertificate::Picture picture{film_.whiteBalance, rgbSpace(film_.space).fromXyz(), built_.exposure, {}};
+    std::optional<DisplayView> view;
+    std::string reason;
+    try {
+        view.emplace(film_.space, options_.view);
+        picture.display = [&view](std::span<float> rgb) { view->apply(rgb); };
+    } catch (const IoError& e) {
+        reason = e.what();
+    }
+    summary_.certificate = ErrorCertificate::of(film, picture);
+    summary_.certificate->view = view ? view->name() : std::string();
+    summary_.certificate->displayReason = reason;
+}
+
+// Beside the image. All of it is in the header of the image too, so a fault is no reason to end the render.
+void RenderRun::writeCertificate() {
+    try {
+        const std::string path = summary_.image + ".json";
+        writeCertificateFile(path, {&summary_, settings_.seed, static_cast<int>(options_.parts.size()),
+                                    sceneHash(*loaded_, options_.input)});
+    } catch (const IoError& e) {
+        warn("W0667", fmt::format("the certificate was not written: {}", e.what()), "the header of the image has it");
+    }
+}
+
 void RenderRun::write(const PixelFilm& film) {
+    certify(film);
     const FilmPicture picture = pictureOf(film);
     Diagnostics warnings;
     try {
@@ -143,6 +178,7 @@ void RenderRun::write(const PixelFilm& film) {
         writeRescued(picture, attributes(film), e);
     }
     report_->image(summary_.image, summary_.partial);
+    writeCertificate();
     writePng(picture.image);
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);

@@ -230,6 +230,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0662", "a checkpoint was not written", "The disk is full or went away. The render goes on and tries again; an older checkpoint is as it was."},
     {"W0663", "an older checkpoint", "Beside the image there is the checkpoint of an earlier render, and `--resume` was not given. The first checkpoint of this render replaces it, after half a minute at the latest."},
     {"W0664", "no checkpoint to go on from", "`--resume` found no checkpoint beside the image, so the render begins anew. A checkpoint is removed when its render is done, unless `--checkpoint keep` is given."},
+    {"W0667", "the certificate was not written", "Beside an image `x.exr` there is `x.exr.json`, which says how large the image's error is, with an interval of 95 %. It could not be written; the header of the image holds the same figures, and `abbe info x.exr` prints them."},
     {"W0673", "a scene was changed", "The text of the scene is not what it was when the image was made. A sample that is repeated may be another one now."},
     {"W0680", "keys off the grid", "What deforms moves between at most 129 equally spaced times, the first when the shutter opens and the last when it closes. Keys that lie between them are replaced by what the steps say there; the message says how far that moves a point. Keys at simple fractions of the exposure, halves or tenths, are exact."},
     {"W0690", "voxels were put right", "Values that are not numbers or negative count as 0, and so on; the message says what and how many."},

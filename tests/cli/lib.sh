@@ -47,6 +47,13 @@ is_empty() { # FILE
 # The fingerprint of all channels of an image.
 pixels() { "$program" info "$1" | sed -n 's/^pixels *//p'; }
 
+# What an image says about its error.
+stated() { "$program" info "$1" | grep -E '^abbe\.(error|samples(Fewest|Mean|Most))'; }
+
+same_certificate() { # A B
+    [[ -n $(stated "$1") && $(stated "$1") == "$(stated "$2")" ]] || fault "the certificates of $1 and $2 differ"
+}
+
 same_pixels() { # A B
     local a b
     a=$(pixels "$1")

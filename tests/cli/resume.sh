@@ -39,6 +39,7 @@ done
 ((killed > 0)) || fault "never killed"
 same_pixels long.exr killed.exr
 same_pixels long.deep.exr killed.deep.exr
+same_certificate long.exr killed.exr
 [[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
 printf '%d kills, %d runs\n' "$killed" $((run + 1))
 
@@ -47,6 +48,7 @@ for part in 3 1 4 2; do expect 0 "$scene" "${small[@]}" --quiet -o split.exr --p
 expect 0 merge split.part4.abbe split.part1.abbe split.part3.abbe split.part2.abbe -o merged.exr
 same_pixels whole.exr merged.exr
 same_pixels whole.deep.exr merged.deep.exr
+same_certificate whole.exr merged.exr
 expect 0 info merged.exr
 says out "abbe.parts = 4"
 says out "abbe.samples = 120"
@@ -68,6 +70,7 @@ expect 0 "$scene" "${small[@]}" --quiet -o right.exr --part 2/2 --crop 21,0,40,2
 expect 0 merge left.part1.abbe right.part{1,2}.abbe -o crops.exr
 same_pixels whole.exr crops.exr
 same_pixels whole.deep.exr crops.deep.exr
+same_certificate whole.exr crops.exr
 expect 1 merge left.part1.abbe right.part1.abbe -o no.exr
 says err "at pixel 21,0"
 

@@ -7,9 +7,11 @@ source "$(dirname -- "$0")/lib.sh" "$@"
 for name in room glass; do
     expect 0 "$scenes/$name.scene" --quiet -o one.exr -t 1
     expect 0 "$scenes/$name.scene" --quiet -o two.exr -t 2
-    expect 0 "$scenes/$name.scene" --quiet -o five.exr -t 5
+    expect 0 "$scenes/$name.scene" --quiet -o eight.exr -t 8
     same_pixels one.exr two.exr
-    same_pixels one.exr five.exr
+    same_pixels one.exr eight.exr
+    same_certificate one.exr two.exr
+    same_certificate one.exr eight.exr
     expect 0 "$scenes/$name.scene" --quiet -o seed.exr --seed 1
     [[ $(pixels one.exr) != $(pixels seed.exr) ]] || fault "$name: the seed changes nothing"
 done

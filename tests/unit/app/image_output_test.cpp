@@ -1,4 +1,5 @@
 // Spaces of images on their way to a view.
+#include "app/display_view.h"
 #include "app/image_output.h"
 #include "io/io_error.h"
 #include "io/ocio_view.h"

@@ -1,0 +1,169 @@
+#include "app/certificate_file.h"
+
+#include "app/version.h"
+#include "io/atomic_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr const char* kVersion = "abbe-certificate 1";
+constexpr const char* kNone = "none: ";
+constexpr const char* kCaveat =
+    "estimated from the samples: what no sample has hit is not in the image nor in its error";
+
+constexpr const char* kRelative = "abbe.error";
+constexpr const char* kDisplay = "abbe.errorDisplay";
+
+std::string text(PixelBounds b) { return fmt::format("{} {} {} {}", b.x0, b.y0, b.x1, b.y1); }
+
+void addFigure(std::vector<ImageAttribute>& list, const std::string& name, const ErrorFigure& f) {
+    list.push_back({name, f.value});
+    list.push_back({name + "Low", f.low});
+    list.push_back({name + "High", f.high});
+    list.push_back({name + "Pixels", std::to_string(f.pixels)});
+    list.push_back({name + "WorstTile", text(f.worst.pixels)});
+    list.push_back({name + "Worst", f.worst.value});
+}
+
+// Values of a header by name.
+class Header {
+  public:
+    explicit Header(std::span<const ImageAttribute> attributes) : attributes_(attributes) {}
+
+    template <typename Value> std::optional<Value> get(const std::string& name) const {
+        for (const ImageAttribute& a : attributes_)
+            if (a.name == name)
+                if (const auto* value = std::get_if<Value>(&a.value)) return *value;
+        return std::nullopt;
+    }
+    std::uint64_t whole(const std::string& name) const {
+        std::uint64_t value = 0;
+        const std::string digits = get<std::string>(name).value_or("");
+        std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        return value;
+    }
+    std::optional<ErrorFigure> figure(const std::string& name) const {
+        const auto value = get<double>(name), low = get<double>(name + "Low"), high = get<double>(name + "High");
+        if (!value || !low || !high) return std::nullopt;
+        ErrorFigure f{*value, *low, *high, static_cast<std::int64_t>(whole(name + "Pixels")), {}};
+        f.worst.value = get<double>(name + "Worst").value_or(0);
+        const std::string tile = get<std::string>(name + "WorstTile").value_or("");
+        const char *next = tile.data(), *end = next + tile.size();
+        for (int* edge : {&f.worst.pixels.x0, &f.worst.pixels.y0, &f.worst.pixels.x1, &f.worst.pixels.y1}) {
+            while (next != end && *next == ' ') ++next;
+            next = std::from_chars(next, end, *edge).ptr;
+        }
+        return f;
+    }
+
+  private:
+    std::span<const ImageAttribute> attributes_;
+};
+
+Json json(const ErrorFigure& f) {
+    const PixelBounds& b = f.worst.pixels;
+    return Json::object(
+        {{"value", f.value},
+         {"low", f.low},
+         {"high", f.high},
+         {"pixels", f.pixels},
+         {"worst_tile",
+          Json::object({{"x0", b.x0}, {"y0", b.y0}, {"x1", b.x1}, {"y1", b.y1}, {"value", f.worst.value}})}});
+}
+
+Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
+    const auto dropped = [&s](DropCause cause) { return s.dropped[static_cast<std::size_t>(cause)]; };
+    return Json::object({{"per_pixel", Json::object({{"fewest", c.fewest}, {"mean", c.samples}, {"most", c.most}})},
+                         {"replicates", c.replicates},
+                         {"paths", s.paths},
+                         {"capped_paths", s.cappedPaths},
+                         {"dropped", Json::object({{"nan", dropped(DropCause::nan)},
+                                                   {"infinite", dropped(DropCause::infinite)},
+                                                   {"negative", dropped(DropCause::negative)}})}});
+}
+
+} // namespace
+
+std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, const RenderStatistics& s) {
+    std::vector<ImageAttribute> list{{"abbe.certificate", c.reason.empty() ? kVersion : kNone + c.reason}};
+    if (c.reason.empty()) {
+        addFigure(list, kRelative, c.relative);
+        if (c.display) addFigure(list, kDisplay, *c.display);
+        list.push_back(
+            {c.display ? "abbe.errorDisplayView" : "abbe.errorDisplayReason", c.display ? c.view : c.displayReason});
+    }
+    list.push_back({"abbe.samplesFewest", std::to_string(c.fewest)});
+    list.push_back({"abbe.samplesMean", c.samples});
+    list.push_back({"abbe.samplesMost", std::to_string(c.most)});
+    list.push_back({"abbe.paths", std::to_string(s.paths)});
+    list.push_back({"abbe.cappedPaths", std::to_string(s.cappedPaths)});
+    return list;
+}
+
+std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute> attributes) {
+    const Header header(attributes);
+    const auto verdict = header.get<std::string>("abbe.certificate");
+    if (!verdict) return std::nullopt;
+    ErrorCertificate c;
+    c.replicates = header.get<int>("abbe.replicates").value_or(0);
+    c.fewest = header.whole("abbe.samplesFewest");
+    c.samples = header.get<double>("abbe.samplesMean").value_or(0);
+    c.most = header.whole("abbe.samplesMost");
+    if (verdict->starts_with(kNone)) c.reason = verdict->substr(std::string_view(kNone).size());
+    const auto relative = header.figure(kRelative);
+    if (relative) c.relative = *relative;
+    if (!relative && c.reason.empty()) c.reason = fmt::format("the header lacks `{}`", kRelative);
+    c.display = header.figure(kDisplay);
+    c.view = header.get<std::string>("abbe.errorDisplayView").value_or("");
+    c.displayReason = header.get<std::string>("abbe.errorDisplayReason").value_or("");
+    return c;
+}
+
+std::string certificateLine(const ErrorCertificate& c) {
+    if (!c.reason.empty()) return "no certificate: " + c.reason;
+    const ErrorFigure& r = c.relative;
+    std::string line =
+        fmt::format("error {:.3g} % (95 %: {:.3g} to {:.3g} %)", 100 * r.value, 100 * r.low, 100 * r.high);
+    if (c.display)
+        line += fmt::format("   display {:.3g} of 255 ({:.3g} to {:.3g})", c.display->value, c.display->low,
+                            c.display->high);
+    return line;
+}
+
+Json certificateJson(const ErrorCertificate& c) {
+    const bool stated = c.reason.empty();
+    Json object = Json::object({{"stated", stated}, {"reason", stated ? Json() : Json(c.reason)}, {"level", 0.95}});
+    object.set("relative", stated ? json(c.relative) : Json());
+    object.set("display", stated && c.display ? json(*c.display) : Json());
+    object.set("view", c.view).set("display_reason", c.displayReason.empty() ? Json() : Json(c.displayReason));
+    return object.set("caveat", kCaveat);
+}
+
+void writeCertificateFile(const std::string& path, const CertificateFacts& facts) {
+    const RenderSummary& s = *facts.summary;
+    double seconds = 0;
+    for (const auto& phase : s.phases) seconds += phase.second;
+    const Json file = Json::object({{"format", kVersion},
+                                    {"image", std::filesystem::path(s.image).filename().string()},
+                                    {"partial", s.statistics.stopped || s.partial},
+                                    {"parts", facts.parts},
+                                    {"error", certificateJson(*s.certificate)},
+                                    {"samples", samplesJson(*s.certificate, s.statistics)},
+                                    {"seconds", seconds},
+                                    {"core_seconds", s.statistics.coreSeconds},
+                                    {"scene_hash", facts.sceneHash},
+                                    {"seed", facts.seed},
+                                    {"program", versionNumber()}});
+    const std::string text = file.text(true) + "\n";
+    AtomicFile out(path);
+    out.write(text);
+    out.commit();
+}
+
+} // namespace abbe

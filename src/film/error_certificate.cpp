@@ -1,0 +1,204 @@
+#include "film/error_certificate.h"
+
+#include "base/parallel.h"
+#include "film/error_sum.h"
+#include "film/relative_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kTile = 16;
+
+// A measure in both cases: the samples are distributed evenly about their mean, or few of them carry it all.
+struct Sums {
+    ErrorSum even, skewed;
+
+    void beginTile(PixelBounds tile) {
+        even.beginTile(tile);
+        skewed.beginTile(tile);
+    }
+    // Squared differences of the pixel from its darker and its brighter half.
+    void add(double dark, double bright) {
+        even.add((dark + bright) / 2);
+        skewed.add(dark);
+    }
+    void append(const Sums& next) {
+        even.append(next.even);
+        skewed.append(next.skewed);
+    }
+    // Between both cases; the interval has room for either.
+    ErrorFigure figure() const {
+        const ErrorFigure a = even.figure(), b = skewed.figure();
+        ErrorFigure figure = a;
+        figure.value = std::sqrt(a.value * b.value);
+        figure.low = std::min(a.low, b.low);
+        figure.high = std::max(a.high, b.high);
+        return figure;
+    }
+};
+
+// Mean square of the difference of two colours on the display.
+double squaredDistance(const float* a, const float* b) {
+    const auto code = [](float v) { return 255 * std::clamp(static_cast<double>(v), 0.0, 1.0); };
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += square(code(a[c]) - code(b[c]));
+    return sum / 3;
+}
+
+template <typename Visit> void forPixels(PixelBounds b, const Visit& visit) {
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x) visit(x, y);
+}
+
+template <typename Visit> void forTiles(PixelBounds rows, const Visit& visit) {
+    for (int x = rows.x0; x < rows.x1; x += kTile)
+        visit(PixelBounds{x, rows.y0, std::min(x + kTile, rows.x1), rows.y1});
+}
+
+// The two halves of a pixel's samples: the darker one is at mean + toDark, the brighter one as far on the other side.
+struct Halves {
+    Xyz mean, toDark;
+};
+
+// Measures are no linear functions of the light, so errors are estimated by them, and not by variances. A pixel x has
+// two halves of samples with means x − d and x + d, if they are equally many, and its expectation may be near either.
+// The mean of both squared differences is right up to the third order if samples are distributed evenly about their
+// mean. The more is carried by few samples, the nearer the expectation is to the darker half, and in the end it is
+// there.
+class Certifier {
+  public:
+    Certifier(const PixelFilm& film, const ErrorCertificate::Picture& picture)
+        : film_(film), picture_(picture), bounds_(film.bounds()), measure_(meanLuminance()) {}
+
+    void run(ErrorCertificate& certificate) const;
+
+  private:
+    Xyz balanced(const Xyz& xyz) const { return picture_.balance.apply<Xyz>(xyz * picture_.scale); }
+    double meanLuminance() const;
+    std::optional<Halves> halves(int x, int y) const;
+    std::vector<Halves> readBand(PixelBounds rows, std::vector<bool>& known) const;
+    std::vector<float> show(const std::vector<Halves>&) const;
+    void addBand(Sums& relative, Sums& display, PixelBounds rows) const;
+
+    const PixelFilm& film_;
+    const ErrorCertificate::Picture& picture_;
+    PixelBounds bounds_;
+    RelativeError measure_;
+};
+
+double Certifier::meanLuminance() const {
+    std::vector<double> rows(static_cast<std::size_t>(bounds_.height()));
+    parallelFor(rows.size(), [&](std::size_t i) {
+        const int y = bounds_.y0 + static_cast<int>(i);
+        for (int x = bounds_.x0; x < bounds_.x1; ++x) rows[i] += balanced(film_.mean(x, y)).y;
+    });
+    return std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(bounds_.area());
+}
+
+std::optional<Halves> Certifier::halves(int x, int y) const {
+    const int half = film_.replicates() / 2, all = film_.replicates();
+    const auto a = static_cast<double>(film_.samples(x, y, 0, half));
+    const auto b = static_cast<double>(film_.samples(x, y, half, all));
+    if (a == 0 || b == 0) return std::nullopt;
+    // The variance of the halves' difference is that of the mean times (a + b)²/(a b).
+    const Xyz d = balanced(film_.mean(x, y, 0, half) - film_.mean(x, y, half, all)) * (std::sqrt(a * b) / (a + b));
+    return Halves{balanced(film_.mean(x, y)), d.y > 0 ? d * -1 : d};
+}
+
+// Tile by tile, those alone that have two halves.
+std::vector<Halves> Certifier::readBand(PixelBounds rows, std::vector<bool>& known) const {
+    std::vector<Halves> list;
+    forTiles(rows, [&](PixelBounds tile) {
+        forPixels(tile, [&](int x, int y) {
+            const auto pixel = halves(x, y);
+            known.push_back(pixel.has_value());
+            if (pixel) list.push_back(*pixel);
+        });
+    });
+    return list;
+}
+
+// Nine values to a pixel: itself, its darker and its brighter half on the display.
+std::vector<float> Certifier::show(const std::vector<Halves>& pixels) const {
+    std::vector<float> rgb;
+    rgb.reserve(9 * pixels.size());
+    for (const Halves& p : pixels)
+        for (const Xyz& color : {p.mean, p.mean + p.toDark, p.mean - p.toDark}) {
+            const auto v = picture_.toRgb.apply<Xyz>(color);
+            for (const double c : {v.x, v.y, v.z}) rgb.push_back(static_cast<float>(c));
+        }
+    picture_.display(rgb);
+    return rgb;
+}
+
+void Certifier::addBand(Sums& relative, Sums& display, PixelBounds rows) const {
+    std::vector<bool> known;
+    const std::vector<Halves> pixels = readBand(rows, known);
+    const std::vector<float> shown = picture_.display ? show(pixels) : std::vector<float>();
+    std::size_t place = 0, i = 0;
+    forTiles(rows, [&](PixelBounds tile) {
+        relative.beginTile(tile);
+        display.beginTile(tile);
+        forPixels(tile, [&](int, int) {
+            if (!known[place++]) return;
+            const double mean = pixels[i].mean.y, d = pixels[i].toDark.y;
+            relative.add(measure_.squared(mean, mean + d), measure_.squared(mean, mean - d));
+            const float* rgb = shown.data() + 9 * i++;
+            if (!shown.empty()) display.add(squaredDistance(rgb, rgb + 3), squaredDistance(rgb, rgb + 6));
+        });
+    });
+}
+
+// Rows of tiles are the unit of work: sums do not depend on the number of threads.
+void Certifier::run(ErrorCertificate& certificate) const {
+    std::vector<std::pair<Sums, Sums>> parts(static_cast<std::size_t>((bounds_.height() + kTile - 1) / kTile));
+    parallelFor(parts.size(), [&](std::size_t i) {
+        const int top = bounds_.y0 + static_cast<int>(i) * kTile;
+        addBand(parts[i].first, parts[i].second, {bounds_.x0, top, bounds_.x1, std::min(top + kTile, bounds_.y1)});
+    });
+    Sums relative, display;
+    for (const auto& part : parts) {
+        relative.append(part.first);
+        display.append(part.second);
+    }
+    certificate.relative = relative.figure();
+    if (picture_.display) certificate.display = display.figure();
+}
+
+void countSamples(const PixelFilm& film, ErrorCertificate& certificate) {
+    const PixelBounds b = film.bounds();
+    certificate.fewest = film.samples(b.x0, b.y0);
+    std::uint64_t sum = 0;
+    forPixels(b, [&](int x, int y) {
+        const std::uint64_t n = film.samples(x, y);
+        certificate.fewest = std::min(certificate.fewest, n);
+        certificate.most = std::max(certificate.most, n);
+        sum += n;
+    });
+    certificate.samples = static_cast<double>(sum) / static_cast<double>(b.area());
+}
+
+} // namespace
+
+ErrorCertificate ErrorCertificate::of(const PixelFilm& film, const Picture& picture) {
+    ErrorCertificate certificate;
+    certificate.replicates = film.replicates();
+    certificate.pixels = film.bounds().area();
+    countSamples(film, certificate);
+    if (film.replicates() < 2) {
+        certificate.reason = "one replicate: a single set of samples does not tell its error";
+        return certificate;
+    }
+    Certifier(film, picture).run(certificate);
+    if (certificate.relative.pixels == 0) certificate.reason = "too few samples: no pixel has them in two replicates";
+    return certificate;
+}
+
+} // namespace abbe

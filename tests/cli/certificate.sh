@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# An image says how large its error is: in its header, in a file beside it, in the report; and `certify` measures it.
+# shellcheck source=tests/cli/lib.sh
+source "$(dirname -- "$0")/lib.sh" "$@"
+room=("$scenes/room.scene" --size 48x32)
+
+dark=--exposure=-6 # or nearly all of the room is white
+expect 0 "${room[@]}" --samples 32 "$dark" -o image.exr
+says err "  error "
+says err "display "
+says err " of 255 ("
+[[ -s image.exr.json ]] || fault "no file beside the image"
+for word in abbe-certificate relative display worst_tile caveat capped_paths dropped core_seconds; do
+    says image.exr.json "\"$word"
+done
+expect 0 info image.exr
+says out "certificate  error "
+says out "abbe.certificate = abbe-certificate 1"
+says out "abbe.errorDisplayView = sRGB - Display, ACES 1.0 - SDR Video, -6 stops, abbe-aces-1.3"
+
+# Held against long renders; against a picture of something else it is outside.
+expect 0 "${room[@]}" --samples 1024 --seed 2 -q -o long2.exr
+expect 0 "${room[@]}" --samples 1024 --seed 3 -q -o long3.exr
+expect 0 certify image.exr --ref long2.exr --ref long3.exr "$dark"
+says out ": inside"
+says_not out ": outside"
+expect 0 certify image.exr
+says_not out measured
+expect 0 "$scenes/glass.scene" --size 48x32 --samples 32 -q -o glass.exr
+expect 4 certify image.exr --ref glass.exr "$dark"
+says out ": outside"
+expect 4 certify image.exr --ref glass.exr "$dark" --json
+"$json_lines" <out >/dev/null || fault "certify --json"
+expect 0 certify image.exr --ref long2.exr --exposure 1
+says err "the display's error is not measured"
+expect 0 "$scenes/room.scene" --samples 4 --size 32x32 -q -o small.exr
+expect 1 certify image.exr --ref small.exr
+expect 2 certify image.exr --ref a --ref b --ref c
+
+# A certificate that cannot be given, and a file that cannot be written.
+sed 's/^scene .*/&\nrender { replicates 1 }/' "$scenes/room.scene" >single.scene
+grep -q '^render' "$scenes/room.scene" && sed 's/^render *{/render { replicates 1;/' "$scenes/room.scene" >single.scene
+expect 0 single.scene --size 16x16 --samples 4 -o single.exr
+says err "no certificate: one replicate"
+says single.exr.json '"stated": false'
+says_not single.exr.json '"low"'
+expect 1 certify single.exr
+mkdir folder.exr.json
+expect 0 "${room[@]}" --samples 4 -o folder.exr
+says err W0667
+[[ -s folder.exr ]] || fault "the image is missing"
+
+finish

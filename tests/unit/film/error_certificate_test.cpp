@@ -1,0 +1,177 @@
+#include "support/certificate_coverage.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <random>
+
+namespace abbe::test {
+namespace {
+
+constexpr PixelBounds kBounds{0, 0, 40, 33}; // the last tiles are cut
+
+// A display with a curve like that of sRGB.
+ErrorCertificate::Picture picture() {
+    ErrorCertificate::Picture p;
+    p.display = [](std::span<float> rgb) {
+        for (float& v : rgb) v = std::pow(std::max(v, 0.0f), 1 / 2.2f);
+    };
+    return p;
+}
+
+// Brightness over the picture, 0.02 to 1.
+double truth(int x, int y) { return 0.02 + 0.98 * (x / 39.0) * (0.5 + 0.5 * std::sin(y * 0.4)); }
+
+// One sample of a pixel whose mean is 1.
+using Draw = double (*)(std::mt19937&);
+
+double normalDraw(std::mt19937& random) { return std::normal_distribution<double>(1, 0.5)(random); }
+double logNormalDraw(std::mt19937& random) { return std::lognormal_distribution<double>(-0.5, 1)(random); }
+// One of a hundred carries a tenth, or half of the light.
+double oneInAHundred(std::mt19937& random, double share) {
+    return std::uniform_int_distribution<int>(0, 99)(random) == 0 ? 1 + 99 * share : 1 - share;
+}
+double fireflyDraw(std::mt19937& random) { return oneInAHundred(random, 0.1); }
+double unseenDraw(std::mt19937& random) { return oneInAHundred(random, 0.5); }
+
+PixelFilm makeFilm(Draw draw, unsigned seed, int replicates, std::uint32_t samples) {
+    std::mt19937 random(seed);
+    PixelFilm film(kBounds, {FilterShape::box, 0.5}, replicates);
+    for (int y = kBounds.y0; y < kBounds.y1; ++y)
+        for (int x = kBounds.x0; x < kBounds.x1; ++x)
+            for (int r = 0; r < replicates; ++r) {
+                // As adaptive sampling leaves them: up to twice as many.
+                const std::uint32_t n = samples + (x % 5) * samples / 4;
+                double sum = 0;
+                for (std::uint32_t i = 0; i < n; ++i) sum += draw(random) * truth(x, y);
+                film.add(x, y, r, Xyz{1, 1, 1} * sum, n);
+            }
+    return film;
+}
+
+MeasuredError::Planes exact() {
+    std::vector<Xyz> values;
+    for (int y = kBounds.y0; y < kBounds.y1; ++y)
+        for (int x = kBounds.x0; x < kBounds.x1; ++x) values.push_back(Xyz{1, 1, 1} * truth(x, y));
+    return measuredPlanes(picture(), kBounds, values);
+}
+
+Coverages coverages(Draw draw, int replicates, std::uint32_t samples) {
+    const auto reference = exact();
+    Coverages all;
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        const PixelFilm film = makeFilm(draw, seed, replicates, samples);
+        all.add(ErrorCertificate::of(film, picture()),
+                MeasuredError::of(measuredPlanes(picture(), film, 0, replicates), reference, reference));
+    }
+    return all;
+}
+
+void checkCoverage(const Coverage& c, double widest) {
+    MESSAGE(fmt::format("held {} of {}, {} below, {} above; width {:.3f}, ideal {:.3f}, ln(measured/stated) {:+.3f}",
+                        c.held, c.trials, c.below, c.above, c.meanWidth(), c.idealWidth(), c.bias()));
+    CHECK(c.held >= 90);
+    CHECK(c.meanWidth() < widest);
+}
+
+} // namespace
+
+TEST_CASE("certificate: intervals hold the error, whatever the distribution of the samples") {
+    SUBCASE("normal") {
+        const Coverages c = coverages(normalDraw, 2, 8);
+        checkCoverage(c.relative, 0.25);
+        checkCoverage(c.display, 0.25);
+    }
+    SUBCASE("normal, three replicates") {
+        const Coverages c = coverages(normalDraw, 3, 8);
+        checkCoverage(c.relative, 0.2);
+        checkCoverage(c.display, 0.2);
+    }
+    SUBCASE("log-normal") {
+        const Coverages c = coverages(logNormalDraw, 2, 8);
+        checkCoverage(c.relative, 0.35);
+        checkCoverage(c.display, 0.35);
+    }
+    SUBCASE("fireflies") {
+        const Coverages c = coverages(fireflyDraw, 2, 16);
+        checkCoverage(c.relative, 0.6);
+        checkCoverage(c.display, 0.6);
+    }
+}
+
+TEST_CASE("certificate: the estimate is the error in the mean") {
+    // So many samples that the measures are linear: nothing but the estimate is tested.
+    const Coverages c = coverages(normalDraw, 2, 400);
+    CHECK(std::abs(c.relative.bias()) < 0.01); // three standard errors: ideal width/4/√100 · 3
+    CHECK(std::abs(c.display.bias()) < 0.01);
+    CHECK(c.relative.meanWidth() < 1.3 * c.relative.idealWidth());
+    CHECK(c.relative.meanWidth() > 0.75 * c.relative.idealWidth());
+}
+
+// The limit of all estimates, as docs/output.md states it: with 32 samples most pixels lack what one sample in a
+// hundred carries, and half of the light is that.
+TEST_CASE("certificate: what no sample has hit is not in the estimate") {
+    const Coverages c = coverages(unseenDraw, 2, 16);
+    CHECK(c.relative.held < 50);
+    CHECK(c.relative.above == c.relative.trials - c.relative.held);
+    CHECK(c.relative.bias() < 0.3);
+}
+
+TEST_CASE("certificate: none, and why") {
+    const auto one = ErrorCertificate::of(makeFilm(normalDraw, 1, 1, 4), picture());
+    CHECK(one.reason.find("one replicate") == 0);
+    CHECK(one.fewest == 4);
+    CHECK(one.most == 8);
+    PixelFilm half(kBounds, {FilterShape::box, 0.5}, 2); // the second replicate has nothing
+    half.add(3, 4, 0, Xyz{1, 1, 1}, 1);
+    CHECK(ErrorCertificate::of(half, picture()).reason.find("too few samples") == 0);
+    half.add(3, 4, 1, Xyz{2, 2, 2}, 1); // and now in one pixel
+    const auto c = ErrorCertificate::of(half, picture());
+    CHECK(c.reason.empty());
+    CHECK(c.relative.pixels == 1);
+    CHECK(c.pixels == kBounds.area());
+    CHECK(c.fewest == 0);
+    CHECK(c.relative.high > 10 * c.relative.value); // one pixel says little
+}
+
+TEST_CASE("certificate: a picture without noise has no error, black or not") {
+    for (const double value : {0.0, 0.7}) {
+        PixelFilm film(kBounds, {FilterShape::box, 0.5}, 2);
+        for (int y = kBounds.y0; y < kBounds.y1; ++y)
+            for (int x = kBounds.x0; x < kBounds.x1; ++x)
+                for (int r = 0; r < 2; ++r) film.add(x, y, r, Xyz{1, 1, 1} * value, 1);
+        const auto c = ErrorCertificate::of(film, picture());
+        CHECK(c.reason.empty());
+        CHECK(c.relative.value == 0);
+        CHECK(c.relative.high == 0);
+        CHECK(c.display->value == 0);
+        CHECK(c.relative.holds(0));
+    }
+}
+
+TEST_CASE("certificate: the worst tile") {
+    PixelFilm film = makeFilm(normalDraw, 1, 2, 400);
+    for (int y = 16; y < 32; ++y) film.add(35, y, 0, Xyz{1, 1, 1} * 400, 1);
+    const auto c = ErrorCertificate::of(film, picture());
+    for (const ErrorFigure& f : {c.relative, *c.display}) {
+        CHECK(f.worst.pixels.x0 == 32);
+        CHECK(f.worst.pixels.x1 == 40);
+        CHECK(f.worst.pixels.y0 == 16);
+        CHECK(f.worst.pixels.y1 == 32);
+        CHECK(f.worst.value > f.value);
+    }
+}
+
+TEST_CASE("certificate: scale and balance act on the picture, not on relative errors") {
+    const PixelFilm film = makeFilm(logNormalDraw, 1, 2, 8);
+    auto p = picture();
+    const auto plain = ErrorCertificate::of(film, p);
+    p.scale = 0.25;
+    const auto dark = ErrorCertificate::of(film, p);
+    CHECK(dark.relative.value == doctest::Approx(plain.relative.value).epsilon(1e-9));
+    CHECK(dark.display->value == doctest::Approx(plain.display->value * std::pow(0.25, 1 / 2.2)).epsilon(0.05));
+    p.display = {};
+    CHECK(!ErrorCertificate::of(film, p).display);
+}
+
+} // namespace abbe::test
