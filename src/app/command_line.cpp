@@ -224,6 +224,10 @@ void Reader::addGoals(CLI::App* c) {
                 const auto value = readQuantity(text, schema::Dimension::time);
                 return value && *value >= 0 && *value <= 1e9 ? value : std::nullopt;
             });
+    addRead(c, "--adaptive", b.adaptive, "on|off", "More samples where there is more noise, at the same cost",
+            "on or off", [](const std::string& text) -> std::optional<bool> {
+                return text == "on" || text == "off" ? std::optional(text == "on") : std::nullopt;
+            });
     c->add_option("--seed", b.seed, "Choose other random numbers")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
         ->type_name("N");

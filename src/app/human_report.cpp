@@ -91,6 +91,7 @@ void HumanReport::done(const RenderSummary& s) {
     console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
                               countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
                               countText(rate), r.samplesPerPixel, r.kernel));
+    if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
     console_.line(
         fmt::format("  memory {} MB   {} warning{}", s.memoryBytes / 1000000, s.warnings, s.warnings == 1 ? "" : "s"));

@@ -46,6 +46,7 @@ class JsonReport final : public RenderReport {
                            {"noise", positiveOrNull(p.noise)},
                            {"rate", p.pathsPerSecond},
                            {"elapsed_s", p.elapsed},
+                           {"core_s", p.coreSeconds},
                            {"eta_s", knowsTimeLeft(p) ? Json(p.left) : Json()}}));
     }
 
@@ -59,23 +60,26 @@ class JsonReport final : public RenderReport {
         const RenderStatistics& r = s.statistics;
         std::uint64_t dropped = 0;
         for (const std::uint64_t n : r.dropped) dropped += n;
-        emit(Json::object({{"event", "done"},
-                           {"exit", static_cast<int>(s.exit)},
-                           {"partial", s.partial},
-                           {"seconds", s.totalSeconds},
-                           {"render_seconds", r.seconds},
-                           {"core_seconds", r.coreSeconds},
-                           {"spp", r.samplesPerPixel},
-                           {"paths", r.paths},
-                           {"rays", r.rays()},
-                           {"noise", positiveOrNull(s.noise)},
-                           {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
-                           {"kernel", r.kernel},
-                           {"memory_bytes", s.memoryBytes},
-                           {"dropped", dropped},
-                           {"dropped_samples", faultsJson(s.faults)},
-                           {"densities_above_bound", r.excess.above},
-                           {"warnings", static_cast<std::uint64_t>(s.warnings)}}));
+        Json event = Json::object({{"event", "done"},
+                                   {"exit", static_cast<int>(s.exit)},
+                                   {"partial", s.partial},
+                                   {"seconds", s.totalSeconds},
+                                   {"render_seconds", r.seconds},
+                                   {"core_seconds", r.coreSeconds},
+                                   {"spp", r.samplesPerPixel},
+                                   {"paths", r.paths},
+                                   {"rays", r.rays()},
+                                   {"noise", positiveOrNull(s.noise)},
+                                   {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
+                                   {"kernel", r.kernel},
+                                   {"memory_bytes", s.memoryBytes},
+                                   {"dropped", dropped},
+                                   {"dropped_samples", faultsJson(s.faults)},
+                                   {"densities_above_bound", r.excess.above},
+                                   {"warnings", static_cast<std::uint64_t>(s.warnings)}});
+        if (s.spread)
+            event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
+        emit(event);
     }
 
   private:

@@ -117,11 +117,12 @@ ExitCode RenderRun::renderPixel() {
     const Vec2i at = *options_.pixel;
     PixelFilm film = makeFilm({at.x, at.y, at.x + 1, at.y + 1});
     const RenderStatistics statistics = integrator_->render(built_.scene, film, settings_, {});
+    const std::uint64_t samples = film.samples(at.x, at.y);
     const Xyz xyz = film.mean(at.x, at.y) * built_.exposure;
     const ResolvedImage image = resolveImage(film, film_, built_.exposure);
     common_.console.data(fmt::format("pixel {} {}\nXYZ {:.9g} {:.9g} {:.9g}\n{} {:.9g} {:.9g} {:.9g}\nsamples {}\n",
                                      at.x, at.y, xyz.x, xyz.y, xyz.z, spaceName(film_.space), image.r[0], image.g[0],
-                                     image.b[0], statistics.samplesPerPixel));
+                                     image.b[0], samples));
     Diagnostics warnings;
     summary_.statistics = statistics;
     findDropped(film);

@@ -182,6 +182,7 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
         {"seed", number(s.seed)},
         {"replicates", number(in.replicates)},
         {"sampler", s.randomSampler ? "random" : "sobol"},
+        {"adaptive", s.adaptive ? "on" : "off"},
         {"strategy", s.strategy == Strategy::mis          ? "mis"
                      : s.strategy == Strategy::lightsOnly ? "lights"
                                                           : "bsdf"},

@@ -4,6 +4,7 @@
 #include "app/console.h"
 #include "app/exit_code.h"
 #include "app/found_fault.h"
+#include "app/sample_spread.h"
 #include "film/error_certificate.h"
 #include "render/integrator.h"
 
@@ -37,6 +38,7 @@ struct RenderSummary {
     double noise = 0;                            // relative error of what was written
     std::vector<FoundFault> faults;              // of the examples of dropped samples, unless interrupted
     std::optional<ErrorCertificate> certificate; // of that
+    std::optional<SampleSpread> spread;          // of an adaptive render
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;
     ExitCode exit = ExitCode::done;

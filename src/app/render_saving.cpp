@@ -125,6 +125,7 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
             list.push_back(std::move(a));
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
+    if (settings_.adaptive) list.push_back({"abbe.adaptive", std::string("frozen plan (unbiased)")});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
     return list;
 }
@@ -171,6 +172,7 @@ void RenderRun::writeCertificate() {
 void RenderRun::write(const PixelFilm& film) {
     certify(film);
     const FilmPicture picture = pictureOf(film);
+    if (settings_.adaptive) summary_.spread = sampleSpread(film);
     Diagnostics warnings;
     try {
         writeImage(summary_.image, picture, film_, attributes(film), warnings);

@@ -1,8 +1,9 @@
 #include "integrators/path_tracer.h"
 
 #include "base/parallel.h"
+#include "integrators/look_ahead.h"
 #include "integrators/pass_schedule.h"
-#include "integrators/tile_kernel.h"
+#include "integrators/time_left.h"
 #include "render/render_state.h"
 
 #include <chrono>
@@ -67,7 +68,9 @@ class RenderJob {
     }
 
     RenderStatistics run() {
-        lookAhead();
+        ahead_ = lookAhead(context_, kernel_.render, film_, state_, [this] { return stopRequested(); });
+        statistics_.pilotRays = ahead_.rays;
+        beginTiming();
         if (pass_ > 0 && state_.even()) endPass();
         while (state_.reached() < range_.last && !ended()) {
             runPass(std::min(endOfPassWith(state_.reached()), range_.last));
@@ -83,9 +86,11 @@ class RenderJob {
     }
 
     void repeat(std::span<const SampleId> samples) {
-        lookAhead();
+        PathContext even = context_; // a sample is named by its place in the sequence, whatever the plan
+        even.settings.adaptive = false;
+        ahead_ = lookAhead(even, kernel_.render, film_, state_, [this] { return stopRequested(); });
         for (const SampleId& s : samples)
-            kernel_.render(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &roulette_});
+            kernel_.render(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &ahead_.roulette});
     }
 
   private:
@@ -112,19 +117,14 @@ class RenderJob {
     }
     bool ended() const { return quietEnough() || stopRequested(); }
 
-    // Samples of a seed of its own, which are never part of the image.
-    void lookAhead() {
-        constexpr std::uint64_t kPilot = 0x70696c6f74; // "pilot"
-        const PixelBounds frame = context_.scene.frame.area() > 0 ? context_.scene.frame : film_.bounds();
-        PilotFilm pilot(frame, combine64(settings_.seed, kPilot));
-        PathContext context = context_;
-        context.settings.seed = combine64(settings_.seed, kPilot);
-        parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t row) {
-            for (int column = 0; column < pilot.columns() && !stopRequested(); ++column)
-                kernel_.render(context, pilot,
-                               {pilot.pixelOf(column, static_cast<int>(row)), 0, PilotFilm::kSamples, &roulette_});
-        });
-        roulette_ = RouletteReference(pilot);
+    void beginTiming() {
+        timeLeft_.emplace(TimeLeft::Goals{range_, settings_.noiseTarget, settings_.timeLimit}, ahead_.tileCosts);
+        for (std::size_t i = 0; i < state_.tileCount(); ++i) {
+            const TileState& tile = state_.tile(i);
+            timeLeft_->alreadyDone(i, tile.reached - state_.first(), tile.tally.coreSeconds);
+            pixelSamples_ += state_.pixels(i).area() * (tile.reached - state_.first());
+        }
+        timeLeft_->begin(elapsed());
     }
 
     // All tiles up to sample `last`, as far as nobody ends it.
@@ -144,12 +144,13 @@ class RenderJob {
         TileState& tile = state_.tile(i);
         while (tile.reached < last && !stopRequested() && !snapshotRequested()) {
             PathTally tally;
+            const std::uint32_t first = tile.reached;
             {
                 const std::lock_guard hold(state_.mutex(i));
                 const std::uint32_t end = std::min(last, tile.reached + portion(tile));
                 const double before = threadSeconds();
                 const TileResult result =
-                    kernel_.render(context_, film_, {state_.pixels(i), tile.reached, end, &roulette_});
+                    kernel_.render(context_, film_, {state_.pixels(i), first, end, &ahead_.roulette, plan()});
                 tally = tallyOf(result, threadSeconds() - before);
                 tile.tally.add(tally);
                 tile.reached = end;
@@ -158,9 +159,13 @@ class RenderJob {
             }
             const std::lock_guard lock(mutex_);
             count(tally);
+            timeLeft_->advanced(i, tile.reached - first, tally.coreSeconds);
+            pixelSamples_ += state_.pixels(i).area() * (tile.reached - first);
             maybeReport();
         }
     }
+
+    const SamplingPlan* plan() const { return ahead_.plan.even() ? nullptr : &ahead_.plan; }
 
     // How many samples of each replicate are taken in one go.
     std::uint32_t portion(const TileState& tile) const {
@@ -192,6 +197,7 @@ class RenderJob {
     void endPass() {
         statistics_.samplesPerPixel = finishedSamples();
         statistics_.noise = film_.relativeNoise();
+        timeLeft_->passEnded(state_.reached(), statistics_.noise);
     }
 
     void count(const PathTally& t) {
@@ -214,33 +220,19 @@ class RenderJob {
     // `least`: of the fraction, for the end.
     void report(double least) {
         if (!control_.progress) return;
-        const double pixels = static_cast<double>(film_.bounds().area());
-        const double samples = static_cast<double>(statistics_.paths) / pixels; // of a pixel, on average
-        const auto total = (range_.last - range_.first) * static_cast<std::uint32_t>(film_.replicates());
+        const auto replicates = static_cast<std::uint32_t>(film_.replicates());
         Progress p;
         p.elapsed = elapsed();
         p.pass = pass_;
-        p.samplesPerPixel = static_cast<std::uint32_t>(samples);
-        p.totalSamples = total;
+        p.samplesPerPixel = static_cast<std::uint32_t>(pixelSamples_ * replicates / film_.bounds().area());
+        p.totalSamples = (range_.last - range_.first) * replicates;
         p.noise = statistics_.noise;
         p.pathsPerSecond = p.elapsed > 0 ? static_cast<double>(statistics_.paths - pathsBefore_) / p.elapsed : 0;
-        p.fraction = std::max(least, goalFraction(samples / total, p.samplesPerPixel));
-        // What earlier runs did took no time of this one.
-        const double done = p.fraction - std::min(p.fraction, static_cast<double>(pathsBefore_) / pixels / total);
-        if (done > 0) p.left = p.elapsed * (1 - p.fraction) / done;
+        p.coreSeconds = statistics_.coreSeconds;
+        const TimeLeft::Outlook outlook = timeLeft_->at(p.elapsed);
+        p.fraction = std::max(least, outlook.fraction);
+        p.left = least < 1 ? outlook.left : 0;
         control_.progress(p);
-    }
-
-    // Of the work until the goal that will be met first. Error falls about as samples^-1/2, so the samples that a
-    // noise goal needs grow with the square of the error's ratio.
-    double goalFraction(double bySamples, std::uint32_t samples) const {
-        double fraction = bySamples;
-        if (settings_.timeLimit > 0) fraction = std::max(fraction, elapsed() / settings_.timeLimit);
-        if (settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.samplesPerPixel > 0) {
-            const double needed = statistics_.samplesPerPixel * square(statistics_.noise / settings_.noiseTarget);
-            fraction = std::max(fraction, samples / std::max(1.0, needed));
-        }
-        return std::min(1.0, fraction);
     }
 
     const Kernel& kernel_;
@@ -249,12 +241,14 @@ class RenderJob {
     const RenderControl& control_;
     LightSampler lights_;
     PathContext context_;
-    RouletteReference roulette_;
+    LookAhead ahead_;
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one
     RenderState& state_;
     std::uint32_t pass_ = 0;
     RenderStatistics statistics_;
+    std::optional<TimeLeft> timeLeft_; // from the first sample on
+    std::int64_t pixelSamples_ = 0;    // of each replicate, in all pixels, as if they were even
     std::mutex mutex_;
     Clock::time_point start_ = Clock::now();
     double lastReport_ = 0;

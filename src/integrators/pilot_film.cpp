@@ -19,6 +19,7 @@ PilotFilm::PilotFilm(PixelBounds frame, std::uint64_t seed) : frame_(frame), see
     rows_ = cells(frame.height());
     sums_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     samples_.resize(sums_.size());
+    rays_.resize(sums_.size());
 }
 
 PixelBounds PilotFilm::pixelOf(int column, int row) const {
@@ -35,6 +36,15 @@ PixelBounds PilotFilm::pixelOf(int column, int row) const {
 float PilotFilm::luminance(int column, int row) const {
     const std::size_t i = cell(column, row);
     return samples_[i] == 0 ? 0 : static_cast<float>(std::max(0.0, sums_[i].y.value()) / samples_[i]);
+}
+
+double PilotFilm::rays(PixelBounds b) const {
+    const int left = (b.x0 - frame_.x0) / cellSize_, right = (b.x1 - 1 - frame_.x0) / cellSize_;
+    const int top = (b.y0 - frame_.y0) / cellSize_, bottom = (b.y1 - 1 - frame_.y0) / cellSize_;
+    double sum = 0;
+    for (int row = top; row <= bottom; ++row)
+        for (int column = left; column <= right; ++column) sum += static_cast<double>(rays_[cell(column, row)]);
+    return sum / ((right - left + 1) * (bottom - top + 1) * kSamples);
 }
 
 void PilotFilm::add(int x, int y, int, const ExactXyz& sum, std::uint32_t samples) noexcept {

@@ -24,6 +24,10 @@ class PilotFilm final : public Film {
     PixelBounds pixelOf(int column, int row) const;
     // Y of a cell.
     float luminance(int column, int row) const;
+    // What all samples of a cell took. Different cells may be told of from different threads at once.
+    void noteRays(int column, int row, std::uint64_t rays) { rays_[cell(column, row)] = static_cast<float>(rays); }
+    // Of one sample, on average over the cells that a rectangle touches.
+    double rays(PixelBounds) const;
 
     PixelBounds bounds() const override { return frame_; }
     int replicates() const override { return 1; }
@@ -43,6 +47,7 @@ class PilotFilm final : public Film {
     int cellSize_ = 2, columns_ = 0, rows_ = 0;
     std::vector<ExactXyz> sums_;
     std::vector<std::uint32_t> samples_;
+    std::vector<float> rays_;
 };
 
 } // namespace abbe

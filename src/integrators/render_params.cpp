@@ -42,6 +42,11 @@ TypeInfo renderType() {
                     .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
                     .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
                     .example("texture-cache 512"),
+                field(FieldType::toggle, "adaptive", &P::adaptive)
+                    .byDefault("off")
+                    .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
+                    .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
+                    .example("adaptive on"),
                 field(FieldType::integer, "max-depth", &P::maxDepth)
                     .range(0, 100000)
                     .byDefault("0")
@@ -89,6 +94,7 @@ RenderSettings renderSettings(const RenderParams& p) {
     s.maxDepth = static_cast<std::uint32_t>(p.maxDepth);
     s.noiseTarget = p.noise;
     s.timeLimit = p.timeLimit;
+    s.adaptive = p.adaptive;
     s.randomSampler = p.sampler.word == "random";
     using Strategy = RenderSettings::Strategy;
     s.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly

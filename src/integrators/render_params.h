@@ -15,6 +15,7 @@ struct RenderParams {
     double noise = 0;           // relative error to stop at; 0: none
     double timeLimit = 0;       // s; 0: none
     double textureCache = 2048; // MiB
+    bool adaptive = false;
     schema::Choice sampler{"sobol", {}};
     schema::Choice strategy{"mis", {}};
     schema::Choice lightChoice{"tree", {}};

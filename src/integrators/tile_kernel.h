@@ -10,11 +10,16 @@
 
 namespace abbe {
 
-// Samples [first, last) of every replicate of every pixel of `pixels`.
+class SamplingPlan;
+// What samples a pixel takes when `nominal` ones are asked for: those, without a plan.
+SampleRange plannedRange(const SamplingPlan*, int x, int y, SampleRange nominal);
+
+// Samples [first, last) of every replicate of every pixel of `pixels`, or what the plan makes of them.
 struct TileJob {
     PixelBounds pixels;
     std::uint32_t first = 0, last = 0;
     const RouletteReference* roulette = nullptr;
+    const SamplingPlan* plan = nullptr;
 };
 
 struct TileResult {
@@ -69,6 +74,8 @@ template <EffectBits E> class TileKernel {
     }
 
     void replicate(int x, int y, int r) {
+        const SampleRange range = plannedRange(job_.plan, x, y, {job_.first, job_.last});
+        if (range.first == range.last) return;
         const std::uint64_t place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
         const std::uint64_t seed = combine64(combine64(context_.settings.seed, place), static_cast<std::uint64_t>(r));
@@ -78,7 +85,7 @@ template <EffectBits E> class TileKernel {
         sampler_.startPixel(seed, context_.settings.randomSampler, context_.choices);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
-        for (std::uint32_t i = job_.first; i < job_.last; ++i) {
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
@@ -92,7 +99,7 @@ template <EffectBits E> class TileKernel {
         }
         film_.add(x, y, r, sum, counted);
         if (recorder_) recorder_->pixelDone(std::chrono::duration<double>(Clock::now() - started).count());
-        result_.counters.paths += job_.last - job_.first;
+        result_.counters.paths += range.last - range.first;
     }
 
     Xyz sample(int x, int y, float rouletteScale) {

@@ -30,6 +30,7 @@ struct RenderSettings {
     double noiseTarget = 0;            // relative error at which to stop (0.005 for 0.5 %); 0: none
     double timeLimit = 0;              // s; 0: none
     std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken
+    bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
     bool randomSampler = false;        // plain random numbers instead of Owen-scrambled Sobol, for comparisons
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
     // Which light is asked: by what it may give to the place; by its power alone, or evenly, for comparisons.
@@ -80,7 +81,8 @@ struct RenderStatistics {
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
     std::uint64_t rays() const { return vertices + shadowRays; }
-    std::uint32_t samplesPerPixel = 0;      // finished in all pixels
+    std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
+    std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
     std::uint64_t cappedPaths = 0;          // reached the safety cap on vertices (PathLoop::kMaxVertices)
@@ -98,6 +100,7 @@ struct Progress {
     std::uint32_t samplesPerPixel = 0, totalSamples = 0;
     double noise = 0;              // relative; 0 while unknown
     double pathsPerSecond = 0;     // all threads
+    double coreSeconds = 0;        // summed over threads, with those of earlier runs
     double elapsed = 0, left = -1; // s; left < 0: unknown yet
 };
 

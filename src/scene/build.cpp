@@ -99,6 +99,7 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
     if (options_.noise) built.render.noise = *options_.noise;
     if (options_.timeLimit) built.render.timeLimit = *options_.timeLimit;
     if (options_.textureCache) built.render.textureCache = *options_.textureCache;
+    if (options_.adaptive) built.render.adaptive = *options_.adaptive;
     if (!options_.strategy.empty()) built.render.strategy.word = options_.strategy;
     if (!options_.sampler.empty()) built.render.sampler.word = options_.sampler;
 }

@@ -24,9 +24,10 @@ struct BuildOptions {
     std::optional<double> noise;        // relative
     std::optional<double> timeLimit;    // s
     std::optional<double> textureCache; // MiB
-    std::string strategy, sampler;      // words of `render`; empty: the scene's
-    bool geometry = true;               // false: check only; no acceleration structure is built
-    bool textures = false;              // then read images to their ends all the same
+    std::optional<bool> adaptive;
+    std::string strategy, sampler; // words of `render`; empty: the scene's
+    bool geometry = true;          // false: check only; no acceleration structure is built
+    bool textures = false;         // then read images to their ends all the same
 };
 
 // Facts for `abbe info` and the summary of a render.

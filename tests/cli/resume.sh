@@ -11,37 +11,43 @@ small=(--size 40x24 --samples 120)
 expect 0 "$scene" "${small[@]}" --quiet -o whole.exr
 [[ ! -e whole.exr.ckpt ]] || fault "a finished render leaves its checkpoint"
 
-long=(--size 40x24 --samples $((270 * kills)))
-expect 0 "$scene" "${long[@]}" --quiet -o long.exr --checkpoint off
-# Killed at any moment, as often as need be.
+# Killed at any moment, as often as need be: survives_kills SCENE OPTION…
+survives_kills() {
+    local scene=$1 killed=0 run
+    shift
+    local long=("$@")
+    expect 0 "$scene" "${long[@]}" --quiet -o long.exr --checkpoint off
+    for ((run = 0; run < 500; ++run)); do
+        rm -f killed.exr
+        "$program" "$scene" "${long[@]}" --quiet -o killed.exr --checkpoint 10ms --resume >out 2>err &
+        job=$!
+        if ((killed < kills)); then
+            # After a checkpoint of this run, or a moment later.
+            for _ in {1..200}; do
+                [[ killed.exr.ckpt -nt out ]] && break
+                kill -0 $job 2>/dev/null || break
+                sleep 0.01
+            done
+            sleep "0.0$((RANDOM % 10))"
+            kill -KILL $job 2>/dev/null && killed=$((killed + 1))
+            wait $job 2>/dev/null
+            [[ -e killed.exr ]] && break
+        else
+            wait $job || fault "continuing after kills: $(cat err)"
+            break
+        fi
+    done
+    ((killed > 0)) || fault "never killed"
+    same_pixels long.exr killed.exr
+    same_certificate long.exr killed.exr
+    if [[ -e long.deep.exr ]]; then same_pixels long.deep.exr killed.deep.exr; fi
+    rm -f long.deep.exr killed.deep.exr
+    [[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
+    printf '%d kills, %d runs %s\n' "$killed" $((run + 1)) "$(basename "$scene")"
+}
 RANDOM=7
-killed=0
-for ((run = 0; run < 500; ++run)); do
-    rm -f killed.exr
-    "$program" "$scene" "${long[@]}" --quiet -o killed.exr --checkpoint 10ms --resume >out 2>err &
-    job=$!
-    if ((killed < kills)); then
-        # After a checkpoint of this run, or a moment later.
-        for _ in {1..200}; do
-            [[ killed.exr.ckpt -nt out ]] && break
-            kill -0 $job 2>/dev/null || break
-            sleep 0.01
-        done
-        sleep "0.0$((RANDOM % 10))"
-        kill -KILL $job 2>/dev/null && killed=$((killed + 1))
-        wait $job 2>/dev/null
-        [[ -e killed.exr ]] && break
-    else
-        wait $job || fault "continuing after kills: $(cat err)"
-        break
-    fi
-done
-((killed > 0)) || fault "never killed"
-same_pixels long.exr killed.exr
-same_pixels long.deep.exr killed.deep.exr
-same_certificate long.exr killed.exr
-[[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
-printf '%d kills, %d runs\n' "$killed" $((run + 1))
+survives_kills "$scene" --size 40x24 --samples $((270 * kills))
+survives_kills "$scenes/uneven.scene" --samples $((90 * kills))
 
 # Four parts of the samples, in any order.
 for part in 3 1 4 2; do expect 0 "$scene" "${small[@]}" --quiet -o split.exr --part $part/4; done
@@ -82,6 +88,29 @@ same_pixels whole.exr more.exr
 rm more.exr
 expect 0 "$scene" --size 40x24 --samples 50 --quiet -o more.exr --checkpoint keep --resume
 same_pixels whole.exr more.exr
+
+# Samples spread by a plan: parts and crops have the plan of the whole.
+adaptive=("$scenes/uneven.scene" --samples 46 --quiet)
+expect 0 "${adaptive[@]}" -o planned.exr
+expect 0 info planned.exr
+says out "abbe.adaptive = frozen plan (unbiased)"
+least=$(sed -n 's/^abbe.samplesFewest = //p' out)
+most=$(sed -n 's/^abbe.samplesMost = //p' out)
+((${least%.*} < ${most%.*})) || fault "the plan is even: $least to $most"
+for part in 3 1 4 2; do expect 0 "${adaptive[@]}" -o plan.exr --part $part/4; done
+expect 0 merge plan.part4.abbe plan.part1.abbe plan.part3.abbe plan.part2.abbe -o merged.exr
+same_pixels planned.exr merged.exr
+expect 0 info merged.exr
+says out "abbe.samplesMost = $most"
+expect 0 "${adaptive[@]}" -o left.exr --part 1/1 --crop 0,0,29,48
+for part in 1 2; do expect 0 "${adaptive[@]}" -o right.exr --part $part/2 --crop 29,0,72,48; done
+expect 0 merge left.part1.abbe right.part{1,2}.abbe -o crops.exr
+same_pixels planned.exr crops.exr
+expect 0 "${adaptive[@]}" -o off.exr --part 4/4 --adaptive off
+expect 1 merge plan.part{1,2,3}.abbe off.part4.abbe -o no.exr
+says err "adaptive: \`off\` in the part, \`on\` in the scene as it is"
+expect 1 "$scene" "${small[@]}" --quiet -o more.exr --resume --adaptive on
+says err "adaptive: \`off\` in the checkpoint, \`on\` in this render"
 
 # Another scene, another film: what differs, with both values.
 sed 's/luminance [0-9]*/luminance 4321/; s/power [0-9]*/power 4321/' "$scene" >other.scene

@@ -8,6 +8,7 @@ for name in room glass; do
     expect 0 "$scenes/$name.scene" --quiet -o one.exr -t 1
     expect 0 "$scenes/$name.scene" --quiet -o two.exr -t 2
     expect 0 "$scenes/$name.scene" --quiet -o eight.exr -t 8
+    cp one.exr "$name.one.exr"
     same_pixels one.exr two.exr
     same_pixels one.exr eight.exr
     same_certificate one.exr two.exr
@@ -15,6 +16,17 @@ for name in room glass; do
     expect 0 "$scenes/$name.scene" --quiet -o seed.exr --seed 1
     [[ $(pixels one.exr) != $(pixels seed.exr) ]] || fault "$name: the seed changes nothing"
 done
+
+# with a plan of the samples, which threads do not change either
+for threads in 1 2 8; do expect 0 "$scenes/uneven.scene" --quiet -o plan$threads.exr -t $threads; done
+same_pixels plan1.exr plan2.exr
+same_pixels plan1.exr plan8.exr
+expect 0 "$scenes/uneven.scene" --quiet -o even.exr --adaptive off
+[[ $(pixels plan1.exr) != $(pixels even.exr) ]] || fault "there is no plan"
+expect 0 "$scenes/room.scene" --quiet -o off.exr --adaptive off
+same_pixels off.exr room.one.exr
+expect 2 "$scenes/room.scene" --adaptive maybe
+says err "on or off"
 
 # superset
 expect 0 "$scenes/room.scene" --quiet -o least.exr

@@ -1,0 +1,95 @@
+#include "integrators/look_ahead.h"
+
+#include "base/parallel.h"
+#include "render/render_state.h"
+
+#include <atomic>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::uint64_t kPilot = 0x70696c6f74; // "pilot"
+constexpr std::uint64_t kPlan = 0x706c616e;    // "plan"
+
+class Looker {
+  public:
+    Looker(const PathContext& context, TileFunction render, const Film& film, const std::function<bool()>& stop)
+        : context_(context), render_(render), film_(film), stop_(stop),
+          frame_(context.scene.frame.area() > 0 ? context.scene.frame : film.bounds()) {}
+
+    LookAhead run(const RenderState& state) {
+        PilotFilm pilot = look();
+        result_.roulette = RouletteReference(pilot);
+        if (context_.settings.adaptive && !stop_()) result_.plan = plan();
+        for (std::size_t i = 0; i < state.tileCount(); ++i) {
+            const PixelBounds pixels = state.pixels(i);
+            result_.tileCosts.push_back((1 + pilot.rays(pixels)) * result_.plan.meanFactor(pixels));
+        }
+        result_.rays = rays_;
+        return std::move(result_);
+    }
+
+  private:
+    PathContext reseeded(std::uint64_t key) const {
+        PathContext context = context_;
+        context.settings.seed = combine64(context_.settings.seed, key);
+        return context;
+    }
+
+    // The number of rays.
+    std::uint64_t trace(const PathContext& context, Film& film, PixelBounds pixel, std::uint32_t samples) {
+        const PathCounters c = render_(context, film, {pixel, 0, samples, &result_.roulette}).counters;
+        rays_ += c.vertices + c.shadowRays;
+        return c.vertices + c.shadowRays;
+    }
+
+    PilotFilm look() {
+        const PathContext context = reseeded(kPilot);
+        PilotFilm pilot(frame_, context.settings.seed);
+        parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t i) {
+            const int row = static_cast<int>(i);
+            for (int column = 0; column < pilot.columns() && !stop_(); ++column)
+                pilot.noteRays(column, row, trace(context, pilot, pilot.pixelOf(column, row), PilotFilm::kSamples));
+        });
+        return pilot;
+    }
+
+    // With the roulette of the image.
+    SamplingPlan plan() {
+        const PathContext base = reseeded(kPlan);
+        std::vector<PathContext> contexts(PlanPilot::kLooks, base); // so that no two looks share a sample
+        for (std::size_t look = 0; look < contexts.size(); ++look)
+            contexts[look].settings.seed = combine64(base.settings.seed, look);
+        PlanPilot pilot(frame_, base.settings.seed);
+        parallelFor(static_cast<std::size_t>(pilot.rows()), [&](std::size_t i) {
+            const int row = static_cast<int>(i);
+            for (int column = 0; column < pilot.columns() && !stop_(); ++column)
+                for (int look = 0; look < PlanPilot::kLooks; ++look) {
+                    const PixelBounds pixel = pilot.pixelOf(column, row, look);
+                    PlanPilot::Probe probe(pixel, film_);
+                    const auto rays =
+                        trace(contexts[static_cast<std::size_t>(look)], probe, pixel, PlanPilot::kSamples);
+                    pilot.add(column, row, look, probe, rays);
+                }
+        });
+        return SamplingPlan(pilot);
+    }
+
+    const PathContext& context_;
+    TileFunction render_;
+    const Film& film_;
+    const std::function<bool()>& stop_;
+    PixelBounds frame_;
+    std::atomic<std::uint64_t> rays_{0};
+    LookAhead result_;
+};
+
+} // namespace
+
+LookAhead lookAhead(const PathContext& context, TileFunction render, const Film& film, const RenderState& state,
+                    const std::function<bool()>& stop) {
+    return Looker(context, render, film, stop).run(state);
+}
+
+} // namespace abbe
