@@ -33,7 +33,7 @@ struct Limit {
 constexpr Limit kLimits[] = {
     {"fluorescence", "light leaves a surface at the wavelength at which it arrived"},
     {"polarisation", "all light counts as unpolarised, also after reflection"},
-    {"diffraction and interference", "geometrical optics; no thin films, no gratings"},
+    {"diffraction", "geometrical optics; light interferes in thin films alone"},
 };
 
 // "room.scene:12:3  `material prism dielectric`"
