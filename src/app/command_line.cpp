@@ -5,6 +5,7 @@
 #include "app/command_line_compare.h"
 #include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
+#include "app/command_line_help.h"
 #include "app/command_line_replay.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
@@ -23,63 +24,6 @@ using Words = std::vector<std::string>;
 
 constexpr const char* kCommands[] = {"render",  "merge",  "check",   "explain", "info",   "convert",
                                      "compare", "volume", "denoise", "replay",  "certify"};
-
-constexpr const char* kAbout = R"(A spectral, physically based film renderer.
-
-Examples:
-  abbe render room.scene                       the image goes where the scene says, else to room.exr
-  abbe room.scene --samples 1024 --png         the same command; a PNG beside the EXR
-  abbe check room.scene                        everything that is wrong, without rendering
-  abbe explain camera.f-stop                   what a property means; also: explain glass, explain E0310
-  abbe info room.exr                           how an image was made)";
-
-constexpr const char* kRenderHelp = R"(Renders a scene to an OpenEXR image.
-
-Examples:
-  abbe render room.scene -o room.exr
-  abbe render room.scene --size 640x360 --samples 64 --png=look.png
-  abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
-  abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
-  abbe render room.scene --json                        progress as JSON lines on stdout
-  abbe render room.scene --resume                      goes on where it was interrupted
-  abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
-
-Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
-
-constexpr const char* kMergeHelp = R"(Puts parts of a render together, to the bits of the whole.
-
-Examples:
-  abbe merge room.part*.abbe -o room.exr
-  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
-
-constexpr const char* kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
-
-Examples:
-  abbe check room.scene
-  abbe check --fix room.scene                  repairs what can be repaired safely
-  abbe check --strict --format=short *.scene   for editors and CI)";
-
-constexpr const char* kExplainHelp = R"(Explains a scene, a property, a type, a unit or a diagnostic.
-
-Examples:
-  abbe explain room.scene                      the effects it asks for, and what is not simulated
-  abbe explain camera.lens
-  abbe explain dielectric
-  abbe explain E0310
-  abbe explain unit nits)";
-
-constexpr const char* kInfoHelp = R"(Tells what is in a scene or in an image.
-
-Examples:
-  abbe info room.scene
-  abbe info --json room.exr)";
-
-constexpr const char* kVolumeHelp = R"(Inspects, makes and converts OpenVDB volumes.
-
-Examples:
-  abbe volume info cloud.vdb
-  abbe volume make cumulus cloud.vdb --resolution 1000
-  abbe volume convert bunny.vdb fog.vdb --fog)";
 
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {

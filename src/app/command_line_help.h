@@ -1,0 +1,63 @@
+// What `abbe COMMAND --help` begins with.
+#pragma once
+
+namespace abbe {
+
+inline constexpr const char* kAbout = R"(A spectral, physically based film renderer.
+
+Examples:
+  abbe render room.scene                       the image goes where the scene says, else to room.exr
+  abbe room.scene --samples 1024 --png         the same command; a PNG beside the EXR
+  abbe check room.scene                        everything that is wrong, without rendering
+  abbe explain camera.f-stop                   what a property means; also: explain glass, explain E0310
+  abbe info room.exr                           how an image was made)";
+
+inline constexpr const char* kRenderHelp = R"(Renders a scene to an OpenEXR image.
+
+Examples:
+  abbe render room.scene -o room.exr
+  abbe render room.scene --size 640x360 --samples 64 --png=look.png
+  abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
+  abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
+  abbe render room.scene --json                        progress as JSON lines on stdout
+  abbe render room.scene --resume                      goes on where it was interrupted
+  abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
+
+Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
+
+inline constexpr const char* kMergeHelp = R"(Puts parts of a render together, to the bits of the whole.
+
+Examples:
+  abbe merge room.part*.abbe -o room.exr
+  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
+
+inline constexpr const char* kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
+
+Examples:
+  abbe check room.scene
+  abbe check --fix room.scene                  repairs what can be repaired safely
+  abbe check --strict --format=short *.scene   for editors and CI)";
+
+inline constexpr const char* kExplainHelp = R"(Explains a scene, a property, a type, a unit or a diagnostic.
+
+Examples:
+  abbe explain room.scene                      the effects it asks for, and what is not simulated
+  abbe explain camera.lens
+  abbe explain dielectric
+  abbe explain E0310
+  abbe explain unit nits)";
+
+inline constexpr const char* kInfoHelp = R"(Tells what is in a scene or in an image.
+
+Examples:
+  abbe info room.scene
+  abbe info --json room.exr)";
+
+inline constexpr const char* kVolumeHelp = R"(Inspects, makes and converts OpenVDB volumes.
+
+Examples:
+  abbe volume info cloud.vdb
+  abbe volume make cumulus cloud.vdb --resolution 1000
+  abbe volume convert bunny.vdb fog.vdb --fog)";
+
+} // namespace abbe
