@@ -102,7 +102,8 @@ void HumanReport::done(const RenderSummary& s) {
     if (s.image.empty()) return;
     console_.line(
         fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
-    if (!s.png.empty()) console_.line(fmt::format("image {}", s.png));
+    for (const std::string& path : {s.deep, s.png})
+        if (!path.empty()) console_.line(fmt::format("image {}", path));
 }
 
 } // namespace

@@ -89,8 +89,8 @@ ExitCode RenderRun::checkOutputs() {
     if (!options_.part && std::filesystem::path(summary_.image).extension() != ".exr")
         return refuse("E0431", fmt::format("the image `{}` must be an EXR", summary_.image),
                       "name it `….exr`; `--png=FILE` adds a PNG", ExitCode::usage);
-    const std::string deep = built_.layers.deep && !options_.part ? deepPath(summary_.image) : "";
-    for (const std::string& path : {summary_.image, summary_.png, deep}) {
+    if (built_.layers.deep && !options_.part) summary_.deep = deepPath(summary_.image);
+    for (const std::string& path : {summary_.image, summary_.png, summary_.deep}) {
         if (path.empty()) continue;
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);

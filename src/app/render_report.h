@@ -28,8 +28,8 @@ struct RenderStart {
 
 // Known at the end.
 struct RenderSummary {
-    std::string image, png; // paths; empty: none
-    std::string space;      // of the image
+    std::string image, deep, png; // paths; empty: none
+    std::string space;            // of the image
     int width = 0, height = 0;
     bool partial = false;
     std::vector<std::pair<std::string, double>> phases; // name, seconds

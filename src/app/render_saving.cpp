@@ -180,6 +180,7 @@ void RenderRun::write(const PixelFilm& film) {
         writeRescued(picture, attributes(film), e);
     }
     report_->image(summary_.image, summary_.partial);
+    if (picture.deep) report_->image(summary_.deep, summary_.partial);
     writeCertificate();
     writePng(picture.image);
     endPhase("writing", watch_.lap());

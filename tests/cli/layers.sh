@@ -30,6 +30,8 @@ expect 1 both.scene "${small[@]}"
 says err E0453
 
 # Deep samples.
+expect 0 one.scene --size 40x24 --samples 2 -o told.exr
+says err "image told.deep.exr"
 expect 0 info one.deep.exr
 says out "samples      deep"
 says out "channels     A (float) B (float) G (float) R (float) Z (float) ZBack (float)"
