@@ -5,6 +5,7 @@
 #include "schema/measure.h"
 #include "schema/spectrum_table.h"
 #include "schema/suggest.h"
+#include "spectrum/named_spectra.h"
 
 #include <array>
 #include <cmath>
@@ -114,6 +115,17 @@ class SpectrumReader {
         return false;
     }
 
+    // The form that takes this name of the built-in data and fits here; nothing if there is none.
+    std::string_view formOfData(std::string_view name) const {
+        const std::string_view form = findGlass(name)        ? "glass"
+                                      : findMetal(name)      ? "metal"
+                                      : findIlluminant(name) ? "illuminant"
+                                      : findMeasured(name)   ? "measured"
+                                                             : "";
+        const SpectrumForm* found = findSpectrumForm(form);
+        return found && (!use_.role || fits(found->form, *use_.role)) ? form : "";
+    }
+
     void unknownForm(const Value& word) {
         for (const std::string_view future : kFutureForms)
             if (word.text == future) return reportPlanned(word.text, place(word), diagnostics_);
@@ -132,6 +144,8 @@ class SpectrumReader {
             d.related.push_back({definition->nameSpan, "defined here"});
         else if (parseHex(word.text))
             d.help = fmt::format("write `srgb \"{}\"`", word.text);
+        else if (const std::string_view form = formOfData(word.text); meant.empty() && !form.empty())
+            d.help = fmt::format("write `{} {}`", form, word.text);
         else if (meant.empty())
             d.help = "write a number or one of " + quotedList(forms, "or");
     }

@@ -97,6 +97,9 @@ TEST_CASE("forms with mistakes") {
     CHECK(albedo("rgb 0.1 0.2 0.3 mm")->codes() == "E0302");
     CHECK(albedo("measured")->get("E0306").label == "a name is missing");
     CHECK(index("glass BK7 SF11")->codes() == "E0306");
+    CHECK(index("BK7")->get("E0202").help == "write `glass BK7`");
+    CHECK(emission("D65")->get("E0202").help == "write `illuminant D65`");
+    CHECK(albedo("BK7")->get("E0202").help.starts_with("write a number or one of"));
     CHECK(index("cauchy 1.5")->codes() == "E0306");
     CHECK(index("cauchy 1 2 3 4 5")->codes() == "E0306");
     CHECK(index("sellmeier 1 2 3")->codes() == "E0306");
