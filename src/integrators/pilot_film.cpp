@@ -39,8 +39,11 @@ float PilotFilm::luminance(int column, int row) const {
 }
 
 double PilotFilm::rays(PixelBounds b) const {
-    const int left = (b.x0 - frame_.x0) / cellSize_, right = (b.x1 - 1 - frame_.x0) / cellSize_;
-    const int top = (b.y0 - frame_.y0) / cellSize_, bottom = (b.y1 - 1 - frame_.y0) / cellSize_;
+    const auto near = [this](int pixel, int first, int count) { // the film may reach beyond the frame
+        return std::clamp((pixel - first) / cellSize_, 0, count - 1);
+    };
+    const int left = near(b.x0, frame_.x0, columns_), right = near(b.x1 - 1, frame_.x0, columns_);
+    const int top = near(b.y0, frame_.y0, rows_), bottom = near(b.y1 - 1, frame_.y0, rows_);
     double sum = 0;
     for (int row = top; row <= bottom; ++row)
         for (int column = left; column <= right; ++column) sum += static_cast<double>(rays_[cell(column, row)]);

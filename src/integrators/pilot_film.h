@@ -26,7 +26,7 @@ class PilotFilm final : public Film {
     float luminance(int column, int row) const;
     // What all samples of a cell took. Different cells may be told of from different threads at once.
     void noteRays(int column, int row, std::uint64_t rays) { rays_[cell(column, row)] = static_cast<float>(rays); }
-    // Of one sample, on average over the cells that a rectangle touches.
+    // Of one sample, on average over the cells that a rectangle touches; beyond the frame, over those next to it.
     double rays(PixelBounds) const;
 
     PixelBounds bounds() const override { return frame_; }

@@ -113,4 +113,17 @@ TEST_CASE("the pilot looks at one pixel in each of at most 128 by 128 cells, by 
     CHECK(PilotFilm({0, 0, 257, 256}, 7).cellSize() == 4);
 }
 
+TEST_CASE("the pilot's rays: of the cells that a rectangle touches, or of those next to it") {
+    PilotFilm pilot({0, 0, 6, 4}, 1); // 3 × 2 cells
+    for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 3; ++column)
+            pilot.noteRays(column, row, PilotFilm::kSamples * static_cast<std::uint64_t>(10 * row + column));
+    CHECK(pilot.rays({2, 0, 4, 2}) == 1);
+    CHECK(pilot.rays({0, 0, 6, 4}) == 6);
+    CHECK(pilot.rays({3, 1, 5, 3}) == (1 + 2 + 11 + 12) / 4.0);
+    CHECK(pilot.rays({-9, -9, -1, -1}) == 0); // overscan
+    CHECK(pilot.rays({6, 4, 20, 20}) == 12);
+    CHECK(pilot.rays({-8, 0, 20, 2}) == 1);
+}
+
 } // namespace abbe::test
