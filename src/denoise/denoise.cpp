@@ -131,7 +131,7 @@ void checkInput(const DenoiseInput& input) {
 } // namespace
 
 std::string_view name(DenoiseMethod method) { return method == DenoiseMethod::nfor ? "nfor" : "preview"; }
-std::string_view version(DenoiseMethod) { return "2"; }
+std::string_view version(DenoiseMethod method) { return method == DenoiseMethod::nfor ? "3" : "2"; }
 
 DenoiseResult denoise(const DenoiseInput& input, DenoiseMethod method) {
     checkInput(input);

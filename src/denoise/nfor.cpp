@@ -62,13 +62,18 @@ DenoisedHalves untouched(const HalfBuffers& colour) {
 
 } // namespace
 
+// What goes with no albedo, mirror images and highlights, would get its texture by being divided by it: there the
+// candidates that are divided by nothing win.
 Mixture denoiseByRegression(const PreparedInput& input) {
+    const PreparedInput plain = undivided(input);
     Candidates candidates;
     addPass(input, {input.guide.guide(0, kColourEpsilon), input.guide.guide(1, kColourEpsilon)}, kFirstNarrowing,
             candidates);
     candidates.push_back(denoiseByWavelets(input));
+    candidates.push_back(denoiseByWavelets(plain));
     const DenoisedHalves first = mix(input.colour, candidates).picture;
     addSecondPass(input, first, candidates);
+    addSecondPass(plain, first, candidates);
     candidates.push_back(untouched(input.colour));
     return mix(input.colour, candidates);
 }

@@ -242,4 +242,15 @@ PreparedInput prepare(const DenoiseInput& input, bool filterFeatures) {
             repaired};
 }
 
+PreparedInput undivided(const PreparedInput& input) {
+    Plane one = input.modulation.fade;
+    forEachPixel(one, [](float) { return 1.f; });
+    one.extend();
+    Modulation modulation{{one, one, one}, one};
+    ColourPlanes divisor = modulation.albedo;
+    HalfBuffers guide(compressed(input.colour.halves[0]), compressed(input.colour.halves[1]), kColourRadius);
+    return {input.colour,     std::move(modulation), std::move(divisor), input.colour.halves,
+            std::move(guide), input.features,        input.scale,        input.repaired};
+}
+
 } // namespace abbe

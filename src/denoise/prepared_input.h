@@ -22,6 +22,8 @@ struct PreparedInput {
 
 // `filterFeatures`: the noise of features is removed; else they are taken as they are.
 PreparedInput prepare(const DenoiseInput&, bool filterFeatures);
+// The same with colours that are divided by nothing.
+PreparedInput undivided(const PreparedInput&);
 
 void multiply(ColourPlanes& colours, const ColourPlanes& factors);
 void divide(ColourPlanes& colours, const ColourPlanes& factors);

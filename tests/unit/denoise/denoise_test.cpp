@@ -138,6 +138,22 @@ TEST_CASE("texture under uneven light: neither is blurred") {
     CHECK(after < before / 10);
 }
 
+// As in a mirror whose albedo has a texture that its images do not show: divided by the albedo they would have it.
+TEST_CASE("light that the albedo has no part in, on a texture: none of the texture stays in it") {
+    SyntheticPicture picture(96, 80, 0.3f);
+    picture.repaint([](int x, int y) {
+        const int hash = (x * 7919 + y * 104729 + x * y * 31) % 97;
+        const float albedo = 0.1f + 0.4f * static_cast<float>(hash) / 96;
+        const float light =
+            0.6f + 0.5f * std::sin(0.08f * static_cast<float>(x)) * std::cos(0.06f * static_cast<float>(y));
+        return std::pair(albedo, light);
+    });
+    const double before = picture.relMse(picture.mean);
+    const double after = picture.relMse(denoise(picture.input(), DenoiseMethod::nfor).colour);
+    MESSAGE("relMSE " << before << " -> " << after);
+    CHECK(after < before / 6);
+}
+
 // Averaged over seeds, what the halves tell is what the truth tells. Both halves take part in the variances that the
 // weights are made of, so that the estimate is somewhat too good.
 TEST_CASE("the estimated error is the error") {
