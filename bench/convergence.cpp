@@ -29,7 +29,7 @@ struct Ladder {
 };
 Ladder ladder(const TestScene& scene, bool random, std::uint32_t largest) {
     RenderSettings settings = scene.settings();
-    settings.randomSampler = random;
+    settings.technique.numbers = random ? Technique::Numbers::random : Technique::Numbers::sobol;
     Ladder result{convergence(scene, settings, 8, largest, kReplicates), {}};
     result.fit = fitSlope(result.points);
     return result;

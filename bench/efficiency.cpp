@@ -26,7 +26,7 @@ struct Options {
     int replicates = 0;       // 0: as the scene says
     std::uint32_t reference = 512;
     std::uint32_t most = 256; // samples of the largest of the measured renders
-    std::optional<RenderSettings::LightChoice> choice;
+    std::optional<Technique::LightChoice> choice;
 };
 
 // Counts the ticks of every 16th call; its own cost is one increment for the others.
@@ -64,7 +64,7 @@ MeasuredRender render(const BuiltScene& built, const Options& options, std::uint
     how.seed = seed;
     how.maxDepth = options.depth;
     how.noiseTarget = how.timeLimit = 0;
-    if (options.choice) how.lightChoice = *options.choice;
+    if (options.choice) how.technique.lightChoice = *options.choice;
     return measuredRender(built, how,
                           options.replicates ? options.replicates : static_cast<int>(built.render.replicates));
 }

@@ -57,10 +57,10 @@ std::string hall(int count, int size) {
     return text;
 }
 
-MeasuredRender render(const BuiltScene& built, RenderSettings::LightChoice choice, std::uint32_t samples,
+MeasuredRender render(const BuiltScene& built, Technique::LightChoice choice, std::uint32_t samples,
                       std::uint64_t seed) {
     RenderSettings how = renderSettings(built.render);
-    how.lightChoice = choice;
+    how.technique.lightChoice = choice;
     how.samples = samples;
     how.seed = seed;
     return measuredRender(built, how, 1);
@@ -90,7 +90,7 @@ void run(const Options& o) {
     for (const int count : o.counts) {
         const auto scene = test::TestScene::parse(hall(count, o.size));
         if (scene.diagnostics().hasErrors()) throw std::runtime_error(scene.report());
-        const MeasuredRender reference = render(scene.built(), RenderSettings::LightChoice::tree, o.reference, 1000);
+        const MeasuredRender reference = render(scene.built(), Technique::LightChoice::tree, o.reference, 1000);
         for (const char* word : {"tree", "power", "uniform"}) {
             measure(scene.built(), reference, word, count, o);
             if (count == 1) break; // no choice

@@ -12,8 +12,8 @@ namespace {
 
 int asInt(std::uint64_t v) { return static_cast<int>(std::min<std::uint64_t>(v, 0x7fffffff)); }
 
-std::string_view strategyName(RenderSettings::Strategy s) {
-    using Strategy = RenderSettings::Strategy;
+std::string_view strategyName(Technique::Strategy s) {
+    using Strategy = Technique::Strategy;
     return s == Strategy::lightsOnly ? "lights" : s == Strategy::bsdfOnly ? "bsdf" : "mis";
 }
 
@@ -56,8 +56,8 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.seed", std::to_string(settings.seed));
     whole("abbe.samples", statistics.samplesPerPixel);
     whole("abbe.replicates", static_cast<std::uint64_t>(p.replicates));
-    text("abbe.sampler", settings.randomSampler ? "random" : "sobol");
-    text("abbe.strategy", std::string(strategyName(settings.strategy)));
+    text("abbe.sampler", settings.technique.numbers == Technique::Numbers::random ? "random" : "sobol");
+    text("abbe.strategy", std::string(strategyName(settings.technique.strategy)));
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
     text("abbe.effects", effectNames(p.built->scene.effects));
     text("abbe.kernel", statistics.kernel);

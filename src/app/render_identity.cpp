@@ -171,8 +171,8 @@ std::string quoted(const std::string& value) { return value.empty() ? "nothing" 
 
 std::vector<Fact> renderIdentity(const IdentityInput& in) {
     const RenderSettings& s = *in.settings;
-    using Strategy = RenderSettings::Strategy;
-    using LightChoice = RenderSettings::LightChoice;
+    using Strategy = Technique::Strategy;
+    using LightChoice = Technique::LightChoice;
     const auto number = [](auto v) { return fmt::format("{}", v); };
     std::vector<Fact> facts{
         {"program", fmt::format("abbe {} language {} samples {}", versionNumber(), kLanguageEdition, kSampleEdition)},
@@ -181,14 +181,14 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
         {"sensor", sensorText(*in.film)},
         {"seed", number(s.seed)},
         {"replicates", number(in.replicates)},
-        {"sampler", s.randomSampler ? "random" : "sobol"},
+        {"sampler", s.technique.numbers == Technique::Numbers::random ? "random" : "sobol"},
         {"adaptive", s.adaptive ? "on" : "off"},
-        {"strategy", s.strategy == Strategy::mis          ? "mis"
-                     : s.strategy == Strategy::lightsOnly ? "lights"
-                                                          : "bsdf"},
-        {"light choice", s.lightChoice == LightChoice::tree    ? "tree"
-                         : s.lightChoice == LightChoice::power ? "power"
-                                                               : "uniform"},
+        {"strategy", s.technique.strategy == Strategy::mis          ? "mis"
+                     : s.technique.strategy == Strategy::lightsOnly ? "lights"
+                                                                    : "bsdf"},
+        {"light choice", s.technique.lightChoice == LightChoice::tree    ? "tree"
+                         : s.technique.lightChoice == LightChoice::power ? "power"
+                                                                         : "uniform"},
         {"max-depth", number(s.maxDepth)},
         {"camera", in.camera},
     };

@@ -31,9 +31,8 @@ double shareOf(const Light& light, const std::optional<LightBounds>& part) {
 
 } // namespace
 
-LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights,
-                           RenderSettings::LightChoice choice) {
-    using enum RenderSettings::LightChoice;
+LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights, Technique::LightChoice choice) {
+    using enum Technique::LightChoice;
     std::vector<LightBounds> near;
     std::vector<Source> far;
     std::vector<double> farAmounts;

@@ -28,7 +28,7 @@ class LightSampler {
     static constexpr float kLeastShare = 0.1f;
 
     explicit LightSampler(const std::vector<std::unique_ptr<const Light>>&,
-                          RenderSettings::LightChoice = RenderSettings::LightChoice::tree);
+                          Technique::LightChoice = Technique::LightChoice::tree);
 
     bool empty() const { return lights_.empty(); }
     bool needsChoice() const { return lights_.size() > 1; }

@@ -95,7 +95,7 @@ template <EffectBits E> class PathLoop {
   private:
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
     static constexpr bool kAbsorption = hasEffect(E, Effect::absorption);
-    using Strategy = RenderSettings::Strategy;
+    using Strategy = Technique::Strategy;
 
     // Towards the eye, in the shading frame and in render space.
     struct Directions {

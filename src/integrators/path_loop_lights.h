@@ -21,7 +21,8 @@ float PathLoop<E>::scatteringWeight(float lightPdf, [[maybe_unused]] const Spect
 }
 
 template <EffectBits E> float PathLoop<E>::lightWeight(float lightPdf, const BsdfEval& eval, bool delta) const {
-    const float ratio = delta || context_.settings.strategy == Strategy::lightsOnly ? 0 : eval.pdfSolidAngle / lightPdf;
+    const float ratio =
+        delta || context_.settings.technique.strategy == Strategy::lightsOnly ? 0 : eval.pdfSolidAngle / lightPdf;
     if constexpr (kDispersion) {
         const Spectrum& r = path_.densities.unidirectional;
         return 1 / mean(fma(r * ratio, eval.pdfRatio, r));
@@ -31,7 +32,7 @@ template <EffectBits E> float PathLoop<E>::lightWeight(float lightPdf, const Bsd
 
 template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 direction) {
     const Spectrum emitted = hit.light->emitted(hit, -direction, path_.lambda);
-    const Strategy strategy = context_.settings.strategy;
+    const Strategy strategy = context_.settings.technique.strategy;
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     float lightPdf = 0;
     if (!path_.delta && strategy == Strategy::mis)
@@ -46,7 +47,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     if (observer_) [[unlikely]]
         observer_->leaves(direction);
     checkDirection(direction);
-    const Strategy strategy = context_.settings.strategy;
+    const Strategy strategy = context_.settings.technique.strategy;
     if (strategy == Strategy::lightsOnly && !path_.delta) return;
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
@@ -63,7 +64,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
 template <EffectBits E>
 void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye,
                               const VertexSample& sample, [[maybe_unused]] std::uint32_t depth) {
-    if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
+    if (context_.settings.technique.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick, path_.from, path_.scatters);
     const auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);

@@ -13,7 +13,7 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
     void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
                 const Spectrum& density) override {
         PathState<E>& path = loop_.path_;
-        const Strategy strategy = loop_.context_.settings.strategy;
+        const Strategy strategy = loop_.context_.settings.technique.strategy;
         float lightPdf = 0;
         if (!path.delta && strategy != Strategy::bsdfOnly)
             lightPdf = loop_.context_.lights.probability(&emission, path.from, path.scatters) *
@@ -100,7 +100,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
 
 template <EffectBits E>
 void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
-    if (context_.settings.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
+    if (context_.settings.technique.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
     const PickedLight picked = context_.lights.pick(sample.pick, p);
     const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;

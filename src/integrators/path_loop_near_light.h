@@ -14,7 +14,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     auto& leg = media_.leg;
     const auto& settings = context_.settings;
     leg.media = {};
-    if (!context_.lights.placed() || !path_.delta || settings.strategy == Strategy::bsdfOnly ||
+    if (!context_.lights.placed() || !path_.delta || settings.technique.strategy == Strategy::bsdfOnly ||
         (settings.maxDepth && depth >= settings.maxDepth))
         return;
     leg.ray = ray;

@@ -60,7 +60,8 @@ class RenderJob {
     RenderJob(const Kernel& kernel, const Scene& scene, Film& film, const RenderSettings& settings,
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
-          lights_(scene.lights, settings.lightChoice), context_{scene, lights_, settings, drawsChoices(scene, lights_)},
+          lights_(scene.lights, settings.technique.lightChoice), context_{scene, lights_, settings,
+                                                                          drawsChoices(scene, lights_)},
           range_(settings.range(film.replicates())), ownState_(ownState(film, range_, control)),
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
         statistics_.kernel = kernel.name;

@@ -82,8 +82,8 @@ TypeInfo renderType() {
             }};
 }
 
-RenderSettings::LightChoice lightChoice(std::string_view word) {
-    using enum RenderSettings::LightChoice;
+Technique::LightChoice lightChoice(std::string_view word) {
+    using enum Technique::LightChoice;
     return word == "power" ? power : word == "uniform" ? uniform : tree;
 }
 
@@ -95,12 +95,12 @@ RenderSettings renderSettings(const RenderParams& p) {
     s.noiseTarget = p.noise;
     s.timeLimit = p.timeLimit;
     s.adaptive = p.adaptive;
-    s.randomSampler = p.sampler.word == "random";
-    using Strategy = RenderSettings::Strategy;
-    s.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
-                 : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
-                                             : Strategy::mis;
-    s.lightChoice = lightChoice(p.lightChoice.word);
+    s.technique.numbers = p.sampler.word == "random" ? Technique::Numbers::random : Technique::Numbers::sobol;
+    using Strategy = Technique::Strategy;
+    s.technique.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
+                           : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
+                                                       : Strategy::mis;
+    s.technique.lightChoice = lightChoice(p.lightChoice.word);
     return s;
 }
 

@@ -24,6 +24,6 @@ struct RenderParams {
 schema::TypeInfo renderType();
 RenderSettings renderSettings(const RenderParams&);
 // By the words of `light-choice`; the tree for any other.
-RenderSettings::LightChoice lightChoice(std::string_view word);
+Technique::LightChoice lightChoice(std::string_view word);
 
 } // namespace abbe

@@ -82,7 +82,7 @@ template <EffectBits E> class TileKernel {
         const float rouletteScale = job_.roulette->scale(x, y);
         ExactXyz sum;
         std::uint32_t counted = 0;
-        sampler_.startPixel(seed, context_.settings.randomSampler, context_.choices);
+        sampler_.startPixel(seed, context_.settings.technique.numbers == Technique::Numbers::random, context_.choices);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
         for (std::uint32_t i = range.first; i < range.last; ++i) {

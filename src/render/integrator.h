@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/film.h"
+#include "render/technique.h"
 
 #include <algorithm>
 #include <array>
@@ -31,10 +32,7 @@ struct RenderSettings {
     double timeLimit = 0;              // s; 0: none
     std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken
     bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
-    bool randomSampler = false;        // plain random numbers instead of Owen-scrambled Sobol, for comparisons
-    enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
-    // Which light is asked: by what it may give to the place; by its power alone, or evenly, for comparisons.
-    enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
+    Technique technique = {};
 
     // Of the whole render.
     std::uint32_t samplesPerReplicate(int replicates) const {

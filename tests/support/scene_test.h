@@ -105,12 +105,12 @@ inline TestImage render(const TestScene& scene, const RenderSettings& settings, 
 
 // By both strategies, by light samples alone and by scattering alone, in this order; each with a seed of its own.
 inline std::vector<TestImage> renderByEachStrategy(const TestScene& scene, std::uint32_t samples) {
-    using Strategy = RenderSettings::Strategy;
+    using Strategy = Technique::Strategy;
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     std::vector<TestImage> images;
     for (const auto strategy : {Strategy::mis, Strategy::lightsOnly, Strategy::bsdfOnly}) {
-        settings.strategy = strategy;
+        settings.technique.strategy = strategy;
         ++settings.seed;
         images.push_back(render(scene, settings));
     }

@@ -83,8 +83,8 @@ TEST_CASE("a quad light over a floor: Lambert's formula") {
     // One scattering is what the formula describes.
     settings.maxDepth = 1;
     for (const auto strategy :
-         {RenderSettings::Strategy::mis, RenderSettings::Strategy::lightsOnly, RenderSettings::Strategy::bsdfOnly}) {
-        settings.strategy = strategy;
+         {Technique::Strategy::mis, Technique::Strategy::lightsOnly, Technique::Strategy::bsdfOnly}) {
+        settings.technique.strategy = strategy;
         const TestImage image = render(scene, settings);
         int onLamp = 0;
         const auto masked = [&](int x, int y) {
@@ -92,7 +92,7 @@ TEST_CASE("a quad light over a floor: Lambert's formula") {
             onLamp += v < 0;
             return v;
         };
-        const bool bsdf = strategy == RenderSettings::Strategy::bsdfOnly;
+        const bool bsdf = strategy == Technique::Strategy::bsdfOnly;
         checkSame(compareExpected(image.film, masked), bsdf ? 0.01 : 0.001);
         CHECK(onLamp == 0);
     }

@@ -18,7 +18,7 @@ light quad { points -1 3 -1  1 3 -1  1 3 1  -1 3 1; radiance 3 }
 SlopeFit imageSlope(const TestScene& scene, bool random) {
     RenderSettings settings = scene.settings();
     settings.maxDepth = 1;
-    settings.randomSampler = random;
+    settings.technique.numbers = random ? Technique::Numbers::random : Technique::Numbers::sobol;
     return fitSlope(convergence(scene, settings, 16, nightly() ? 4096 : 256));
 }
 
@@ -36,7 +36,7 @@ TEST_CASE("convergence of an image: a soft shadow") {
     settings.samples = 8 * 128;
     settings.maxDepth = 1;
     const double sobol = render(scene, settings).film.replicateVariance();
-    settings.randomSampler = true;
+    settings.technique.numbers = Technique::Numbers::random;
     CHECK(render(scene, settings).film.replicateVariance() > 4 * sobol);
 }
 

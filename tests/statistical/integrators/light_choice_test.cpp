@@ -57,14 +57,14 @@ std::string randomLights(int count, bool bare, std::uint64_t seed) {
     return text + "}; power 5 W }\n";
 }
 
-TestImage renderBy(const TestScene& scene, RenderSettings::LightChoice choice, std::uint32_t samples,
-                   std::uint64_t seed, RenderSettings::Strategy strategy = RenderSettings::Strategy::mis) {
+TestImage renderBy(const TestScene& scene, Technique::LightChoice choice, std::uint32_t samples, std::uint64_t seed,
+                   Technique::Strategy strategy = Technique::Strategy::mis) {
     RenderSettings settings = scene.settings();
-    settings.lightChoice = choice;
+    settings.technique.lightChoice = choice;
     settings.samples = nightly() ? 8 * samples : samples;
     settings.maxDepth = 2;
     settings.seed = seed;
-    settings.strategy = strategy;
+    settings.technique.strategy = strategy;
     return render(scene, settings);
 }
 
@@ -81,7 +81,7 @@ double spread(const TestImage& image) {
     return sum / square(mean);
 }
 
-using enum RenderSettings::LightChoice;
+using enum Technique::LightChoice;
 
 } // namespace
 
@@ -130,7 +130,7 @@ TEST_CASE("emitters, a sun and a sky: the tree's choice against scattering alone
         TestScene::parse(kRoom + randomLights(40, false, 5) +
                          "light sun { elevation 40 deg; angular-diameter 20 deg; irradiance 0.2 W-per-m2 "
                          "}\nlight sky { luminance 3 nits }\n");
-    using enum RenderSettings::Strategy;
+    using enum Technique::Strategy;
     const TestImage both = renderBy(scene, tree, 256, 1), lights = renderBy(scene, tree, 256, 2, lightsOnly);
     const TestImage bsdf = renderBy(scene, tree, 1024, 3, bsdfOnly);
     checkSame(compareImages(both.film, lights.film), 0.05);
@@ -157,7 +157,7 @@ shape block sphere { center 1.5 0.9 0; radius 0.9; material openpbr { base-color
                             std::pow(10, u(-0.5, 0.5)));
     const auto scene = TestScene::parse(text);
     REQUIRE_MESSAGE(!scene.diagnostics().hasErrors(), scene.report());
-    using enum RenderSettings::Strategy;
+    using enum Technique::Strategy;
     const TestImage both = renderBy(scene, tree, 256, 1), lights = renderBy(scene, tree, 512, 2, lightsOnly);
     const TestImage bsdf = renderBy(scene, tree, 1024, 3, bsdfOnly), byPower = renderBy(scene, power, 512, 4);
     checkSame(compareImages(both.film, lights.film), 0.03);

@@ -73,7 +73,7 @@ TEST_CASE("spots, balls, mirrors and moving lamps in fog: the same with and with
             settings.samples = 768;
             settings.maxDepth = 4;
             const TestImage both = render(scene, settings);
-            settings.strategy = RenderSettings::Strategy::bsdfOnly; // finds the lamp by chance alone
+            settings.technique.strategy = Technique::Strategy::bsdfOnly; // finds the lamp by chance alone
             settings.samples = 4096;
             ++settings.seed;
             checkSame(compareImages(both.film, render(scene, settings).film), 0.05);

@@ -117,7 +117,7 @@ TEST_CASE("light is scattered as often in a ball as there are mean free paths in
                         g));
         RenderSettings settings = scene.settings();
         settings.samples = 2048;
-        settings.strategy = RenderSettings::Strategy::bsdfOnly;
+        settings.technique.strategy = Technique::Strategy::bsdfOnly;
         const TestImage image = render(scene, settings);
         const double paths = static_cast<double>(image.statistics.paths);
         const double scattered = (static_cast<double>(image.statistics.vertices) / paths - 1) / (kPiD / 4);
@@ -138,7 +138,7 @@ TEST_CASE("a dense ball of albedo 0.99995 loses what its mean chord says, withou
                     radius));
     RenderSettings settings = scene.settings();
     settings.samples = nightly() ? 4096 : 2048;
-    settings.strategy = RenderSettings::Strategy::bsdfOnly;
+    settings.technique.strategy = Technique::Strategy::bsdfOnly;
     const TestImage image = render(scene, settings);
     CHECK(image.statistics.cappedPaths == 0);
     CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});

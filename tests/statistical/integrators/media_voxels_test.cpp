@@ -9,7 +9,7 @@
 namespace abbe::test {
 namespace {
 
-using Strategy = RenderSettings::Strategy;
+using Strategy = Technique::Strategy;
 
 // A smoke of some height, its foot at the origin, with a lamp that scattering finds too.
 struct SmokeScene {
@@ -72,7 +72,7 @@ TEST_CASE("voxels: a cloud of albedo 0.99995 needs no limit of depth") {
     RenderSettings settings = scene.settings();
     settings.samples = nightly() ? 512 : 64;
     const TestImage both = render(scene, settings);
-    settings.strategy = Strategy::bsdfOnly;
+    settings.technique.strategy = Strategy::bsdfOnly;
     ++settings.seed;
     const TestImage scattered = render(scene, settings);
     checkSame(compareImages(both.film, scattered.film), 0.03);

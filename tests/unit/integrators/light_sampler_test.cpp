@@ -59,7 +59,7 @@ TEST_CASE("light choice: probabilities sum to one over all parts, and are those 
         lightsOf(
             {{.power = 3, .parts = 7}, {.infinite = true, .irradiance = 0.01}, {.irradiance = 0.3}, {.parts = 1}})};
     for (const Lights& lights : cases)
-        for (const auto choice : {RenderSettings::LightChoice::tree, RenderSettings::LightChoice::power}) {
+        for (const auto choice : {Technique::LightChoice::tree, Technique::LightChoice::power}) {
             const LightSampler sampler(lights, choice);
             std::vector<std::pair<const Light*, std::uint32_t>> all;
             std::vector<double> expected;

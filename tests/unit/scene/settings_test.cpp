@@ -18,8 +18,8 @@ TEST_CASE("settings: documented defaults") {
     const RenderSettings s = scene.settings();
     CHECK(s.samples == 64);
     CHECK(s.maxDepth == 0);
-    CHECK_FALSE(s.randomSampler);
-    CHECK(s.strategy == RenderSettings::Strategy::mis);
+    CHECK(s.technique.numbers == Technique::Numbers::sobol);
+    CHECK(s.technique.strategy == Technique::Strategy::mis);
     CHECK(s.noiseTarget == 0);
     CHECK(s.timeLimit == 0);
 }
@@ -35,8 +35,8 @@ TEST_CASE("settings: everything that `render` and `film` say arrives") {
     CHECK(s.timeLimit == doctest::Approx(120));
     CHECK(s.maxDepth == 9);
     CHECK(s.seed == 77);
-    CHECK(s.randomSampler);
-    CHECK(s.strategy == RenderSettings::Strategy::lightsOnly);
+    CHECK(s.technique.numbers == Technique::Numbers::random);
+    CHECK(s.technique.strategy == Technique::Strategy::lightsOnly);
     CHECK(scene.built().render.replicates == 4);
     const FilmSettings f = filmSettings(scene.built().film);
     CHECK(f.width == 64);
@@ -60,8 +60,8 @@ TEST_CASE("settings: the command line overrides, and a new size takes the crop a
     CHECK(s.seed == 6);
     CHECK(s.noiseTarget == 0.25);
     CHECK(s.timeLimit == 3);
-    CHECK(s.strategy == RenderSettings::Strategy::bsdfOnly);
-    CHECK(s.randomSampler);
+    CHECK(s.technique.strategy == Technique::Strategy::bsdfOnly);
+    CHECK(s.technique.numbers == Technique::Numbers::random);
     const FilmSettings f = filmSettings(scene.built().film);
     CHECK(f.crop.x0 == 0);
     CHECK(f.crop.x1 == 10);
