@@ -2,6 +2,7 @@
 
 #include "app/data/compare_page_template.h"
 #include "app/json.h"
+#include "app/page_text.h"
 #include "base/check.h"
 #include "io/atomic_file.h"
 #include "io/display_rgb.h"
@@ -15,51 +16,6 @@
 namespace abbe {
 
 namespace {
-
-std::string base64(std::span<const unsigned char> bytes) {
-    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t left = bytes.size() - i;
-        const unsigned group = bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-        text += kDigits[group >> 18];
-        text += kDigits[group >> 12 & 63];
-        text += left > 1 ? kDigits[group >> 6 & 63] : '=';
-        text += left > 2 ? kDigits[group & 63] : '=';
-    }
-    return text;
-}
-
-// For text and for attributes in quotes.
-std::string htmlEscaped(std::string_view text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else if (c == '>')
-            escaped += "&gt;";
-        else if (c == '"')
-            escaped += "&quot;";
-        else
-            escaped += c;
-    }
-    return escaped;
-}
-
-// JSON inside a script element, which would end at the first "</script" of any text in it.
-std::string scriptEscaped(std::string_view json) {
-    std::string escaped;
-    for (const char c : json) {
-        if (c == '<')
-            escaped += "\\u003c";
-        else
-            escaped += c;
-    }
-    return escaped;
-}
 
 // Means over blocks of `channels` interleaved numbers; smaller blocks at the right and below.
 std::vector<float> blockMeans(std::span<const float> values, int width, int height, int channels, int block) {
