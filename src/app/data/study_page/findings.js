@@ -5,33 +5,24 @@ const between = (low, high, shown) => isNumber(low) && isNumber(high) ? `${shown
 function findingsOf(study) {
     const curves = study.curves || [], base = curves[0];
     if (!base) return [["Nothing was measured."]];
-    return [...costFindings(base), ...changeFindings(curves), ...biasFindings(curves), ...effectFindings(study)];
+    const found = [...costFindings(base), ...changeFindings(curves), ...biasFindings(curves), ...effectFindings(study)];
+    const last = (base.points || []).filter(p => positive(p.relMse) && positive(p.seconds)).pop();
+    if (!found.length && last) found.push([`After ${countText(last.samples)} samples and ${timeText(last.seconds)} the error is `, errorText(last.relMse, 2), "; nothing was fitted."]);
+    return found.length ? found : [["No error could be measured."]];
 }
 
 function costFindings(base) {
-    const found = [], one = timeToReach(base, 0.01), tenth = timeToReach(base, 0.001);
-    if (one && positive(one.seconds)) {
-        const words = ["An error of 1 % takes ", timeText(one.seconds), one.extrapolated ? " (extrapolated)" : ""];
-        if (tenth && positive(tenth.seconds))
-            words.push("; 0.1 % takes ", "", "", timeText(tenth.seconds), tenth.extrapolated ? " (extrapolated)." : ".");
-        else words[2] += ".";
-        found.push(joined(words));
-    }
+    const found = [], times = (base.timeTo || []).filter(t => positive(t.seconds)).sort((a, b) => b.error - a.error);
+    const far = t => t.extrapolated ? " (extrapolated)" : "", [first, last] = [times[0], times[times.length - 1]];
+    if (times.length === 1) found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}.`]);
+    else if (times.length > 1)
+        found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}, one of ${percent(last.error, 1)} takes `, timeText(last.seconds), `${far(last)}.`]);
     const cost = base.fit && base.fit.halfNoiseCost;
     if (positive(cost)) {
         const law = Math.abs(Math.log(cost / 4)) < 0.12 ? "as averaging promises: 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
         found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${law}).`]);
     }
     return found;
-}
-// Texts between bold ones run together.
-function joined(words) {
-    const merged = [words[0]];
-    for (let i = 1; i < words.length; i += 2) {
-        if (words[i] === "") merged[merged.length - 1] += words[i + 1] ?? "";
-        else merged.push(words[i], words[i + 1] ?? "");
-    }
-    return merged;
 }
 
 // The changes that matter most: those whose interval does not contain 1.
@@ -42,11 +33,12 @@ function changeFindings(curves) {
     }).filter(c => c.sure).sort((a, b) => a.ratio - b.ratio);
     const told = c => {
         const slower = c.ratio < 1, factor = slower ? 1 / c.ratio : c.ratio;
-        const interval = positive(c.low) && positive(c.high) ? slower ? ` (95 %: ${between(1 / c.high, 1 / c.low, ratioText)})` : ` (95 %: ${between(c.low, c.high, ratioText)})` : "";
+        const ends = slower ? [1 / c.high, 1 / c.low] : [c.low, c.high];
+        const interval = positive(c.low) && positive(c.high) ? ` (95\u00a0%: ${between(...ends, v => significant(v, 2))})` : "";
         return slower ? [`With “${c.curve.label}” the same error takes `, ratioText(factor), ` as long${interval}.`]
-            : [`“${c.curve.label}” reaches the same error in `, `1/${significant(factor, 2)}`, ` of the time${interval}.`];
+            : [`With “${c.curve.label}” the same error comes `, ratioText(factor), ` sooner${interval}.`];
     };
-    const slow = changes.filter(c => c.ratio < 0.9).slice(0, 3), fast = changes.filter(c => c.ratio > 1.1).slice(-2).reverse();
+    const slow = changes.filter(c => c.ratio < 0.9).slice(0, 2), fast = changes.filter(c => c.ratio > 1.1).slice(-1);
     return [...slow, ...fast].map(told);
 }
 
@@ -56,7 +48,7 @@ function biasFindings(curves) {
         if (base.low > 0) found.push(["As rendered, the error does not fall below ", errorText(base.relMse, 2), ": a bias, or an error of the reference."]);
         else if (positive(base.high)) found.push(["No bias was found down to ", errorText(base.high, 2), "."]);
     }
-    const biased = curves.slice(1).filter(c => c.floor && positive(c.floor.low)).sort((a, b) => b.floor.relMse - a.floor.relMse).slice(0, 2);
+    const biased = curves.slice(1).filter(c => c.floor && positive(c.floor.low)).sort((a, b) => b.floor.relMse - a.floor.relMse).slice(0, 1);
     for (const c of biased) found.push([`“${c.label}” settles at an error of `, errorText(c.floor.relMse, 2), ", however long it runs."]);
     return found;
 }

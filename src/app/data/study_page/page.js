@@ -19,8 +19,8 @@ function svgOf(text) {
     holder.innerHTML = text;
     return holder.content.firstElementChild;
 }
-function section(id, title, intro, ...children) {
-    byId("nav").append(make("a", {href: `#${id}`}, title));
+function section(id, short, title, intro, ...children) {
+    byId("nav").append(make("a", {href: `#${id}`}, short));
     const made = make("section", {id, "aria-labelledby": `${id}-title`},
                       make("header", {}, make("h2", {id: `${id}-title`}, title), intro ? make("p", {}, intro) : null), ...children);
     byId("top").append(made);
@@ -72,8 +72,8 @@ function head() {
                    ["machine", machine.cpu ? `${machine.cpu}, ${machine.threads} ${machine.threads === 1 ? "thread" : "threads"}` : null],
                    ["program", study.program && study.program.version ? `Abbe ${study.program.version}` : null]];
     byId("top").append(make("div", {class: "head"},
-        make("div", {}, make("p", {class: "eyebrow"}, "What accuracy costs"), make("h1", {}, scene.name || "Study"),
-             scene.path ? make("p", {class: "path"}, scene.path) : null,
+        make("div", {}, make("p", {class: "eyebrow"}, "What accuracy costs"), make("h1", {title: scene.name || null}, scene.name || "Study"),
+             scene.path ? make("p", {class: "path", title: scene.path}, scene.path) : null,
              make("ul", {class: "findings"}, findingsOf(study).map(words => make("li", {}, bold(words))))),
         study.referencePng ? make("figure", {}, make("img", {src: pngUrl(study.referencePng), alt: "The reference picture"}),
                                   make("figcaption", {}, "the reference")) : null,
@@ -83,8 +83,8 @@ function head() {
 
 function convergence() {
     if (!curves.some(c => (c.points || []).length)) return;
-    const made = section("convergence", "Error against time and samples",
-        "Relative error is the root of the mean square error over the pixels, relative to the reference. Bands hold 95 % of what other seeds would give; a thin straight line is the fitted power law. An arrow marks a measurement that drowns in the noise of the reference: its top is the upper bound.");
+    const made = section("convergence", "Error", "Error against time and samples",
+        "Relative error is the root of the mean square error over the pixels, relative to the reference. Bands hold 95\u00a0% of what other seeds would give; a thin straight line is the fitted power law. An arrow marks a measurement that drowns in the noise of the reference: its top is the upper bound.");
     const switches = make("div", {class: "switches", role: "group", "aria-label": "Group of curves"}), chips = make("div", {class: "switches chips", role: "group", "aria-label": "Curves"});
     const options = [...groups, ...(groups.length > 1 ? ["all"] : [])];
     if (options.length) {
@@ -122,7 +122,7 @@ function drawPlot(figure) {
     frame.spots = plot.spots;
     const fit = curves[0].fit;
     figure.lastChild.textContent = fit && isNumber(fit.slope) && axis === "samples"
-        ? `${curves[0].label}: error falls as N to the power ${significant(fit.slope / 2, 3)} (95 %: ${between(fit.low / 2, fit.high / 2, v => significant(v, 3))}); averaging gives −0.5.`
+        ? `${curves[0].label}: error falls as N to the power ${significant(fit.slope / 2, 3)} (95\u00a0%: ${between(fit.low / 2, fit.high / 2, v => significant(v, 3))}); averaging gives −0.5.`
         : axis === "seconds" ? `Wall time of one render${study.machine && study.machine.threads ? ` on ${study.machine.threads} threads` : ""}.` : "";
 }
 function highlight(root, index) {
@@ -181,3 +181,4 @@ function showTip(content, x, y) {
     tip.style.top = `${Math.max(6, Math.min(innerHeight - height - 6, y - height / 2))}px`;
 }
 const hideTip = () => { byId("tip").hidden = true; };
+window.addEventListener("scroll", hideTip, {passive: true});

@@ -5,7 +5,7 @@
 // differ by marker and dash as well.
 const themes = {
     light: {paper: "#fcfbf8", card: "#f3f1eb", ink: "#1c1d20", soft: "#5d5f66", line: "#d9d6cd", grid: "#e6e3da", accent: "#9a3b12",
-            c0: "#0067a8", c1: "#c84e00", c2: "#00805c", c3: "#a8437f", c4: "#8f6a00", c5: "#3b8fc0", c6: "#6b4fb3"},
+            c0: "#0067a8", c1: "#c04800", c2: "#00805c", c3: "#a8437f", c4: "#8f6a00", c5: "#3b8fc0", c6: "#6b4fb3"},
     dark: {paper: "#15171b", card: "#1e2126", ink: "#ecebe6", soft: "#a3a6ae", line: "#383c44", grid: "#292d33", accent: "#ff9d66",
            c0: "#5cb3f0", c1: "#ff8f4a", c2: "#2fcc9f", c3: "#ee8fc6", c4: "#e8bb3c", c5: "#a4d4f5", c6: "#b9a3ff"},
 };
@@ -37,17 +37,20 @@ const escaped = text => String(text).replace(/[&<>"']/g, c => `&#${c.charCodeAt(
 const isNumber = v => typeof v === "number" && Number.isFinite(v);
 const positive = v => isNumber(v) && v > 0;
 
-// With `digits` significant ones, without an exponent in the range that people read.
+// With `digits` significant ones, without a power of ten in the range that people read.
 function significant(v, digits = 3) {
     if (!isNumber(v)) return "–";
     if (v === 0) return "0";
     const size = Math.floor(Math.log10(Math.abs(v)) + 1e-12);
-    if (size < -5 || size > 8) return v.toExponential(digits - 1).replace("-", "−");
+    if (size < -4 || size > 8) {
+        const [factor, power] = v.toExponential(digits - 1).replace(/-/g, "−").replace("+", "").split("e");
+        return `${factor}·10${[...power].map(c => c === "−" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]).join("")}`;
+    }
     return v.toFixed(Math.max(0, Math.min(20, digits - 1 - size))).replace("-", "−");
 }
-const percent = (v, digits = 3) => isNumber(v) ? `${significant(100 * v, digits)} %` : "–";
+const percent = (v, digits = 3) => isNumber(v) ? `${significant(100 * v, digits)}\u00a0%` : "–";
 // relMSE as the relative root mean square that people mean by "a 1 % error".
-const errorText = (relMse, digits = 3) => positive(relMse) ? percent(Math.sqrt(relMse), digits) : "below the noise";
+const errorText = (relMse, digits = 3) => !isNumber(relMse) ? "–" : relMse > 0 ? percent(Math.sqrt(relMse), digits) : "below the noise";
 const ratioText = v => isNumber(v) ? `${significant(v, v >= 99.5 ? 3 : 2)}×` : "–";
 const countText = v => isNumber(v) ? String(Math.round(v)).replace(/\B(?=(\d{3})+$)/g, "\u202f") : "–";
 function timeText(seconds, digits = 2) {
@@ -89,7 +92,8 @@ function curveLooks(curves) {
     return curves.map((curve, index) => {
         const group = curve.group || "main", g = groups.indexOf(group), i = counts[group] = (counts[group] ?? -1) + 1;
         if (index === 0) return {color: "ink", marker: 0, dash: ""};
-        const colour = group === (curves[0].group || "main") ? i - 1 : i;
+        // Those of the main group are beside all others: nobody shares their colours.
+        const main = curves.filter(c => (c.group || "main") === groups[0]).length - 1, colour = g === 0 ? i - 1 : main < 4 ? main + i % (7 - main) : i;
         return {color: `c${colour % 7}`, marker: (1 + colour + 2 * g) % 8, dash: ["", "7 3", "2 3", "9 3 2 3", "4 2"][(colour + g) % 5]};
     });
 }
@@ -113,10 +117,12 @@ function markerPath(kind, x, y, r) {
 }
 
 const xOf = (point, axis) => axis === "samples" ? point.samples : point.seconds;
-// The straight line of the fit, as y(x) of the relative RMS: its slope is half that of relMSE; it goes through the middle of the points.
+// The straight line of the fit, as y(x) of the relative RMS: its slope is half that of relMSE. It goes through the middle of the later
+// half of the points, where a constant time for starting no longer counts.
 function fitLine(curve, axis) {
-    const points = (curve.points || []).filter(p => positive(p.relMse) && positive(xOf(p, axis)));
-    if (!curve.fit || !isNumber(curve.fit.slope) || points.length < 2) return null;
+    const all = (curve.points || []).filter(p => positive(p.relMse) && positive(xOf(p, axis))).sort((p, q) => xOf(p, axis) - xOf(q, axis));
+    if (!curve.fit || !isNumber(curve.fit.slope) || all.length < 2) return null;
+    const points = axis === "seconds" ? all.slice(Math.floor(all.length / 2)) : all;
     const slope = curve.fit.slope / 2;
     const log = points.reduce((sum, p) => sum + Math.log(Math.sqrt(p.relMse)) - slope * Math.log(xOf(p, axis)), 0) / points.length;
     return {at: x => Math.exp(log + slope * Math.log(x)), from: Math.min(...points.map(p => xOf(p, axis))),
@@ -134,6 +140,7 @@ function plotRange(curves, axis) {
             x1 = Math.max(x1, x);
             seeY(Math.sqrt(Math.max(0, point.relMse)));
             if (positive(point.high)) seeY(Math.sqrt(point.high));
+            if (positive(point.high) && !positive(point.relMse)) seeY(Math.sqrt(point.high) / 2.5); // room for its arrow
             if (positive(point.low) && positive(point.relMse)) seeY(Math.sqrt(Math.max(point.low, point.relMse / 9)));
         }
         if (curve.floor && positive(curve.floor.low)) seeY(Math.sqrt(curve.floor.relMse));
@@ -183,7 +190,7 @@ function errorPlot(study, options) {
     const Y = y => box.b - (box.b - box.t) * Math.log(y / range.y0) / Math.log(range.y1 / range.y0);
     parts.push(axesSvg({axis, box, range, X, Y, text, n, id}));
     const ends = [];
-    for (const index of shown) {
+    for (const index of [...shown].sort((a, b) => b - a)) { // the first curve on top
         parts.push(curveSvg(all[index], index, looks[index], {axis, box, X, Y, n, spots, range, id}));
         const last = spots.filter(s => s.curve === index).pop();
         if (last && options.labels) ends.push({index, y: last.y, x: last.x});

@@ -47,7 +47,7 @@ function strips() {
     const all = (study.strips || []).filter(s => (s.images || []).length);
     if (!all.length) return;
     let chosen = all.length > 1 ? Math.floor(all.length / 2) : 0;
-    const made = section("strips", "The same time, in pictures",
+    const made = section("strips", "Pictures", "The same time, in pictures",
         "Every picture took the same time as the others in its row; below each, its error. The curves chosen above are shown. Point at a picture to look at the same place in all of them; a click magnifies.");
     const times = make("div", {class: "switches", role: "group", "aria-label": "Time"}, make("span", {class: "name"}, "after"),
         all.map((strip, i) => make("button", {type: "button", onclick: () => { chosen = i; draw(); }}, timeText(strip.seconds))));

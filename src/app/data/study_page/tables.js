@@ -1,6 +1,6 @@
 // The tables, the efficiencies, the bill, the effects, and what is at the end.
 function table(heads, rows) {
-    return make("div", {class: "scroll", tabindex: "0"}, make("table", {}, make("thead", {}, make("tr", {}, heads.map(h => make("th", {scope: "col"}, h)))), make("tbody", {}, rows)));
+    return make("div", {class: "scroll", tabindex: "0"}, make("table", {}, make("thead", {}, make("tr", {}, heads.map(h => make("th", {scope: "col", class: h === "asked for by" || h === "without it" ? "text" : null}, h)))), make("tbody", {}, rows)));
 }
 function timeTable() {
     const errors = [...new Set(curves.flatMap(c => (c.timeTo || []).map(t => t.error)))].filter(positive).sort((a, b) => b - a);
@@ -19,11 +19,11 @@ function timeTable() {
         rows.push(make("tr", {"data-curve": i}, make("td", {}, named(i), curve.note ? make("small", {}, curve.note) : null), errors.map(error => cell(curve, error)),
             make("td", {}, isNumber(fit.slope) ? significant(fit.slope / 2, 3) : "–", make("small", {}, between(fit.low / 2, fit.high / 2, v => significant(v, 3)))),
             make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–"),
-            make("td", {}, floor && isNumber(floor.low) ? floor.low > 0 ? errorText(floor.relMse, 2) : positive(floor.high) ? `none > ${errorText(floor.high, 2)}` : "none" : "–",
+            make("td", {}, floor && isNumber(floor.low) ? floor.low > 0 ? errorText(floor.relMse, 2) : positive(floor.high) ? `< ${errorText(floor.high, 2)}` : "none" : "–",
                  make("small", {}, biasWords(curve)))));
     });
-    section("time", "Time to reach an error", errors.length ? "Below each time its 95 % interval. † continues the fitted line beyond what was measured." : "",
-            table(["", ...errors.map(e => `to ${percent(e, 2)}`), "slope", "half the noise costs", "bias found"], rows));
+    section("time", "Time", "Time to reach an error", errors.length ? "Below each time its 95\u00a0% interval. † continues the fitted line beyond what was measured." : "",
+            table(["", ...errors.map(e => `to ${percent(e, 1)}`), "slope", "half the noise costs", "bias"], rows));
 }
 
 function efficiencies() {
@@ -39,13 +39,13 @@ function efficiencies() {
         const whisker = known ? `<line x1="${at(e.low)}%" x2="${at(e.high)}%" y1="13.5" y2="13.5" stroke="var(--c)" stroke-width="2"/>` : "";
         const strip = svgOf(`<svg class="plot" role="img" aria-label="${escaped(`${curves[e.index].label}: ${ratioText(e.ratio)}`)}">${grid}<g class="${look.color}">${whisker}<svg x="${at(e.ratio)}%" y="13.5" overflow="visible"><path class="mark" d="${markerPath(look.marker, 0, 0, 5)}"/></svg></g></svg>`);
         return make("div", {}, make("div", {class: "row-name"}, named(e.index)), make("div", {class: "strip"}, strip),
-                    make("div", {class: "value"}, ratioText(e.ratio), " ", make("small", {}, known ? `(${between(e.low, e.high, ratioText)})` : "")));
+                    make("div", {class: "value"}, ratioText(e.ratio), " ", make("small", {}, known ? `(${between(e.low, e.high, v => significant(v, 2))})` : "")));
     };
     const missing = curves.length - list.length;
-    section("efficiency", "Efficiency against the scene as rendered",
-            "How much more (right) or less (left) accuracy a second buys: the inverse of error² × time, as a ratio, with 95 % intervals.",
+    section("efficiency", "Efficiency", "Efficiency against the scene as rendered",
+            "How much more (right) or less (left) accuracy a second buys: the inverse of error² × time, as a ratio, with 95\u00a0% intervals.",
             make("div", {class: "whiskers"}, list.map(row), make("div", {}, make("div", {class: "row-name"}),
-                make("div", {class: "strip scale"}, marks.map(v => make("span", {style: `left:${at(v)}%`}, ratioText(v)))), make("div", {class: "value"}))),
+                make("div", {class: "strip scale"}, marks.map(v => make("span", {style: `left:${at(v)}%`}, `${+v.toPrecision(2)}×`))), make("div", {class: "value"}))),
             missing ? make("p", {class: "soft"}, `${missing} without a figure: ${curves.filter(c => !c.efficiency || !positive(c.efficiency.ratio)).map(c => c.label).join(", ")}.`) : "");
 }
 
@@ -56,9 +56,9 @@ function bill() {
     const total = rows.reduce((sum, r) => sum + Math.max(0, r.seconds), 0) || 1, share = r => isNumber(r.share) ? r.share : r.seconds / total;
     const colour = i => i < 7 ? `var(--${billColours[i]})` : "var(--soft)";
     const accounted = study.bill.accounted;
-    section("bill", "The bill", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.`,
+    section("bill", "Bill", "The bill", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.`,
         make("div", {class: "stack", role: "img", "aria-label": rows.map(r => `${r.label} ${percent(share(r), 2)}`).join(", ")},
-             rows.map((r, i) => make("div", {style: `flex:${Math.max(0, r.seconds) / total} 0 0;background:${colour(i)}`, title: `${r.label}: ${percent(share(r), 2)}`}))),
+             rows.map((r, i) => make("div", {style: `flex:${Math.max(0, r.seconds) / total} 0 0;background:${colour(i)}`, title: `${r.label}: ${percent(share(r), 2)}`}, share(r) > 0.09 ? r.label : ""))),
         table(["", "seconds", "share", "rays", "rays per second"], rows.map((r, i) => make("tr", {},
             make("td", {}, make("span", {class: "swatch", style: `background:${colour(i)}`}), r.label), make("td", {}, timeText(r.seconds, 3)), make("td", {}, percent(share(r), 3)),
             make("td", {}, positive(r.rays) ? countText(r.rays) : "–"), make("td", {}, positive(r.rays) && r.seconds > 0 ? `${significant(r.rays / r.seconds / 1e6, 3)} M` : "–")))));
@@ -68,7 +68,7 @@ function effects() {
     const all = study.effects || [];
     if (!all.length) return;
     const measured = all.filter(e => isNumber(e.deltaTime) && isNumber(e.flip)).sort((a, b) => b.deltaTime - a.deltaTime);
-    const made = section("effects", "What each effect is worth",
+    const made = section("effects", "Effects", "What each effect is worth",
         "Each effect off and on with the same seeds. To the right it takes more of the time; upwards it changes more of what an observer sees (HDR-FLIP, 0 … 1).");
     if (measured.length) {
         const frame = make("div", {class: "frame"}), draw = () => frame.replaceChildren(svgOf(effectPlot(measured, Math.max(300, frame.clientWidth || 900))));
@@ -80,10 +80,10 @@ function effects() {
         onclick: event => event.currentTarget.firstChild.classList.toggle("large")}, make("img", {class: "thumb", src: pngUrl(e.png), alt: `without ${e.name}`})) : null;
     made.append(table(["effect", "without it", "asked for by", "share of the time", "time on", "time off", "FLIP", "error if left out"],
         [...measured, ...all.filter(e => !measured.includes(e))].map(e => measured.includes(e)
-            ? make("tr", {}, make("td", {}, e.name, e.note ? make("small", {}, e.note) : null), make("td", {}, thumb(e) ?? "–"), make("td", {class: "text"}, e.asker || "–"),
+            ? make("tr", {}, make("td", {}, e.name, e.note ? make("small", {}, e.note) : null), make("td", {class: "text"}, thumb(e) ?? "–"), make("td", {class: "text"}, e.asker || "–"),
                 make("td", {}, percent(e.deltaTime, 2), make("small", {}, between(e.low, e.high, v => percent(v, 2)))), make("td", {}, timeText(e.secondsOn, 3)), make("td", {}, timeText(e.secondsOff, 3)),
                 make("td", {}, significant(e.flip, 2)), make("td", {}, positive(e.relMse) ? errorText(e.relMse, 2) : "–"))
-            : make("tr", {}, make("td", {}, e.name), make("td", {}, "–"), make("td", {class: "text"}, e.asker || "–"), make("td", {class: "text", colspan: 5}, e.reason || "not measured")))));
+            : make("tr", {}, make("td", {}, e.name), make("td", {class: "text"}, "–"), make("td", {class: "text"}, e.asker || "–"), make("td", {class: "text", colspan: 5}, e.reason || "not measured")))));
 }
 // FLIP goes by its root: small changes are apart, and nothing is at minus infinity.
 function effectPlot(list, width) {
@@ -103,13 +103,15 @@ function effectPlot(list, width) {
     parts.push(`<path class="axis" d="M${box.l},${box.t}V${box.b}H${box.r}"/><text class="title" x="6" y="14">FLIP without the effect</text>`,
                `<text class="title" x="${box.r}" y="${height - 6}" text-anchor="end">share of the time</text>`);
     list.forEach((e, i) => {
-        const x = X(e.deltaTime), y = Y(e.flip), w = 7 * e.name.length, side = x + 12 + w < box.r ? 1 : -1;
+        const y = Y(e.flip), known = isNumber(e.low) && isNumber(e.high), room = Math.floor((box.r - box.l) / 17),
+            name = e.name.length > room ? `${e.name.slice(0, room - 1)}…` : e.name, w = 7 * name.length, side = X(known ? e.high : e.deltaTime) + 12 + w < box.r ? 1 : -1;
+        const x = X(known ? side > 0 ? e.high : e.low : e.deltaTime);
         let ty = y + 4;
         const hits = v => taken.some(t => Math.abs(t.y - v) < 14 && Math.max(t.x, side > 0 ? x : x - w - 12) < Math.min(t.x + t.w, side > 0 ? x + w + 12 : x));
         for (let k = 1; hits(ty) && k < 12; ++k) ty = y + 4 + (k % 2 ? -1 : 1) * 15 * Math.ceil(k / 2);
         taken.push({x: side > 0 ? x : x - w - 12, y: ty, w: w + 12});
-        const whisker = isNumber(e.low) && isNumber(e.high) ? `<path class="whisker" d="M${n(X(e.low))},${n(y)}H${n(X(e.high))}"/>` : "";
-        parts.push(`<g class="effect c${i % 7}">${whisker}<path class="mark" d="${markerPath(i % 8, x, y, 5)}"/><text class="label" x="${n(x + 10 * side)}" y="${n(ty)}" text-anchor="${side > 0 ? "start" : "end"}">${escaped(e.name)}</text></g>`);
+        const whisker = known ? `<path class="whisker" d="M${n(X(e.low))},${n(y)}H${n(X(e.high))}"/>` : "";
+        parts.push(`<g class="effect c${i % 7}">${whisker}<path class="mark" d="${markerPath(i % 8, X(e.deltaTime), y, 5)}"/><text class="label" x="${n(x + 10 * side)}" y="${n(ty)}" text-anchor="${side > 0 ? "start" : "end"}">${escaped(name)}</text></g>`);
     });
     return `<svg class="plot" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" aria-label="Effects: visible change against share of the time">${parts.join("")}</svg>`;
 }
@@ -127,7 +129,7 @@ function closing() {
         setTimeout(() => URL.revokeObjectURL(url), 10000);
     };
     const command = study.program && study.program.command;
-    section("data", "Data, and how to repeat it", "",
+    section("data", "Data", "Data, and how to repeat it", "",
         command ? make("pre", {tabindex: "0"}, command) : null,
         make("div", {class: "switches buttons"},
             make("button", {type: "button", onclick: () => download(byId("study").textContent, "application/json", "json")}, "Save JSON"),
