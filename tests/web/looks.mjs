@@ -28,7 +28,15 @@ export function complaints() {
     // Contrast of text and background [WCAG 2.1, 1.4.3].
     const rgb = text => (text.match(/[\d.]+/g) || []).map(Number), linear = v => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
     const luminance = c => 0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]);
-    const ground = e => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor); if (c.length === 3 || c[3] > 0.99) return c; } return [255, 255, 255]; };
+    const sheet = document.documentElement.matches("svg") ? document.querySelector("svg > rect") : null; // of a drawing by itself
+    const ground = e => {
+        if (sheet) return rgb(getComputedStyle(sheet).fill);
+        for (; e; e = e.parentElement) {
+            const c = rgb(getComputedStyle(e).backgroundColor);
+            if (c.length === 3 || c[3] > 0.99) return c;
+        }
+        return [255, 255, 255];
+    };
     const judged = new Set();
     for (const e of document.querySelectorAll("h1,h2,h3,p,li,dd,dt,td,th,button,small,a,text")) {
         if (!seen(e) || !e.textContent.trim() || e.closest(":disabled")) continue;

@@ -68,11 +68,11 @@ function curve(random, {id, label, group, change, bias = "exact", variance, cost
     const ratio = base ? base.variance * base.cost / (variance * cost) : 1, slope = -exponent + 0.012 * normal(random);
     const timeTo = [0.01, 0.003, 0.001].map(error => {
         const left = error ** 2 - bias2;
-        if (left <= 0) return {error, seconds: null, low: null, high: null, samples: null, extrapolated: false};
+        if (left <= 0) return {error, seconds: null, low: null, high: null, samples: null, extrapolated: false, reachable: false};
         const samples = (variance / left) ** (1 / exponent), seconds = 0.02 + samples * cost;
         return {error, seconds, low: seconds * 0.93, high: seconds * 1.08, samples: Math.round(samples), extrapolated: samples > 4096};
     });
-    return {id, label, group, change, bias, note, points, fit: {slope, low: slope - 0.03, high: slope + 0.03, halfNoiseCost: 2 ** (2 / exponent)},
+    return {id, label, group, change, bias, note, points, fit: {slope, low: slope - 0.03, high: slope + 0.03, halfNoiseCost: 2 ** (2 / exponent), halfNoiseCostLow: 2 ** (2 / exponent) - 0.1, halfNoiseCostHigh: 2 ** (2 / exponent) + 0.12},
             floor: bias2 ? {relMse: bias2, low: bias2 * 0.8, high: bias2 * 1.2} : {relMse: 1e-9, low: -3e-8, high: 4e-8},
             efficiency: {ratio, low: ratio * (base ? 0.9 : 1), high: ratio * (base ? 1.11 : 1)}, timeTo};
 }
@@ -105,7 +105,7 @@ export function ordinary(seed = 1, chosen = changes) {
     return {
         format: "abbe-study/1", program: {version: "0.1.0", command: "abbe study scenes/cornell-box/cornell-box.scene --size 96x96 --replicates 8 -o cornell-box.html"},
         machine: {cpu: "Example CPU at 2.7 GHz", threads: 2}, scene: {path: "scenes/cornell-box/cornell-box.scene", name: "cornell-box", width, height, effects: "dispersion + absorption"},
-        replicates: 8, seed: 0, measure: "relMSE = mean of (x − a)(x − b)/(r² + 0.01 mean(r)²) over the pixels in linear Rec. 709; a and b are the two halves of the reference, r their mean.",
+        replicates: 8, complete: true, seed: 0, leftOut: [{id: "light-tree", label: "light tree", reason: "there is one light, so there is no choice"}], measure: "relMSE = mean of (x − a)(x − b)/(r² + 0.01 mean(r)²) over the pixels in linear Rec. 709; a and b are the two halves of the reference, r their mean.",
         reference: {samplesPerHalf: 16384, seconds: 61.2, relMse: 5.1e-8}, curves, strips, errorScale: {name: "inferno", low: 0, high: 0.5, unit: "relative error"},
         referencePng: png(width, height, room),
         effects: [
@@ -147,5 +147,7 @@ export function oddities() {
     hostile.bill.rows[0].label = evil;
     hostile.program.command = `abbe study ${evil}`;
     hostile.measure = evil;
+    hostile.leftOut[0].reason = evil;
+    noise.complete = false;
     return {one, twenty, empty, nulls, noise, hostile};
 }

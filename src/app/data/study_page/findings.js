@@ -5,10 +5,11 @@ const between = (low, high, shown) => isNumber(low) && isNumber(high) ? `${shown
 function findingsOf(study) {
     const curves = study.curves || [], base = curves[0];
     if (!base) return [["Nothing was measured."]];
+    const early = study.complete === false ? [["The time ran out ", "before all was measured", ": intervals are wider than they would be."]] : [];
     const found = [...costFindings(base), ...changeFindings(curves), ...biasFindings(curves), ...effectFindings(study)];
     const last = (base.points || []).filter(p => positive(p.relMse) && positive(p.seconds)).pop();
     if (!found.length && last) found.push([`After ${countText(last.samples)} samples and ${timeText(last.seconds)} the error is `, errorText(last.relMse, 2), "; nothing was fitted."]);
-    return found.length ? found : [["No error could be measured."]];
+    return [...early, ...(found.length ? found : [["No error could be measured."]])];
 }
 
 function costFindings(base) {
@@ -19,8 +20,9 @@ function costFindings(base) {
         found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}, one of ${percent(last.error, 1)} takes `, timeText(last.seconds), `${far(last)}.`]);
     const cost = base.fit && base.fit.halfNoiseCost;
     if (positive(cost)) {
-        const law = Math.abs(Math.log(cost / 4)) < 0.12 ? "as averaging promises: 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
-        found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${law}).`]);
+        const law = Math.abs(Math.log(cost / 4)) < 0.12 ? "averaging promises 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
+        const [low, high] = [base.fit.halfNoiseCostLow, base.fit.halfNoiseCostHigh];
+        found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${isNumber(low) && isNumber(high) ? `95\u00a0%: ${between(low, high, v => significant(v, 2))}; ` : ""}${law}).`]);
     }
     return found;
 }

@@ -172,16 +172,16 @@ function errorPlot(study, options) {
     const shown = options.shown ?? all.map((_, i) => i), curves = shown.map(i => all[i]);
     const longest = options.labels ? Math.max(0, ...curves.map(c => String(c.label).length)) : 0;
     const right = options.labels ? Math.min(width * 0.34, 30 + 6.6 * longest) : 16;
-    const head = options.title ? 52 : 26, box = {l: 62, r: width - right, t: head, b: height - 42};
+    const head = options.title ? 62 : 26, box = {l: 62, r: width - right, t: head, b: height - 42};
     const range = plotRange(curves, axis), parts = [], spots = [];
     const n = v => v.toFixed(1);
     const text = (x, y, words, more = "") => `<text x="${n(x)}" y="${n(y)}" ${more}>${escaped(words)}</text>`;
     const open = `<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" ` +
         `role="img" aria-label="${escaped(`Relative error against ${axis === "samples" ? "samples" : "time"}`)}">`;
     if (options.standalone)
-        parts.push(`<style>svg{${themeRules("light")}}@media(prefers-color-scheme:dark){svg{${themeRules("dark")}}}${plotRules}</style>` +
+        parts.push(`<style>svg{${themeRules("light")}}@media(prefers-color-scheme:dark){svg{${themeRules("dark")}}}${plotRules}.curve:not(.ink) .fit{display:none}</style>` +
                    `<rect width="${width}" height="${height}" rx="8" fill="var(--paper)"/>`);
-    if (options.title) parts.push(text(16, 22, options.title, `class="title"`));
+    if (options.title) parts.push(text(14, 26, options.title, `class="title" style="font-size:15px"`));
     if (!range) {
         parts.push(text(width / 2, height / 2, "no error was measured", `text-anchor="middle" class="note"`));
         return {svg: `${open}${parts.join("")}</svg>`, spots};

@@ -7,7 +7,8 @@ function timeTable() {
     if (!errors.length && !curves.some(c => c.fit)) return;
     const cell = (curve, error) => {
         const t = timeToReach(curve, error);
-        if (!t || !positive(t.seconds)) return make("td", {class: "soft"}, "–", make("small", {}, curve.floor && positive(curve.floor.low) && curve.floor.relMse > error ** 2 ? "bias is larger" : ""));
+        if (!t || !positive(t.seconds)) return make("td", {class: "soft"}, t && t.reachable === false ? "never" : "–",
+            make("small", {}, t && t.reachable === false || curve.floor && positive(curve.floor.low) && curve.floor.relMse > error ** 2 ? "bias is larger" : ""));
         return make("td", {class: t.extrapolated ? "far" : null, title: positive(t.samples) ? `${countText(t.samples)} samples` : null}, `${timeText(t.seconds)}${t.extrapolated ? " †" : ""}`,
                     make("small", {}, between(t.low, t.high, v => timeText(v))));
     };
@@ -18,7 +19,7 @@ function timeTable() {
         const fit = curve.fit || {}, floor = curve.floor;
         rows.push(make("tr", {"data-curve": i}, make("td", {}, named(i), curve.note ? make("small", {}, curve.note) : null), errors.map(error => cell(curve, error)),
             make("td", {}, isNumber(fit.slope) ? significant(fit.slope / 2, 3) : "–", make("small", {}, between(fit.low / 2, fit.high / 2, v => significant(v, 3)))),
-            make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–"),
+            make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–", make("small", {}, between(fit.halfNoiseCostLow, fit.halfNoiseCostHigh, v => significant(v, 2)))),
             make("td", {}, floor && isNumber(floor.low) ? floor.low > 0 ? errorText(floor.relMse, 2) : positive(floor.high) ? `< ${errorText(floor.high, 2)}` : "none" : "–",
                  make("small", {}, biasWords(curve)))));
     });
@@ -128,7 +129,7 @@ function closing() {
         link.click();
         setTimeout(() => URL.revokeObjectURL(url), 10000);
     };
-    const command = study.program && study.program.command;
+    const command = study.program && study.program.command, leftOut = study.leftOut || [];
     section("data", "Data", "Data, and how to repeat it", "",
         command ? make("pre", {tabindex: "0"}, command) : null,
         make("div", {class: "switches buttons"},
@@ -138,6 +139,7 @@ function closing() {
                 const button = event.currentTarget;
                 navigator.clipboard?.writeText(command).then(() => { button.textContent = "Copied"; }, () => { button.textContent = "Copying is not allowed here"; });
             }}, "Copy the command") : null),
+        leftOut.length ? make("div", {class: "measure"}, make("h3", {}, "Not measured"), make("ul", {class: "left-out soft"}, leftOut.map(v => make("li", {}, `${v.label}: ${v.reason}`)))) : null,
         make("div", {class: "measure soft"}, study.measure ? make("p", {}, study.measure) : null,
             make("p", {}, `An error of 1 % is a relMSE of 10⁻⁴. ${isNumber(study.replicates) ? `Each point is the mean of ${study.replicates} independent renders` : "Each point is a mean of independent renders"}${isNumber(study.seed) ? `, from seed ${study.seed} on` : ""}; the products with two independent halves of the reference cancel its noise, so that a small error may come out negative.`)));
 }

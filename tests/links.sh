@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# What pages of Markdown link to or show is there, the gallery's index among them; and all files of the gallery are in its index.
+#   links.sh [ROOT [LEAST NUMBER OF LINKS]]
+set -euo pipefail
+cd "${1:-$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..}"
+faults=0 links=0
+# Not what is built, or of other projects.
+mapfile -t pages < <(find . -name '*.md' -not -path './build*' -not -path './.git/*' -not -path './shared/*' | sort)
+for page in "${pages[@]}"; do
+    while IFS= read -r link; do
+        links=$((links + 1))
+        [[ -e $(dirname -- "$page")/$link ]] && continue
+        echo "$page: there is no $link"
+        faults=$((faults + 1))
+    done < <(awk '/^ *```/ { inside = !inside } !inside' "$page" | sed 's/`[^`]*`//g' |
+        grep -oE '\]\([^) ]+\)|src="[^"]+"' | sed -E 's/^\]\(//; s/\)$//; s/^src="//; s/"$//; s/#.*//' |
+        grep -vE '^$|^[a-z]+:' || true)
+done
+[[ $links -ge ${2:-100} ]] || { echo "only $links links were found"; faults=$((faults + 1)); }
+if [[ -e docs/gallery ]]; then
+    for file in docs/gallery/*; do
+        name=${file##*/}
+        [[ $name == README.md ]] || grep -qF -e "\"$name\"" -e "($name)" docs/gallery/README.md || { echo "$file is not in its index"; faults=$((faults + 1)); }
+    done
+fi
+exit $((faults > 0))
