@@ -5,7 +5,7 @@
 //                          [--study-size PIXELS] [--seeds N] [--variants LIST] [--samples-scale X] [--size-scale X] [--only index] [NAME …]
 // What WORK holds already with the same arguments and scene files is kept, and what was interrupted goes on: run it again to continue. Everything but
 // times is the same in every run when --study-samples is given; without it a study takes as many samples as its time allows.
-import {spawnSync} from "node:child_process";
+import {spawn} from "node:child_process";
 import {createHash} from "node:crypto";
 import {copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync} from "node:fs";
 import {availableParallelism, cpus} from "node:os";
@@ -42,7 +42,7 @@ function readArguments() {
     try {
         read = parseArgs({allowPositionals: true, options: {
             abbe: text(join(root, "build/release/abbe")), out: text(join(root, "docs/gallery")), work: text(join(root, "build/gallery")), threads: text("0"),
-            "study-time": text("200"), "study-samples": text(""), "study-size": text("128"), seeds: text("8"), variants: text("no-nee,lights-only,random,denoised"),
+            "study-time": text("200"), "study-samples": text(""), "study-size": text("112"), seeds: text("8"), variants: text("no-nee,lights-only,random,denoised"),
             "samples-scale": text("1"), "size-scale": text("1"), only: text("")}});
     } catch (error) {
         fail(error.message);
@@ -62,21 +62,27 @@ const at = (entry, ending) => join(root, inTree, `${entry.name}${ending}`), type
 const sceneOf = entry => join("scenes", entry.name, `${entry.name}.scene`);
 
 // Runs the program in the source tree, so that commands in headers and reports are those that a reader can type.
-function abbe(...words) {
-    const {status, stdout, error} = spawnSync(resolve(options.abbe), words, {cwd: root, stdio: ["ignore", "pipe", "inherit"], maxBuffer: 1 << 28, env: {...process.env, NO_COLOR: "1"}});
-    if (error) fail(`${options.abbe}: ${error.message}`);
+// It saves what it has when it is told to end, and so is told what this one is told; at a terminal it hears of Ctrl-C by itself.
+let running = null;
+process.on("SIGINT", () => {});
+process.on("SIGTERM", () => running?.kill("SIGTERM"));
+async function abbe(...words) {
+    running = spawn(resolve(options.abbe), words, {cwd: root, stdio: ["ignore", "pipe", "inherit"], env: {...process.env, NO_COLOR: "1"}});
+    let text = "";
+    running.stdout.on("data", data => { text += data; });
+    const status = await new Promise(done => running.on("error", error => fail(`${options.abbe}: ${error.message}`)).on("close", (code, signal) => done(code ?? signal)));
     if (status !== 0) fail(`abbe ${words.join(" ")} ended with ${status}; run this again to go on`);
-    return stdout.toString();
+    return text;
 }
 // A step is done when what it leaves was made with these words from this scene.
-function step(entry, name, results, words, run) {
+async function step(entry, name, results, words, run) {
     const hash = createHash("sha256");
     for (const file of readdirSync(join(root, "scenes", entry.name)).filter(f => !/\.(md|png)$/.test(f)).sort()) hash.update(readFileSync(join(root, "scenes", entry.name, file)));
     const key = JSON.stringify([words, hash.digest("hex")]), mark = at(entry, `.${name}.done`);
     if (existsSync(mark) && readFileSync(mark, "utf8") === key && results.every(existsSync)) return 0;
     const started = Date.now(), begun = at(entry, `.${name}.begun`), goesOn = existsSync(begun) && readFileSync(begun, "utf8") === key;
     writeFileSync(begun, key);
-    run(goesOn);
+    await run(goesOn);
     rmSync(begun);
     writeFileSync(mark, key);
     return (Date.now() - started) / 1000;
@@ -85,9 +91,9 @@ function step(entry, name, results, words, run) {
 function renderPicture(entry) {
     const size = entry.size.map(v => Math.max(8, Math.round(v * options["size-scale"]))).join("x"), samples = Math.max(8, Math.round(entry.samples * options["samples-scale"]));
     const words = ["render", sceneOf(entry), "--size", size, "--samples", String(samples), "-o", typed(entry, ".exr"), `--png=${typed(entry, ".png")}`, "-q", ...(options.threads > 0 ? ["-t", options.threads] : [])];
-    return step(entry, "picture", [at(entry, ".exr"), at(entry, ".png"), at(entry, ".info.json")], words, goesOn => {
-        abbe(...words, ...(goesOn ? ["--resume"] : []));
-        writeFileSync(at(entry, ".info.json"), abbe("info", at(entry, ".exr"), "--json"));
+    return step(entry, "picture", [at(entry, ".exr"), at(entry, ".png"), at(entry, ".info.json")], words, async goesOn => {
+        await abbe(...words, ...(goesOn ? ["--resume"] : []));
+        writeFileSync(at(entry, ".info.json"), await abbe("info", at(entry, ".exr"), "--json"));
     });
 }
 function study(entry) {
@@ -143,7 +149,7 @@ function writeIndex(entries) {
         }
         const bytes = statSync(at(f, ".png")).size;
         if (bytes > kMaxPng) fail(`${f.name}.png has ${bytes} bytes, more than ${kMaxPng}: give it fewer pixels in the table`);
-        writeFileSync(join(options.out, `${f.name}.svg`), page.errorPlot(f.study, {axis: "seconds", width: 600, height: 400, id: "plot", labels: true, standalone: true, title: `${f.name}: error against time`}).svg + "\n");
+        writeFileSync(join(options.out, `${f.name}.svg`), page.errorPlot(f.study, {axis: "seconds", width: 600, height: 400, id: "plot", labels: true, runs: false, standalone: true, title: `${f.name}: error against time`}).svg + "\n");
         written.add(`${f.name}.svg`);
     }
     writeFileSync(join(options.out, "README.md"), lines.join("\n"));
@@ -156,7 +162,7 @@ mkdirSync(join(root, inTree), {recursive: true});
 if (options.only !== "index") {
     if (!existsSync(options.abbe)) fail(`no program ${options.abbe}: cmake --preset release && cmake --build build/release --target abbe, or --abbe`);
     for (const entry of options.scenes) {
-        const picture = renderPicture(entry), measured = study(entry);
+        const picture = await renderPicture(entry), measured = await study(entry);
         console.log(`${entry.name}: picture ${picture.toFixed(0)} s, study ${measured.toFixed(0)} s`);
     }
 }

@@ -166,7 +166,7 @@ function endLabels(entries, top, bottom, gap) {
 }
 
 // options: axis "seconds" or "samples", width, height, shown (indices of curves), id (unique in the document), labels (names at
-// the ends of the curves), title, standalone (a file of its own). Returns {svg, spots}: spots are what a pointer can find.
+// the ends of the curves), runs (false: without the dots of single replicates), title, standalone (a file of its own). Returns {svg, spots}: spots are what a pointer can find.
 function errorPlot(study, options) {
     const {axis, width, height, id} = options, all = study.curves || [], looks = curveLooks(all);
     const shown = options.shown ?? all.map((_, i) => i), curves = shown.map(i => all[i]);
@@ -191,7 +191,7 @@ function errorPlot(study, options) {
     parts.push(axesSvg({axis, box, range, X, Y, text, n, id}));
     const ends = [];
     for (const index of [...shown].sort((a, b) => b - a)) { // the first curve on top
-        parts.push(curveSvg(all[index], index, looks[index], {axis, box, X, Y, n, spots, range, id}));
+        parts.push(curveSvg(all[index], index, looks[index], {axis, box, X, Y, n, spots, range, id, replicates: options.runs !== false}));
         const last = spots.filter(s => s.curve === index).pop();
         if (last && options.labels) ends.push({index, y: last.y, x: last.x});
     }
@@ -229,13 +229,13 @@ function axesSvg({axis, box, range, X, Y, text, n, id}) {
     return parts.join("");
 }
 
-function curveSvg(curve, index, look, {axis, box, X, Y, n, spots, range, id}) {
+function curveSvg(curve, index, look, {axis, box, X, Y, n, spots, range, id, replicates}) {
     const line = [], upper = [], lower = [], marks = [], runs = [];
     const inside = y => Math.min(box.b, Math.max(box.t, y));
     (curve.points || []).forEach((point, k) => {
         const x = xOf(point, axis);
         if (!positive(x)) return;
-        for (const run of point.runs || [])
+        for (const run of replicates && point.runs || [])
             if (positive(run.relMse)) {
                 const rx = axis === "samples" || !positive(run.seconds) ? x : run.seconds;
                 runs.push(`<circle class="run" cx="${n(X(rx))}" cy="${n(inside(Y(Math.sqrt(run.relMse))))}" r="1.6"/>`);
