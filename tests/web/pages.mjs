@@ -133,6 +133,14 @@ async function hostileText(browser, study) {
     await page.close();
 }
 
+// What is null is not zero, and a line is not followed for years.
+async function unknownFigures(browser) {
+    const page = await browser.open("nulls.html"), text = await page.evaluate("document.querySelector('main').textContent");
+    for (const wrong of ["0 … 0", "NaN", "null", "undefined", "years", "(95\u00a0%: )"]) check(`nulls: “${wrong}”`, !text.includes(wrong), text.slice(Math.max(0, text.indexOf(wrong) - 80), text.indexOf(wrong) + 40));
+    for (const right of ["−0.510", "> 3 h", "With “denoised” the same error takes about 10× as long."]) check(`nulls: “${right}”`, text.includes(right), text.slice(0, 600));
+    await page.close();
+}
+
 async function compare(browser) {
     for (const [width, scheme] of [[1280, "light"], [1280, "dark"]]) {
         const page = await browser.open(comparePage, {width, scheme}), what = `compare, ${width} pixels, ${scheme}`;
@@ -167,6 +175,7 @@ try {
     for (const [name, each] of Object.entries(odd)) await studyPage(browser, name, each, both);
     await studyInUse(browser, study);
     await hostileText(browser, odd.hostile);
+    await unknownFigures(browser);
     await compare(browser);
 } finally {
     await browser.close();

@@ -132,6 +132,9 @@ export function oddities() {
         for (const p of c.points) Object.assign(p, {coreSeconds: null, rays: null, low: null, high: null, trimmed: null, bias2: null, bias2Low: null, bias2High: null, runs: null});
         c.points.push({samples: 16384, seconds: null, relMse: null, low: null, high: null});
     }
+    nulls.curves[0].fit = {slope: -1.02, low: null, high: null, halfNoiseCost: 3.9, halfNoiseCostLow: null, halfNoiseCostHigh: null};
+    nulls.curves[1].efficiency.ratio = 0.1; // without an interval
+    Object.assign(nulls.curves[0].timeTo[0], {seconds: 1e9, extrapolated: true});
     Object.assign(nulls, {machine: {}, effects: null, bill: null, strips: [{seconds: null, images: []}, {seconds: 1, images: [{curve: "abbe", samples: null, relMse: null, png: nulls.referencePng, error: null}]}]});
     const noise = ordinary(5, changes.slice(0, 3)); // negative: below the noise of the reference
     for (const c of noise.curves) c.points.slice(-2).forEach(p => Object.assign(p, {relMse: -1e-8, low: -9e-8, high: 6e-8}));

@@ -1,5 +1,16 @@
 // What a study found, in plain words. A sentence is a list of texts; every other one (odd index) is set in bold.
 const timeToReach = (curve, error) => (curve.timeTo || []).find(t => Math.abs(t.error - error) < 1e-9) || null;
+// Half of a slope of relMSE: that of its root.
+const rootSlope = v => isNumber(v) ? v / 2 : null;
+// A fitted line tells nothing of times ten thousand times as long as those that were measured.
+const farthest = curve => 1e4 * Math.max(0, ...(curve.points || []).map(p => p.seconds).filter(positive));
+const tooFar = (curve, time) => time.extrapolated && time.seconds > farthest(curve);
+// {relMse, low, high, samples}: the floor of the fit where it has bounds, or else what the mean of all replicates is off at the last point.
+function biasOf(curve) {
+    if (curve.floor && isNumber(curve.floor.low) && isNumber(curve.floor.high)) return {...curve.floor, samples: null};
+    const last = (curve.points || []).filter(p => isNumber(p.bias2Low) && isNumber(p.bias2High)).pop();
+    return last ? {relMse: last.bias2, low: last.bias2Low, high: last.bias2High, samples: last.samples} : null;
+}
 const between = (low, high, shown) => isNumber(low) && isNumber(high) ? `${shown(low)} … ${shown(high)}` : "";
 
 function findingsOf(study) {
@@ -13,7 +24,7 @@ function findingsOf(study) {
 }
 
 function costFindings(base) {
-    const found = [], times = (base.timeTo || []).filter(t => positive(t.seconds)).sort((a, b) => b.error - a.error);
+    const found = [], times = (base.timeTo || []).filter(t => positive(t.seconds) && !tooFar(base, t)).sort((a, b) => b.error - a.error);
     const far = t => t.extrapolated ? " (extrapolated)" : "", [first, last] = [times[0], times[times.length - 1]];
     if (times.length === 1) found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}.`]);
     else if (times.length > 1)
@@ -30,25 +41,25 @@ function costFindings(base) {
 // The changes that matter most: those whose interval does not contain 1.
 function changeFindings(curves) {
     const changes = curves.slice(1).filter(c => c.efficiency && positive(c.efficiency.ratio)).map(curve => {
-        const {ratio, low, high} = curve.efficiency, sure = !isNumber(low) || !isNumber(high) || low > 1 || high < 1;
-        return {curve, ratio, low, high, sure};
+        const {ratio, low, high} = curve.efficiency, known = positive(low) && positive(high);
+        return {curve, ratio, low, high, known, sure: known ? low > 1 || high < 1 : ratio < 0.5 || ratio > 2};
     }).filter(c => c.sure).sort((a, b) => a.ratio - b.ratio);
     const told = c => {
         const slower = c.ratio < 1, factor = slower ? 1 / c.ratio : c.ratio;
         const ends = slower ? [1 / c.high, 1 / c.low] : [c.low, c.high];
-        const interval = positive(c.low) && positive(c.high) ? ` (95\u00a0%: ${between(...ends, v => significant(v, 2))})` : "";
-        return slower ? [`With “${c.curve.label}” the same error takes `, ratioText(factor), ` as long${interval}.`]
-            : [`With “${c.curve.label}” the same error comes `, ratioText(factor), ` sooner${interval}.`];
+        const interval = c.known ? ` (95\u00a0%: ${between(...ends, v => significant(v, 2))})` : "";
+        return slower ? [`With “${c.curve.label}” the same error takes ${c.known ? "" : "about "}`, ratioText(factor), ` as long${interval}.`]
+            : [`With “${c.curve.label}” the same error comes ${c.known ? "" : "about "}`, ratioText(factor), ` sooner${interval}.`];
     };
     const slow = changes.filter(c => c.ratio < 0.9).slice(0, 2), fast = changes.filter(c => c.ratio > 1.1).slice(-1);
     return [...slow, ...fast].map(told);
 }
 
 function biasFindings(curves) {
-    const found = [], base = curves[0].floor;
-    if (base && isNumber(base.low)) {
-        if (base.low > 0) found.push(["As rendered, the error does not fall below ", errorText(base.relMse, 2), ": a bias, or an error of the reference."]);
-        else if (positive(base.high)) found.push(["No bias was found down to ", errorText(base.high, 2), "."]);
+    const found = [], base = biasOf(curves[0]);
+    if (base) {
+        if (base.low > 0 && base.samples === null) found.push(["As rendered, the error does not fall below ", errorText(base.relMse, 2), ": a bias, or an error of the reference."]);
+        else if (base.low <= 0 && base.high > 0) found.push(["No bias was found down to ", errorText(base.high, 2), "."]);
     }
     const biased = curves.slice(1).filter(c => c.floor && positive(c.floor.low)).sort((a, b) => b.floor.relMse - a.floor.relMse).slice(0, 1);
     for (const c of biased) found.push([`“${c.label}” settles at an error of `, errorText(c.floor.relMse, 2), ", however long it runs."]);

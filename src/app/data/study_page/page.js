@@ -122,7 +122,7 @@ function drawPlot(figure) {
     frame.spots = plot.spots;
     const fit = curves[0].fit;
     figure.lastChild.textContent = fit && isNumber(fit.slope) && axis === "samples"
-        ? `${curves[0].label}: error falls as N to the power ${significant(fit.slope / 2, 3)} (95\u00a0%: ${between(fit.low / 2, fit.high / 2, v => significant(v, 3))}); averaging gives −0.5.`
+        ? `${curves[0].label}: error falls as N to the power ${significant(fit.slope / 2, 3)}${isNumber(fit.low) && isNumber(fit.high) ? ` (95\u00a0%: ${between(rootSlope(fit.low), rootSlope(fit.high), v => significant(v, 3))})` : ""}; averaging gives −0.5.`
         : axis === "seconds" ? `Wall time of one render${study.machine && study.machine.threads ? ` on ${study.machine.threads} threads` : ""}.` : "";
 }
 function highlight(root, index) {

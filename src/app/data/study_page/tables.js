@@ -9,6 +9,7 @@ function timeTable() {
         const t = timeToReach(curve, error);
         if (!t || !positive(t.seconds)) return make("td", {class: "soft"}, t && t.reachable === false ? "never" : "–",
             make("small", {}, t && t.reachable === false || curve.floor && positive(curve.floor.low) && curve.floor.relMse > error ** 2 ? "bias is larger" : ""));
+        if (tooFar(curve, t)) return make("td", {class: "far", title: "too far beyond what was measured"}, `> ${timeText(farthest(curve))}`);
         return make("td", {class: t.extrapolated ? "far" : null, title: positive(t.samples) ? `${countText(t.samples)} samples` : null}, `${timeText(t.seconds)}${t.extrapolated ? " †" : ""}`,
                     make("small", {}, between(t.low, t.high, v => timeText(v))));
     };
@@ -16,12 +17,12 @@ function timeTable() {
     let group = mainGroup;
     curves.forEach((curve, i) => {
         if ((curve.group || "main") !== group) rows.push(make("tr", {class: "group"}, make("td", {colspan: errors.length + 4}, group = curve.group || "main")));
-        const fit = curve.fit || {}, floor = curve.floor;
+        const fit = curve.fit || {}, bias = biasOf(curve);
         rows.push(make("tr", {"data-curve": i}, make("td", {}, named(i), curve.note ? make("small", {}, curve.note) : null), errors.map(error => cell(curve, error)),
-            make("td", {}, isNumber(fit.slope) ? significant(fit.slope / 2, 3) : "–", make("small", {}, between(fit.low / 2, fit.high / 2, v => significant(v, 3)))),
+            make("td", {}, isNumber(fit.slope) ? significant(fit.slope / 2, 3) : "–", make("small", {}, between(rootSlope(fit.low), rootSlope(fit.high), v => significant(v, 3)))),
             make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–", make("small", {}, between(fit.halfNoiseCostLow, fit.halfNoiseCostHigh, v => significant(v, 2)))),
-            make("td", {}, floor && isNumber(floor.low) ? floor.low > 0 ? errorText(floor.relMse, 2) : positive(floor.high) ? `< ${errorText(floor.high, 2)}` : "none" : "–",
-                 make("small", {}, biasWords(curve)))));
+            make("td", {}, bias ? bias.low > 0 ? errorText(bias.relMse, 2) : positive(bias.high) ? `< ${errorText(bias.high, 2)}` : "none" : "–",
+                 make("small", {}, [biasWords(curve), bias && bias.samples ? `at ${countText(bias.samples)}` : ""].filter(Boolean).join(", ")))));
     });
     section("time", "Time", "Time to reach an error", errors.length ? "Below each time its 95\u00a0% interval. † continues the fitted line beyond what was measured." : "",
             table(["", ...errors.map(e => `to ${percent(e, 1)}`), "slope", "half the noise costs", "bias"], rows));
@@ -36,7 +37,7 @@ function efficiencies() {
     const line = (v, colour) => `<line x1="${at(v)}%" x2="${at(v)}%" y1="0" y2="27" stroke="var(--${colour})"/>`;
     const grid = marks.map(v => line(v, "grid")).join("") + line(1, "soft");
     const row = e => {
-        const look = looks[e.index], known = positive(e.low) && positive(e.high);
+        const look = looks[e.index], known = e.index > 0 && positive(e.low) && positive(e.high);
         const whisker = known ? `<line x1="${at(e.low)}%" x2="${at(e.high)}%" y1="13.5" y2="13.5" stroke="var(--c)" stroke-width="2"/>` : "";
         const strip = svgOf(`<svg class="plot" role="img" aria-label="${escaped(`${curves[e.index].label}: ${ratioText(e.ratio)}`)}">${grid}<g class="${look.color}">${whisker}<svg x="${at(e.ratio)}%" y="13.5" overflow="visible"><path class="mark" d="${markerPath(look.marker, 0, 0, 5)}"/></svg></g></svg>`);
         return make("div", {}, make("div", {class: "row-name"}, named(e.index)), make("div", {class: "strip"}, strip),
@@ -141,5 +142,5 @@ function closing() {
             }}, "Copy the command") : null),
         leftOut.length ? make("div", {class: "measure"}, make("h3", {}, "Not measured"), make("ul", {class: "left-out soft"}, leftOut.map(v => make("li", {}, `${v.label}: ${v.reason}`)))) : null,
         make("div", {class: "measure soft"}, study.measure ? make("p", {}, study.measure) : null,
-            make("p", {}, `An error of 1 % is a relMSE of 10⁻⁴. ${isNumber(study.replicates) ? `Each point is the mean of ${study.replicates} independent renders` : "Each point is a mean of independent renders"}${isNumber(study.seed) ? `, from seed ${study.seed} on` : ""}; the products with two independent halves of the reference cancel its noise, so that a small error may come out negative.`)));
+            make("p", {}, `${/1 %/.test(study.measure || "") ? "" : "An error of 1 % is a relMSE of 10⁻⁴. "}${isNumber(study.replicates) ? `Each point is the mean of ${study.replicates} independent renders` : "Each point is a mean of independent renders"}${isNumber(study.seed) ? `, from seed ${study.seed} on` : ""}; the products with two independent halves of the reference cancel its noise, so that a small error may come out negative.`)));
 }
