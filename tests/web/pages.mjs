@@ -90,6 +90,10 @@ async function studyInUse(browser, study) {
     await plotsAre(page, "all curves", study.curves);
     await page.click('[data-group="all"]');
     await plotsAre(page, "the main group alone", study.curves.filter(c => c.group === "main"));
+    // without the worst pixels: lines and points alone
+    await page.click('[data-trimmed="yes"]');
+    await plotsAre(page, "trimmed", study.curves.filter(c => c.group === "main").map(c => ({...c, fit: null, floor: null, points: c.points.map(p => ({...p, relMse: p.trimmed, high: null}))})));
+    await page.click('[data-trimmed="no"]');
     // the tip by keys and by the pointer
     await page.evaluate("document.querySelector('.frame').focus()");
     await press(page, "ArrowRight");

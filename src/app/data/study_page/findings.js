@@ -31,27 +31,32 @@ function costFindings(base) {
         found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}, one of ${percent(last.error, 1)} takes `, timeText(last.seconds), `${far(last)}.`]);
     const cost = base.fit && base.fit.halfNoiseCost;
     if (positive(cost)) {
-        const law = Math.abs(Math.log(cost / 4)) < 0.12 ? "averaging promises 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
-        const [low, high] = [base.fit.halfNoiseCostLow, base.fit.halfNoiseCostHigh];
-        found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${isNumber(low) && isNumber(high) ? `95\u00a0%: ${between(low, high, v => significant(v, 2))}; ` : ""}${law}).`]);
+        const [low, high] = [base.fit.halfNoiseCostLow, base.fit.halfNoiseCostHigh], known = isNumber(low) && isNumber(high);
+        const law = (known ? low <= 4 && high >= 4 : Math.abs(Math.log(cost / 4)) < 0.12) ? "averaging promises 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
+        found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${known ? `95\u00a0%: ${between(low, high, factorText)}; ` : ""}${law}).`]);
     }
+    const end = (base.points || []).filter(p => positive(p.relMse) && positive(p.trimmed)).pop();
+    if (end && end.trimmed < 0.3 * end.relMse)
+        found.push(["Few bright pixels dominate: without the worst 0.1\u00a0% of them the error after ", timeText(end.seconds), ` is ${errorText(end.trimmed, 2)} instead of ${errorText(end.relMse, 2)}.`]);
     return found;
 }
 
-// The changes that matter most: those whose interval does not contain 1.
+// The changes that matter most: those whose interval does not contain 1, by the end of it that is nearer to 1.
 function changeFindings(curves) {
     const changes = curves.slice(1).filter(c => c.efficiency && positive(c.efficiency.ratio)).map(curve => {
         const {ratio, low, high} = curve.efficiency, known = positive(low) && positive(high);
         return {curve, ratio, low, high, known, sure: known ? low > 1 || high < 1 : ratio < 0.5 || ratio > 2};
-    }).filter(c => c.sure).sort((a, b) => a.ratio - b.ratio);
+    }).filter(c => c.sure);
+    const sureOf = c => c.known ? c.ratio < 1 ? c.high : c.low : c.ratio;
     const told = c => {
         const slower = c.ratio < 1, factor = slower ? 1 / c.ratio : c.ratio;
         const ends = slower ? [1 / c.high, 1 / c.low] : [c.low, c.high];
-        const interval = c.known ? ` (95\u00a0%: ${between(...ends, v => significant(v, 2))})` : "";
+        const interval = c.known ? ` (95\u00a0%: ${between(...ends, factorText)})` : "";
         return slower ? [`With “${c.curve.label}” the same error takes ${c.known ? "" : "about "}`, ratioText(factor), ` as long${interval}.`]
             : [`With “${c.curve.label}” the same error comes ${c.known ? "" : "about "}`, ratioText(factor), ` sooner${interval}.`];
     };
-    const slow = changes.filter(c => c.ratio < 0.9).slice(0, 2), fast = changes.filter(c => c.ratio > 1.1).slice(-1);
+    changes.sort((a, b) => sureOf(a) - sureOf(b));
+    const slow = changes.filter(c => sureOf(c) < 0.9).slice(0, 2), fast = changes.filter(c => sureOf(c) > 1.1).slice(-1);
     return [...slow, ...fast].map(told);
 }
 

@@ -56,9 +56,12 @@ const named = index => make("span", {class: "chip", title: curves[index].change 
 // Which curves are shown: the main group and one more, or all; single ones can be hidden.
 const mainGroup = curves.length ? curves[0].group || "main" : "main";
 const groups = [...new Set(curves.map(c => c.group || "main"))].filter(g => g !== mainGroup);
-const choice = {group: groups[0] ?? null, hidden: new Set(), listeners: []};
+const choice = {group: groups[0] ?? null, hidden: new Set(), trimmed: false, listeners: []};
 const inChoice = index => { const g = curves[index].group || "main"; return g === mainGroup || choice.group === "all" || g === choice.group; };
 const shownCurves = () => curves.map((_, i) => i).filter(i => inChoice(i) && !choice.hidden.has(i));
+// The same study without the 0.1 % of the pixels that add most: of that no bands and no fit are known.
+const trimmedPoint = p => ({...p, relMse: p.trimmed, low: null, high: null, runs: (p.runs || []).map(r => ({...r, relMse: r.trimmed}))});
+const trimmedStudy = {...study, curves: curves.map(c => ({...c, fit: null, floor: null, points: (c.points || []).map(trimmedPoint)}))};
 const changed = () => choice.listeners.forEach(listener => listener());
 
 function head() {
@@ -92,6 +95,10 @@ function convergence() {
             onclick: () => { choice.group = choice.group === group ? null : group; changed(); }}, group === "all" ? "all curves" : group)));
         made.append(switches);
     }
+    const pixels = make("div", {class: "switches", role: "group", "aria-label": "Pixels that count"}, make("span", {class: "name"}, "error of"),
+        [[false, "all pixels"], [true, "all but the worst 0.1\u00a0%"]].map(([trimmed, words]) => make("button", {type: "button", "data-trimmed": trimmed ? "yes" : "no",
+            onclick: () => { choice.trimmed = trimmed; changed(); }}, words)));
+    if (curves.some(c => (c.points || []).some(p => positive(p.trimmed)))) made.append(pixels);
     const plots = make("div", {class: "plots"}, ["seconds", "samples"].map(axis => {
         const frame = make("div", {class: "frame", tabindex: "0", "data-axis": axis, role: "application",
                                    "aria-label": `Error against ${axis === "seconds" ? "time" : "samples"}; arrow keys go from point to point`});
@@ -101,6 +108,7 @@ function convergence() {
     made.append(chips, plots);
     const draw = () => {
         for (const button of switches.querySelectorAll("button")) button.setAttribute("aria-pressed", button.dataset.group === choice.group);
+        for (const button of pixels.querySelectorAll("button")) button.setAttribute("aria-pressed", (button.dataset.trimmed === "yes") === choice.trimmed);
         chips.replaceChildren(...curves.map((curve, i) => inChoice(i) ? make("button", {type: "button", class: "chip", "aria-pressed": !choice.hidden.has(i), "data-curve": i,
             title: [curve.change, curve.note, biasWords(curve)].filter(Boolean).join(" · "),
             onclick: () => { if (!choice.hidden.delete(i)) choice.hidden.add(i); changed(); chips.querySelector(`[data-curve="${i}"]`)?.focus(); },
@@ -117,10 +125,10 @@ const widthOf = figure => Math.max(280, Math.floor(figure.clientWidth || 560));
 function drawPlot(figure) {
     const frame = figure.firstChild, axis = frame.dataset.axis, width = widthOf(figure);
     figure.dataset.width = width;
-    const plot = errorPlot(study, {axis, width, height: Math.round(Math.max(320, Math.min(460, width * 0.78))), shown: shownCurves(), id: `plot-${axis}`});
+    const plot = errorPlot(choice.trimmed ? trimmedStudy : study, {axis, width, height: Math.round(Math.max(320, Math.min(460, width * 0.78))), shown: shownCurves(), id: `plot-${axis}`});
     frame.replaceChildren(svgOf(plot.svg));
     frame.spots = plot.spots;
-    const fit = curves[0].fit;
+    const fit = choice.trimmed ? null : curves[0].fit;
     figure.lastChild.textContent = fit && isNumber(fit.slope) && axis === "samples"
         ? `${curves[0].label}: error falls as N to the power ${significant(fit.slope / 2, 3)}${isNumber(fit.low) && isNumber(fit.high) ? ` (95\u00a0%: ${between(rootSlope(fit.low), rootSlope(fit.high), v => significant(v, 3))})` : ""}; averaging gives −0.5.`
         : axis === "seconds" ? `Wall time of one render${study.machine && study.machine.threads ? ` on ${study.machine.threads} threads` : ""}.` : "";

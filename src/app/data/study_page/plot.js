@@ -52,6 +52,7 @@ const percent = (v, digits = 3) => isNumber(v) ? `${significant(100 * v, digits)
 // relMSE as the relative root mean square that people mean by "a 1 % error".
 const errorText = (relMse, digits = 3) => !isNumber(relMse) ? "–" : relMse > 0 ? percent(Math.sqrt(relMse), digits) : "below the noise";
 const ratioText = v => isNumber(v) ? `${significant(v, v >= 99.5 ? 3 : 2)}×` : "–";
+const factorText = v => isNumber(v) && v > 9999 ? "> 9999" : significant(v, 2);
 const countText = v => isNumber(v) ? String(Math.round(v)).replace(/\B(?=(\d{3})+$)/g, "\u202f") : "–";
 function timeText(seconds, digits = 2) {
     if (!isNumber(seconds)) return "–";
@@ -92,8 +93,8 @@ function curveLooks(curves) {
     return curves.map((curve, index) => {
         const group = curve.group || "main", g = groups.indexOf(group), i = counts[group] = (counts[group] ?? -1) + 1;
         if (index === 0) return {color: "ink", marker: 0, dash: ""};
-        // Those of the main group are beside all others: nobody shares their colours.
-        const main = curves.filter(c => (c.group || "main") === groups[0]).length - 1, colour = g === 0 ? i - 1 : main < 4 ? main + i % (7 - main) : i;
+        // As long as there are colours enough nobody shares one; those of the main group, which are beside all others, never do.
+        const main = curves.filter(c => (c.group || "main") === groups[0]).length - 1, colour = curves.length <= 8 ? index - 1 : g === 0 ? i - 1 : main < 4 ? main + i % (7 - main) : i;
         return {color: `c${colour % 7}`, marker: (1 + colour + 2 * g) % 8, dash: ["", "7 3", "2 3", "9 3 2 3", "4 2"][(colour + g) % 5]};
     });
 }

@@ -11,16 +11,17 @@ function timeTable() {
             make("small", {}, t && t.reachable === false || curve.floor && positive(curve.floor.low) && curve.floor.relMse > error ** 2 ? "bias is larger" : ""));
         if (tooFar(curve, t)) return make("td", {class: "far", title: "too far beyond what was measured"}, `> ${timeText(farthest(curve))}`);
         return make("td", {class: t.extrapolated ? "far" : null, title: positive(t.samples) ? `${countText(t.samples)} samples` : null}, `${timeText(t.seconds)}${t.extrapolated ? " †" : ""}`,
-                    make("small", {}, between(t.low, t.high, v => timeText(v))));
+                    make("small", {}, between(t.low, t.high, v => v > farthest(curve) ? `> ${timeText(farthest(curve))}` : timeText(v))));
     };
     const rows = [];
     let group = mainGroup;
-    curves.forEach((curve, i) => {
+    const rank = c => groups.indexOf(c.group || "main"); // −1: the main group
+    curves.map((curve, i) => ({curve, i})).sort((a, b) => rank(a.curve) - rank(b.curve) || a.i - b.i).forEach(({curve, i}) => {
         if ((curve.group || "main") !== group) rows.push(make("tr", {class: "group"}, make("td", {colspan: errors.length + 4}, group = curve.group || "main")));
         const fit = curve.fit || {}, bias = biasOf(curve);
         rows.push(make("tr", {"data-curve": i}, make("td", {}, named(i), curve.note ? make("small", {}, curve.note) : null), errors.map(error => cell(curve, error)),
             make("td", {}, isNumber(fit.slope) ? significant(fit.slope / 2, 3) : "–", make("small", {}, between(rootSlope(fit.low), rootSlope(fit.high), v => significant(v, 3)))),
-            make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–", make("small", {}, between(fit.halfNoiseCostLow, fit.halfNoiseCostHigh, v => significant(v, 2)))),
+            make("td", {}, positive(fit.halfNoiseCost) ? ratioText(fit.halfNoiseCost) : "–", make("small", {}, between(fit.halfNoiseCostLow, fit.halfNoiseCostHigh, factorText))),
             make("td", {}, bias ? bias.low > 0 ? errorText(bias.relMse, 2) : positive(bias.high) ? `< ${errorText(bias.high, 2)}` : "none" : "–",
                  make("small", {}, [biasWords(curve), bias && bias.samples ? `at ${countText(bias.samples)}` : ""].filter(Boolean).join(", ")))));
     });
@@ -41,7 +42,7 @@ function efficiencies() {
         const whisker = known ? `<line x1="${at(e.low)}%" x2="${at(e.high)}%" y1="13.5" y2="13.5" stroke="var(--c)" stroke-width="2"/>` : "";
         const strip = svgOf(`<svg class="plot" role="img" aria-label="${escaped(`${curves[e.index].label}: ${ratioText(e.ratio)}`)}">${grid}<g class="${look.color}">${whisker}<svg x="${at(e.ratio)}%" y="13.5" overflow="visible"><path class="mark" d="${markerPath(look.marker, 0, 0, 5)}"/></svg></g></svg>`);
         return make("div", {}, make("div", {class: "row-name"}, named(e.index)), make("div", {class: "strip"}, strip),
-                    make("div", {class: "value"}, ratioText(e.ratio), " ", make("small", {}, known ? `(${between(e.low, e.high, v => significant(v, 2))})` : "")));
+                    make("div", {class: "value"}, ratioText(e.ratio), " ", make("small", {}, known ? `(${between(e.low, e.high, factorText)})` : "")));
     };
     const missing = curves.length - list.length;
     section("efficiency", "Efficiency", "Efficiency against the scene as rendered",
