@@ -1,8 +1,11 @@
 #include "materials/normal_map.h"
 
+#include "render/texture_work.h"
+
 namespace abbe {
 
 Vec3 mappedNormal(const NormalMap& map, const SurfaceHit& hit) {
+    const TextureWork work;
     const Vec3 n = hit.shading.z, stored = map.texture->value(TextureQuery(hit));
     const Vec3 along = hit.dpdu - n * dot(n, hit.dpdu);
     const float l2 = lengthSquared(along);

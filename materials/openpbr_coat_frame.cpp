@@ -2,6 +2,7 @@
 
 #include "materials/normal_map.h"
 #include "math/consistent_normal.h"
+#include "render/texture_work.h"
 
 namespace abbe {
 
@@ -30,6 +31,7 @@ Vec3 OpenPbrCoatFrame::tangent(const SurfaceHit& hit, Vec3 n) const {
         const float angle = 2 * kPi * static_cast<float>(tangent_.value);
         return along.x * std::cos(angle) + along.y * (side * std::sin(angle));
     }
+    const TextureWork work;
     const Vec3 stored = tangent_.texture->value(TextureQuery(hit));
     return along.x * (2 * stored.x - 1) + along.y * (side * (2 * stored.y - 1));
 }

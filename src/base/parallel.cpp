@@ -1,5 +1,7 @@
 #include "base/parallel.h"
 
+#include "base/work.h"
+
 #ifdef __SANITIZE_THREAD__
 #include <atomic>
 #include <exception>
@@ -45,6 +47,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     std::mutex mutex;
     const auto work = [&] {
         flushDenormals();
+        showWork();
         try {
             for (std::size_t i = next++; i < count; i = next++) body(i);
         } catch (...) {
@@ -66,6 +69,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
             flushDenormals();
+            showWork();
             for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
         },
         tbb::simple_partitioner{});

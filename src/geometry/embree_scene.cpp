@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/work.h"
 #include "geometry/embree_device.h"
 #include "geometry/embree_sink.h"
 #include "geometry/instance_table.h"
@@ -10,6 +11,7 @@
 #include "render/material.h"
 #include "render/own_space.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <embree3/rtcore.h>
@@ -60,6 +62,7 @@ class EmbreeScene final : public Intersector {
     std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
     std::vector<std::unique_ptr<const InstanceTable>> tables;
     Bounds3 bounds_;
+    bool moving = false; // anything
 
   private:
     using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
@@ -67,6 +70,7 @@ class EmbreeScene final : public Intersector {
     const GeometryRecord& recordOf(const RTCHit&, Path) const;
     void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
     void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;
+    void countMotion(const RTCHit&, Path) const;
     void parametrize(const GeometryRecord&, const RawHit&, const Ray&, SurfaceHit&) const;
     bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
     bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
@@ -75,7 +79,8 @@ class EmbreeScene final : public Intersector {
     mutable std::atomic<std::uint64_t> rejected_{0};
 };
 
-void cast(RTCScene scene, RayContext& context, RTCRayHit& rayHit) {
+[[gnu::always_inline]] inline void cast(RTCScene scene, RayContext& context, RTCRayHit& rayHit) {
+    const WorkScope work(Work::tracing);
     rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context.rtc, &rayHit);
 }
@@ -157,7 +162,14 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     if (!(near && same && off.along > 0)) [[unlikely]]
         return resolve(rayHit, context, ray, hit);
     hit.distance = off.along;
+    if (moving) [[unlikely]]
+        countMotion(rayHit.hit, context.path(rayHit.hit));
     return true;
+}
+
+[[gnu::noinline]] void EmbreeScene::countMotion(const RTCHit& hit, Path path) const {
+    const auto moves = [](const PlacementStep& step) { return step.table->moves(); };
+    if (recordOf(hit, path).steps > 1 || std::ranges::any_of(path, moves)) ++workState.movingHits;
 }
 
 // Decides about a suspicious hit, and about those behind it if it is none, in double.
@@ -183,8 +195,10 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
         cast(scene.get(), context, rayHit);
     }
     if (!found) return false;
-    surface(nearest, {path.data(), nearest.instID[0]}, distance, ray, hit);
+    const Path way{path.data(), nearest.instID[0]};
+    surface(nearest, way, distance, ray, hit);
     hit.distance = distance;
+    if (moving) countMotion(nearest, way);
     return true;
 }
 
@@ -314,6 +328,7 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     RayContext context(rejected_);
     RTCRay r;
     fill(r, ray, kNearestHit);
+    const WorkScope work(Work::tracing);
     rtcOccluded1(scene.get(), &context.rtc, &r);
     return r.tfar < 0;
 }
@@ -464,6 +479,8 @@ std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
     }
     impl_->addTables(s, kScene, firstTable, top);
     s.bounds_ = top.bounds;
+    s.moving = std::ranges::any_of(s.records, [](const GeometryRecord& r) { return r.steps > 1; }) ||
+               std::ranges::any_of(s.tables, [](const auto& table) { return table->moves(); });
     rtcCommitScene(s.scene.get());
     s.device.throwIfFailed();
     return result;

@@ -1,6 +1,7 @@
 #include "geometry/instance_table.h"
 
 #include "base/check.h"
+#include "base/work.h"
 #include "geometry/embree_sink.h"
 
 #include <cstddef>
@@ -78,6 +79,7 @@ InstanceTable::InstanceTable(RTCScene object, std::vector<Motion> motions, Inter
 }
 
 Placement InstanceTable::movedTo(std::uint32_t i, double position) const {
+    const WorkScope work(Work::motion);
     return Placement(motions_[i].at(shutter_.open + position * shutter_.duration));
 }
 

@@ -70,6 +70,7 @@ class InstanceTable {
 
     std::size_t size() const { return motions_.empty() ? placements_.size() : motions_.size(); }
     RTCScene object() const { return object_; }
+    bool moves() const { return !motions_.empty(); }
     Placement placement(std::uint32_t i, float time) const {
         return motions_.empty() ? placements_[i] : movedTo(i, static_cast<double>(time));
     }

@@ -1,6 +1,7 @@
 #include "integrators/look_ahead.h"
 
 #include "base/parallel.h"
+#include "base/work.h"
 #include "render/render_state.h"
 
 #include <atomic>
@@ -39,7 +40,9 @@ class Looker {
 
     // The number of rays.
     std::uint64_t trace(const PathContext& context, Film& film, PixelBounds pixel, std::uint32_t samples) {
+        addWorkFlag(WorkFlag::pilot);
         const PathCounters c = render_(context, film, {pixel, 0, samples, &result_.roulette}).counters;
+        removeWorkFlag(WorkFlag::pilot);
         rays_ += c.vertices + c.shadowRays;
         return c.vertices + c.shadowRays;
     }

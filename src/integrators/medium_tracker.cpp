@@ -1,5 +1,7 @@
 #include "integrators/medium_tracker.h"
 
+#include "base/work.h"
+
 namespace abbe {
 
 namespace {
@@ -22,6 +24,7 @@ MediumTracker::MediumTracker(std::span<const Medium* const> open)
 void MediumTracker::start(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda) {
     active_.clear();
     forEach(inside, [&](const Medium& medium) {
+        setWork(volumeWork(medium.number));
         MediumWalk* walk = medium.walk(ray, tMax, spaces_[active_.size()]);
         MediumSegment segment;
         if (!walk || !walk->next(segment)) return;
@@ -54,6 +57,7 @@ bool MediumTracker::advance(Active& a) {
 
 MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
                                       RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
+    const WorkScope work(Work::surface);
     start(ray, tMax, inside, lambda);
     glows_.clear();
     if (listener) startGlows(ray, tMax, inside, random);
@@ -69,6 +73,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
             continue;
         }
         if (!a) break;
+        setWork(volumeWork(a->medium->number));
         const float t = a->next;
         if (!a->collides) {
             if (!advance(*a)) a->walk = nullptr;
@@ -120,6 +125,7 @@ void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWe
 bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& random, TrackedWeights weights,
                             EmissionListener* listener) {
     ++counters.collisions;
+    ++counters.volumes[volumeRow(a.medium->number)].collisions;
     const float bound = a.segment.maximum;
     const float density = a.walk->density(a.next);
     note(density, bound, *a.medium);
@@ -183,6 +189,7 @@ void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
 
 Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
                                       RandomStream& random) {
+    const WorkScope work(Work::lights);
     start(ray, tMax, inside, lambda);
     Spectrum result(1.f);
     for (Active& a : active_) {
@@ -193,6 +200,7 @@ Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumSt
 }
 
 Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random) {
+    setWork(volumeWork(a.medium->number));
     Spectrum result(1.f);
     double control = 0; // of the mean density
     do {
@@ -216,6 +224,7 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
     for (double t = static_cast<double>(random.exponential()) / rate; t < length;
          t += static_cast<double>(random.exponential()) / rate) {
         ++counters.lookups;
+        ++counters.volumes[volumeRow(a.medium->number)].lookups;
         const float density = a.walk->density(s.tNear + static_cast<float>(t));
         note(density, s.maximum, *a.medium);
         const Spectrum kept = Spectrum(1.f) - share * (density - s.mean);

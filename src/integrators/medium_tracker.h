@@ -3,6 +3,7 @@
 
 #include "integrators/medium_stack.h"
 #include "math/random_stream.h"
+#include "render/effect_counts.h"
 
 #include <span>
 #include <vector>
@@ -44,14 +45,15 @@ struct InScattering {
 
 // What a ray has met so far.
 struct MediumCounters {
-    std::uint64_t collisions = 0;    // tentative ones
-    std::uint64_t lookups = 0;       // of density, for transmittance
-    std::uint64_t exceeded = 0;      // densities above their bound, by more than rounding
-    std::uint64_t signedWeights = 0; // all densities above their bound: weights there may be below 0
-    float mostExceeded = 0;          // the greatest of them over its bound
-    std::uint64_t faults = 0;        // densities that are negative or not finite
-    float fault = 0;                 // the last of them
-    const Medium* faulty = nullptr;  // where it was found
+    std::uint64_t collisions = 0;                     // tentative ones
+    std::uint64_t lookups = 0;                        // of density, for transmittance
+    std::uint64_t exceeded = 0;                       // densities above their bound, by more than rounding
+    std::uint64_t signedWeights = 0;                  // all densities above their bound: weights there may be below 0
+    float mostExceeded = 0;                           // the greatest of them over its bound
+    std::uint64_t faults = 0;                         // densities that are negative or not finite
+    float fault = 0;                                  // the last of them
+    const Medium* faulty = nullptr;                   // where it was found
+    std::array<VolumeCounts, kVolumeWorks> volumes{}; // collisions and lookups alone
 };
 
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.

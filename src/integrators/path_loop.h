@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/work.h"
 #include "integrators/light_sampler.h"
 #include "integrators/medium_tracker.h"
 #include "integrators/path_state.h"
@@ -10,6 +11,7 @@
 #include "integrators/sampler.h"
 #include "integrators/surroundings_at.h"
 #include "math/equiangular.h"
+#include "render/effect_counts.h"
 #include "render/integrator.h"
 #include "render/path_observer.h"
 #include "render/scene.h"
@@ -27,6 +29,7 @@ struct PathContext {
 // What the paths of one tile counted.
 struct PathCounters {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, capped = 0;
+    EffectCounts effects;
 };
 
 // What paths through media need and keep from one to the next.
@@ -106,6 +109,11 @@ template <EffectBits E> class PathLoop {
     // Where a ray ended.
     enum class Arrival : std::uint8_t { surface, collision, nowhere };
 
+    void countRay() {
+        ++counters_.vertices;
+        if constexpr (kDispersion) counters_.effects.heroRays += path_.densities.heroOnly;
+        if constexpr (kMedia) counters_.effects.untouched += !touched_;
+    }
     Arrival arrive(Ray&, SurfaceHit&, std::uint32_t depth);
     Arrival arriveThrough(Ray&, SurfaceHit&, std::uint32_t depth);
     bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t depth, std::uint32_t crossings);
@@ -115,6 +123,7 @@ template <EffectBits E> class PathLoop {
     void turnCone(const SurfaceHit&, const BsdfSample&, float cosine);
     void scatterCone();
     bool scatterInMedium(Ray&, std::uint32_t depth);
+    void touch(const Medium&);
     class GlowCollector;
     void sampleNearLight(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings);
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
@@ -199,9 +208,11 @@ template <EffectBits E> class PathLoop {
     PathObserver* observer_ = nullptr;
     bool startWithHero_ = false;
     const Medium* collided_ = nullptr; // after Arrival::collision
+    bool touched_ = false;             // some medium scattered the path
 };
 
 template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelengths& lambda, float rouletteScale) {
+    setWork(Work::surface);
     path_.lambda = lambda;
     path_.time = ray.time;
     if constexpr (kDispersion) {
@@ -211,9 +222,10 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
     const std::uint32_t maxDepth = context_.settings.maxDepth ? context_.settings.maxDepth : kMaxVertices;
     SurfaceHit hit;
     for (std::uint32_t depth = 0;; ++depth) {
-        ++counters_.vertices;
+        countRay();
         const Arrival arrival = arrive(ray, hit, depth);
         if (arrival == Arrival::nowhere) {
+            setWork(Work::lights);
             leaveScene(ray.direction);
             break;
         }
@@ -238,7 +250,9 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
         if (observer_) [[unlikely]]
             observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
+        setWork(Work::lights);
         sampleLight(hit, bsdf, eye, sample, depth);
+        setWork(Work::surface);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
     if constexpr (kMedia) return path_.radiance;
@@ -262,7 +276,10 @@ template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 dire
     if constexpr (kTextures) hit.footprint = path_.delta ? path_.cone.radius : 0;
     if (observer_) [[unlikely]]
         observer_->arrives(hit, path_.beta);
-    if (hit.light) meetLight(hit, direction);
+    if (hit.light) {
+        const WorkScope work(Work::lights);
+        meetLight(hit, direction);
+    }
     if constexpr (kTextures) hit.footprint = path_.cone.radius;
     if constexpr (kTextures)
         if (hit.material->bends()) hit.material->bend(hit);
@@ -346,6 +363,7 @@ template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 dir
 template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
     if (path_.densities.heroOnly) return;
     path_.densities.heroOnly = true;
+    addWorkFlag(WorkFlag::heroOnly);
     if (!(path_.densities.unidirectional[0] > 0)) { // a hero that the media on the way never chose
         path_.beta = Spectrum(0.f);
         return;

@@ -80,6 +80,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& h
         const float share = straightOn(hit, ray, path_.nested);
         if (share < 1 && !(share > 0 && random.uniform() < share)) return Arrival::surface;
         ray.origin = spawnOrigin(hit, ray.direction);
+        ++counters_.effects.crossings;
     }
     ++counters_.capped;
     path_.beta = Spectrum(0.f);
@@ -129,6 +130,7 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
         result *= along(ray, before, hit.distance, hit.distance) * share;
         if (!anyNonZero(result)) return result;
         ray.origin = spawnOrigin(hit, ray.direction);
+        ++counters_.effects.shadowCrossings;
     }
     ++counters_.capped;
     return Spectrum(0.f);

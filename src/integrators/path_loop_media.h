@@ -53,7 +53,9 @@ bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
     TrackedWeights weights{&path_.beta, nullptr};
     if constexpr (kDispersion) weights.density = &path_.densities.unidirectional;
     GlowCollector glow(*this, ray);
+    setWork(Work::lights);
     sampleNearLight(ray, tMax, depth, crossings);
+    setWork(Work::surface);
     const MediumCollision collision =
         media_.tracker.follow(ray, tMax, path_.nested.here.media(), path_.lambda, random, weights, &glow);
     if constexpr (kAbsorption)
@@ -68,12 +70,16 @@ bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
 
 // The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1 but for wavelengths.
 template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_t depth) {
+    touch(*collided_);
+    const WorkScope work(volumeWork(collided_->number));
     if (!anyNonZero(path_.beta)) return false;
     const PhaseFunction& phase = collided_->phase();
     const VertexSample sample = sampler_.vertex(depth);
     if (observer_) [[unlikely]]
         observer_->collides(ray.origin, path_.beta);
+    setWork(Work::lights);
     sampleLightInMedium(ray.origin, ray.direction, sample, depth);
+    setWork(volumeWork(collided_->number));
     const float cosine = phase.sampleCosine(sample.bsdf.x);
     const Blame blame{collided_, "phase function"};
     if (!(std::abs(cosine) < 1.001f)) condemn(cosine, blame);
@@ -95,7 +101,15 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     }
     if constexpr (kTextures) scatterCone();
     ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+    ++counters_.effects.volumes[volumeRow(collided_->number)].scattered;
     return true;
+}
+
+// What the path does from here on it does because of the first medium that scattered it.
+template <EffectBits E> void PathLoop<E>::touch(const Medium& medium) {
+    if (std::exchange(touched_, true)) return;
+    ++counters_.effects.volumes[volumeRow(medium.number)].first;
+    setWorkCause(static_cast<std::uint8_t>(1 + volumeRow(medium.number)));
 }
 
 template <EffectBits E>

@@ -46,7 +46,7 @@ double threadSeconds() {
 
 PathTally tallyOf(const TileResult& r, double seconds) {
     const PathCounters& c = r.counters;
-    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, seconds};
+    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights) {
@@ -207,6 +207,7 @@ class RenderJob {
         statistics_.shadowRays += t.shadowRays;
         statistics_.cappedPaths += t.cappedPaths;
         statistics_.excess.add(t.excess);
+        statistics_.effects.add(t.effects);
         statistics_.coreSeconds += t.coreSeconds;
         for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
     }

@@ -39,13 +39,18 @@ template <EffectBits E> class TileKernel {
           recorder_(film.makeRecorder()) {}
 
     TileResult run() {
+        const WorkScope work(Work::film);
+        const std::uint64_t lookups = workState.textureLookups, moving = workState.movingHits;
         for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
             for (int x = job_.pixels.x0; x < job_.pixels.x1; ++x)
                 for (int r = 0; r < film_.replicates(); ++r) replicate(x, y, r);
         if constexpr (PathLoop<E>::kMedia) {
             const MediumCounters& media = media_.tracker.counters;
             result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
+            for (std::size_t i = 0; i < kVolumeWorks; ++i) result_.counters.effects.volumes[i].add(media.volumes[i]);
         }
+        result_.counters.effects.textureLookups = workState.textureLookups - lookups;
+        result_.counters.effects.movingHits = workState.movingHits - moving;
         return std::move(result_);
     }
 
@@ -103,6 +108,7 @@ template <EffectBits E> class TileKernel {
     }
 
     Xyz sample(int x, int y, float rouletteScale) {
+        setWork(Work::camera);
         const FilterSample filter = film_.filter(sampler_.film());
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
@@ -121,6 +127,9 @@ template <EffectBits E> class TileKernel {
             if (camera.heroOnly) loop.startWithHero();
         [[maybe_unused]] const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
+        setWork(Work::film);
+        if constexpr (hasEffect(E, Effect::dispersion)) removeWorkFlag(WorkFlag::heroOnly);
+        if constexpr (PathLoop<E>::kMedia) setWorkCause(0);
         if constexpr (PathLoop<E>::kMedia) {
             // Where a density exceeded its bound light may be subtracted.
             const float most = signedWeights() != before ? 0.5f * kNegativeFault : 0;
@@ -132,6 +141,8 @@ template <EffectBits E> class TileKernel {
 
     // Where the camera gives no ray there is no light, unless that is a fault of its own.
     Xyz withoutRay(const CameraRay& camera) {
+        ++result_.counters.effects.noRays;
+        setWork(Work::film);
         if (camera.weight == 0) return {};
         const float fault = camera.weight;
         if (recorder_) recorder_->blames(context_.scene.camera.get(), "weight", fault);

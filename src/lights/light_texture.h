@@ -6,6 +6,7 @@
 #include "render/own_space.h"
 #include "render/shape.h"
 #include "render/texture.h"
+#include "render/texture_work.h"
 #include "spectrum/sampled_curve.h"
 
 #include <optional>
@@ -23,6 +24,7 @@ class LightTexture {
 
     // The factor at a hit with a parametrisation.
     Spectrum at(const SurfaceHit& hit, const Wavelengths& lambda) const noexcept {
+        const TextureWork work;
         return texture_.lightFactor(TextureQuery(hit), lambda);
     }
     // The light that leaves the shape, in the mean over its area.

@@ -1,6 +1,7 @@
 // An algorithm that turns a scene into an image.
 #pragma once
 
+#include "render/effect_counts.h"
 #include "render/film.h"
 #include "render/technique.h"
 
@@ -85,6 +86,7 @@ struct RenderStatistics {
     std::vector<DroppedSample> examples;    // the first few
     std::uint64_t cappedPaths = 0;          // reached the safety cap on vertices (PathLoop::kMaxVertices)
     DensityExcess excess;
+    EffectCounts effects;
     double seconds = 0;     // wall clock, with that of earlier runs
     double coreSeconds = 0; // summed over threads
     double noise = 0;       // estimated relative error of the image

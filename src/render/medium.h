@@ -30,6 +30,9 @@ class MediumWalk {
 // render space.
 class Medium {
   public:
+    // Its place in Scene::media, set by whoever keeps it, for what is counted and charged.
+    std::uint16_t number = 0;
+
     virtual ~Medium() = default;
     // Of the density's support; infinite for media without an end of their own.
     virtual Bounds3 bounds() const = 0;

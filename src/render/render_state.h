@@ -14,6 +14,7 @@ struct PathTally {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, cappedPaths = 0;
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     DensityExcess excess;
+    EffectCounts effects;
     double coreSeconds = 0;
 
     void add(const PathTally& t) {
@@ -23,6 +24,7 @@ struct PathTally {
         cappedPaths += t.cappedPaths;
         for (std::size_t i = 0; i < dropped.size(); ++i) dropped[i] += t.dropped[i];
         excess.add(t.excess);
+        effects.add(t.effects);
         coreSeconds += t.coreSeconds;
     }
 };

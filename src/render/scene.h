@@ -20,6 +20,17 @@
 
 namespace abbe {
 
+// What a medium is called, and where it is.
+struct MediumUse {
+    enum class Place : std::uint8_t {
+        nowhere, // defined, but in nothing that is shown
+        space,   // in a region of its own, or within a boundary that does nothing to light
+        solid,   // under the surface of solids
+    };
+    std::string name;
+    Place place = Place::nowhere;
+};
+
 struct Scene {
     std::vector<std::unique_ptr<const Curve>> curves;
     std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
@@ -27,6 +38,7 @@ struct Scene {
     std::vector<std::unique_ptr<const Shape>> shapes;
     std::vector<std::unique_ptr<const Light>> lights; // committed
     std::vector<std::unique_ptr<const Medium>> media;
+    std::vector<MediumUse> mediumUses;    // like media
     std::vector<const Medium*> openMedia; // those that no shape bounds
     std::vector<Bounds3> filled;          // of the shapes that a medium or a dielectric fills
     bool nested = false;                  // whether such dielectrics may overlap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/texture_query.h"
+#include "render/texture_work.h"
 #include "schema/type.h"
 
 namespace abbe {
@@ -13,7 +14,10 @@ class SpectrumInput {
         : curve_(s.curve), texture_(s.texture), byDefault_(byDefault) {}
 
     Spectrum at(const SurfaceHit& hit, const Wavelengths& lambda) const {
-        if (texture_) return texture_->spectrum(TextureQuery(hit), lambda);
+        if (texture_) {
+            const TextureWork work;
+            return texture_->spectrum(TextureQuery(hit), lambda);
+        }
         return curve_ ? curve_->at(lambda) : Spectrum(byDefault_);
     }
     bool textured() const { return texture_ != nullptr; }
@@ -33,7 +37,9 @@ class NumberInput {
         : texture_(n.texture), value_(static_cast<float>(n.value)), lower_(lower), upper_(upper) {}
 
     float at(const SurfaceHit& hit) const {
-        return texture_ ? std::clamp(texture_->value(TextureQuery(hit)).x, lower_, upper_) : value_;
+        if (!texture_) return value_;
+        const TextureWork work;
+        return std::clamp(texture_->value(TextureQuery(hit)).x, lower_, upper_);
     }
     bool textured() const { return texture_ != nullptr; }
     // Whether it is this number everywhere.

@@ -14,7 +14,7 @@ using schema::Kind;
 schema::Reference SceneBuilder::mediumReference(const Definition& d) {
     if (d.type && d.type->name == "noise") {
         auto medium = makeNoiseMedium(d);
-        return medium ? schema::Reference{keepMedium(std::move(medium), d.span)} : schema::Reference{};
+        return medium ? schema::Reference{keepMedium(std::move(medium), d)} : schema::Reference{};
     }
     const auto params = bound<HomogeneousParams>(d);
     if (!params) return {};
@@ -25,12 +25,14 @@ schema::Reference SceneBuilder::mediumReference(const Definition& d) {
         return {};
     }
     const auto glow = makeGlow(*params, *optics, params->temperature > 0);
-    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics, glow, params->temperature), d.span)};
+    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics, glow, params->temperature), d)};
 }
 
-std::uint32_t SceneBuilder::keepMedium(std::unique_ptr<const Medium> medium, Span definedAt) {
+std::uint32_t SceneBuilder::keepMedium(std::unique_ptr<Medium> medium, const Definition& d) {
+    medium->number = static_cast<std::uint16_t>(media_.size());
     media_.push_back(std::move(medium));
-    mediumSpans_.push_back(definedAt);
+    mediumSpans_.push_back(d.span);
+    built_->scene.mediumUses.push_back({nameOf(d), MediumUse::Place::nowhere});
     return static_cast<std::uint32_t>(media_.size() - 1);
 }
 
@@ -54,7 +56,7 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
         return;
     }
     const Transform toRender = atOpening(place.motion);
-    std::unique_ptr<const Medium> medium;
+    std::unique_ptr<Medium> medium;
     if (type == "atmosphere") {
         if (const auto p = bound<AtmosphereParams>(d)) medium = makeAtmosphere(*p, d, toRender);
     } else if (type == "vdb") {
@@ -65,7 +67,7 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
         bound<MediumParams>(d);
     }
     if (!medium) return;
-    openMedia_.emplace_back(media_[keepMedium(std::move(medium), d.span)].get(), d.span);
+    openMedia_.emplace_back(media_[keepMedium(std::move(medium), d)].get(), d.span);
 }
 
 // An unknown name has been reported.
@@ -76,8 +78,8 @@ void SceneBuilder::placeAtmosphere(const Definition& d) {
         openMedia_.emplace_back(media_[medium.index].get(), d.span);
 }
 
-std::unique_ptr<const Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,
-                                                           const Transform& toRender) {
+std::unique_ptr<Medium> SceneBuilder::makeAtmosphere(const AtmosphereParams& params, const Definition& d,
+                                                     const Transform& toRender) {
     const auto optics = opticsOf(params, d);
     if (!optics) return nullptr;
     const Vec3d up = tree_.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
@@ -151,7 +153,12 @@ void SceneBuilder::noteMedia(Scene& scene) {
     for (const auto& [medium, span] : openMedia_) {
         note(*medium, span, "this volume");
         scene.openMedia.push_back(medium);
+        scene.mediumUses[medium->number].place = MediumUse::Place::space;
     }
+    for (const PlacedShape& shape : placedShapes_)
+        if (const Medium* medium = shape.material->interior())
+            scene.mediumUses[medium->number].place =
+                shape.material->isBoundary() ? MediumUse::Place::space : MediumUse::Place::solid;
     for (const PlacedShape& shape : placedShapes_)
         if (shape.material->ior() || shape.material->interior()) scene.filled.push_back(shape.box);
     scene.nested = mayLieInDielectric(true);

@@ -5,7 +5,7 @@
 
 namespace abbe {
 
-std::unique_ptr<const Medium> SceneBuilder::makeNoiseVolume(const Definition& d, const Transform& toRender) {
+std::unique_ptr<Medium> SceneBuilder::makeNoiseVolume(const Definition& d, const Transform& toRender) {
     const auto params = bound<NoiseVolumeParams>(d);
     if (!params) return nullptr;
     const auto optics = opticsOf(*params, d);
@@ -20,7 +20,7 @@ std::unique_ptr<const Medium> SceneBuilder::makeNoiseVolume(const Definition& d,
     return std::make_unique<NoiseVolume>(*optics, patternOf(*params), std::get<NoiseBox>(box), place);
 }
 
-std::unique_ptr<const Medium> SceneBuilder::makeNoiseMedium(const Definition& d) {
+std::unique_ptr<Medium> SceneBuilder::makeNoiseMedium(const Definition& d) {
     const auto params = bound<NoiseMediumParams>(d);
     if (!params) return nullptr;
     const auto optics = opticsOf(*params, d);

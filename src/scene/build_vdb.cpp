@@ -103,7 +103,7 @@ bool SceneBuilder::checkGlow(const VdbParams& params, const MediumOptics& optics
     return true;
 }
 
-std::unique_ptr<const Medium> SceneBuilder::loadVdb(const Definition& d, const Transform& toRender) {
+std::unique_ptr<Medium> SceneBuilder::loadVdb(const Definition& d, const Transform& toRender) {
     const auto bindings = bound<VdbParams>(d);
     if (!bindings) return nullptr;
     const VdbParams& params = *bindings;
@@ -144,9 +144,8 @@ bool SceneBuilder::checkDrift(const VdbParams& params, const VoxelGrid& density,
     return false;
 }
 
-std::unique_ptr<const Medium> SceneBuilder::makeVolume(const VdbParams& params, const MediumOptics& optics,
-                                                       VoxelGrid density, GridExtras extras, const Transform& place,
-                                                       const Definition& d) {
+std::unique_ptr<Medium> SceneBuilder::makeVolume(const VdbParams& params, const MediumOptics& optics, VoxelGrid density,
+                                                 GridExtras extras, const Transform& place, const Definition& d) {
     if (!checkDrift(params, density, extras, place)) return nullptr;
     const bool hot = extras.glow && extras.glow->thermal();
     const double hottest = hot ? extras.temperature->offset +

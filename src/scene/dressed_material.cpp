@@ -1,6 +1,7 @@
 #include "scene/dressed_material.h"
 
 #include "math/consistent_normal.h"
+#include "render/texture_work.h"
 
 namespace abbe {
 
@@ -17,6 +18,7 @@ void turn(SurfaceHit& hit, Vec3 normal) {
 // n' ∝ n - ∇h, with the gradient of the height along the surface [Mikkelsen2010, eq. 3; Blinn1978]: by uv with the
 // vectors dual to dp/du and dp/dv, by position with the gradients of the local coordinates.
 Vec3 bumpedNormal(const BumpMap& map, const SurfaceHit& hit) {
+    const TextureWork work;
     const Vec3 n = hit.shading.z;
     const TextureJet j = map.texture->jet({Vec3d(hit.local), hit.uv, hit.uv}, 1);
     Vec3 gradient = hit.localX * j.byPosition[0].x + hit.localY * j.byPosition[1].x + hit.localZ * j.byPosition[2].x;

@@ -198,21 +198,21 @@ class SceneBuilder final : public schema::Resolver {
     std::shared_ptr<const PhaseFunction> makeMixPhase(const Definition&);
     // build_media.cpp
     schema::Reference mediumReference(const Definition&);
-    std::uint32_t keepMedium(std::unique_ptr<const Medium>, Span definedAt);
+    std::uint32_t keepMedium(std::unique_ptr<Medium>, const Definition&);
     std::optional<MediumOptics> opticsOf(const MediumParams&, const Definition&);
     void placeVolume(const Definition&, const Place&);
     void placeAtmosphere(const Definition&);
-    std::unique_ptr<const Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
+    std::unique_ptr<Medium> makeAtmosphere(const AtmosphereParams&, const Definition&, const Transform& toRender);
     // build_vdb.cpp
-    std::unique_ptr<const Medium> loadVdb(const Definition&, const Transform& toRender);
+    std::unique_ptr<Medium> loadVdb(const Definition&, const Transform& toRender);
     GridExtras vdbExtras(const VdbParams&, const MediumOptics&, std::span<VdbGrid>);
     bool checkGlow(const VdbParams&, const MediumOptics&, const Definition&);
     bool checkDrift(const VdbParams&, const VoxelGrid& density, const GridExtras&, const Transform& place);
-    std::unique_ptr<const Medium> makeVolume(const VdbParams&, const MediumOptics&, VoxelGrid density, GridExtras,
-                                             const Transform& place, const Definition&);
+    std::unique_ptr<Medium> makeVolume(const VdbParams&, const MediumOptics&, VoxelGrid density, GridExtras,
+                                       const Transform& place, const Definition&);
     // build_noise.cpp
-    std::unique_ptr<const Medium> makeNoiseVolume(const Definition&, const Transform& toRender);
-    std::unique_ptr<const Medium> makeNoiseMedium(const Definition&);
+    std::unique_ptr<Medium> makeNoiseVolume(const Definition&, const Transform& toRender);
+    std::unique_ptr<Medium> makeNoiseMedium(const Definition&);
     void placeNoise(Vec3d origin);
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteInterior(const Medium&);

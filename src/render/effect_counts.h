@@ -1,0 +1,51 @@
+// How often the parts of light transport were at work: whole numbers that follow from the samples alone, whoever took
+// them in which order.
+#pragma once
+
+#include "base/work.h"
+
+#include <array>
+#include <cstdint>
+
+namespace abbe {
+
+struct VolumeCounts {
+    std::uint64_t collisions = 0; // tentative ones, of paths
+    std::uint64_t lookups = 0;    // of density, for transmittance
+    std::uint64_t scattered = 0;  // collisions from which a path went on: rays that start in it
+    std::uint64_t first = 0;      // paths that met it before any other medium: see EffectCounts::untouched
+
+    void add(const VolumeCounts& v) {
+        collisions += v.collisions;
+        lookups += v.lookups;
+        scattered += v.scattered;
+        first += v.first;
+    }
+    bool operator==(const VolumeCounts&) const = default;
+};
+
+// Beside PathTally, whose vertices and shadow rays are the rest of the rays.
+struct EffectCounts {
+    std::uint64_t noRays = 0;          // paths without a ray, as at a lens's rim
+    std::uint64_t crossings = 0;       // rays that went on straight through a surface
+    std::uint64_t shadowCrossings = 0; // the same on the way to a light
+    std::uint64_t heroRays = 0;        // of paths, with one wavelength left
+    std::uint64_t textureLookups = 0;
+    std::uint64_t movingHits = 0; // of surfaces that are elsewhere at other times
+    std::uint64_t untouched = 0;  // rays of paths that no medium has scattered, in kernels with media
+    std::array<VolumeCounts, kVolumeWorks> volumes{}; // by volumeRow()
+
+    void add(const EffectCounts& c) {
+        noRays += c.noRays;
+        crossings += c.crossings;
+        shadowCrossings += c.shadowCrossings;
+        heroRays += c.heroRays;
+        textureLookups += c.textureLookups;
+        movingHits += c.movingHits;
+        untouched += c.untouched;
+        for (std::size_t i = 0; i < volumes.size(); ++i) volumes[i].add(c.volumes[i]);
+    }
+    bool operator==(const EffectCounts&) const = default;
+};
+
+} // namespace abbe
