@@ -22,9 +22,10 @@ endforeach()
 list(APPEND allowed_media volumes)
 set(allowed_modules textures)
 set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
-set(allowed_app ${allowed_scene} parser scene denoise)
+set(allowed_study ${allowed_scene} scene denoise)
+set(allowed_app ${allowed_scene} parser scene denoise study)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules integrators scene app)
+            modules integrators scene study app)
 
 # Libraries that only one folder may know, or two.
 set(library_folders

@@ -5,6 +5,7 @@
 #include "io/io_error.h"
 #include "math/byte_hash.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,7 +17,7 @@ namespace abbe {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3 };
 
@@ -45,12 +46,67 @@ void writeBlock(AtomicFile& file, BlockKind kind, const std::vector<std::byte>& 
     writeBytes(file, &hash, sizeof hash);
 }
 
+// Charges of nothing are left out.
+void writeWork(const WorkReading& work, ByteWriter& out) {
+    const auto charged = [](const WorkCharge& c) { return c.looks > 0; };
+    out.number(work.seconds);
+    out.number(static_cast<std::uint32_t>(std::ranges::count_if(work.charges, charged)));
+    for (std::uint32_t i = 0; i < work.charges.size(); ++i) {
+        const WorkCharge& c = work.charges[i];
+        if (!charged(c)) continue;
+        out.number(i);
+        out.number(c.seconds);
+        out.number(c.squares);
+        out.number(c.looks);
+    }
+}
+
+bool readWork(ByteReader& in, WorkReading& work) {
+    work.seconds = in.number<double>();
+    for (auto n = in.number<std::uint32_t>(); n > 0 && in.sound(); --n) {
+        const auto i = in.number<std::uint32_t>();
+        if (i >= work.charges.size()) return false;
+        WorkCharge& c = work.charges[i];
+        c.seconds = in.number<double>();
+        c.squares = in.number<double>();
+        c.looks = in.number<std::uint64_t>();
+    }
+    return in.sound();
+}
+
+void writeEffects(const EffectCounts& e, ByteWriter& out) {
+    for (const std::uint64_t v :
+         {e.noRays, e.crossings, e.shadowCrossings, e.heroRays, e.textureLookups, e.movingHits, e.untouched})
+        out.number(v);
+    std::uint32_t used = kVolumeWorks;
+    while (used > 0 && e.volumes[used - 1] == VolumeCounts{}) --used;
+    out.number(used);
+    for (std::uint32_t i = 0; i < used; ++i)
+        for (const std::uint64_t v :
+             {e.volumes[i].collisions, e.volumes[i].lookups, e.volumes[i].scattered, e.volumes[i].first})
+            out.number(v);
+}
+
+bool readEffects(ByteReader& in, EffectCounts& e) {
+    for (std::uint64_t* v :
+         {&e.noRays, &e.crossings, &e.shadowCrossings, &e.heroRays, &e.textureLookups, &e.movingHits, &e.untouched})
+        *v = in.number<std::uint64_t>();
+    const auto used = in.number<std::uint32_t>();
+    if (used > e.volumes.size()) return false;
+    for (std::uint32_t i = 0; i < used; ++i)
+        for (std::uint64_t* v :
+             {&e.volumes[i].collisions, &e.volumes[i].lookups, &e.volumes[i].scattered, &e.volumes[i].first})
+            *v = in.number<std::uint64_t>();
+    return in.sound();
+}
+
 std::vector<std::byte> bytesOf(const CheckpointHeader& h) {
     std::vector<std::byte> bytes;
     ByteWriter out(bytes);
     for (const int v : {h.bounds.x0, h.bounds.y0, h.bounds.x1, h.bounds.y1, h.replicates}) out.number(v);
     for (const std::uint32_t v : {h.first, h.last, h.whole}) out.number(v);
     out.number(h.seconds);
+    writeWork(h.work, out);
     out.texts(h.planes);
     out.texts(h.words);
     out.text(h.folder);
@@ -67,6 +123,7 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
     for (int* v : {&h.bounds.x0, &h.bounds.y0, &h.bounds.x1, &h.bounds.y1, &h.replicates}) *v = in.number<int>();
     for (std::uint32_t* v : {&h.first, &h.last, &h.whole}) *v = in.number<std::uint32_t>();
     h.seconds = in.number<double>();
+    if (!readWork(in, h.work)) return false;
     h.planes = in.texts();
     h.words = in.texts();
     h.folder = in.text();
@@ -96,6 +153,7 @@ void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes,
         out.number(v);
     out.number(t.excess.most);
     out.number(t.coreSeconds);
+    writeEffects(t.effects, out);
     out.number(static_cast<std::uint32_t>(tile.examples.size()));
     for (const DroppedSample& s : tile.examples) {
         for (const int v : {s.x, s.y, s.replicate}) out.number(v);
@@ -111,8 +169,8 @@ void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes,
     }
 }
 
-TileState readTile(ByteReader& in) {
-    TileState tile;
+// False if it makes no sense.
+bool readTile(ByteReader& in, TileState& tile) {
     PathTally& t = tile.tally;
     tile.reached = in.number<std::uint32_t>();
     for (std::uint64_t* v : {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1],
@@ -120,13 +178,14 @@ TileState readTile(ByteReader& in) {
         *v = in.number<std::uint64_t>();
     t.excess.most = in.number<float>();
     t.coreSeconds = in.number<double>();
+    if (!readEffects(in, t.effects)) return false;
     for (auto n = in.number<std::uint32_t>(); n > 0 && in.sound(); --n) {
         DroppedSample& s = tile.examples.emplace_back();
         for (int* v : {&s.x, &s.y, &s.replicate}) *v = in.number<int>();
         s.index = in.number<std::uint32_t>();
         s.cause = in.number<DropCause>();
     }
-    return tile;
+    return true;
 }
 
 } // namespace
@@ -221,7 +280,7 @@ void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, Ren
     const auto i = in.number<std::uint64_t>();
     if (block.kind != tileBlock || i >= state.tileCount() || seen[i]) damaged(block.begin, "an unexpected block");
     seen[i] = true;
-    state.tile(i) = readTile(in);
+    if (!readTile(in, state.tile(i))) damaged(block.begin, "a tile of another size");
     if (state.tile(i).reached < header_.first) damaged(block.begin, "a tile before its first sample");
     for (const auto& plane : planes)
         if (const auto bytes = in.take(in.number<std::uint64_t>()); !in.sound() || !plane->add(state.pixels(i), bytes))
@@ -235,6 +294,7 @@ RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
     for (std::size_t i = 0; i < state.tileCount(); ++i) addTile(next(), planes, state, seen);
     if (const Block& end = next(); end.kind != endBlock || position_ != size_) damaged(end.begin, "no end");
     state.seconds = header_.seconds;
+    state.work = header_.work;
     return state;
 }
 

@@ -1,6 +1,7 @@
 // Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
 #pragma once
 
+#include "base/work_reading.h"
 #include "film/film_planes.h"
 #include "render/render_state.h"
 
@@ -29,6 +30,7 @@ struct CheckpointHeader {
     std::uint32_t first = 0, last = 0; // samples of each replicate that are meant to be in it
     std::uint32_t whole = 0;           // samples of each replicate of the render that this is a part of
     double seconds = 0;                // wall clock so far
+    WorkReading work;                  // where it went
     std::vector<std::string> planes;   // names
 };
 

@@ -214,6 +214,7 @@ void Reader::addRender() {
     c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
     addView(c, r.view);
     c->add_flag("--json", common_.json, "Progress as JSON lines on stdout");
+    c->add_flag("--bill", r.bill, "Print what the time was spent on");
     c->add_flag("--quiet,-q", r.quiet, "Say nothing but warnings and errors");
     c->add_flag("--strict", r.strict, "Exit with 4 when there were warnings");
     const std::string studies = "For studies";

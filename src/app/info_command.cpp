@@ -1,3 +1,4 @@
+#include "app/bill_text.h"
 #include "app/certificate_file.h"
 #include "app/hash128.h"
 #include "app/json.h"
@@ -171,11 +172,13 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     const ExrInfo info = readExrInfo(options.path);
     const std::string hash = pixelHash(options.path, info);
     const auto certificate = readCertificate(info.attributes);
+    const auto bill = readBill(info.attributes);
     const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
     if (common.json) {
         Json channels = Json::list(), attributes = Json::object();
         for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
-        for (const ImageAttribute& a : info.attributes) attributes.set(a.name, json(a));
+        for (const ImageAttribute& a : info.attributes)
+            if (!bill || a.name != kBillAttribute) attributes.set(a.name, json(a));
         Json faults = Json::list();
         if (aces.claimed)
             for (const std::string& fault : aces.faults) faults.push(fault);
@@ -190,6 +193,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"aces_faults", std::move(faults)},
                                           {"pixels", hash},
                                           {"error", certificate ? certificateJson(*certificate) : Json()},
+                                          {"bill", bill ? billJson(*bill) : Json()},
                                           {"attributes", std::move(attributes)}});
         common.console.data(object.text(true) + "\n");
         return ExitCode::done;
@@ -199,7 +203,9 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
     s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
     if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
-    for (const ImageAttribute& a : info.attributes) s += fmt::format("{} = {}\n", a.name, text(a));
+    if (bill) s += billTable(*bill);
+    for (const ImageAttribute& a : info.attributes)
+        if (!bill || a.name != kBillAttribute) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;
 }

@@ -1,3 +1,4 @@
+#include "app/bill_text.h"
 #include "app/certificate_file.h"
 #include "app/fault_json.h"
 #include "app/progress_text.h"
@@ -76,6 +77,7 @@ class JsonReport final : public RenderReport {
                                    {"dropped", dropped},
                                    {"dropped_samples", faultsJson(s.faults)},
                                    {"densities_above_bound", r.excess.above},
+                                   {"bill", s.bill ? billJson(*s.bill) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);

@@ -1,6 +1,7 @@
 #include "app/load.h"
 
 #include "app/stopwatch.h"
+#include "base/work.h"
 #include "parser/parse.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
@@ -15,6 +16,7 @@ ExitCode LoadedScene::exitCode() const {
 std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     auto loaded = std::make_unique<LoadedScene>();
     Stopwatch watch;
+    const WorkScope work(Work::reading);
     loaded->types = makeTypeTable();
     const auto file = readSceneFile(loaded->sources, input.path, loaded->diagnostics);
     if (!file) return loaded;
@@ -26,6 +28,7 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     const auto document = parse(loaded->sources, *file, options, loaded->diagnostics);
     addPresets(loaded->types, loaded->sources, loaded->diagnostics);
     loaded->parseSeconds = watch.lap();
+    setWork(Work::checking);
     loaded->tree =
         schema::resolve(document, loaded->types, std::filesystem::path(input.path).parent_path(), loaded->diagnostics);
     loaded->resolveSeconds = watch.lap();

@@ -65,6 +65,7 @@ void RenderCheckpoint::start(FilmPlanes planes, RenderState& state, double inter
 }
 
 void RenderCheckpoint::keep(double interval) {
+    showWork();
     std::unique_lock lock(mutex_);
     const auto period = std::chrono::duration<double>(interval);
     auto due = std::chrono::steady_clock::now() + period;
@@ -85,9 +86,12 @@ void RenderCheckpoint::keep(double interval) {
 // Requires the mutex.
 void RenderCheckpoint::write() {
     const Stopwatch writing;
+    const WorkScope work(Work::saving);
     identify();
     CheckpointHeader header = header_;
     header.seconds = state_->seconds + watch_.seconds();
+    header.work = state_->work;
+    if (work_) header.work.add(work_());
     if (!writeCheckpoint(path_, header, planes_, *state_, sound_)) return;
     ours_ = true;
     writingSeconds_ += writing.seconds();

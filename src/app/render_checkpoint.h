@@ -33,6 +33,8 @@ class RenderCheckpoint {
     // From now on writes every `interval` seconds, in a thread of its own (0: only when told to). Planes and state must
     // outlive this or stop().
     void start(FilmPlanes, RenderState&, double interval);
+    // Where this run's time has gone so far, from any thread. Before start().
+    void chargeBy(std::function<WorkReading()> work) { work_ = std::move(work); }
     // Asked after all tiles were copied, from any thread; without its consent nothing is written. Before start().
     void writeOnlyIf(std::function<bool()> sound) { sound_ = std::move(sound); }
     // Writes now. Requires start() and that nobody holds a tile's mutex. Throws IoError.
@@ -58,6 +60,7 @@ class RenderCheckpoint {
     CheckpointHeader header_;
     std::function<std::vector<Fact>()> identity_;
     std::function<bool()> sound_;
+    std::function<WorkReading()> work_;
     FilmPlanes planes_;
     RenderState* state_ = nullptr;
     Stopwatch watch_; // since start()

@@ -1,3 +1,4 @@
+#include "app/bill_text.h"
 #include "app/display_view.h"
 #include "app/machine.h"
 #include "app/render_parts.h"
@@ -18,6 +19,7 @@ ExitCode RenderRun::load() {
     endPhase("reading", loaded_->parseSeconds);
     endPhase("checking", loaded_->resolveSeconds);
     if (loaded_->readable) {
+        const WorkScope work(Work::building);
         built_ = buildScene(loaded_->tree, loaded_->types, options_.build, loaded_->diagnostics);
         const double seconds = watch_.lap();
         endPhase("building", seconds - built_.commitSeconds);
@@ -161,6 +163,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
     const RenderControl control{&interrupt.stop(), progress, &state, &interrupt.snapshot(), onSnapshot};
     try {
+        const WorkScope work(Work::none);
         summary_.statistics = integrator_->render(built_.scene, film, settings_, control);
     } catch (const std::bad_alloc&) {
         // A tile in hand may be in the film in part: good enough for the image, which says that it is partial, but not
@@ -195,9 +198,12 @@ ExitCode RenderRun::merge() {
         film_.crop = parts.bounds();
         PixelFilm film = makeFilm(film_.crop);
         watch_.lap();
+        const WorkScope work(Work::merging);
         summary_.statistics = parts.addTo(film.planes());
+        earlier_ = parts.work();
         summary_.noise = film.relativeNoise();
         endPhase("merging", watch_.lap());
+        setWork(Work::preparing);
         findDropped(film);
         write(film);
     } catch (const CheckpointFault& fault) {
@@ -230,6 +236,8 @@ ExitCode RenderRun::finish(int signal) {
     summary_.height = film_.crop.height();
     summary_.space = spaceName(film_.space);
     summary_.memoryBytes = peakMemory();
+    summary_.bill = bill();
+    if (options_.bill && !common_.json) common_.console.data(billTable(*summary_.bill));
     report_->done(summary_);
     return summary_.exit;
 }

@@ -114,6 +114,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
                          "finish it with the command that made it and `--resume`");
         sum.add(state.tally());
         statistics.seconds += state.seconds;
+        work_.add(state.work);
         for (const DroppedSample& s : state.examples())
             if (statistics.examples.size() < TileState::kExamples) statistics.examples.push_back(s);
     }
@@ -123,6 +124,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     statistics.cappedPaths = sum.cappedPaths;
     statistics.dropped = sum.dropped;
     statistics.excess = sum.excess;
+    statistics.effects = sum.effects;
     statistics.coreSeconds = sum.coreSeconds;
     statistics.samplesPerPixel =
         readers_[0].header().whole * static_cast<std::uint32_t>(readers_[0].header().replicates);

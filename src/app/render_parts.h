@@ -23,12 +23,15 @@ class RenderParts {
     PixelBounds bounds() const;
     // Adds all of them to an empty film of these bounds. Requires check().
     RenderStatistics addTo(const FilmPlanes&);
+    // Where the time of all parts went. After addTo().
+    const WorkReading& work() const { return work_; }
 
   private:
     void checkDisjoint() const;
     void checkComplete() const;
 
     std::vector<CheckpointReader> readers_;
+    WorkReading work_;
 };
 
 } // namespace abbe

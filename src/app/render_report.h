@@ -7,6 +7,7 @@
 #include "app/sample_spread.h"
 #include "film/error_certificate.h"
 #include "render/integrator.h"
+#include "study/bill.h"
 
 #include <cstdint>
 #include <memory>
@@ -39,6 +40,7 @@ struct RenderSummary {
     std::vector<FoundFault> faults;              // of the examples of dropped samples, unless interrupted
     std::optional<ErrorCertificate> certificate; // of that
     std::optional<SampleSpread> spread;          // of an adaptive render
+    std::optional<Bill> bill;                    // of all of it
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;
     ExitCode exit = ExitCode::done;

@@ -7,9 +7,12 @@
 #include "app/render_checkpoint.h"
 #include "app/render_report.h"
 #include "app/stopwatch.h"
+#include "base/parallel.h"
+#include "base/work_clock.h"
 #include "io/io_error.h"
 #include "render/integrator.h"
 #include "render/render_state.h"
+#include "study/bill.h"
 
 #include <memory>
 #include <optional>
@@ -27,6 +30,7 @@ class RenderRun {
                                                         : makeHumanReport(common.console, options.quiet || alone())) {}
 
     ExitCode run() {
+        const WorkScope work(Work::preparing);
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         if (const ExitCode code = prepare(); code != ExitCode::done) return code;
         if (options_.pixel) return renderPixel();
@@ -83,7 +87,8 @@ class RenderRun {
     void write(const PixelFilm&);
     void writeInMemory(const PixelFilm&);
     ExitCode refuseForMemory();
-    std::vector<ImageAttribute> attributes(const PixelFilm&) const;
+    std::vector<ImageAttribute> attributes(const PixelFilm&);
+    Bill bill();
     void writePng(const ResolvedImage&);
     void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
     FilmPicture pictureOf(const PixelFilm& film) const {
@@ -104,6 +109,8 @@ class RenderRun {
     FilmSettings film_;
     RenderSettings settings_;
     std::unique_ptr<const Integrator> integrator_;
+    WorkClock clock_{threadCount()}; // outlives whoever reads it: the checkpoint
+    WorkReading earlier_;            // of runs and parts before this one
     std::optional<RenderCheckpoint> checkpoint_;
     bool outOfMemory_ = false;    // while rendering or writing
     bool imageWritten_ = false;   // in the end
@@ -113,6 +120,7 @@ class RenderRun {
     double watchedUntil_ = 0; // s, textures and memory
     RenderSummary summary_;
     Stopwatch watch_;
+    const Stopwatch whole_; // never lapped
 };
 
 } // namespace abbe

@@ -1,4 +1,5 @@
 // What a render writes: checkpoints, snapshots, the image, and what can be rescued when that fails.
+#include "app/bill_text.h"
 #include "app/certificate_file.h"
 #include "app/display_view.h"
 #include "app/provenance.h"
@@ -39,6 +40,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
     if (options.resume && checkpoint_->exists()) {
         try {
             state = checkpoint_->resume(film.planes());
+            earlier_ = state.work;
         } catch (const CheckpointFault& fault) {
             return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);
         }
@@ -48,6 +50,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
         warn("W0663", fmt::format("`{}` holds an earlier state of a render; this one will replace it", path),
              "`--resume` goes on with it");
     }
+    checkpoint_->chargeBy([this] { return clock_.read(); });
     checkpoint_->writeOnlyIf([this] { return texturesReadable(); });
     checkpoint_->start(film.planes(), state, options.off ? 0 : options.interval);
     return ExitCode::done;
@@ -94,6 +97,7 @@ void RenderRun::tellHowToResume() const {
 // In the middle of a render that goes on; whatever fails is told and no reason to end it.
 void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statistics) {
     const RenderStatistics before = std::exchange(summary_.statistics, statistics);
+    const WorkScope work(Work::writing);
     try {
         if (checkpoint_) checkpoint_->save();
         if (!options_.part) {
@@ -114,7 +118,14 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
     summary_.statistics = before;
 }
 
-std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
+// Of all runs, up to now.
+Bill RenderRun::bill() {
+    WorkReading work = earlier_;
+    work.add(clock_.read());
+    return makeBill({&work, &summary_.statistics, &built_.scene, earlier_.seconds + whole_.seconds(), threadCount()});
+}
+
+std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
     double seconds = 0;
     for (const auto& phase : summary_.phases) seconds += phase.second;
     auto list =
@@ -124,6 +135,7 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) const {
         for (ImageAttribute& a : certificateAttributes(*summary_.certificate, summary_.statistics))
             list.push_back(std::move(a));
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
+    list.push_back(billAttribute(bill()));
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
     if (settings_.adaptive) list.push_back({"abbe.adaptive", std::string("frozen plan (unbiased)")});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
@@ -144,6 +156,7 @@ void RenderRun::writePng(const ResolvedImage& image) {
 
 // Without a view that can be made, which nobody may have asked for, the error is stated in linear units alone.
 void RenderRun::certify(const PixelFilm& film) {
+    const WorkScope work(Work::certifying);
     ErrorCertificate::Picture picture{film_.whiteBalance, rgbSpace(film_.space).fromXyz(), built_.exposure, {}};
     std::optional<DisplayView> view;
     std::string reason;
@@ -170,6 +183,7 @@ void RenderRun::writeCertificate() {
 }
 
 void RenderRun::write(const PixelFilm& film) {
+    const WorkScope work(Work::writing);
     certify(film);
     const FilmPicture picture = pictureOf(film);
     if (settings_.adaptive) summary_.spread = sampleSpread(film);

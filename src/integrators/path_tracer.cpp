@@ -196,6 +196,7 @@ class RenderJob {
     }
 
     void endPass() {
+        const WorkScope work(Work::film);
         statistics_.samplesPerPixel = finishedSamples();
         statistics_.noise = film_.relativeNoise();
         timeLeft_->passEnded(state_.reached(), statistics_.noise);

@@ -1,6 +1,7 @@
 // How far a render has come, tile by tile: with the film's sums all that is needed to go on with it.
 #pragma once
 
+#include "base/work_reading.h"
 #include "render/integrator.h"
 
 #include <algorithm>
@@ -93,6 +94,7 @@ class RenderState {
     }
 
     double seconds = 0; // wall clock of the runs before this one
+    WorkReading work;   // where it went
 
   private:
     PixelBounds bounds_;

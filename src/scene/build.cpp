@@ -1,5 +1,6 @@
 #include "scene/build.h"
 
+#include "base/work.h"
 #include "film/layer_rows.h"
 #include "lights/emitted_spectrum.h"
 #include "scene/registry.h"
@@ -170,6 +171,7 @@ void SceneBuilder::finish(BuiltScene& built) {
     noteEffects(built);
     noteMedia(built.scene);
     if (options_.geometry && !diagnostics_.hasErrors()) {
+        const WorkScope work(Work::committing);
         const auto start = std::chrono::steady_clock::now();
         built.scene.intersector = embree_.build();
         built.commitSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
