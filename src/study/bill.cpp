@@ -31,7 +31,8 @@ class BillMaker {
         add("film", "film, layers and the sums", charged(Work::film)).count = statistics_.paths;
         bill_.rows.back().counted = "samples";
         for (std::size_t i = firstOfRendering; i < bill_.rows.size(); ++i) bill_.rendering += bill_.rows[i].seconds;
-        add("waiting", "threads without work", charged(Work::none));
+        add("waiting", "threads without work",
+            work_.sum([](Work w, std::size_t, std::size_t) { return w == Work::none; }));
         addEnd();
         double sum = 0;
         for (const BillRow& row : bill_.rows) sum += row.seconds;

@@ -38,6 +38,8 @@ CheckpointHeader headerOf(const PixelFilm& film, const FilmPlanes& planes, std::
     h.last = last;
     h.whole = 8;
     h.seconds = 2.5;
+    h.work.seconds = 2.25;
+    h.work.charges[WorkReading::index(11, 2, 16)] = {1.25, 1e-6, 77};
     for (const auto& plane : planes) h.planes.push_back(plane->name());
     return h;
 }
@@ -59,6 +61,8 @@ void fill(PixelFilm& film, RenderState& state, std::uint32_t last) {
         tile.tally.paths = 100 + i;
         tile.tally.dropped = {1, 2, 3};
         tile.tally.excess = {10, 2, 1.5f};
+        tile.tally.effects = {1, 2, 3, 4, 5, 6, 7 + i};
+        tile.tally.effects.volumes[2] = {8, 9, 10, 11};
         tile.examples = {{3, 4, 1, 5, DropCause::negative}};
     }
 }
@@ -124,6 +128,11 @@ TEST_CASE("a checkpoint holds film, tiles and header") {
     CHECK(read.tally().paths == state.tally().paths);
     CHECK(read.tally().dropped == std::array<std::uint64_t, 3>{6, 12, 18});
     CHECK(read.tally().excess.above == 12);
+    CHECK(read.tally().effects == state.tally().effects);
+    CHECK(read.tally().effects.volumes[2].first == 66);
+    CHECK(read.work.seconds == 2.25);
+    CHECK(read.work.charges[WorkReading::index(11, 2, 16)].looks == 77);
+    CHECK(read.work.charges[WorkReading::index(11, 2, 16)].seconds == 1.25);
     CHECK(read.examples().size() == 4);
     CHECK(read.examples()[0].cause == DropCause::negative);
 }
