@@ -116,11 +116,11 @@ function facts(entry) {
     return {...entry, info, attributes: info.attributes, study: measured, fit: (measured.curves[0] || {}).fit || {}};
 }
 function billRows(f) {
-    const rows = ((f.info.bill || f.study.bill || {}).rows || []).filter(r => r.seconds > 0).sort((a, b) => b.seconds - a.seconds);
+    const rows = ((f.info.bill || f.study.bill || {}).rows || []).filter(r => r.seconds > 0 || r.elsewhere > 0).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return [];
     const total = f.info.bill ? f.info.bill.seconds : rows.reduce((sum, r) => sum + r.seconds, 0);
-    return ["", "| the bill | seconds | share | rays |", "|---|--:|--:|--:|",
-            ...rows.map(r => `| ${inMarkdown(r.label)} | ${page.significant(r.seconds, 3)} | ${page.percent(r.seconds / total, 2)} | ${r.rays > 0 ? page.countText(r.rays) : "–"} |`)];
+    return ["", "| the bill | seconds | share | and in other rows | rays |", "|---|--:|--:|--:|--:|",
+            ...rows.map(r => `| ${inMarkdown(r.label)} | ${r.seconds.toFixed(2)} | ${page.percent(r.seconds / total, 2)} | ${r.elsewhere > 0 ? r.elsewhere.toFixed(2) : ""} | ${r.rays > 0 ? page.countText(r.rays) : ""} |`)];
 }
 function sectionOf(f) {
     const findings = page.findingsOf(f.study).map(words => `- ${words.map((text, i) => i % 2 ? `**${inMarkdown(text)}**` : inMarkdown(text)).join("")}`);
@@ -137,7 +137,7 @@ function lineOf(f) {
 function writeIndex(entries) {
     const all = entries.map(facts), machine = all[0].study.machine || {};
     const lines = ["# Gallery", "", "Made by `tools/make_gallery.mjs`; edits by hand are lost.", "",
-        `Each scene has a picture with the error that its header states, where its time went, and a study of what accuracy costs on it. The reports are single files that need no network: save one and open it in a browser. ` +
+        `Each scene has a picture with the error that its header states, where its time went (seconds "in other rows" are those that an effect caused and other rows count), and a study of what accuracy costs on it. The reports are single files that need no network: save one and open it in a browser. ` +
         `Times are of ${inMarkdown(machine.cpu || cpus()[0].model)} with ${machine.threads || availableParallelism()} threads, in one run. The slope is the power of the number of samples with which the relative error falls; averaging gives −0.5.`, "",
         "| scene | shows | time | samples | error | slope | report |", "|---|---|--:|--:|--:|--:|---|", ...all.map(lineOf), "", ...all.flatMap(sectionOf)];
     mkdirSync(options.out, {recursive: true});

@@ -145,6 +145,14 @@ async function unknownFigures(browser) {
     await page.close();
 }
 
+// Rows of the bill in which nothing was spent or counted are left out; what is spent elsewhere is no time of the row.
+async function billOf(browser) {
+    const page = await browser.open("ordinary.html"), rows = await page.evaluate("[...document.querySelectorAll('#bill tbody tr')].map(r => [...r.cells].map(c => c.textContent))");
+    same("rows of the bill", rows.length, 9);
+    same("a row of the bill", rows[5], ["volume haze", "80 ms± 6 ms".replace("80", "80.0"), "4.00\u00a0%", "0.500 s", "300\u202f000", "400\u202f000 densities"]);
+    await page.close();
+}
+
 async function compare(browser) {
     for (const [width, scheme] of [[1280, "light"], [1280, "dark"]]) {
         const page = await browser.open(comparePage, {width, scheme}), what = `compare, ${width} pixels, ${scheme}`;
@@ -180,6 +188,7 @@ try {
     await studyInUse(browser, study);
     await hostileText(browser, odd.hostile);
     await unknownFigures(browser);
+    await billOf(browser);
     await compare(browser);
 } finally {
     await browser.close();

@@ -115,8 +115,10 @@ export function ordinary(seed = 1, chosen = changes) {
             {name: "subsurface", asker: "prism.scene:44:9", secondsOn: 1.2, secondsOff: 1.19, deltaTime: 0.008, low: -0.01, high: 0.02, flip: 0.021, relMse: 4e-4, png: noisy(0.05, random), note: "", reason: null},
             {name: "depth of field", asker: "prism.scene:3:9", secondsOn: 1.2, secondsOff: 1.18, deltaTime: 0.016, low: 0.0, high: 0.03, flip: 0.019, relMse: 5e-4, png: noisy(0.05, random), note: "", reason: null},
             {name: "textures", asker: "prism.scene:50:1", secondsOn: null, secondsOff: null, deltaTime: null, low: null, high: null, flip: null, relMse: null, png: null, note: "", reason: "without its texture the lamp has no power"}],
-        bill: {seconds: 2.0, threads: 2, accounted: 0.985, rows: [["embree", "Embree", 0.9, 5.1e6], ["surface", "surfaces", 0.42, 2.2e6], ["lights", "light sampling", 0.31, 2.9e6], ["camera", "camera", 0.11, 6e5],
-            ["film", "film", 0.09, null], ["dispersion", "dispersion", 0.08, 3e5], ["textures", "textures", 0.04, null], ["rest", "the rest", 0.02, null]].map(([id, label, seconds, rays]) => ({id, label, seconds, share: seconds / 1.97, rays}))},
+        bill: {seconds: 2.0, threads: 2, accounted: 0.985, rows: [["embree", "Embree", 0.9, 5.1e6, {note: "all rays of the rows below and above"}], ["surface", "surfaces", 0.42, 2.2e6, {}], ["lights", "light sampling", 0.31, 2.9e6, {}],
+            ["camera", "camera", 0.11, 6e5, {}], ["film", "film", 0.09, 0, {count: 64000, counted: "samples"}], ["volume-haze", "volume haze", 0.08, 3e5, {elsewhere: 0.5, count: 4e5, counted: "densities"}],
+            ["textures", "textures", 0.04, 0, {count: 198000, counted: "lookups"}], ["dispersion", "dispersion", 0, 48000, {elsewhere: 0.12}], ["motion", "motion", 0, 0, {count: 0, counted: "hits of what moves"}],
+            ["rest", "the rest", 0.02, 0, {}]].map(([id, label, seconds, rays, more]) => ({id, label, seconds, uncertainty: 0.07 * seconds, share: seconds / 2, elsewhere: 0, rays, ...more}))},
     };
 }
 
@@ -152,5 +154,6 @@ export function oddities() {
     hostile.measure = evil;
     hostile.leftOut[0].reason = evil;
     noise.complete = false;
-    return {one, twenty, empty, nulls, noise, hostile};
+    const effectsAlone = {...empty, scene: one.scene, effects: ordinary(7, []).effects};
+    return {effectsAlone, one, twenty, empty, nulls, noise, hostile};
 }

@@ -15,7 +15,7 @@ const between = (low, high, shown) => isNumber(low) && isNumber(high) ? `${shown
 
 function findingsOf(study) {
     const curves = study.curves || [], base = curves[0];
-    if (!base) return [["Nothing was measured."]];
+    if (!base) return (study.effects || []).length ? [...effectFindings(study), [`${study.effects.length} `, study.effects.length === 1 ? "effect" : "effects", " measured, each off and on with the same seeds."]] : [["Nothing was measured."]];
     const early = study.complete === false ? [["The time ran out ", "before all was measured", ": intervals are wider than they would be."]] : [];
     const found = [...costFindings(base), ...changeFindings(curves), ...biasFindings(curves), ...effectFindings(study)];
     const last = (base.points || []).filter(p => positive(p.relMse) && positive(p.seconds)).pop();

@@ -67,7 +67,7 @@ const changed = () => choice.listeners.forEach(listener => listener());
 function head() {
     const scene = study.scene || {}, machine = study.machine || {}, reference = study.reference || {};
     document.title = `${scene.name || "scene"} – Abbe study`;
-    const what = curves.length > 1 ? `${curves.length - 1} ${curves.length === 2 ? "change" : "changes"} against the scene as rendered` : "the scene as rendered";
+    const what = curves.length > 1 ? `${curves.length - 1} ${curves.length === 2 ? "change" : "changes"} against the scene as rendered` : curves.length ? "the scene as rendered" : (study.effects || []).length ? "each effect, off and on" : "nothing";
     const facts = [["measured", what], ["picture", scene.width ? `${scene.width} × ${scene.height} pixels` : null],
                    ["replicates", study.replicates], ["effects in the scene", scene.effects],
                    ["reference", reference.samplesPerHalf ? `2 × ${countText(reference.samplesPerHalf)} samples, ${timeText(reference.seconds)}` : null],

@@ -54,17 +54,19 @@ function efficiencies() {
 
 const billColours = ["c0", "c1", "c2", "c4", "c3", "c5", "c6"];
 function bill() {
-    const rows = (study.bill && study.bill.rows || []).filter(r => isNumber(r.seconds)).sort((a, b) => b.seconds - a.seconds);
+    const rows = (study.bill && study.bill.rows || []).filter(r => isNumber(r.seconds) && (r.seconds > 0 || r.elsewhere > 0 || r.rays > 0 || r.count > 0)).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return;
     const total = rows.reduce((sum, r) => sum + Math.max(0, r.seconds), 0) || 1, share = r => isNumber(r.share) ? r.share : r.seconds / total;
     const colour = i => i < 7 ? `var(--${billColours[i]})` : "var(--soft)";
-    const accounted = study.bill.accounted;
-    section("bill", "Bill", "The bill", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.`,
+    const accounted = study.bill.accounted, elsewhere = rows.some(r => r.elsewhere > 0), counts = rows.some(r => r.count > 0);
+    section("bill", "Bill", "The bill", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.${elsewhere ? " What was spent because of an effect, but counted in the rows of others, is in a column of its own; these seconds overlap." : ""}`,
         make("div", {class: "stack", role: "img", "aria-label": rows.map(r => `${r.label} ${percent(share(r), 2)}`).join(", ")},
              rows.map((r, i) => make("div", {style: `flex:${Math.max(0, r.seconds) / total} 0 0;background:${colour(i)}`, title: `${r.label}: ${percent(share(r), 2)}`}, share(r) > 0.09 ? r.label : ""))),
-        table(["", "seconds", "share", "rays", "rays per second"], rows.map((r, i) => make("tr", {},
-            make("td", {}, make("span", {class: "swatch", style: `background:${colour(i)}`}), r.label), make("td", {}, timeText(r.seconds, 3)), make("td", {}, percent(share(r), 3)),
-            make("td", {}, positive(r.rays) ? countText(r.rays) : "–"), make("td", {}, positive(r.rays) && r.seconds > 0 ? `${significant(r.rays / r.seconds / 1e6, 3)} M` : "–")))));
+        table(["", "seconds", "share", ...(elsewhere ? ["in other rows"] : []), "rays", ...(counts ? ["counted"] : [])], rows.map((r, i) => make("tr", {},
+            make("td", {}, make("span", {class: "swatch", style: `background:${colour(i)}`}), r.label, r.note ? make("small", {}, r.note) : null),
+            make("td", {}, timeText(r.seconds, 3), make("small", {}, positive(r.uncertainty) ? `± ${timeText(r.uncertainty, 1)}` : "")), make("td", {}, percent(share(r), 3)),
+            elsewhere ? make("td", {}, positive(r.elsewhere) ? timeText(r.elsewhere, 3) : "") : null, make("td", {}, positive(r.rays) ? countText(r.rays) : ""),
+            counts ? make("td", {}, positive(r.count) ? `${countText(r.count)} ${r.counted || ""}` : "") : null))));
 }
 
 function effects() {
