@@ -119,6 +119,8 @@ function billRows(f) {
     const rows = ((f.info.bill || f.study.bill || {}).rows || []).filter(r => r.seconds > 0 || r.elsewhere > 0).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return [];
     const total = f.info.bill ? f.info.bill.seconds : rows.reduce((sum, r) => sum + r.seconds, 0);
+    const small = rows.filter(r => r.seconds < 0.005 * total && !(r.elsewhere > 0));
+    if (small.length > 1) rows.splice(0, rows.length, ...rows.filter(r => !small.includes(r)), {label: `${small.length} smaller rows`, seconds: small.reduce((sum, r) => sum + r.seconds, 0)});
     return ["", "| the bill | seconds | share | and in other rows | rays |", "|---|--:|--:|--:|--:|",
             ...rows.map(r => `| ${inMarkdown(r.label)} | ${r.seconds.toFixed(2)} | ${page.percent(r.seconds / total, 2)} | ${r.elsewhere > 0 ? r.elsewhere.toFixed(2) : ""} | ${r.rays > 0 ? page.countText(r.rays) : ""} |`)];
 }

@@ -153,6 +153,13 @@ async function billOf(browser) {
     await page.close();
 }
 
+// Findings that warn.
+async function warnings(browser) {
+    const page = await browser.open("noise.html"), text = await page.evaluate("document.querySelector('.findings').textContent");
+    for (const right of ["The time ran out before all was measured", "the best image has 2.1 times its mean square error"]) check(`noise: “${right}”`, text.includes(right), text);
+    await page.close();
+}
+
 async function compare(browser) {
     for (const [width, scheme] of [[1280, "light"], [1280, "dark"]]) {
         const page = await browser.open(comparePage, {width, scheme}), what = `compare, ${width} pixels, ${scheme}`;
@@ -189,6 +196,7 @@ try {
     await hostileText(browser, odd.hostile);
     await unknownFigures(browser);
     await billOf(browser);
+    await warnings(browser);
     await compare(browser);
 } finally {
     await browser.close();

@@ -154,6 +154,7 @@ export function oddities() {
     hostile.measure = evil;
     hostile.leftOut[0].reason = evil;
     noise.complete = false;
+    noise.reference.advantage = 2.1;
     const effectsAlone = {...empty, scene: one.scene, effects: ordinary(7, []).effects};
     return {effectsAlone, one, twenty, empty, nulls, noise, hostile};
 }

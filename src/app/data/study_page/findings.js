@@ -17,6 +17,9 @@ function findingsOf(study) {
     const curves = study.curves || [], base = curves[0];
     if (!base) return (study.effects || []).length ? [...effectFindings(study), [`${study.effects.length} `, study.effects.length === 1 ? "effect" : "effects", " measured, each off and on with the same seeds."]] : [["Nothing was measured."]];
     const early = study.complete === false ? [["The time ran out ", "before all was measured", ": intervals are wider than they would be."]] : [];
+    const advantage = study.reference && study.reference.advantage;
+    if (positive(advantage) && advantage < 5)
+        early.push(["The reference is hardly better than what it judges: the best image has ", `${significant(advantage, 2)} times`, " its mean square error, so that small errors are uncertain."]);
     const found = [...costFindings(base), ...changeFindings(curves), ...biasFindings(curves), ...effectFindings(study)];
     const last = (base.points || []).filter(p => positive(p.relMse) && positive(p.seconds)).pop();
     if (!found.length && last) found.push([`After ${countText(last.samples)} samples and ${timeText(last.seconds)} the error is `, errorText(last.relMse, 2), "; nothing was fitted."]);
@@ -60,11 +63,13 @@ function changeFindings(curves) {
     return [...slow, ...fast].map(told);
 }
 
+// A bound that is larger than what was measured says nothing.
+const leastError = curve => Math.min(...(curve.points || []).map(p => p.relMse).filter(positive));
 function biasFindings(curves) {
     const found = [], base = biasOf(curves[0]);
     if (base) {
         if (base.low > 0 && base.samples === null) found.push(["As rendered, the error does not fall below ", errorText(base.relMse, 2), ": a bias, or an error of the reference."]);
-        else if (base.low <= 0 && base.high > 0) found.push(["No bias was found down to ", errorText(base.high, 2), "."]);
+        else if (base.low <= 0 && base.high > 0 && base.high < Math.min(0.09, 0.5 * leastError(curves[0]))) found.push(["No bias was found down to ", errorText(base.high, 2), "."]);
     }
     const biased = curves.slice(1).filter(c => c.floor && positive(c.floor.low)).sort((a, b) => b.floor.relMse - a.floor.relMse).slice(0, 1);
     for (const c of biased) found.push([`“${c.label}” settles at an error of `, errorText(c.floor.relMse, 2), ", however long it runs."]);

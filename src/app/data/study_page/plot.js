@@ -51,7 +51,7 @@ function significant(v, digits = 3) {
 const percent = (v, digits = 3) => isNumber(v) ? `${significant(100 * v, digits)}\u00a0%` : "–";
 // relMSE as the relative root mean square that people mean by "a 1 % error".
 const errorText = (relMse, digits = 3) => !isNumber(relMse) ? "–" : relMse > 0 ? percent(Math.sqrt(relMse), digits) : "below the noise";
-const ratioText = v => isNumber(v) ? `${significant(v, v >= 99.5 ? 3 : 2)}×` : "–";
+const ratioText = v => v > 9999 ? "> 9999×" : isNumber(v) ? `${significant(v, v >= 99.5 ? 3 : 2)}×` : "–";
 const factorText = v => isNumber(v) && v > 9999 ? "> 9999" : significant(v, 2);
 const countText = v => isNumber(v) ? String(Math.round(v)).replace(/\B(?=(\d{3})+$)/g, "\u202f") : "–";
 function timeText(seconds, digits = 2) {
