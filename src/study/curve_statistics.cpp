@@ -1,0 +1,177 @@
+#include "study/curve_statistics.h"
+
+#include "base/check.h"
+#include "study/power_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace abbe {
+
+namespace {
+
+// With eight seeds a rung's own spread is known to a quarter only. It is drawn towards the mean of all rungs, as if
+// that were known from so many more seeds.
+constexpr double kPriorSeeds = 4;
+constexpr double kLeastRelativeError = 1e-6; // rounding
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2 == 1) return *middle;
+    return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+} // namespace
+
+CurveStatistics::CurveStatistics(std::vector<std::uint32_t> samples, std::vector<SeedRun> runs)
+    : samples_(std::move(samples)), runs_(std::move(runs)), bootstrap_(runs_.size()),
+      ladder_(samples_.begin(), samples_.end()) {
+    ABBE_CHECK(!samples_.empty() && !runs_.empty());
+    for (const SeedRun& run : runs_) ABBE_CHECK(run.rungs.size() == samples_.size());
+    const auto n = static_cast<double>(runs_.size());
+    std::vector<double> variances; // of the mean, relative
+    for (std::size_t k = 0; k < rungs(); ++k) {
+        const std::vector<double> values = figures(k, &RungRun::relMse);
+        const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+        double squares = 0;
+        for (const double v : values) squares += (v - mean) * (v - mean);
+        variances.push_back(n > 1 && mean != 0 ? squares / (n * (n - 1) * mean * mean) : 0);
+        seconds_.push_back(median(figures(k, &RungRun::seconds)));
+    }
+    const double pooled = std::accumulate(variances.begin(), variances.end(), 0.0) / static_cast<double>(rungs());
+    for (const double v : variances) {
+        const double drawn = ((n - 1) * v + kPriorSeeds * pooled) / (n - 1 + kPriorSeeds);
+        const double least = std::max(drawn, kLeastRelativeError * kLeastRelativeError);
+        relativeErrors_.push_back(std::sqrt(least));
+        fitWeights_.push_back(1 / least);
+    }
+}
+
+std::vector<double> CurveStatistics::figures(std::size_t rung, double RungRun::*figure) const {
+    std::vector<double> values;
+    for (const SeedRun& run : runs_) values.push_back(run.rungs[rung].*figure);
+    return values;
+}
+
+Estimate CurveStatistics::error(std::size_t rung) const { return meanOnLogScale(figures(rung, &RungRun::relMse)); }
+
+double CurveStatistics::trimmed(std::size_t rung) const {
+    return meanWithStudent(figures(rung, &RungRun::trimmed)).value;
+}
+
+double CurveStatistics::coreSeconds(std::size_t rung) const { return median(figures(rung, &RungRun::coreSeconds)); }
+
+std::uint64_t CurveStatistics::rays(std::size_t rung) const {
+    std::uint64_t sum = 0;
+    for (const SeedRun& run : runs_) sum += run.rungs[rung].rays;
+    return sum / runs_.size();
+}
+
+std::optional<double> CurveStatistics::slopeOf(std::span<const double> errors) const {
+    const auto law = PowerLaw::fit(ladder_, errors, fitWeights_);
+    return law ? std::optional(law->slope) : std::nullopt;
+}
+
+Estimate CurveStatistics::slope() const {
+    return bootstrap_.estimate([this](Weights w) { return slopeOf(errors(w)); });
+}
+
+Estimate CurveStatistics::halfNoiseCost() const {
+    const Estimate s = slope();
+    const auto cost = [](double v) { return v < 0 ? std::pow(4, -1 / v) : Estimate::kUnknown; };
+    return {cost(s.value), cost(s.low), cost(s.high)};
+}
+
+Estimate CurveStatistics::floor() const {
+    std::vector<double> scales;
+    const std::vector<double> means = errors(std::vector<double>(runs_.size(), 1.0));
+    for (std::size_t k = 0; k < rungs(); ++k)
+        scales.push_back(std::max(std::abs(means[k]), 1e-300) * relativeErrors_[k]);
+    return bootstrap_.estimate([&](Weights w) -> std::optional<double> {
+        const auto law = FlooredLaw::fit(ladder_, errors(w), scales);
+        return law ? std::optional(law->floor) : std::nullopt;
+    });
+}
+
+// Between the first rung from which on all errors are below the target, and the one before.
+std::optional<CurveStatistics::Crossing> CurveStatistics::crossing(std::span<const double> errors,
+                                                                   double target) const {
+    std::size_t first = rungs();
+    while (first > 0 && errors[first - 1] <= target) --first;
+    if (first > 0 && first < rungs()) {
+        const double above = std::log(errors[first - 1]);
+        const double below = std::log(std::max(errors[first], 1e-300));
+        const double step = (above - std::log(target)) / (above - below);
+        return Crossing{static_cast<double>(first - 1) + std::clamp(step, 0.0, 1.0)};
+    }
+    const std::optional<double> slope = slopeOf(errors);
+    if (!slope || !(*slope < 0)) return std::nullopt;
+    // In octaves of samples beyond either end; rungs are octaves.
+    const std::size_t end = first == 0 ? 0 : rungs() - 1;
+    if (!(errors[end] > 0)) return std::nullopt;
+    const double octaves = std::log2(target / errors[end]) / *slope;
+    return Crossing{static_cast<double>(end) + octaves};
+}
+
+double CurveStatistics::at(Crossing c, std::span<const double> ladder) const {
+    const auto last = static_cast<double>(rungs() - 1);
+    if (c.position <= 0) return ladder.front() * std::exp2(c.position);
+    if (c.position >= last) return ladder.back() * std::exp2(c.position - last);
+    const auto below = static_cast<std::size_t>(c.position);
+    const double step = c.position - static_cast<double>(below);
+    return ladder[below] * std::pow(ladder[below + 1] / ladder[below], step);
+}
+
+TimeToError CurveStatistics::timeTo(double error) const {
+    const double target = error * error;
+    TimeToError result;
+    const std::vector<double> once(runs_.size(), 1.0);
+    const auto found = crossing(errors(once), target);
+    result.extrapolated = !found || found->position < 0 || found->position > static_cast<double>(rungs() - 1);
+    if (result.extrapolated)
+        if (const Estimate a = floor(); a.bounded() && a.low > target) result.reachable = false;
+    if (!found || !result.reachable) return result;
+    result.samples = at(*found, ladder_);
+    result.seconds = bootstrap_.estimate([&](Weights w) -> std::optional<double> {
+        const auto where = crossing(errors(w), target);
+        return where ? std::optional(at(*where, seconds_)) : std::nullopt;
+    });
+    return result;
+}
+
+double CurveStatistics::commonSeconds(const CurveStatistics& other) const {
+    return std::min(seconds_.back(), other.seconds_.back());
+}
+
+// Of the last two rungs before and after that time, on logarithmic scales.
+std::optional<double> CurveStatistics::errorAtTime(std::span<const double> errors, double seconds) const {
+    if (rungs() == 1 || seconds >= seconds_.back()) return errors.back();
+    std::size_t above = 1;
+    while (above + 1 < rungs() && seconds_[above] < seconds) ++above;
+    const double x0 = std::log(seconds_[above - 1]), x1 = std::log(seconds_[above]);
+    if (!(errors[above - 1] > 0) || !(errors[above] > 0) || !(x1 > x0)) return std::nullopt;
+    const double step = (std::log(seconds) - x0) / (x1 - x0);
+    return std::exp(std::lerp(std::log(errors[above - 1]), std::log(errors[above]), step));
+}
+
+Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other) const {
+    std::vector<SeedRun> ours, theirs; // of the seeds that both have
+    for (const SeedRun& run : runs_)
+        for (const SeedRun& rival : other.runs_)
+            if (run.seed == rival.seed) {
+                ours.push_back(run);
+                theirs.push_back(rival);
+            }
+    if (ours.empty()) return {};
+    const double seconds = commonSeconds(other);
+    return SeedBootstrap(ours.size()).estimate([&](Weights w) -> std::optional<double> {
+        const auto mine = errorAtTime(weightedMeans(ours, w, &RungRun::relMse), seconds);
+        const auto its = other.errorAtTime(weightedMeans(theirs, w, &RungRun::relMse), seconds);
+        if (!mine || !its || !(*mine > 0) || !(*its > 0)) return std::nullopt;
+        return *its / *mine;
+    });
+}
+
+} // namespace abbe
