@@ -7,6 +7,7 @@
 #include "app/command_line_denoise.h"
 #include "app/command_line_help.h"
 #include "app/command_line_replay.h"
+#include "app/command_line_study.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
@@ -22,8 +23,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render",  "merge",  "check",   "explain", "info",   "convert",
-                                     "compare", "volume", "denoise", "replay",  "certify"};
+constexpr const char* kCommands[] = {"render",  "merge",  "check",   "explain", "info",    "convert",
+                                     "compare", "volume", "denoise", "replay",  "certify", "study"};
 
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {
@@ -47,6 +48,9 @@ class Reader {
         CLI::App* certify = add("certify", kCertifyHelp);
         addCertifyArguments(*certify, certify_, common_.json);
         addView(certify, certify_.view);
+        CLI::App* study = add("study", kStudyHelp);
+        addStudyArguments(*study, study_, common_);
+        addDefines(study, study_.input.defines);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -145,6 +149,7 @@ class Reader {
     DenoiseOptions denoise_;
     ReplayOptions replay_;
     CertifyOptions certify_;
+    StudyOptions study_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -331,6 +336,7 @@ Command Reader::command(const Words& words) {
     if (name == "denoise") return {denoise_, common_};
     if (name == "replay") return {replay_, common_};
     if (name == "certify") return {certify_, common_};
+    if (name == "study") return {study_, common_};
     return {compare_, common_};
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace abbe {
 
+std::string processorName();    // as the system tells it; empty if it does not
 double physicalMemory();        // bytes
 double availableMemory();       // the same, or the limit of the control group that this process is in
 std::uint64_t peakMemory();     // bytes of this process so far

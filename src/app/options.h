@@ -118,6 +118,20 @@ struct DenoiseOptions {
     DenoiseMethod method = DenoiseMethod::nfor;
 };
 
+struct StudyOptions {
+    SceneInput input;
+    std::string output;                  // DIR/NAME of NAME.html, .csv, .json; empty: the scene's name with "-study"
+    BuildOptions build;                  // camera and size; without a size at most kStudySide pixels
+    std::optional<std::int64_t> samples; // of the last rung; without it kStudySamples, or what the time allows
+    int seeds = 8;
+    std::optional<double> timeLimit; // s, of the whole study
+    std::vector<std::string> variants;
+    bool listVariants = false;                      // print them, and that is all
+    std::vector<double> errors{0.01, 0.003, 0.001}; // relative, to tell the time to
+    bool resume = false;
+    bool quiet = false;
+};
+
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string scene;  // empty: where it was when the first part was made
@@ -126,8 +140,9 @@ struct MergeOptions {
     ViewOptions view;
 };
 
-using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
-                             CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions>;
+using Options =
+    std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
+                 VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -142,5 +157,6 @@ ExitCode run(const VolumeOptions&, const CommonOptions&);
 ExitCode run(const DenoiseOptions&, const CommonOptions&);
 ExitCode run(const ReplayOptions&, const CommonOptions&);
 ExitCode run(const CertifyOptions&, const CommonOptions&);
+ExitCode run(const StudyOptions&, const CommonOptions&);
 
 } // namespace abbe

@@ -199,6 +199,8 @@ constexpr CodeInfo kCodes[] = {
     {"E0735", "stops out of order", "The stops of a ramp are written in the order of their positions. Two at the same position make a step."},
     {"E0736", "a texture that cannot be heights", "A displacement needs a texture whose slope follows from the place alone: `noise`, `image`, `ramp`. `triplanar` follows the normal, and an `attribute` has values at vertices only."},
     {"E0737", "an attribute that does not fit", "`attribute` gives each of `points` a number, or three of them for a colour. It stands beside points that are written in place; those of a file have the attributes of the file."},
+    {"E0738", "a state of another study", "`abbe study --resume` goes on with what an interrupted study of the same scene, at the same size and with the same ladder of samples, has saved. The message says what differs. More seeds and other variants are no difference."},
+    {"E0739", "a damaged state of a study", "A file in the folder of an unfinished study is none, or its bytes are not those that were written."},
     {"E0750", "the sun is not above the horizon", "`light daylight` is a model of the day: it has no twilight and no night. Give the sun an `elevation` above 0 deg, or a `toward` that points down."},
     {"E0751", "a dark lamp with a power", "The photometric file says that the lamp sends no light in any direction; nothing scales that to a power."},
     {"E0752", "the photometric file cannot be used", "An IES file (LM-63) of photometric type C is needed: `TILT=NONE` or `INCLUDE`, then its numbers. The message names the line of the file."},
@@ -242,6 +244,9 @@ constexpr CodeInfo kCodes[] = {
     {"E0770", "`preset` without a name", "`preset` stands in the place of a type and is followed by the name of a material or medium of the library: `material ring preset gold`. `abbe explain presets` lists them."},
     {"E0771", "no such preset", "The library has no material (or medium) of this name. `abbe explain presets` lists them all. Some names are both: `material preset milk` is complete, `interior preset milk` is what is in it, for a shape with a surface of its own."},
     {"W0730", "a colour taken for a number", "A texture is asked for plain numbers, a roughness for example, but a part of it is a coloured spectrum. Its value at 550 nm is used."},
+    {"W0731", "an unfinished study is replaced", "Beside the outputs there is what an interrupted study has saved, and `--resume` was not given."},
+    {"W0732", "no study to go on with", "`--resume` found nothing beside the outputs, so the study begins anew. What was saved is removed when a study is done."},
+    {"W0733", "the reference is not much better", "A study wants a reference with a twentieth of the relMSE of its best image. The reference's noise cancels in the mean of what is measured, but makes it vary more from study to study. More time makes a better reference."},
     {"W0740", "a dark light", "The light states an amount of 0, its texture is black, or what it is made of has no area. It is seen as black and never chosen when light is looked for."},
     {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
 };

@@ -80,7 +80,7 @@ bool encode(png_structp png, png_infop info, const PngPicture& p, const std::vec
 
 } // namespace
 
-void writePng(const std::string& path, const PngPicture& p) {
+std::vector<char> encodePng(const PngPicture& p) {
     ABBE_CHECK(p.width > 0 && p.height > 0 && (p.bits == 8 || p.bits == 16));
     const std::size_t stride = 3 * static_cast<std::size_t>(p.width);
     ABBE_CHECK(p.rgb.size() == stride * static_cast<std::size_t>(p.height));
@@ -94,15 +94,24 @@ void writePng(const std::string& path, const PngPicture& p) {
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     if (!info) {
         png_destroy_write_struct(&png, nullptr);
-        throw IoError(fmt::format("cannot write `{}`: out of memory", path));
+        throw IoError("out of memory");
     }
     png_set_write_fn(png, &encoder, onWrite, onFlush);
     const bool good = encode(png, info, p, texts, rows);
     png_destroy_write_struct(&png, &info);
-    if (!good) throw IoError(fmt::format("cannot write `{}`: {}", path, encoder.error));
+    if (!good) throw IoError(encoder.error);
+    return std::move(encoder.bytes);
+}
 
+void writePng(const std::string& path, const PngPicture& p) {
+    std::vector<char> bytes;
+    try {
+        bytes = encodePng(p);
+    } catch (const IoError& e) {
+        throw IoError(fmt::format("cannot write `{}`: {}", path, e.what()));
+    }
     AtomicFile file(path);
-    file.write(encoder.bytes);
+    file.write(bytes);
     file.commit();
 }
 

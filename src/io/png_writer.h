@@ -16,6 +16,9 @@ struct PngPicture {
     std::vector<std::pair<std::string, std::string>> texts = {}; // keyword (1 … 79 Latin-1 characters) and text
 };
 
+// The bytes of a file. Throws IoError if memory runs out.
+std::vector<char> encodePng(const PngPicture&);
+
 // The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
 void writePng(const std::string& path, const PngPicture&);
 

@@ -142,12 +142,18 @@ TimeToError CurveStatistics::timeTo(double error) const {
 }
 
 double CurveStatistics::commonSeconds(const CurveStatistics& other) const {
-    return std::min(seconds_.back(), other.seconds_.back());
+    const double end = std::min(seconds_.back(), other.seconds_.back());
+    return std::max({end, seconds_.front(), other.seconds_.front()});
 }
 
-// Of the last two rungs before and after that time, on logarithmic scales.
+// Straight between rungs on logarithmic scales; beyond the last one by the fitted slope.
 std::optional<double> CurveStatistics::errorAtTime(std::span<const double> errors, double seconds) const {
-    if (rungs() == 1 || seconds >= seconds_.back()) return errors.back();
+    if (seconds >= seconds_.back()) {
+        const double more = std::log(seconds / seconds_.back());
+        if (more < 1e-12) return errors.back();
+        const auto slope = slopeOf(errors);
+        return slope ? std::optional(errors.back() * std::exp(*slope * more)) : std::nullopt;
+    }
     std::size_t above = 1;
     while (above + 1 < rungs() && seconds_[above] < seconds) ++above;
     const double x0 = std::log(seconds_[above - 1]), x1 = std::log(seconds_[above]);

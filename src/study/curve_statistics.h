@@ -44,9 +44,10 @@ class CurveStatistics {
     Estimate floor() const;
     // `error` is a relative RMS, the root of a relMSE. Requires error > 0.
     TimeToError timeTo(double error) const;
-    // relMSE of `other` over that of this curve, both at the time where the shorter of the two ends: how many times as
-    // much an efficiency 1/(relMSE·time) is, where errors fall by 1/time. Seeds that both have are compared in pairs.
+    // relMSE of `other` over that of this curve at commonSeconds(): how many times as much an efficiency
+    // 1/(relMSE·time) is, where errors fall by 1/time. Seeds that both have are compared in pairs.
     Estimate efficiencyAgainst(const CurveStatistics& other) const;
+    // Where the shorter of the two ends, or where the later one begins if that is later; the other is then continued.
     double commonSeconds(const CurveStatistics& other) const;
 
   private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace abbe {
 
@@ -39,7 +40,9 @@ struct Floored {
 };
 
 Floored withPower(double power, std::span<const double> x, std::span<const double> y, std::span<const double> errors) {
-    const auto fallen = [&](std::size_t i) { return std::pow(x[i] / x[0], power); };
+    std::vector<double> powers; // once: they are what takes the time
+    for (const double v : x) powers.push_back(std::pow(v / x[0], power));
+    const auto fallen = [&](std::size_t i) { return powers[i]; };
     const auto height = [&](std::size_t i) { return y[i]; };
     const auto weight = [&](std::size_t i) { return 1 / (errors[i] * errors[i]); };
     Line line = fitLine(x.size(), fallen, height, weight);
@@ -79,7 +82,7 @@ std::optional<FlooredLaw> FlooredLaw::fit(std::span<const double> x, std::span<c
                                           std::span<const double> errors) {
     ABBE_CHECK(x.size() == y.size() && x.size() == errors.size());
     if (x.size() < 4) return std::nullopt;
-    constexpr int kGrid = 24;
+    constexpr int kGrid = 12;
     constexpr double kStep = (kFlattest - kSteepest) / kGrid;
     Floored best;
     for (int i = 0; i <= kGrid; ++i)
@@ -89,7 +92,7 @@ std::optional<FlooredLaw> FlooredLaw::fit(std::span<const double> x, std::span<c
     constexpr double kGolden = 0.6180339887498949;
     double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
     Floored atLeft = withPower(left, x, y, errors), atRight = withPower(right, x, y, errors);
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < 16; ++i) {
         if (atLeft.squares <= atRight.squares) {
             high = right;
             right = left;

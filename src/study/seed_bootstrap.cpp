@@ -78,7 +78,7 @@ Estimate meanWithStudent(std::span<const double> values) {
 
 Estimate meanOnLogScale(std::span<const double> values) {
     Estimate e = meanWithStudent(values);
-    if (!(e.value > 0) || !e.bounded()) return e;
+    if (!e.bounded() || !(e.high - e.value < e.value)) return e;
     const double factor = std::exp((e.high - e.value) / e.value);
     e.low = e.value / factor;
     e.high = e.value * factor;

@@ -31,9 +31,9 @@ class SeedBootstrap {
     std::vector<double> weights_; // of all resamples, one after the other
 };
 
-// Of t, the mean of values whose logarithm is nearer to normal than they are: a 95 % interval by Student's t on the
-// scale of logarithms (delta method), which is never negative and reaches further up than down; on the plain scale if
-// the mean is not positive.
+// The mean of values whose logarithm is nearer to normal than they are: a 95 % interval by Student's t on the scale of
+// logarithms (delta method), which is never negative and reaches further up than down; on the plain scale if the
+// interval would hold 0 there.
 Estimate meanOnLogScale(std::span<const double> values);
 // On the plain scale.
 Estimate meanWithStudent(std::span<const double> values);

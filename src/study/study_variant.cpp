@@ -12,7 +12,8 @@ namespace {
 using Reason = std::optional<std::string>;
 
 bool sameMeans(const RenderSettings& a, const RenderSettings& b) {
-    return a.randomSampler == b.randomSampler && a.strategy == b.strategy && a.lightChoice == b.lightChoice &&
+    const Technique &s = a.technique, &t = b.technique;
+    return s.numbers == t.numbers && s.strategy == t.strategy && s.lightChoice == t.lightChoice &&
            a.adaptive == b.adaptive;
 }
 
@@ -53,6 +54,7 @@ Reason needsHalves(const StudySubject& s) {
 }
 
 using S = RenderSettings;
+using T = Technique;
 using enum BiasClass;
 
 } // namespace
@@ -67,20 +69,20 @@ const std::vector<StudyVariant>& studyVariants() {
         {"abbe", "as rendered", "main", "nothing changed", exact, ""},
         {"no-nee", "no light sampling", "light sampling", "light is met by chance alone", exact,
          "no next-event estimation: what is left are the directions that surfaces prefer",
-         [](S& s) { s.strategy = S::Strategy::bsdfOnly; }, false, needsExtent},
+         [](S& s) { s.technique.strategy = T::Strategy::bsdfOnly; }, false, needsExtent},
         {"lights-only", "light sampling alone", "light sampling", "light that is met by chance does not count", exact,
          "behind mirrors and glass, where sampling a light cannot work, met light counts still",
-         [](S& s) { s.strategy = S::Strategy::lightsOnly; }, false, needsLights},
+         [](S& s) { s.technique.strategy = T::Strategy::lightsOnly; }, false, needsLights},
         {"sobol", "Owen–Sobol numbers", "numbers", "Owen-scrambled Sobol points", exact, "",
-         [](S& s) { s.randomSampler = false; }},
+         [](S& s) { s.technique.numbers = T::Numbers::sobol; }},
         {"random", "independent numbers", "numbers", "independent random numbers", exact, "",
-         [](S& s) { s.randomSampler = true; }},
+         [](S& s) { s.technique.numbers = T::Numbers::random; }},
         {"light-tree", "light tree", "light choice", "lights are asked by what they may give to the place", exact, "",
-         [](S& s) { s.lightChoice = S::LightChoice::tree; }, false, needsManyLights},
+         [](S& s) { s.technique.lightChoice = T::LightChoice::tree; }, false, needsManyLights},
         {"light-power", "lights by power", "light choice", "lights are asked by their power", exact, "",
-         [](S& s) { s.lightChoice = S::LightChoice::power; }, false, needsManyLights},
+         [](S& s) { s.technique.lightChoice = T::LightChoice::power; }, false, needsManyLights},
         {"light-uniform", "lights evenly", "light choice", "each light is asked as often", exact, "",
-         [](S& s) { s.lightChoice = S::LightChoice::uniform; }, false, needsManyLights},
+         [](S& s) { s.technique.lightChoice = T::LightChoice::uniform; }, false, needsManyLights},
         {"adaptive", "adaptive samples", "numbers", "more samples where a pilot finds more noise", exact,
          "a rung has its samples on average over the pixels; the pilot's time counts", [](S& s) { s.adaptive = true; }},
         {"even", "even samples", "numbers", "the same samples for each pixel", exact, "",

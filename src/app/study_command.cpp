@@ -1,0 +1,302 @@
+#include "app/image_output.h"
+#include "app/interrupt.h"
+#include "app/json.h"
+#include "app/options.h"
+#include "app/progress_text.h"
+#include "app/provenance.h"
+#include "app/render_identity.h"
+#include "app/render_report.h"
+#include "app/study_files.h"
+#include "app/study_page.h"
+#include "app/study_progress.h"
+#include "app/study_state.h"
+#include "base/parallel.h"
+#include "io/atomic_file.h"
+#include "study/study_run.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kStudySide = 160; // pixels, of a picture whose size nobody asked for
+constexpr std::uint32_t kStudySamples = 64;
+constexpr std::uint32_t kProbeSamples = 8;
+// Samples of a half of the reference over those of a curve, as they come out more often than not.
+constexpr double kUsualReference = 24;
+constexpr double kTimeReserve = 0.9; // of the time that is given
+
+// One study from the command line to the files.
+class StudyCommand {
+  public:
+    StudyCommand(const StudyOptions& options, const CommonOptions& common)
+        : options_(options), common_(common),
+          messages_(common.json ? makeJsonReport(common.console) : makeHumanReport(common.console, true)) {}
+
+    ExitCode run() {
+        if (const ExitCode code = load(); code != ExitCode::done) return code;
+        choosePlan();
+        if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
+        InterruptGuard interrupt;
+        if (!probe(interrupt)) return stopped(interrupt);
+        try {
+            StudyState state(outputBase() + ".state", identity());
+            openState(state);
+            tellStart();
+            return study(state, interrupt);
+        } catch (const CheckpointFault& fault) {
+            return refuse(fault.code, fault.what(), fault.help);
+        }
+    }
+
+  private:
+    ExitCode load();
+    void chooseSize();
+    ExitCode checkOutputs();
+    void choosePlan();
+    bool probe(InterruptGuard&);
+    void openState(StudyState&);
+    std::vector<Fact> identity() const;
+    void tellStart() const;
+    ExitCode study(StudyState&, InterruptGuard&);
+    ExitCode stopped(const InterruptGuard&) const;
+    void write(const StudyReport&, bool complete);
+
+    void say(const std::string& line) const {
+        if (!options_.quiet && !common_.json) common_.console.line(line);
+    }
+    ExitCode refuse(const std::string& code, std::string message, std::string help, ExitCode exit = ExitCode::faulty) {
+        Diagnostics diagnostics;
+        diagnostics.error(code, {}, std::move(message)).help = std::move(help);
+        messages_->diagnostics(diagnostics, loaded_->sources);
+        return exit;
+    }
+    void warn(const char* code, std::string message, std::string help) {
+        Diagnostics diagnostics;
+        diagnostics.warning(code, {}, std::move(message)).help = std::move(help);
+        messages_->diagnostics(diagnostics, loaded_->sources);
+    }
+    // Path of the files without their extensions.
+    std::string outputBase() const {
+        if (!options_.output.empty()) return options_.output;
+        return std::filesystem::path(options_.input.path).stem().string() + "-study";
+    }
+    // Of all renders, at the speed of the probe.
+    double expectedSeconds(double samples) const {
+        const double renders = static_cast<double>(plan_.chosen.variants.size()) * plan_.seeds + 2 * kUsualReference;
+        return secondsPerSample_ * samples * renders;
+    }
+
+    const StudyOptions& options_;
+    const CommonOptions& common_;
+    std::unique_ptr<RenderReport> messages_;
+    std::unique_ptr<LoadedScene> loaded_;
+    BuildOptions build_;
+    BuiltScene built_;
+    StudySubject subject_;
+    StudyPlan plan_;
+    double secondsPerSample_ = 0; // of the whole picture
+};
+
+// The frame of the scene, made smaller.
+void StudyCommand::chooseSize() {
+    build_ = options_.build;
+    if (build_.size) return;
+    BuildOptions look = build_;
+    look.geometry = false;
+    Diagnostics ignored; // they come again
+    const Vec2d size = buildScene(loaded_->tree, loaded_->types, look, ignored).film.size;
+    const double scale = std::min(1.0, kStudySide / std::max({size.x, size.y, 1.0}));
+    const auto scaled = [scale](double v) { return std::max(1, static_cast<int>(std::lround(v * scale))); };
+    build_.size = Vec2i{scaled(size.x), scaled(size.y)};
+}
+
+ExitCode StudyCommand::load() {
+    loaded_ = loadScene(options_.input);
+    if (loaded_->readable && !loaded_->diagnostics.hasErrors()) chooseSize();
+    if (loaded_->readable) built_ = buildScene(loaded_->tree, loaded_->types, build_, loaded_->diagnostics);
+    messages_->diagnostics(loaded_->diagnostics, loaded_->sources);
+    if (const ExitCode code = loaded_->exitCode(); code != ExitCode::done) return code;
+    built_.film.crop.reset(); // pixels of the size that the scene asks for
+    built_.film.overscan.clear();
+    for (const FilmFault& fault : findFaults(built_.film))
+        return refuse(std::string(fault.code), fault.message, fault.help, ExitCode::usage);
+    subject_.built = &built_;
+    subject_.film = filmSettings(built_.film);
+    subject_.settings = renderSettings(built_.render);
+    subject_.settings.noiseTarget = subject_.settings.timeLimit = 0;
+    subject_.replicates = static_cast<int>(built_.render.replicates);
+    return ExitCode::done;
+}
+
+void StudyCommand::choosePlan() {
+    plan_.chosen = chooseVariants(subject_, options_.variants);
+    plan_.seeds = options_.seeds;
+    plan_.seed = subject_.settings.seed;
+    plan_.timeLimit = options_.timeLimit.value_or(0);
+    plan_.samples = options_.samples ? static_cast<std::uint32_t>(*options_.samples) : kStudySamples;
+    // Two rungs at least.
+    plan_.samples = std::max(plan_.samples, 8u * static_cast<std::uint32_t>(subject_.replicates));
+}
+
+// Hours of rendering must not end in "permission denied".
+ExitCode StudyCommand::checkOutputs() {
+    for (const char* extension : {".json", ".csv", ".html"})
+        if (std::string fault = writeFault(outputBase() + extension); !fault.empty())
+            return refuse("E0430", std::move(fault), "`-o DIR/NAME` writes the study elsewhere", ExitCode::system);
+    return ExitCode::done;
+}
+
+// How fast the scene renders: what the study will take, or what it can do in the time. False if it was interrupted.
+bool StudyCommand::probe(InterruptGuard& interrupt) {
+    LadderRender render(subject_, plan_.chosen.variants[0], plan_.referenceSeed(2), &interrupt.stop());
+    const auto replicates = static_cast<std::uint32_t>(subject_.replicates);
+    const auto rung = render.advance(std::max(1u, kProbeSamples / replicates));
+    if (!rung) return false;
+    secondsPerSample_ = rung->cost.seconds / rung->samples;
+    if (options_.samples || plan_.timeLimit == 0) return true;
+    if (const auto known = options_.resume ? StudyState::fact(outputBase() + ".state", "rungs") : std::nullopt) {
+        std::from_chars(known->data() + known->rfind(' ') + 1, known->data() + known->size(), plan_.samples);
+        return true;
+    }
+    for (std::uint32_t n = 2 * plan_.samples; n <= 1u << 16; n *= 2)
+        if (expectedSeconds(n) < kTimeReserve * plan_.timeLimit) plan_.samples = n;
+    while (plan_.samples >= 16 * replicates && expectedSeconds(plan_.samples) > kTimeReserve * plan_.timeLimit)
+        plan_.samples /= 2;
+    return true;
+}
+
+std::vector<Fact> StudyCommand::identity() const {
+    RenderSettings settings = subject_.settings;
+    settings.seed = plan_.seed;
+    std::vector<Fact> facts =
+        renderIdentity({loaded_.get(), &subject_.film, &settings, subject_.replicates, options_.build.camera});
+    const auto ladder = StudyPlan::ladder(plan_.samples, subject_.replicates);
+    facts.push_back({"rungs", fmt::format("{}", fmt::join(ladder, " "))});
+    return facts;
+}
+
+void StudyCommand::openState(StudyState& state) {
+    if (options_.resume && state.exists()) {
+        state.resume();
+        return;
+    }
+    if (options_.resume)
+        warn("W0732", fmt::format("there is nothing to go on with in `{}`; the study begins anew", state.folder()), {});
+    else if (state.exists())
+        warn("W0731",
+             fmt::format("`{}` holds an earlier study that was not finished; this one replaces it", state.folder()),
+             "`--resume` goes on with it");
+    state.begin();
+}
+
+void StudyCommand::tellStart() const {
+    const auto ladder = StudyPlan::ladder(plan_.samples, subject_.replicates);
+    const std::size_t variants = plan_.chosen.variants.size();
+    if (common_.json) {
+        common_.console.data(Json::object({{"event", "start"},
+                                           {"scene", options_.input.path},
+                                           {"width", subject_.film.width},
+                                           {"height", subject_.film.height},
+                                           {"threads", threadCount()},
+                                           {"variants", static_cast<std::uint64_t>(variants)},
+                                           {"seeds", plan_.seeds},
+                                           {"samples", ladder.back()},
+                                           {"estimate_s", expectedSeconds(ladder.back())}})
+                                 .text() +
+                             "\n");
+        return;
+    }
+    say(fmt::format("{}  {}×{}  {} thread{}  {} curve{} of {} to {} samples, {} seeds each: about {}",
+                    options_.input.path, subject_.film.width, subject_.film.height, threadCount(),
+                    threadCount() == 1 ? "" : "s", variants, variants == 1 ? "" : "s", ladder.front(), ladder.back(),
+                    plan_.seeds, clockText(expectedSeconds(ladder.back()))));
+    for (const LeftOutVariant& v : plan_.chosen.leftOut) say(fmt::format("  without {}: {}", v.label, v.reason));
+}
+
+ExitCode StudyCommand::stopped(const InterruptGuard& interrupt) const {
+    say(fmt::format("interrupted; `{} --resume` goes on where it was", common_.commandLine));
+    return static_cast<ExitCode>(128 + interrupt.signal());
+}
+
+ExitCode StudyCommand::study(StudyState& state, InterruptGuard& interrupt) {
+    using Form = StudyProgressLine::Form;
+    StudyProgressLine line(common_.console, common_.json ? Form::json : options_.quiet ? Form::none : Form::human);
+    const StudyStore store = state.store();
+    const StudyControl control{&interrupt.stop(), [&line](const StudyProgress& p) { line.show(p); }};
+    const StudyEnd end = StudyRun(subject_, plan_, store, control).run();
+    line.clear();
+    if (end == StudyEnd::stopped) return stopped(interrupt);
+    const StudyReport report = StudyReport::make(subject_, plan_, store);
+    write(report, end == StudyEnd::done);
+    if (report.referenceAdvantage < StudyRun::kReferenceAdvantage)
+        warn("W0733",
+             fmt::format("the best image has {:.3g} times the error of the reference; 20 times and more were wanted",
+                         report.referenceAdvantage),
+             "its noise cancels in the mean, but what is measured varies more; give the study more `--time`");
+    if (end == StudyEnd::outOfTime)
+        say("the time is used up; the report has the seeds that were done, and `--resume` adds the others");
+    else
+        state.remove();
+    return ExitCode::done;
+}
+
+void writeText(const std::string& path, const std::string& text) {
+    AtomicFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+void StudyCommand::write(const StudyReport& report, bool complete) {
+    StudyFacts facts;
+    facts.command = common_.commandLine;
+    facts.scene = options_.input.path;
+    facts.name = std::filesystem::path(options_.input.path).stem().string();
+    facts.width = subject_.film.width;
+    facts.height = subject_.film.height;
+    facts.effects = effectNames(built_.scene.effects);
+    facts.threads = threadCount();
+    facts.seeds = plan_.seeds;
+    facts.seed = plan_.seed;
+    facts.errors = options_.errors;
+    facts.complete = complete;
+    facts.leftOut = plan_.chosen.leftOut;
+    const std::string json = studyJson(report, facts), base = outputBase();
+    writeText(base + ".json", json);
+    writeText(base + ".csv", studyCsv(report, facts));
+    writeText(base + ".html", studyPage(json));
+    if (common_.json) {
+        for (const char* extension : {".html", ".csv", ".json"})
+            common_.console.data(Json::object({{"event", "file"}, {"path", base + extension}}).text() + "\n");
+        common_.console.data(
+            Json::object(
+                {{"event", "done"}, {"complete", complete}, {"reference_advantage", report.referenceAdvantage}})
+                .text() +
+            "\n");
+        return;
+    }
+    if (options_.quiet) return;
+    common_.console.data(studyTable(report, facts));
+    for (const char* extension : {".html", ".csv", ".json"}) say("study " + base + extension);
+}
+
+ExitCode listVariants(const Console& console) {
+    std::string text;
+    for (const StudyVariant& v : studyVariants()) text += fmt::format("{:<20}{:<28}{}\n", v.id, v.label, v.change);
+    console.data(text);
+    return ExitCode::done;
+}
+
+} // namespace
+
+ExitCode run(const StudyOptions& options, const CommonOptions& common) {
+    if (options.listVariants) return listVariants(common.console);
+    return StudyCommand(options, common).run();
+}
+
+} // namespace abbe

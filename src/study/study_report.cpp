@@ -1,0 +1,108 @@
+#include "study/study_report.h"
+
+#include "base/check.h"
+#include "io/display_rgb.h"
+#include "io/png_writer.h"
+#include "study/error_colours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace abbe {
+
+namespace {
+
+// Linear colours of the film as a display would be sent them, without a tone curve: bright parts are clipped.
+std::vector<char> picturePng(const StudyImage& image, OutputSpace space) {
+    RgbImage linear;
+    linear.window = linear.display = {0, 0, image.width, image.height};
+    linear.chromaticities = Chromaticities::of(rgbSpace(space));
+    linear.adoptedNeutral = adoptedNeutral(space);
+    const Matrix3 toDisplay = toDisplayRgb(linear);
+    std::vector<float> encoded(image.rgb.size());
+    for (std::size_t c = 0; c < encoded.size(); c += 3) {
+        const auto v = toDisplay.apply<Vec3d>(Vec3d(image.rgb[c], image.rgb[c + 1], image.rgb[c + 2]));
+        encoded[c] = static_cast<float>(linearToSrgb(v.x));
+        encoded[c + 1] = static_cast<float>(linearToSrgb(v.y));
+        encoded[c + 2] = static_cast<float>(linearToSrgb(v.z));
+    }
+    return encodePng({image.width, image.height, encoded});
+}
+
+std::vector<char> errorPng(const StudyImage& image, const ReferencePair& reference, double scale) {
+    const std::vector<float> colours = ErrorColours::paint(reference.errorMap(image), 0, scale);
+    return encodePng({image.width, image.height, colours});
+}
+
+std::optional<StudyCurve> curveOf(const StudyVariant& variant, const CurveRecord& record,
+                                  const ReferencePair& reference) {
+    if (record.measured == 0) return std::nullopt;
+    std::vector<std::uint32_t> samples;
+    std::vector<Estimate> bias;
+    for (const CurveRung& rung : record.rungs) {
+        samples.push_back(rung.samples);
+        bias.push_back(reference.biasSquared(rung.sum, rung.tiles, record.measured));
+    }
+    const std::vector<SeedRun> runs(record.runs.begin(),
+                                    record.runs.begin() + static_cast<std::ptrdiff_t>(record.measured));
+    return StudyCurve{variant, CurveStatistics(std::move(samples), runs), std::move(bias)};
+}
+
+// The times of the first, a middle and the last rung of the main curve.
+std::vector<double> stripTimes(const CurveStatistics& main) {
+    std::vector<double> times;
+    const std::size_t last = main.rungs() - 1;
+    for (const std::size_t k : {std::size_t(0), last / 2, last})
+        if (times.empty() || main.seconds(k) > times.back()) times.push_back(main.seconds(k));
+    return times;
+}
+
+std::size_t rungNear(const CurveStatistics& curve, double seconds) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < curve.rungs(); ++k)
+        if (const double off = std::abs(std::log(curve.seconds(k) / seconds)); off < least) {
+            best = k;
+            least = off;
+        }
+    return best;
+}
+
+} // namespace
+
+StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan, const StudyStore& store) {
+    const auto stored = store.loadReference();
+    ABBE_CHECK(stored);
+    const ReferencePair reference(stored->a, stored->b);
+    StudyReport report;
+    report.referencePng = picturePng(reference.mean(), subject.film.space);
+    report.referenceSamples = stored->samples;
+    report.referenceSeconds = stored->seconds;
+    report.referenceRelMse = reference.relMse();
+    double best = std::numeric_limits<double>::infinity();
+    for (const StudyVariant& variant : plan.chosen.variants) {
+        const auto record = store.loadCurve(variant.id);
+        if (!record) continue;
+        auto curve = curveOf(variant, *record, reference);
+        if (!curve) continue;
+        for (std::size_t k = 0; k < curve->statistics.rungs(); ++k)
+            best = std::min(best, curve->statistics.error(k).value);
+        if (report.curves.empty()) {
+            for (const double seconds : stripTimes(curve->statistics)) report.strips.push_back({seconds, {}});
+            report.errorScale = ErrorColours::roundScale(reference.errorMap(
+                record->rungs[rungNear(curve->statistics, report.strips[report.strips.size() / 2].seconds)].first));
+        }
+        for (StudyStrip& strip : report.strips) {
+            const CurveRung& rung = record->rungs[rungNear(curve->statistics, strip.seconds)];
+            strip.pictures.push_back({variant.id, rung.samples, reference.measure(rung.first).relMse,
+                                      picturePng(rung.first, subject.film.space),
+                                      errorPng(rung.first, reference, report.errorScale)});
+        }
+        report.curves.push_back(std::move(*curve));
+    }
+    report.referenceAdvantage = best / report.referenceRelMse;
+    return report;
+}
+
+} // namespace abbe
