@@ -1,6 +1,7 @@
 #include "study/study_run.h"
 
 #include "base/check.h"
+#include "study/equal_time.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,6 @@ namespace abbe {
 
 namespace {
 
-// A next rung doubles the time: below this much more than the main curve it is taken.
-constexpr double kMostOfMainTime = 1.6;
-constexpr double kNoticed = 0.25; // s; shorter ladders are never cut
 constexpr std::size_t kFewestRungs = 2;
 constexpr std::uint32_t kFirstReference = 16, kLastReference = 256; // samples of a half, over those of the last rung
 constexpr double kReferenceShare = 0.5;                             // of the time that is left
@@ -57,8 +55,7 @@ bool StudyRun::renderFirst(const StudyVariant& v) {
     const auto begin = Clock::now();
     LadderRender render(subject_, v, plan_.seedOf(1), control_.stop);
     CurveRecord record{v.id, {}, {{plan_.seedOf(1), {}}}, 0};
-    const double limit = std::max(kNoticed, v.id == main ? std::numeric_limits<double>::infinity()
-                                                         : kMostOfMainTime * seconds_.at(main));
+    const double mainSeconds = v.id == main ? std::numeric_limits<double>::infinity() : seconds_.at(main);
     for (std::size_t k = 0; k < ladder_.size(); ++k) {
         const double before = k == 0 ? 0 : std::exp2(static_cast<double>(k) - static_cast<double>(ladder_.size()));
         const double after = std::exp2(static_cast<double>(k + 1) - static_cast<double>(ladder_.size()));
@@ -68,7 +65,7 @@ bool StudyRun::renderFirst(const StudyVariant& v) {
         if (!rung) return false;
         record.rungs.push_back({rung->samples, std::move(rung->image), {}, {}});
         record.runs[0].rungs.push_back(rung->cost);
-        if (k + 1 >= kFewestRungs && 2 * rung->cost.seconds > limit) break;
+        if (!worthAnotherRung(record.runs[0].rungs, mainSeconds)) break;
     }
     store_.saveCurve(record);
     seconds_[v.id] = v.id == main ? record.runs[0].rungs.back().seconds

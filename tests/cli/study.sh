@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# A study of a small scene: what it writes, that it survives kills with the same figures, and what it refuses.
+#   study.sh PROGRAM JSON_LINES [KILLS]       three kills, 10 with ABBE_NIGHTLY set
+# shellcheck source=tests/cli/lib.sh
+source "$(dirname -- "$0")/lib.sh" "$@"
+kills=${3:-${ABBE_NIGHTLY:+10}}
+kills=${kills:-3}
+scene=$scenes/room.scene
+small=(--size 24x16 --samples 32 --seeds 5)
+
+# All but the times, in the order of the file.
+figures() { grep -v '^#' "$1" | cut -d, -f1-5; }
+
+expect 0 study "$scene" "${small[@]}" -o whole
+says out "as rendered"
+says err "study whole.html"
+for file in whole.html whole.csv whole.json; do [[ -s $file ]] || fault "no $file"; done
+[[ ! -e whole.state ]] || fault "a finished study leaves its state"
+"$json_lines" --whole <whole.json >/dev/null || fault "whole.json is no JSON"
+says whole.json '"format":"abbe-study/1"'
+says whole.json '"id":"denoised"'
+says whole.html 'abbe-study/1'
+# Four rungs, 4 to 32 samples, five seeds of each.
+[[ $(grep -c '^abbe,' whole.csv) -eq 20 ]] || fault "$(grep -c '^abbe,' whole.csv) lines of the main curve"
+# What is left out has its reason.
+says whole.json '"leftOut":[{"id":"sobol"'
+
+# Killed again and again.
+RANDOM=5
+killed=0
+for ((run = 0; run < 200; ++run)); do
+    "$program" study "$scene" "${small[@]}" -o killed --resume --quiet >out 2>err &
+    job=$!
+    if ((killed < kills)); then
+        before=$(find killed.state -type f 2>/dev/null | wc -l)
+        for _ in {1..200}; do
+            [[ $(find killed.state -type f 2>/dev/null | wc -l) -gt $before || -e killed.state/reference.abbe ]] && break
+            kill -0 $job 2>/dev/null || break
+            sleep 0.01
+        done
+        sleep "0.0$((RANDOM % 10))"
+        kill -KILL $job 2>/dev/null && killed=$((killed + 1))
+        wait $job 2>/dev/null
+        [[ -e killed.json ]] && break
+    else
+        wait $job || fault "continuing after kills: $(cat err)"
+        break
+    fi
+done
+((killed > 0)) || fault "never killed"
+printf '%d kills, %d runs\n' "$killed" $((run + 1))
+[[ $(figures whole.csv) == "$(figures killed.csv)" ]] || {
+    fault "figures differ after $killed kills"
+    diff <(figures whole.csv) <(figures killed.csv)
+}
+[[ ! -e killed.state ]] || fault "the state stays after the end"
+
+# Interrupted, and continued as something else.
+"$program" study "$scene" --size 48x32 --samples 512 -o other --json >events 2>err &
+job=$!
+for _ in {1..300}; do
+    [[ -e other.state/curve-abbe.abbe ]] && break
+    sleep 0.05
+done
+kill -INT $job
+ended_with 130
+"$json_lines" event <events >keys || fault "the events are no JSON"
+says keys '"start"'
+expect 1 study "$scene" --size 48x32 --samples 256 -o other --resume
+says err E0738
+says err "rungs: "
+expect 1 study "$scene" --size 32x32 --samples 512 -o other --resume
+says err "size: "
+expect 1 study "$scene" --size 48x32 --samples 512 --seed 9 -o other --resume
+says err "seed: "
+printf 'x' >>other.state/plan.abbe
+expect 1 study "$scene" --size 48x32 --samples 512 -o other --resume
+says err E0739
+
+# Anew, warned.
+expect 0 study "$scene" --size 16x16 --samples 16 --seeds 2 --variants none -o other
+says err W0731
+expect 0 study "$scene" --size 16x16 --samples 16 --seeds 2 --variants none -o fresh --resume
+says err W0732
+says_not fresh.csv random
+# Little time: fewer seeds, or fewer samples, but a report.
+expect 0 study "$scene" --size 16x16 --time 1 --seeds 1000 --variants random -o hasty --quiet
+says hasty.json '"complete":false'
+[[ -e hasty.state ]] || fault "no state to go on from"
+
+expect 0 study "$scene" --variants list
+says out no-nee
+expect 2 study "$scene" --variants no-ne
+says err '`no-nee`'
+expect 2 study "$scene" --error 1,x
+says err "0.3"
+expect 2 study "$scene" --seeds 1
+expect 1 study "$bad/nine_mistakes.scene"
+says err nine_mistakes.scene:5
+expect 3 study "$scene" -o nowhere/study
+says err E0430
+
+finish
