@@ -144,6 +144,7 @@ std::string studyJson(const StudyReport& report, const StudyFacts& facts) {
                          {"leftOut", leftOut},
                          {"strips", stripsJson(report)},
                          {"errorScale", scaleJson(report.errorScale)},
+                         {"exposure", report.exposure},
                          {"referencePng", png(report.referencePng)}})
                .text() +
            "\n";

@@ -13,22 +13,45 @@ namespace abbe {
 
 namespace {
 
-// Linear colours of the film as a display would be sent them, without a tone curve: bright parts are clipped.
-std::vector<char> picturePng(const StudyImage& image, OutputSpace space) {
-    RgbImage linear;
-    linear.window = linear.display = {0, 0, image.width, image.height};
-    linear.chromaticities = Chromaticities::of(rgbSpace(space));
-    linear.adoptedNeutral = adoptedNeutral(space);
-    const Matrix3 toDisplay = toDisplayRgb(linear);
-    std::vector<float> encoded(image.rgb.size());
-    for (std::size_t c = 0; c < encoded.size(); c += 3) {
-        const auto v = toDisplay.apply<Vec3d>(Vec3d(image.rgb[c], image.rgb[c + 1], image.rgb[c + 2]));
-        encoded[c] = static_cast<float>(linearToSrgb(v.x));
-        encoded[c + 1] = static_cast<float>(linearToSrgb(v.y));
-        encoded[c + 2] = static_cast<float>(linearToSrgb(v.z));
+// Pictures as a display shows them without a tone curve, all exposed alike: bright parts are clipped.
+class Pictures {
+  public:
+    Pictures(const StudyImage& reference, OutputSpace space) : space_(space) {
+        const std::vector<Vec3d> colours = linear(reference);
+        std::vector<double> brightest;
+        for (const Vec3d& c : colours) brightest.push_back(std::max({c.x, c.y, c.z}));
+        const auto rank = brightest.begin() + static_cast<std::ptrdiff_t>(kBelowWhite * (brightest.size() - 1));
+        std::nth_element(brightest.begin(), rank, brightest.end());
+        if (*rank > 0) gain_ = kWhite / *rank;
     }
-    return encodePng({image.width, image.height, encoded});
-}
+
+    std::vector<char> png(const StudyImage& image) const {
+        std::vector<float> encoded;
+        encoded.reserve(image.rgb.size());
+        for (const Vec3d& c : linear(image))
+            for (const double v : {c.x, c.y, c.z}) encoded.push_back(static_cast<float>(linearToSrgb(gain_ * v)));
+        return encodePng({image.width, image.height, encoded});
+    }
+    double stops() const { return std::log2(gain_); }
+
+  private:
+    static constexpr double kBelowWhite = 0.95, kWhite = 0.9;
+
+    // Rec.709.
+    std::vector<Vec3d> linear(const StudyImage& image) const {
+        RgbImage tagged;
+        tagged.chromaticities = Chromaticities::of(rgbSpace(space_));
+        tagged.adoptedNeutral = adoptedNeutral(space_);
+        const Matrix3 toDisplay = toDisplayRgb(tagged);
+        std::vector<Vec3d> colours;
+        for (std::size_t c = 0; c < image.rgb.size(); c += 3)
+            colours.push_back(toDisplay.apply<Vec3d>(Vec3d(image.rgb[c], image.rgb[c + 1], image.rgb[c + 2])));
+        return colours;
+    }
+
+    OutputSpace space_;
+    double gain_ = 1;
+};
 
 std::vector<char> errorPng(const StudyImage& image, const ReferencePair& reference, double scale) {
     const std::vector<float> colours = ErrorColours::paint(reference.errorMap(image), 0, scale);
@@ -76,7 +99,9 @@ StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan
     ABBE_CHECK(stored);
     const ReferencePair reference(stored->a, stored->b);
     StudyReport report;
-    report.referencePng = picturePng(reference.mean(), subject.film.space);
+    const Pictures pictures(reference.mean(), subject.film.space);
+    report.referencePng = pictures.png(reference.mean());
+    report.exposure = pictures.stops();
     report.referenceSamples = stored->samples;
     report.referenceSeconds = stored->seconds;
     report.referenceRelMse = reference.relMse();
@@ -96,8 +121,7 @@ StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan
         for (StudyStrip& strip : report.strips) {
             const CurveRung& rung = record->rungs[rungNear(curve->statistics, strip.seconds)];
             strip.pictures.push_back({variant.id, rung.samples, reference.measure(rung.first).relMse,
-                                      picturePng(rung.first, subject.film.space),
-                                      errorPng(rung.first, reference, report.errorScale)});
+                                      pictures.png(rung.first), errorPng(rung.first, reference, report.errorScale)});
         }
         report.curves.push_back(std::move(*curve));
     }

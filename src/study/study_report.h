@@ -33,6 +33,7 @@ struct StudyReport {
     std::vector<StudyStrip> strips;
     double errorScale = 1; // relative error that has the brightest colour in maps
     std::vector<char> referencePng;
+    double exposure = 0;                // stops that all pictures are brightened by
     std::uint32_t referenceSamples = 0; // per pixel, of each half
     double referenceSeconds = 0, referenceRelMse = 0;
     double referenceAdvantage = 0; // relMSE of the best rung of all curves over that

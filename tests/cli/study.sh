@@ -53,6 +53,9 @@ printf '%d kills, %d runs\n' "$killed" $((run + 1))
     fault "figures differ after $killed kills"
     diff <(figures whole.csv) <(figures killed.csv)
 }
+# Biases need the images of all seeds.
+biases() { grep -o '"bias2[A-Za-z]*":[^,}]*' "$1"; }
+[[ -n $(biases whole.json) && $(biases whole.json) == "$(biases killed.json)" ]] || fault "biases differ after kills"
 [[ ! -e killed.state ]] || fault "the state stays after the end"
 
 # Interrupted, and continued as something else.
