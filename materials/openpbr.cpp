@@ -105,6 +105,7 @@ Effects OpenPbr::needs() const {
     Effects effects;
     if (refracts() && !ior_->isConstant()) effects |= Effect::dispersion;
     if (attenuation_) effects |= Effect::absorption;
+    if (!thinFilmWeight_.is(0) && p_.thinFilmThickness > 0) effects |= Effect::thinFilm;
     return effects;
 }
 

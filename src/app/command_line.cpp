@@ -267,9 +267,13 @@ void Reader::addExplain() {
     c->add_option_function<Texts>(
          "topic", [this](const Texts& words) { explain_.topic = fmt::format("{}", fmt::join(words, " ")); },
          "Scene file, or words of the language")
-        ->required()
         ->type_name("");
+    c->add_flag("--effects", explain_.effects, "What a scene needs simulated; without one: all effects");
     addDefines(c, explain_.defines);
+    addJson(c);
+    c->callback([this] {
+        if (explain_.topic.empty() && !explain_.effects) throw CLI::RequiredError("topic");
+    });
 }
 
 void Reader::addInfo() {

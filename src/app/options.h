@@ -68,7 +68,8 @@ struct CheckOptions {
 };
 
 struct ExplainOptions {
-    std::string topic; // a scene file, or words of the language
+    std::string topic;    // a scene file, or words of the language
+    bool effects = false; // of the scene; without a topic: those that there are
     std::vector<std::string> defines;
 };
 

@@ -21,14 +21,8 @@ std::string_view strategyName(Technique::Strategy s) {
 
 std::string effectNames(Effects effects) {
     std::string names;
-    const auto add = [&](Effect e, const char* name) {
-        if (effects.has(e)) names += (names.empty() ? "" : "+") + std::string(name);
-    };
-    add(Effect::absorption, "absorption");
-    add(Effect::dispersion, "dispersion");
-    add(Effect::media, "media");
-    add(Effect::textures, "textures");
-    add(Effect::interfaces, "interfaces");
+    for (const EffectInfo& info : kEffectTable)
+        if (effects.has(info.effect)) names += (names.empty() ? "" : "+") + std::string(info.word);
     return names.empty() ? "none" : names;
 }
 

@@ -110,7 +110,7 @@ ExitCode RenderRun::prepare() {
         settings_.part = static_cast<std::uint32_t>(options_.part->x);
         settings_.parts = static_cast<std::uint32_t>(options_.part->y);
     }
-    integrator_ = makePathTracer(options_.largestKernel ? kAllEffects : built_.scene.effects);
+    integrator_ = makePathTracer(options_.largestKernel ? kLoopEffects : built_.scene.effects);
     return ExitCode::done;
 }
 

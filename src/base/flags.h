@@ -18,6 +18,7 @@ template <typename Enum> class Flags {
     constexpr bool empty() const { return bits_ == 0; }
     constexpr Bits bits() const { return bits_; }
     constexpr Flags operator|(Flags f) const { return fromBits(static_cast<Bits>(bits_ | f.bits_)); }
+    constexpr Flags operator&(Flags f) const { return fromBits(static_cast<Bits>(bits_ & f.bits_)); }
     constexpr Flags& operator|=(Flags f) { return *this = *this | f; }
     constexpr bool operator==(const Flags&) const = default;
     static constexpr Flags fromBits(Bits b) {

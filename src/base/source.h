@@ -15,6 +15,7 @@ struct Span {
     std::uint32_t end = 0;
 
     bool valid() const { return file != FileId::none; }
+    friend bool operator==(const Span&, const Span&) = default;
 };
 
 // The smallest span that holds both; both lie in one file.

@@ -6,10 +6,12 @@
 #include "integrators/time_left.h"
 #include "render/render_state.h"
 
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace abbe {
 
@@ -27,7 +29,7 @@ template <EffectBits E> constexpr Kernel kernel(const char* name) {
     return {Effects::fromBits(E), name, renderTile<E>};
 }
 // The cheapest first.
-constexpr Kernel kKernels[] = {
+constexpr Kernel kAllKernels[] = {
     kernel<kPlainKernel.bits()>("plain"),
     kernel<kTexturesKernel.bits()>("textures"),
     kernel<kAbsorptionKernel.bits()>("absorption"),
@@ -37,6 +39,17 @@ constexpr Kernel kKernels[] = {
     kernel<kMediaKernel.bits()>("absorption+textures+interfaces+media"),
     kernel<kFullKernel.bits()>("all"),
 };
+
+// Those that this build has.
+template <std::size_t... I> constexpr auto compiledKernels(std::index_sequence<I...>) {
+    constexpr std::size_t count = (std::size_t{kCompiledEffects.contains(kAllKernels[I].effects)} + ...);
+    std::array<Kernel, count> kernels{};
+    std::size_t next = 0;
+    for (const Kernel& k : kAllKernels)
+        if (kCompiledEffects.contains(k.effects)) kernels[next++] = k;
+    return kernels;
+}
+constexpr auto kKernels = compiledKernels(std::make_index_sequence<std::size(kAllKernels)>());
 
 double threadSeconds() {
     timespec t;
@@ -279,7 +292,7 @@ class PathTracer final : public Integrator {
 
 std::unique_ptr<const Integrator> makePathTracer(Effects required) {
     for (const Kernel& kernel : kKernels)
-        if (kernel.effects.contains(required)) return std::make_unique<PathTracer>(kernel);
+        if (kernel.effects.contains(required & kLoopEffects)) return std::make_unique<PathTracer>(kernel);
     return std::make_unique<PathTracer>(std::end(kKernels)[-1]);
 }
 

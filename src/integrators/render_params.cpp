@@ -47,6 +47,10 @@ TypeInfo renderType() {
                     .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
                     .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
                     .example("adaptive on"),
+                field(FieldType::table, "forbid", &P::forbid)
+                    .namedRows()
+                    .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
+                    .example("forbid { motion; thin-film }"),
                 field(FieldType::integer, "max-depth", &P::maxDepth)
                     .range(0, 100000)
                     .byDefault("0")

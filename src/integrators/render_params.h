@@ -16,6 +16,7 @@ struct RenderParams {
     double timeLimit = 0;       // s; 0: none
     double textureCache = 2048; // MiB
     bool adaptive = false;
+    schema::TableRows forbid; // rows of one word: effects that the scene must not need
     schema::Choice sampler{"sobol", {}};
     schema::Choice strategy{"mis", {}};
     schema::Choice lightChoice{"tree", {}};

@@ -222,7 +222,7 @@ inline constexpr Effects kInterfacesKernel = kAbsorptionKernel | Effect::texture
 inline constexpr Effects kDispersionKernel = kAbsorptionKernel | Effect::dispersion;
 inline constexpr Effects kSpectralInterfacesKernel = kInterfacesKernel | Effect::dispersion;
 inline constexpr Effects kMediaKernel = kInterfacesKernel | Effect::media;
-inline constexpr Effects kFullKernel = kAllEffects;
+inline constexpr Effects kFullKernel = kLoopEffects;
 extern template TileResult renderTile<kPlainKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kTexturesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kAbsorptionKernel.bits()>(const PathContext&, Film&, const TileJob&);

@@ -4,11 +4,14 @@
 
 #include "base/flags.h"
 #include "math/vec.h"
+#include "render/effects.h"
 #include "render/scatter_outline.h"
+#include "render/unit_ratio.h"
 #include "spectrum/spectrum.h"
 
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 namespace abbe {
 
@@ -25,18 +28,20 @@ using Lobes = Flags<Lobe>;
 // Which way the path runs: radiance from the eye, importance from a light. Refraction scales radiance by 1/η².
 enum class Transport : std::uint8_t { radiance, importance };
 
+// Densities at each lane's wavelength over the hero's.
+using DensityRatio = std::conditional_t<isCompiled(Effect::dispersion), Spectrum, UnitRatio>;
+
 // Value and density of a pair of directions; delta lobes are left out of both.
 struct BsdfEval {
     Spectrum fcos; // f(wo, wi) |cos θi|, 1/sr
     float pdfSolidAngle = 0;
-    // Density at each lane's wavelength over the hero's; 1 unless lobes() has dispersive.
-    Spectrum pdfRatio{1.f};
+    [[no_unique_address]] DensityRatio pdfRatio{Spectrum(1.f)}; // 1 unless lobes() has dispersive
 };
 
 struct BsdfSample {
     // All at once: see Bsdf::sample.
     BsdfSample(Vec3 direction, const Spectrum& w, float pdf, Lobes l, float indexRatio = 1,
-               const Spectrum& ratios = Spectrum(1.f))
+               const DensityRatio& ratios = Spectrum(1.f))
         : wi(direction), weight(w), pdfSolidAngle(pdf), lobe(l), eta(indexRatio), pdfRatio(ratios) {}
 
     Vec3 wi;
@@ -46,7 +51,7 @@ struct BsdfSample {
     float eta; // index ratio (transmitted side over incident side) crossed by a transmission; 1 otherwise
     // As in BsdfEval. A *delta* transmission with Lobe::dispersive instead means that the other wavelengths would have
     // gone elsewhere: the integrator ends them (docs/architecture.md, "Dispersion").
-    Spectrum pdfRatio;
+    [[no_unique_address]] DensityRatio pdfRatio;
 };
 
 // Lives in an Arena: trivially destructible, no longer than the vertex. Random choices between lobes that depend on

@@ -105,27 +105,6 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
     if (!options_.sampler.empty()) built.render.sampler.word = options_.sampler;
 }
 
-void SceneBuilder::noteEffects(BuiltScene& built) {
-    for (const Span span : lightTextures_) {
-        built.scene.effects |= Effect::textures;
-        built.scene.reasons.push_back({Effect::textures, span, "its light follows a texture"});
-    }
-    for (const auto& [index, span] : materialAskers_) {
-        if (!usedMaterials_.contains(index)) continue; // what no shape shows asks for nothing
-        Effects needs = materials_[index]->needs();
-        if (materials_[index]->usesTextures()) needs |= Effect::textures;
-        built.scene.effects |= needs;
-        if (needs.has(Effect::dispersion))
-            built.scene.reasons.push_back({Effect::dispersion, span, "its refractive index varies with wavelength"});
-        if (needs.has(Effect::textures))
-            built.scene.reasons.push_back({Effect::textures, span, "it looks at a texture"});
-        if (materials_[index]->mayBeOpen())
-            built.scene.reasons.push_back({Effect::interfaces, span, "light goes through its openings"});
-        if (needs.has(Effect::absorption))
-            built.scene.reasons.push_back({Effect::absorption, span, "light is absorbed inside it"});
-    }
-}
-
 // Identifiers are the bits of floats, which lossy compression changes.
 void SceneBuilder::checkMattes(const BuiltScene& built) {
     if (!built.layers.objects && !built.layers.materials) return;
@@ -168,8 +147,10 @@ void SceneBuilder::finish(BuiltScene& built) {
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";
     built.scene.wavelengths = WavelengthDensity::bestFor(emittedSpectrum(lights_));
-    noteEffects(built);
+    noteEffects();
     noteMedia(built.scene);
+    checkForbidden();
+    checkCompiled();
     if (options_.geometry && !diagnostics_.hasErrors()) {
         const WorkScope work(Work::committing);
         const auto start = std::chrono::steady_clock::now();

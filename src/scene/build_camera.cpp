@@ -79,9 +79,10 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)
         built.scene.camera = std::make_unique<ShutterCamera>(
             std::move(built.scene.camera), placed->toWorld.then(Transform::translate(-placed->origin)), shutter);
-    if (!built.scene.camera->disperses()) return;
-    built.scene.effects |= Effect::dispersion;
-    built.scene.reasons.push_back({Effect::dispersion, definition->span, "the glass of its lens disperses"});
+    if (built.scene.camera->disperses())
+        noteEffect(Effect::dispersion, definition->span, "the glass of its lens disperses");
+    if (built.scene.camera->usesLens()) noteEffect(Effect::depthOfField, definition->span, "its lens has a width");
+    if (placed->toWorld.moves()) noteEffect(Effect::motion, definition->span, "the camera moves");
 }
 
 } // namespace abbe

@@ -140,6 +140,7 @@ void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definit
     if (!params && moves(own)) {
         Place place = outer;
         place.motion = within(outer.motion, own);
+        noteEffect(Effect::motion, d.span, "it moves while the shutter is open");
         return placeMoving(d, *geometry, place);
     }
     carry(own, outer, d.span, [&](const Place& place) {

@@ -144,12 +144,15 @@ bool SceneBuilder::mayLieInDielectric(bool dielectrics) const {
 void SceneBuilder::noteMedia(Scene& scene) {
     placeNoise(scene.origin);
     const auto note = [&](const Medium& medium, Span span, std::string_view what) {
-        scene.effects |= medium.needs();
-        scene.reasons.push_back({Effect::media, span, fmt::format("light is scattered in {}", what)});
+        noteEffect(Effect::media, span, fmt::format("light is scattered in {}", what));
         if (medium.needs().has(Effect::dispersion))
-            scene.reasons.push_back({Effect::dispersion, span, "its extinction varies with wavelength"});
+            noteEffect(Effect::dispersion, span, "its extinction varies with wavelength");
+        if (medium.emission()) noteEffect(Effect::glow, span, "it gives off light");
     };
-    for (const auto& [medium, span] : interiorAskers_) note(*medium, span, "the shapes that this medium fills");
+    for (const auto& [medium, span] : interiorAskers_) {
+        note(*medium, span, "the shapes that this medium fills");
+        noteEffect(Effect::subsurface, span, "it fills shapes");
+    }
     for (const auto& [medium, span] : openMedia_) {
         note(*medium, span, "this volume");
         scene.openMedia.push_back(medium);
@@ -163,10 +166,8 @@ void SceneBuilder::noteMedia(Scene& scene) {
         if (shape.material->ior() || shape.material->interior()) scene.filled.push_back(shape.box);
     scene.nested = mayLieInDielectric(true);
     const bool immersed = mayLieInDielectric(false);
-    if (scene.nested) scene.reasons.push_back({Effect::interfaces, {}, "dielectrics touch or may lie in one another"});
-    if (immersed)
-        scene.reasons.push_back({Effect::interfaces, {}, "what may lie in a dielectric looks otherwise there"});
-    if (scene.nested || immersed) scene.effects |= Effect::interfaces;
+    if (scene.nested) noteEffect(Effect::interfaces, {}, "dielectrics touch or may lie in one another");
+    if (immersed) noteEffect(Effect::interfaces, {}, "what may lie in a dielectric looks otherwise there");
     scene.boundaries = scene.nested;
     for (const std::uint32_t index : usedMaterials_)
         scene.boundaries |= materials_[index]->isBoundary() || materials_[index]->mayBeOpen();

@@ -2,6 +2,7 @@
 // one instance.
 #include "geometry/instance_table.h"
 #include "scene/scene_builder.h"
+#include "scene/shape_deform.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,10 @@ constexpr int kSamples = 64; // of the way, for faults and the scene's bounds
 bool SceneBuilder::moves(const KeyedTransform& transform) const {
     const Interval& shutter = built_->shutter;
     return transform.movesDuring(shutter.open, shutter.open + shutter.duration);
+}
+
+bool SceneBuilder::deforms(std::span<const double> keys) const {
+    return gridOf(keys, built_->shutter).steps.size() > 1;
 }
 
 // Keys that make no difference while the shutter is open cost nothing.
@@ -54,6 +59,7 @@ void SceneBuilder::carry(const KeyedTransform& own, const Place& outer, Span ask
     place.motion = within(outer.motion, own);
     if (!place.motion.moves() || (outer.into != outer.base && !moves(own))) return build(place);
     if (!checkMotion(place.motion, asker)) return;
+    noteEffect(Effect::motion, asker, "it moves while the shutter is open");
     const Motion onwards = fromOpening(place.motion);
     if (!checkMotion(onwards, asker)) return;
     Assembly carried;
@@ -98,6 +104,7 @@ void SceneBuilder::tooDeep(Span asker) {
 bool SceneBuilder::lightMotion(const Motion& toRender, Span asker, std::optional<LightMotion>& result) {
     if (!toRender.moves()) return true;
     if (!checkMotion(toRender, asker)) return false;
+    noteEffect(Effect::motion, asker, "this light moves while the shutter is open");
     const Motion onwards = fromOpening(toRender);
     if (!LightMotion::keepsShape(onwards, built_->shutter)) {
         diagnostics_

@@ -166,6 +166,7 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     auto shape = place.object ? placeInObject(loaded, here) : loaded.place(here);
     if (!shape) return;
     countShape(loaded);
+    noteShape(loaded);
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
     built_->scene.names[placed] = nameOf(*loaded.definition);

@@ -86,6 +86,7 @@ GridExtras SceneBuilder::vdbExtras(const VdbParams& params, const MediumOptics& 
         const Interval& shutter = built_->shutter;
         extras.velocity = GridVelocity{std::move(*grids[next++].vector), keyOf(params.velocity, "scale", 1),
                                        shutter.open - params.time.value_or(shutter.open), shutter.duration};
+        if (shutter.duration > 0) noteEffect(Effect::motion, params.velocity->span, "the volume drifts");
     }
     extras.glow = makeGlow(params, optics, params.temperature.has_value());
     return extras;

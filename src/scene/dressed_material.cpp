@@ -34,6 +34,7 @@ Vec3 bumpedNormal(const BumpMap& map, const SurfaceHit& hit) {
 Effects DressedMaterial::needs() const {
     Effects effects = inner_.needs();
     if (mayBeOpen() || dress_.priority != 0) effects |= Effect::interfaces;
+    if (dress_.normal.texture || dress_.bump.texture) effects |= Effect::bumps;
     return effects;
 }
 

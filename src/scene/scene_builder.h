@@ -72,6 +72,7 @@ class SceneBuilder final : public schema::Resolver {
         std::string_view openBecause;                      // why no medium can fill it, if so
         OpenEdges cageEdges;                               // of a cage that a medium fills
         bool infinite = false;
+        bool deforms = false; // while the shutter is open
         bool sound = false;
         bool texturesChecked = false;
     };
@@ -121,8 +122,13 @@ class SceneBuilder final : public schema::Resolver {
     std::function<bool(void*)> binder(const Definition&, Diagnostics&);
     void buildSettings(BuiltScene&);
     void finish(BuiltScene&);
-    void noteEffects(BuiltScene&);
     const Definition* only(schema::Kind, std::string_view name);
+
+    // build_effects.cpp
+    void noteEffect(Effect, Span asker, std::string_view why);
+    void noteEffects();
+    void checkForbidden();
+    void checkCompiled();
 
     // build_materials.cpp
     schema::Reference materialReference(const Definition&);
@@ -221,9 +227,11 @@ class SceneBuilder final : public schema::Resolver {
     bool mayLieInDielectric(bool dielectrics) const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
+    void noteShape(const LoadedShape&);
 
     // build_motion.cpp
-    bool moves(const KeyedTransform&) const; // while the shutter is open
+    bool moves(const KeyedTransform&) const;          // while the shutter is open
+    bool deforms(std::span<const double> keys) const; // likewise
     Motion within(const Motion& outer, const KeyedTransform& own) const;
     Transform atOpening(const Motion& motion) const { return motion.at(built_->shutter.open); }
     Motion fromOpening(const Motion&) const; // requires an invertible map at the opening

@@ -179,6 +179,7 @@ void SceneBuilder::deformMesh(const Definition& d, const MeshParams& params, Loa
     noteFiles(params.keys);
     shape.mesh = std::make_shared<const MeshData>(keys->states[0]);
     shape.sound = true;
+    shape.deforms = deforms(keys->times);
     if (grouped) chooseFaceMaterials(shape, groups);
     shape.place = [this, kept = std::make_shared<const MeshKeys>(std::move(*keys)), span = d.span](const Transform& t) {
         return placeMeshKeys(*kept, embree_.shutter(), t, span, diagnostics_);

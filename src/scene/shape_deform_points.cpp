@@ -123,6 +123,7 @@ void SceneBuilder::deformCurves(const Definition& d, const CurvesParams& params,
         shape.segments += (size - leastPoints(first.basis)) / pointStep(first.basis) + 1;
     shape.strands = first.strandSizes.size();
     shape.sound = true;
+    shape.deforms = deforms(keys->times);
     shape.place = [this, kept = std::make_shared<const CurveKeys>(std::move(*keys)), span = d.span](
                       const Transform& t) { return placeCurveKeys(*kept, embree_.shutter(), t, span, diagnostics_); };
 }
@@ -134,6 +135,7 @@ void SceneBuilder::deformPoints(const Definition& d, const PointsParams& params,
     noteFiles(params.keys);
     shape.points = keys->states[0].points.size();
     shape.sound = true;
+    shape.deforms = deforms(keys->times);
     shape.place = [this, kept = std::make_shared<const PointKeys>(std::move(*keys)), span = d.span](
                       const Transform& t) { return placePointKeys(*kept, embree_.shutter(), t, span, diagnostics_); };
 }

@@ -99,6 +99,7 @@ bool SceneBuilder::loadSubdivision(const Definition& d, LoadedShape& shape) {
     const auto displacement = chooseDisplacement(*params, map, loaded->cage, diagnostics_);
     if (!displacement) return true;
     shape.sound = true;
+    shape.deforms = !keys->times.empty() && deforms(keys->times);
     if (holdsMedium(*params)) shape.cageEdges = openEdges(loaded->cage);
     const auto cage = std::make_shared<const Cage>(std::move(loaded->cage));
     shape.place = [this, &shape, cage, dicing = *dicing, asked = params->dicing, offscreen = params->offscreen,

@@ -53,7 +53,7 @@ std::array<DenoiseChannel, 3> channels(const LayerPlanes& layers, const std::str
 LadderRender::LadderRender(const StudySubject& subject, const StudyVariant& variant, std::uint64_t seed,
                            const std::atomic<bool>* stop)
     : subject_(subject), variant_(variant), settings_(variant.settings(subject.settings)), stop_(stop),
-      integrator_(makePathTracer(subject.largestKernel ? kAllEffects : subject.built->scene.effects)),
+      integrator_(makePathTracer(subject.largestKernel ? kLoopEffects : subject.built->scene.effects)),
       film_(frameOf(subject.film), PixelFilter(subject.film.filter, subject.film.filterRadius), subject.replicates),
       state_(film_.bounds(), 0) {
     settings_.seed = seed;

@@ -12,7 +12,7 @@ struct RayEstimate {
 
 // The ray starts in world space; what it starts in surrounds it.
 inline RayEstimate seenAlong(const TestScene& scene, Vec3 origin, Vec3 direction, std::uint32_t paths = 40000) {
-    constexpr EffectBits all = kAllEffects.bits();
+    constexpr EffectBits all = kLoopEffects.bits();
     const LightSampler lights(scene.scene().lights);
     const PathContext context{scene.scene(), lights, {}, true};
     auto media = PathLoop<all>::makeMedia(scene.scene());

@@ -93,5 +93,5 @@ TEST_CASE("FNV-1a of 128 bits: values published with the algorithm") {
 TEST_CASE("effects by name") {
     CHECK(effectNames({}) == "none");
     CHECK(effectNames(Effect::dispersion) == "dispersion");
-    CHECK(effectNames(kAllEffects) == "absorption+dispersion+media+textures+interfaces");
+    CHECK(effectNames(kLoopEffects) == "absorption+dispersion+media+textures+interfaces");
 }

@@ -163,7 +163,7 @@ shape sphere { center 0 0 -3; radius 1; material dielectric { ior 1; absorption 
             }
         }
     };
-    constexpr EffectBits absorption = static_cast<EffectBits>(Effect::absorption), all = kAllEffects.bits();
+    constexpr EffectBits absorption = static_cast<EffectBits>(Effect::absorption), all = kLoopEffects.bits();
     const auto both = [&](Vec3 origin, Vec3 direction, double inInk, double inSphere) {
         check.operator()<absorption>(origin, direction, inInk, inSphere);
         check.operator()<all>(origin, direction, inInk, inSphere);
