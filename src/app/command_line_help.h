@@ -41,7 +41,7 @@ Examples:
 inline constexpr const char* kExplainHelp = R"(Explains a scene, a property, a type, a unit or a diagnostic.
 
 Examples:
-  abbe explain room.scene                      the effects it asks for, and what is not simulated
+  abbe explain room.scene --effects            what it needs simulated and which line asks, and what is not simulated
   abbe explain camera.lens
   abbe explain dielectric
   abbe explain E0310

@@ -30,7 +30,17 @@ says out "shapes"
 expect 0 explain "$scenes/glass.scene"
 says out "dispersion: on"
 says out "glass.scene:12"
-says out "polarisation"
+says out "polarization"
+expect 0 explain "$scenes/glass.scene" --effects --json
+says out '"effect": "dispersion"'
+expect 0 explain --effects
+says out "depth-of-field"
+expect 2 explain
+printf 'scene 1\ncamera { from 0 0 5; look-at 0 0 0 }\nlight sky\nrender { forbid { dispersion } }\n%s\n' \
+    'shape sphere { material dielectric { ior glass BK7 } }' >forbidden.scene
+expect 1 check forbidden.scene
+says err "error[E0684]"
+says err "forbidden.scene:5:"
 expect 0 explain "$scenes/room.scene"
 says out "no refractive index and no extinction varies with wavelength"
 expect 0 explain camera.lens

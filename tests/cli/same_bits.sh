@@ -37,6 +37,13 @@ expect 0 info all.exr
 says_not out "abbe.kernel = plain"
 says out "abbe.effects = none"
 same_pixels least.exr all.exr
+# and of what ships: textures, absorption, motion, openings, depth of field
+for name in textures shader-ball motion-blur hair-ball screen-and-lanterns; do
+    shipped=$(cd "$scenes/../../../scenes/$name" && pwd)/$name.scene
+    expect 0 "$shipped" --quiet --size 24x16 --samples 4 -o least.exr
+    expect 0 "$shipped" --quiet --size 24x16 --samples 4 -o all.exr --kernel all
+    same_pixels least.exr all.exr
+done
 
 # One pixel alone takes the samples that it takes in the image.
 expect 0 "$scenes/room.scene" --pixel 20,16
