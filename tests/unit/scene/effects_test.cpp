@@ -27,7 +27,8 @@ std::vector<Case> cases() {
         {Effect::textures, ball("material diffuse { reflectance checker { scale 1 } }"), ball("material diffuse")},
         {Effect::interfaces, ball("material diffuse { opacity 0.5 }"), ball("material diffuse { opacity 1 }")},
         {Effect::subsurface, smoke + "}\n" + ball("interior smoke"), smoke + "}\natmosphere smoke\n"},
-        {Effect::glow, smoke + "temperature 2000 K }\n" + ball("interior smoke"), smoke + "}\n" + ball("interior smoke")},
+        {Effect::glow, smoke + "temperature 2000 K }\n" + ball("interior smoke"),
+         smoke + "}\n" + ball("interior smoke")},
         {Effect::bumps, ball("material diffuse { bump 1 mm { map noise { scale 1 } } }"), ball("material diffuse")},
         {Effect::thinFilm, ball("material openpbr { thin-film-weight 1 }"), ball("material openpbr")},
         {Effect::motion, ball("transform { at 0 s { translate 0 0 0 }\nat 1 s { translate 1 0 0 } }"),
@@ -43,8 +44,7 @@ TestScene sceneOf(const std::string& body) { return TestScene::parse(kOpenEye + 
 std::string forbid(std::string_view words) { return fmt::format("render {{ forbid {{ {} }} }}\n", words); }
 
 bool asked(const TestScene& scene, Effect effect) {
-    return scene.scene().effects.has(effect) &&
-           std::ranges::any_of(scene.scene().reasons, [&](const EffectReason& r) {
+    return scene.scene().effects.has(effect) && std::ranges::any_of(scene.scene().reasons, [&](const EffectReason& r) {
                return r.effect == effect && r.asker.valid() && !r.why.empty();
            });
 }
@@ -60,7 +60,8 @@ TEST_CASE("effects: each is seen where it is asked for, with the place, and not 
         CHECK(asked(with, c.effect));
         CHECK_FALSE(without.scene().effects.has(c.effect));
     }
-    CHECK(asked(TestScene::parse("scene 1\ncamera { from 0 0 5; look-at 0 0 0; f-stop 2 }\n" + kSky), Effect::depthOfField));
+    CHECK(asked(TestScene::parse("scene 1\ncamera { from 0 0 5; look-at 0 0 0; f-stop 2 }\n" + kSky),
+                Effect::depthOfField));
     CHECK_FALSE(sceneOf("").scene().effects.has(Effect::depthOfField));
 }
 
