@@ -46,10 +46,10 @@ Json pointJson(const StudyCurve& curve, std::size_t k) {
                          {"runs", runs}});
 }
 
-Json timesJson(const CurveStatistics& s, const std::vector<double>& errors) {
+Json timesJson(const CurveStatistics& s, const std::vector<double>& errors, const Estimate& floor) {
     Json list = Json::list();
     for (const double error : errors) {
-        const TimeToError t = s.timeTo(error);
+        const TimeToError t = s.timeTo(error, floor);
         list.push(Json::object({{"error", error},
                                 {"seconds", t.seconds.value},
                                 {"low", t.seconds.low},
@@ -66,7 +66,7 @@ Json curveJson(const StudyCurve& curve, const StudyCurve& main, const StudyFacts
     const CurveStatistics& s = curve.statistics;
     Json points = Json::list();
     for (std::size_t k = 0; k < s.rungs(); ++k) points.push(pointJson(curve, k));
-    const Estimate slope = s.slope(), cost = s.halfNoiseCost(), floor = s.floor();
+    const Estimate slope = s.slope(), cost = s.halfNoiseCost(), floor = curve.floor();
     const Estimate ratio = &curve == &main ? Estimate{1, 1, 1} : s.efficiencyAgainst(main.statistics);
     return Json::object({{"id", v.id},
                          {"label", v.label},
@@ -86,7 +86,7 @@ Json curveJson(const StudyCurve& curve, const StudyCurve& main, const StudyFacts
                                                       {"low", ratio.low},
                                                       {"high", ratio.high},
                                                       {"seconds", s.commonSeconds(main.statistics)}})},
-                         {"timeTo", timesJson(s, facts.errors)}});
+                         {"timeTo", timesJson(s, facts.errors, floor)}});
 }
 
 Json stripsJson(const StudyReport& report) {
@@ -185,7 +185,7 @@ std::string studyTable(const StudyReport& report, const StudyFacts& facts) {
         const CurveStatistics& s = curve.statistics;
         const std::size_t last = s.rungs() - 1;
         const double error = s.error(last).value;
-        const TimeToError time = s.timeTo(facts.errors[0]);
+        const TimeToError time = s.timeTo(facts.errors[0], curve.floor());
         const std::string seconds = !time.reachable         ? "never"
                                     : !time.seconds.known() ? "-"
                                                             : fmt::format("{:.3g} s", time.seconds.value);

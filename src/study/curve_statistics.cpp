@@ -15,6 +15,7 @@ namespace {
 // that were known from so many more seeds.
 constexpr double kPriorSeeds = 4;
 constexpr double kLeastRelativeError = 1e-6; // rounding
+constexpr double kFarthest = 20;             // octaves beyond the ladder that anything is said about
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + std::ssize(values) / 2;
@@ -112,6 +113,7 @@ std::optional<CurveStatistics::Crossing> CurveStatistics::crossing(std::span<con
     const std::size_t end = first == 0 ? 0 : rungs() - 1;
     if (!(errors[end] > 0)) return std::nullopt;
     const double octaves = std::log2(target / errors[end]) / *slope;
+    if (std::abs(octaves) > kFarthest) return std::nullopt;
     return Crossing{static_cast<double>(end) + octaves};
 }
 
@@ -124,14 +126,13 @@ double CurveStatistics::at(Crossing c, std::span<const double> ladder) const {
     return ladder[below] * std::pow(ladder[below + 1] / ladder[below], step);
 }
 
-TimeToError CurveStatistics::timeTo(double error) const {
+TimeToError CurveStatistics::timeTo(double error, const Estimate& floor) const {
     const double target = error * error;
     TimeToError result;
     const std::vector<double> once(runs_.size(), 1.0);
     const auto found = crossing(errors(once), target);
     result.extrapolated = !found || found->position < 0 || found->position > static_cast<double>(rungs() - 1);
-    if (result.extrapolated)
-        if (const Estimate a = floor(); a.bounded() && a.low > target) result.reachable = false;
+    result.reachable = !result.extrapolated || !floor.bounded() || floor.low <= target;
     if (!found || !result.reachable) return result;
     result.samples = at(*found, ladder_);
     result.seconds = bootstrap_.estimate([&](Weights w) -> std::optional<double> {

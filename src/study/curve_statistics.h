@@ -42,8 +42,9 @@ class CurveStatistics {
     Estimate halfNoiseCost() const;
     // The relMSE that the curve flattens at: a of a + b N^s. Unknown with fewer than four rungs.
     Estimate floor() const;
-    // `error` is a relative RMS, the root of a relMSE. Requires error > 0.
-    TimeToError timeTo(double error) const;
+    // `error` is a relative RMS, the root of a relMSE. Beyond a floor that is larger for sure it is out of reach.
+    // Unknown far beyond the ladder. Requires error > 0.
+    TimeToError timeTo(double error, const Estimate& floor) const;
     // relMSE of `other` over that of this curve at commonSeconds(): how many times as much an efficiency
     // 1/(relMSE·time) is, where errors fall by 1/time. Seeds that both have are compared in pairs.
     Estimate efficiencyAgainst(const CurveStatistics& other) const;

@@ -94,6 +94,13 @@ std::size_t rungNear(const CurveStatistics& curve, double seconds) {
 
 } // namespace
 
+Estimate StudyCurve::floor() const {
+    Estimate floor = statistics.floor();
+    const Estimate& last = bias.back();
+    if (floor.bounded() && last.bounded()) floor.low = std::min(floor.low, last.low);
+    return floor;
+}
+
 StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan, const StudyStore& store) {
     const auto stored = store.loadReference();
     ABBE_CHECK(stored);

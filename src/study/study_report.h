@@ -14,6 +14,10 @@ struct StudyCurve {
     StudyVariant variant;
     CurveStatistics statistics;
     std::vector<Estimate> bias; // bias² of each rung, over r² + ε
+
+    // What the error flattens at. A law with a floor also fits a curve that is only bent, so the interval reaches down
+    // to that of the bias of the last rung, which was measured: a floor is above 0 where both say so.
+    Estimate floor() const;
 };
 
 // Pictures that took about the same time.

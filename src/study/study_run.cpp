@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kFewestRungs = 2;
 constexpr std::uint32_t kFirstReference = 16, kLastReference = 256; // samples of a half, over those of the last rung
+constexpr double kReferenceMargin = 1.3;                            // the best rung is known from one seed
 constexpr double kReferenceShare = 0.5;                             // of the time that is left
 
 } // namespace
@@ -108,7 +109,7 @@ bool StudyRun::makeReference() {
             stored.seconds += rung->cost.seconds;
         }
         const ReferencePair reference(stored.a, stored.b);
-        const bool good = bestRung(reference) >= kReferenceAdvantage * reference.relMse();
+        const bool good = bestRung(reference) >= kReferenceMargin * kReferenceAdvantage * reference.relMse();
         if (good || referenceSamples_ >= most || (budget > 0 && 1.5 * stored.seconds > budget)) {
             store_.saveReference(stored);
             referenceDone_ = true;
