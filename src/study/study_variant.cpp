@@ -99,8 +99,10 @@ ChosenVariants chooseVariants(const StudySubject& subject, const std::vector<std
         const bool main = chosen.variants.empty();
         if (!main && std::find(ids.begin(), ids.end(), variant.id) == ids.end()) continue;
         Reason reason = variant.needless ? variant.needless(subject) : std::nullopt;
-        if (!main && !reason && !variant.denoised && sameMeans(subject.settings, variant.settings(subject.settings)))
+        if (!main && !reason && !variant.denoised && sameMeans(subject.settings, variant.settings(subject.settings))) {
+            if (ids.size() >= studyVariants().size()) continue; // nobody asked for this one
             reason = "the scene is rendered like that: it is the main curve";
+        }
         if (reason)
             chosen.leftOut.push_back({variant.id, variant.label, *reason});
         else

@@ -45,7 +45,8 @@ struct ChosenVariants {
     std::vector<StudyVariant> variants; // the main one first
     std::vector<LeftOutVariant> leftOut;
 };
-// Those with these ids that make a difference to the scene; the main one always. Requires known ids.
+// Those with these ids that make a difference to the scene; the main one always. What the scene does anyway is not
+// among those left out if all ids are given. Requires known ids.
 ChosenVariants chooseVariants(const StudySubject&, const std::vector<std::string>& ids);
 
 } // namespace abbe

@@ -23,7 +23,7 @@ says whole.html 'abbe-study/1'
 # Four rungs, 4 to 32 samples, five seeds of each.
 [[ $(grep -c '^abbe,' whole.csv) -eq 20 ]] || fault "$(grep -c '^abbe,' whole.csv) lines of the main curve"
 # What is left out has its reason.
-says whole.json '"leftOut":[{"id":"sobol"'
+says whole.json '"leftOut":[{"id":"light-tree"'
 
 # Killed again and again, a little later each time, so that it comes to its end at last.
 RANDOM=5
