@@ -229,8 +229,15 @@ ExitCode StudyCommand::study(StudyState& state, InterruptGuard& interrupt) {
     StudyProgressLine line(common_.console, common_.json ? Form::json : options_.quiet ? Form::none : Form::human);
     const StudyStore store = state.store();
     const StudyControl control{&interrupt.stop(), [&line](const StudyProgress& p) { line.show(p); }};
-    const StudyEnd end = StudyRun(subject_, plan_, store, control).run();
+    StudyRun renders(subject_, plan_, store, control);
+    const StudyEnd end = renders.run();
     line.clear();
+    if (renders.dropped() > 0)
+        warn(
+            "W0734",
+            fmt::format("{} samples of the study's renders were dropped: something in them was not finite, or negative",
+                        renders.dropped()),
+            "`abbe render` of the scene with its samples tells where");
     if (end == StudyEnd::stopped) return stopped(interrupt);
     const StudyReport report = StudyReport::make(subject_, plan_, store);
     write(report, end == StudyEnd::done);

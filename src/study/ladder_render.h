@@ -32,6 +32,9 @@ class LadderRender {
     std::optional<LadderRung> advance(std::uint32_t samplesPerReplicate,
                                       const std::function<void(double)>& progress = {});
 
+    // Samples that were dropped because something in them was not finite or negative.
+    std::uint64_t dropped() const { return dropped_; }
+
   private:
     void account(const RenderStatistics&, double seconds);
     StudyImage denoised(ResolvedImage&) const;
@@ -46,6 +49,7 @@ class LadderRender {
     RungRun cost_;                 // of rendering, so far
     std::uint64_t firstPilot_ = 0; // rays of the look ahead
     double pilotCoreSeconds_ = 0;
+    std::uint64_t dropped_ = 0;
 };
 
 } // namespace abbe

@@ -69,6 +69,7 @@ bool StudyRun::renderFirst(const StudyVariant& v) {
         if (!worthAnotherRung(record.runs[0].rungs, mainSeconds)) break;
     }
     store_.saveCurve(record);
+    dropped_ += render.dropped();
     seconds_[v.id] = v.id == main ? record.runs[0].rungs.back().seconds
                                   : std::chrono::duration<double>(Clock::now() - begin).count();
     done_[v.id] = 1;
@@ -112,6 +113,7 @@ bool StudyRun::makeReference() {
         const bool good = bestRung(reference) >= kReferenceMargin * kReferenceAdvantage * reference.relMse();
         if (good || referenceSamples_ >= most || (budget > 0 && 1.5 * stored.seconds > budget)) {
             store_.saveReference(stored);
+            dropped_ += halves[0].dropped() + halves[1].dropped();
             referenceDone_ = true;
             return true;
         }
@@ -148,6 +150,7 @@ bool StudyRun::renderNext(const StudyVariant& v, int replicate, const ReferenceP
     record.runs.push_back(std::move(run));
     record.measure(reference, images);
     store_.saveCurve(record);
+    dropped_ += render.dropped();
     seconds_[v.id] = std::chrono::duration<double>(Clock::now() - begin).count();
     done_[v.id] = replicate;
     return true;

@@ -43,6 +43,8 @@ class StudyRun {
 
     // Throws what the store throws.
     StudyEnd run();
+    // Samples that were dropped in the renders of this run.
+    std::uint64_t dropped() const { return dropped_; }
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -72,6 +74,7 @@ class StudyRun {
     bool referenceDone_ = false;
     std::uint32_t referenceSamples_ = 0; // expected or had, of a half
     Clock::time_point start_ = Clock::now();
+    std::uint64_t dropped_ = 0;
     double current_ = 0; // s that the step in hand was expected to take
 };
 
