@@ -17,11 +17,29 @@ constexpr double kPriorSeeds = 4;
 constexpr double kLeastRelativeError = 1e-6; // rounding
 constexpr double kFarthest = 20;             // octaves beyond the ladder that anything is said about
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    if (values.size() % 2 == 1) return *middle;
-    return (*middle + *std::max_element(values.begin(), middle)) / 2;
+// Of values that count as often as their weights say, whole numbers: the middle one, or the mean of the two.
+double weightedMedian(std::vector<std::pair<double, double>> valuesAndWeights) {
+    std::sort(valuesAndWeights.begin(), valuesAndWeights.end());
+    double total = 0;
+    for (const auto& [value, weight] : valuesAndWeights) total += weight;
+    const auto rank = [&](double r) { // from 0
+        for (const auto& [value, weight] : valuesAndWeights)
+            if ((r -= weight) < 0) return value;
+        return valuesAndWeights.back().first;
+    };
+    return (rank(std::floor((total - 1) / 2)) + rank(std::floor(total / 2))) / 2;
+}
+
+// Of each rung.
+std::vector<double> weightedMedians(std::span<const SeedRun> runs, std::span<const double> weights,
+                                    double RungRun::*figure) {
+    std::vector<double> medians;
+    for (std::size_t k = 0; k < runs[0].rungs.size(); ++k) {
+        std::vector<std::pair<double, double>> values;
+        for (std::size_t s = 0; s < runs.size(); ++s) values.emplace_back(runs[s].rungs[k].*figure, weights[s]);
+        medians.push_back(weightedMedian(std::move(values)));
+    }
+    return medians;
 }
 
 } // namespace
@@ -39,8 +57,8 @@ CurveStatistics::CurveStatistics(std::vector<std::uint32_t> samples, std::vector
         double squares = 0;
         for (const double v : values) squares += (v - mean) * (v - mean);
         variances.push_back(n > 1 && mean != 0 ? squares / (n * (n - 1) * mean * mean) : 0);
-        seconds_.push_back(median(figures(k, &RungRun::seconds)));
     }
+    seconds_ = weightedMedians(runs_, std::vector<double>(runs_.size(), 1.0), &RungRun::seconds);
     const double pooled = std::accumulate(variances.begin(), variances.end(), 0.0) / static_cast<double>(rungs());
     for (const double v : variances) {
         const double drawn = ((n - 1) * v + kPriorSeeds * pooled) / (n - 1 + kPriorSeeds);
@@ -62,7 +80,9 @@ double CurveStatistics::trimmed(std::size_t rung) const {
     return meanWithStudent(figures(rung, &RungRun::trimmed)).value;
 }
 
-double CurveStatistics::coreSeconds(std::size_t rung) const { return median(figures(rung, &RungRun::coreSeconds)); }
+double CurveStatistics::coreSeconds(std::size_t rung) const {
+    return weightedMedians(runs_, std::vector<double>(runs_.size(), 1.0), &RungRun::coreSeconds)[rung];
+}
 
 std::uint64_t CurveStatistics::rays(std::size_t rung) const {
     std::uint64_t sum = 0;
@@ -137,7 +157,7 @@ TimeToError CurveStatistics::timeTo(double error, const Estimate& floor) const {
     result.samples = at(*found, ladder_);
     result.seconds = bootstrap_.estimate([&](Weights w) -> std::optional<double> {
         const auto where = crossing(errors(w), target);
-        return where ? std::optional(at(*where, seconds_)) : std::nullopt;
+        return where ? std::optional(at(*where, weightedMedians(runs_, w, &RungRun::seconds))) : std::nullopt;
     });
     return result;
 }
@@ -148,16 +168,18 @@ double CurveStatistics::commonSeconds(const CurveStatistics& other) const {
 }
 
 // Straight between rungs on logarithmic scales; beyond the last one by the fitted slope.
-std::optional<double> CurveStatistics::errorAtTime(std::span<const double> errors, double seconds) const {
-    if (seconds >= seconds_.back()) {
-        const double more = std::log(seconds / seconds_.back());
+std::optional<double> CurveStatistics::errorAtTime(std::span<const double> errors,
+                                                   std::span<const double> ladderSeconds, double seconds) const {
+    if (rungs() == 1) return std::nullopt;
+    if (seconds >= ladderSeconds.back()) {
+        const double more = std::log(seconds / ladderSeconds.back());
         if (more < 1e-12) return errors.back();
         const auto slope = slopeOf(errors);
         return slope ? std::optional(errors.back() * std::exp(*slope * more)) : std::nullopt;
     }
     std::size_t above = 1;
-    while (above + 1 < rungs() && seconds_[above] < seconds) ++above;
-    const double x0 = std::log(seconds_[above - 1]), x1 = std::log(seconds_[above]);
+    while (above + 1 < rungs() && ladderSeconds[above] < seconds) ++above;
+    const double x0 = std::log(ladderSeconds[above - 1]), x1 = std::log(ladderSeconds[above]);
     if (!(errors[above - 1] > 0) || !(errors[above] > 0) || !(x1 > x0)) return std::nullopt;
     const double step = (std::log(seconds) - x0) / (x1 - x0);
     return std::exp(std::lerp(std::log(errors[above - 1]), std::log(errors[above]), step));
@@ -174,8 +196,10 @@ Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other) const 
     if (ours.empty()) return {};
     const double seconds = commonSeconds(other);
     return SeedBootstrap(ours.size()).estimate([&](Weights w) -> std::optional<double> {
-        const auto mine = errorAtTime(weightedMeans(ours, w, &RungRun::relMse), seconds);
-        const auto its = other.errorAtTime(weightedMeans(theirs, w, &RungRun::relMse), seconds);
+        const auto mine =
+            errorAtTime(weightedMeans(ours, w, &RungRun::relMse), weightedMedians(ours, w, &RungRun::seconds), seconds);
+        const auto its = other.errorAtTime(weightedMeans(theirs, w, &RungRun::relMse),
+                                           weightedMedians(theirs, w, &RungRun::seconds), seconds);
         if (!mine || !its || !(*mine > 0) || !(*its > 0)) return std::nullopt;
         return *its / *mine;
     });

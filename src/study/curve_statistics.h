@@ -62,7 +62,8 @@ class CurveStatistics {
     };
     std::optional<Crossing> crossing(std::span<const double> errors, double target) const;
     double at(Crossing, std::span<const double> ladder) const;
-    std::optional<double> errorAtTime(std::span<const double> errors, double seconds) const;
+    std::optional<double> errorAtTime(std::span<const double> errors, std::span<const double> ladderSeconds,
+                                      double seconds) const;
 
     std::vector<std::uint32_t> samples_;
     std::vector<SeedRun> runs_;

@@ -161,3 +161,28 @@ TEST_CASE("efficiency against another curve at equal time") {
     // No seed in common.
     CHECK_FALSE(slow.make(1, 8, 101).efficiencyAgainst(main.make(1)).known());
 }
+
+TEST_CASE("times that vary count in the intervals of what is told in time") {
+    // Every third seed met a machine that was busy: half as long again. The median does not see it.
+    MadeCurve curve;
+    curve.sigma = 0.05;
+    int inside = 0;
+    double width = 0, quietWidth = 0;
+    for (std::uint64_t study = 0; study < 300; ++study) {
+        const CurveStatistics quiet = curve.make(study);
+        std::vector<SeedRun> runs(quiet.runs().begin(), quiet.runs().end());
+        test::Random random(study + 1);
+        for (SeedRun& run : runs) {
+            const double busy = random.uniformDouble() < 0.33 ? 1.5 : 1 + 0.02 * random.uniformDouble();
+            for (RungRun& rung : run.rungs) rung.seconds *= busy;
+        }
+        const CurveStatistics noisy(kLadder, runs);
+        const Estimate time = noisy.timeTo(std::sqrt(0.1 / 50), {}).seconds;
+        inside += time.low <= 0.505 && 0.505 <= time.high;
+        width += time.high - time.low;
+        const Estimate before = quiet.timeTo(std::sqrt(0.1 / 50), {}).seconds;
+        quietWidth += before.high - before.low;
+    }
+    CHECK(inside >= 276);
+    CHECK(width > 1.5 * quietWidth);
+}
