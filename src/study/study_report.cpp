@@ -97,7 +97,10 @@ std::size_t rungNear(const CurveStatistics& curve, double seconds) {
 Estimate StudyCurve::floor() const {
     Estimate floor = statistics.floor();
     const Estimate& last = bias.back();
-    if (floor.bounded() && last.bounded()) floor.low = std::min(floor.low, last.low);
+    if (!floor.bounded() || !last.bounded()) return floor;
+    floor.low = std::min(floor.low, last.low);
+    if (last.high > 0) floor.high = std::min(floor.high, last.high);
+    floor.value = std::clamp(floor.value, floor.low, floor.high);
     return floor;
 }
 

@@ -15,8 +15,9 @@ struct StudyCurve {
     CurveStatistics statistics;
     std::vector<Estimate> bias; // bias² of each rung, over r² + ε
 
-    // What the error flattens at. A law with a floor also fits a curve that is only bent, so the interval reaches down
-    // to that of the bias of the last rung, which was measured: a floor is above 0 where both say so.
+    // What the error flattens at: by a law with a floor, and by the bias² of the last rung, which was measured. The law
+    // also fits a curve that is only bent, so the floor is above 0 where both say so; and it lies no higher than the
+    // bias of the last rung.
     Estimate floor() const;
 };
 
