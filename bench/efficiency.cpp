@@ -6,6 +6,7 @@
 // bench/render_error.h says what relMSE is; the last column leaves the worst 0.1 % of the pixels out.
 #include "app/load.h"
 #include "base/parallel.h"
+#include "integrators/technique_words.h"
 #include "render_error.h"
 
 #include <cmath>
@@ -83,7 +84,7 @@ bool parse(int argc, char** argv, Options& o) {
         else if (!std::strcmp(argv[i], "--samples"))
             o.most = static_cast<std::uint32_t>(number());
         else if (!std::strcmp(argv[i], "--light-choice"))
-            o.choice = lightChoice(++i < argc ? argv[i] : "");
+            o.choice = lightChoiceOf(++i < argc ? argv[i] : "");
         else
             o.scene = argv[i];
     }

@@ -3,6 +3,7 @@
 //   bench_lights [--size N] [--seconds N] [--reference SAMPLES] [COUNT…]     default: 128, 20, 1024, 1 100 1000 100000
 //   relMSE after so many core-seconds, relMSE × samples and efficiency, each of all pixels and without the worst 0.1 %.
 #include "base/parallel.h"
+#include "integrators/technique_words.h"
 #include "render_error.h"
 #include "support/scene_test.h"
 #include "support/statistics.h"
@@ -67,7 +68,7 @@ MeasuredRender render(const BuiltScene& built, Technique::LightChoice choice, st
 }
 
 void measure(const BuiltScene& built, const MeasuredRender& reference, const char* word, int count, const Options& o) {
-    const auto choice = lightChoice(word);
+    const auto choice = lightChoiceOf(word);
     const MeasuredRender trial = render(built, choice, 4, 7);
     const auto samples = static_cast<std::uint32_t>(std::max(1.0, 4 * o.seconds / trial.statistics.coreSeconds));
     const MeasuredRender a = render(built, choice, samples, 1), b = render(built, choice, samples, 2);

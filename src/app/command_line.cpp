@@ -231,8 +231,8 @@ void Reader::addRender() {
         ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
         ->type_name("NAME")
         ->group(studies);
-    c->add_option("--sampler", r.build.sampler, "sobol or random")
-        ->check(CLI::IsMember({"sobol", "random"}).description(""))
+    c->add_option("--sampler", r.build.sampler, "sobol, stratified or random")
+        ->check(CLI::IsMember({"sobol", "stratified", "random"}).description(""))
         ->type_name("NAME")
         ->group(studies);
     addRead(c, "--pixel", r.pixel, "X,Y", "Render one pixel and print its value", "a pixel such as 12,34", readPixel);

@@ -43,8 +43,8 @@ void addReplayArguments(CLI::App& command, ReplayOptions& options, CommonOptions
     command.add_option("--strategy", b.strategy, "mis, lights or bsdf")
         ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
         ->type_name("NAME");
-    command.add_option("--sampler", b.sampler, "sobol or random")
-        ->check(CLI::IsMember({"sobol", "random"}).description(""))
+    command.add_option("--sampler", b.sampler, "sobol, stratified or random")
+        ->check(CLI::IsMember({"sobol", "stratified", "random"}).description(""))
         ->type_name("NAME");
     command.add_option("-t,--threads", common.threads, "Threads; without it one per core")
         ->check(CLI::Range(1, 4096).description(""))

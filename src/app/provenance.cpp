@@ -2,6 +2,7 @@
 
 #include "app/hash128.h"
 #include "app/version.h"
+#include "integrators/technique_words.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,11 +12,6 @@ namespace abbe {
 namespace {
 
 int asInt(std::uint64_t v) { return static_cast<int>(std::min<std::uint64_t>(v, 0x7fffffff)); }
-
-std::string_view strategyName(Technique::Strategy s) {
-    using Strategy = Technique::Strategy;
-    return s == Strategy::lightsOnly ? "lights" : s == Strategy::bsdfOnly ? "bsdf" : "mis";
-}
 
 } // namespace
 
@@ -50,8 +46,14 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.seed", std::to_string(settings.seed));
     whole("abbe.samples", statistics.samplesPerPixel);
     whole("abbe.replicates", static_cast<std::uint64_t>(p.replicates));
-    text("abbe.sampler", settings.technique.numbers == Technique::Numbers::random ? "random" : "sobol");
-    text("abbe.strategy", std::string(strategyName(settings.technique.strategy)));
+    const Technique& technique = settings.technique;
+    text("abbe.sampler", std::string(word(technique.numbers)));
+    text("abbe.strategy", std::string(word(technique.strategy)));
+    text("abbe.misWeights", std::string(word(technique.weights)));
+    text("abbe.directions", std::string(word(technique.directions)));
+    text("abbe.lightChoice", std::string(word(technique.lightChoice)));
+    text("abbe.roulette", std::string(word(technique.roulette)));
+    whole("abbe.wavelengthsPerPath", technique.wavelengths);
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
     text("abbe.effects", effectNames(p.built->scene.effects));
     text("abbe.kernel", statistics.kernel);

@@ -1,6 +1,7 @@
 #include "app/render_identity.h"
 
 #include "app/version.h"
+#include "integrators/technique_words.h"
 #include "math/byte_hash.h"
 
 #include <algorithm>
@@ -171,8 +172,6 @@ std::string quoted(const std::string& value) { return value.empty() ? "nothing" 
 
 std::vector<Fact> renderIdentity(const IdentityInput& in) {
     const RenderSettings& s = *in.settings;
-    using Strategy = Technique::Strategy;
-    using LightChoice = Technique::LightChoice;
     const auto number = [](auto v) { return fmt::format("{}", v); };
     std::vector<Fact> facts{
         {"program", fmt::format("abbe {} language {} samples {}", versionNumber(), kLanguageEdition, kSampleEdition)},
@@ -181,17 +180,14 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
         {"sensor", sensorText(*in.film)},
         {"seed", number(s.seed)},
         {"replicates", number(in.replicates)},
-        {"sampler", s.technique.numbers == Technique::Numbers::random ? "random" : "sobol"},
         {"adaptive", s.adaptive ? "on" : "off"},
-        {"strategy", s.technique.strategy == Strategy::mis          ? "mis"
-                     : s.technique.strategy == Strategy::lightsOnly ? "lights"
-                                                                    : "bsdf"},
-        {"light choice", s.technique.lightChoice == LightChoice::tree    ? "tree"
-                         : s.technique.lightChoice == LightChoice::power ? "power"
-                                                                         : "uniform"},
         {"max-depth", number(s.maxDepth)},
         {"camera", in.camera},
     };
+    for (auto& [name, value] : properties(s.technique)) facts.push_back({name, value});
+    // Strata are as many as a replicate has samples: with more of them, all samples are others.
+    if (s.technique.numbers == Technique::Numbers::stratified)
+        facts.push_back({"strata", number(s.samplesPerReplicate(in.replicates))});
     if (in.loaded->tree.document) SceneFactWriter(*in.loaded, facts).write(*in.loaded->tree.document);
     return facts;
 }

@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::uint64_t kPilot = 0x70696c6f74; // "pilot"
 constexpr std::uint64_t kPlan = 0x706c616e;    // "plan"
+// Without roulette paths that carry less than a millionth are ended, with a probability that they make up for: in a
+// scene that absorbs nearly everything they would go on to no end.
+constexpr float kNoRoulette = 1e6f;
 
 class Looker {
   public:
@@ -20,8 +23,11 @@ class Looker {
           frame_(context.scene.frame.area() > 0 ? context.scene.frame : film.bounds()) {}
 
     LookAhead run(const RenderState& state) {
+        const Technique::Roulette roulette = context_.settings.technique.roulette;
+        if (roulette == Technique::Roulette::throughput) result_.roulette = RouletteReference::constant(1);
+        if (roulette == Technique::Roulette::off) result_.roulette = RouletteReference::constant(kNoRoulette);
         PilotFilm pilot = look();
-        result_.roulette = RouletteReference(pilot);
+        if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();
         for (std::size_t i = 0; i < state.tileCount(); ++i) {
             const PixelBounds pixels = state.pixels(i);

@@ -5,11 +5,13 @@
 #include "base/arena.h"
 #include "base/work.h"
 #include "integrators/light_sampler.h"
+#include "integrators/loop_technique.h"
 #include "integrators/medium_tracker.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
 #include "integrators/surroundings_at.h"
+#include "integrators/uniform_bsdf.h"
 #include "math/equiangular.h"
 #include "render/effect_counts.h"
 #include "render/integrator.h"
@@ -23,7 +25,9 @@ struct PathContext {
     const Scene& scene;
     const LightSampler& lights;
     RenderSettings settings;
-    bool choices = true; // whether anything in the scene draws a light, a lobe or a place on a lens
+    bool choices = true;      // whether anything in the scene draws a light, a lobe or a place on a lens
+    std::uint32_t strata = 1; // of stratified numbers
+    LoopTechnique how = LoopTechnique(settings.technique);
 };
 
 // What the paths of one tile counted.
@@ -98,8 +102,6 @@ template <EffectBits E> class PathLoop {
   private:
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
     static constexpr bool kAbsorption = hasEffect(E, Effect::absorption);
-    using Strategy = Technique::Strategy;
-
     // Towards the eye, in the shading frame and in render space.
     struct Directions {
         Vec3 wo;
@@ -163,6 +165,7 @@ template <EffectBits E> class PathLoop {
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
+    [[gnu::cold]] const Bsdf* evenly(const SurfaceHit&, Vec3 direction);
     bool survives(std::uint32_t depth, float rouletteScale);
     bool occluded(Vec3 origin, const LightSample& light) const {
         const Intersector& world = *context_.scene.intersector;
@@ -209,6 +212,7 @@ template <EffectBits E> class PathLoop {
     bool startWithHero_ = false;
     const Medium* collided_ = nullptr; // after Arrival::collision
     bool touched_ = false;             // some medium scattered the path
+    float ownPdf_ = 0; // of directions drawn evenly: the density that surface or medium would have; else 0
 };
 
 template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelengths& lambda, float rouletteScale) {
@@ -241,13 +245,17 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
             }
         }
         arena_.reset();
-        const Bsdf& bsdf = *hit.material->bsdf(hit, path_.lambda, arena_);
+        const Bsdf& bsdf =
+            context_.how.uniform ? *evenly(hit, ray.direction) : *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
         path_.from = receiver(hit, bsdf, eye);
         if (context_.lights.asksForLobes()) viewLobes(bsdf, eye);
         const VertexSample sample = sampler_.vertex(depth);
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
+        if constexpr (kTextures)
+            if (context_.how.uniform && next) [[unlikely]]
+                ownPdf_ = static_cast<const UniformBsdf&>(bsdf).ownDensity(eye.wo, next->wi);
         if (observer_) [[unlikely]]
             observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
         setWork(Work::lights);
@@ -333,8 +341,7 @@ template <EffectBits E> float PathLoop<E>::throughput() const {
 
 template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
-    // Mirrors and clear glass show the pixel what it sees: there the expected radiance is the pixel's, not the image's.
-    const float scale = path_.delta ? std::max(rouletteScale, 1 / RouletteReference::kThreshold) : rouletteScale;
+    const float scale = path_.delta ? std::max(rouletteScale, context_.how.leastAfterDelta) : rouletteScale;
     float p = RouletteReference::survival(throughput(), scale);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
@@ -343,6 +350,18 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;
     return true;
+}
+
+// What stands for the scattering at a surface whose directions are drawn evenly.
+template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, Vec3 direction) {
+    const Bsdf& own = *hit.material->bsdf(hit, path_.lambda, arena_);
+    float eta = 1;
+    if (const Curve* inside = hit.material->ior()) {
+        eta = inside->at(path_.lambda)[0];
+        if (hit.outside) eta /= hit.outside->at(path_.lambda)[0];
+        if (dot(hit.shading.z, direction) > 0) eta = 1 / eta; // on the way out
+    }
+    return arena_.make<UniformBsdf>(own, eta);
 }
 
 // Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a

@@ -19,7 +19,9 @@ template <EffectBits E> void PathLoop<E>::turnCone(const SurfaceHit& hit, const 
 // is averaged over, so that what a bounce sees keeps its texture (docs/language/textures.md, "Filtering").
 template <EffectBits E> void PathLoop<E>::scatterCone() {
     constexpr float kShare = 0.15f;
-    if (!path_.delta) path_.cone.spread = std::max(path_.cone.spread, kShare / std::sqrt(kPi * path_.bsdfPdf));
+    if (path_.delta) return;
+    const float pdf = ownPdf_ > 0 ? ownPdf_ : path_.bsdfPdf; // what textures show must not depend on the technique
+    path_.cone.spread = std::max(path_.cone.spread, kShare / std::sqrt(kPi * pdf));
 }
 
 } // namespace abbe

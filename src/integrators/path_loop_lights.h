@@ -4,38 +4,48 @@
 
 namespace abbe {
 
+// Where not the balance heuristic decides between the two techniques but another rule (LoopTechnique::odds), that of
+// the wavelengths stays within each: their densities are means over all wavelengths that could have been the hero
+// [Wilkie2014]. The weights are then functions of the path, the same from either side, and sum to 1.
 template <EffectBits E>
 float PathLoop<E>::scatteringWeight(float lightPdf, [[maybe_unused]] const Spectrum& unidirectional) const {
+    float ratio = lightPdf / path_.bsdfPdf;
     if constexpr (kDispersion) {
         const auto& d = path_.densities;
+        // In media the two are weighed by their directions alone, so that next-event estimation may estimate
+        // transmittance as it likes; the balance of the wavelengths goes all the way.
+        if (!context_.how.balanced) [[unlikely]] {
+            const float own = kMedia ? mean(d.direction) : mean(unidirectional);
+            return 1 / (1 + context_.how.odds(mean(d.before) * ratio / own, false)) / mean(unidirectional);
+        }
         if constexpr (kMedia) {
-            // The two techniques are weighed by their directions alone, so that next-event estimation may estimate
-            // transmittance as it likes; the balance of the wavelengths goes all the way.
-            const float share =
-                mean(d.direction) / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), d.direction));
+            const float share = mean(d.direction) / mean(fma(d.before, Spectrum(ratio), d.direction));
             return share / mean(unidirectional);
         }
-        return 1 / mean(fma(d.before, Spectrum(lightPdf / path_.bsdfPdf), unidirectional));
+        return 1 / mean(fma(d.before, Spectrum(ratio), unidirectional));
     }
-    return 1 / (1 + lightPdf / path_.bsdfPdf);
+    if (!context_.how.balanced) [[unlikely]]
+        ratio = context_.how.odds(ratio, false);
+    return 1 / (1 + ratio);
 }
 
 template <EffectBits E> float PathLoop<E>::lightWeight(float lightPdf, const BsdfEval& eval, bool delta) const {
-    const float ratio =
-        delta || context_.settings.technique.strategy == Strategy::lightsOnly ? 0 : eval.pdfSolidAngle / lightPdf;
+    float ratio = delta ? 0 : eval.pdfSolidAngle / lightPdf;
     if constexpr (kDispersion) {
         const Spectrum& r = path_.densities.unidirectional;
+        if (!context_.how.balanced) [[unlikely]]
+            return 1 / (1 + context_.how.odds(mean(r * eval.pdfRatio) * ratio / mean(r), true)) / mean(r);
         return 1 / mean(fma(r * ratio, eval.pdfRatio, r));
     }
+    if (!context_.how.balanced) [[unlikely]]
+        ratio = context_.how.odds(ratio, true);
     return 1 / (1 + ratio);
 }
 
 template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 direction) {
     const Spectrum emitted = hit.light->emitted(hit, -direction, path_.lambda);
-    const Strategy strategy = context_.settings.technique.strategy;
-    if (strategy == Strategy::lightsOnly && !path_.delta) return;
     float lightPdf = 0;
-    if (!path_.delta && strategy == Strategy::mis)
+    if (!path_.delta && context_.how.asksLights)
         lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     checkDensities(lightPdf, path_.bsdfPdf);
@@ -47,11 +57,9 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
     if (observer_) [[unlikely]]
         observer_->leaves(direction);
     checkDirection(direction);
-    const Strategy strategy = context_.settings.technique.strategy;
-    if (strategy == Strategy::lightsOnly && !path_.delta) return;
     for (const Light* light : context_.lights.infinite()) {
         float lightPdf = 0;
-        if (!path_.delta && strategy == Strategy::mis)
+        if (!path_.delta && context_.how.asksLights)
             lightPdf = context_.lights.probability(light, 0, path_.from, path_.scatters) *
                        light->pdfEscaped(path_.from, direction, path_.time);
         checkDensities(lightPdf, path_.bsdfPdf);
@@ -64,7 +72,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
 template <EffectBits E>
 void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye,
                               const VertexSample& sample, [[maybe_unused]] std::uint32_t depth) {
-    if (context_.settings.technique.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
+    if (!context_.how.asksLights || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick, path_.from, path_.scatters);
     const auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);

@@ -13,13 +13,11 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
     void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
                 const Spectrum& density) override {
         PathState<E>& path = loop_.path_;
-        const Strategy strategy = loop_.context_.settings.technique.strategy;
         float lightPdf = 0;
-        if (!path.delta && strategy != Strategy::bsdfOnly)
+        if (!path.delta && loop_.context_.how.asksLights)
             lightPdf = loop_.context_.lights.probability(&emission, path.from, path.scatters) *
                        emission.pdfSolidAngle(path.from.p, ray_.origin + ray_.direction * t);
         loop_.checkDensity(lightPdf);
-        if (strategy == Strategy::lightsOnly && lightPdf > 0) return;
         Spectrum arriving = beta * amount * loop_.scatteringWeight(lightPdf, density);
         arriving *= loop_.clearness(path.nested.here, t);
         loop_.gather(arriving, &emission, false, [&] {
@@ -80,7 +78,8 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     setWork(Work::lights);
     sampleLightInMedium(ray.origin, ray.direction, sample, depth);
     setWork(volumeWork(collided_->number));
-    const float cosine = phase.sampleCosine(sample.bsdf.x);
+    const bool uniform = context_.how.uniform;
+    const float cosine = uniform ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
     const Blame blame{collided_, "phase function"};
     if (!(std::abs(cosine) < 1.001f)) condemn(cosine, blame);
     const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
@@ -89,6 +88,11 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     path_.scatters.outline.count = 0;
     path_.bsdfPdf = phase.value(cosine);
     checkDensity(path_.bsdfPdf, blame);
+    if (uniform) [[unlikely]] {
+        ownPdf_ = path_.bsdfPdf;
+        path_.beta *= ownPdf_ / kSpherePdf;
+        path_.bsdfPdf = kSpherePdf;
+    }
     path_.delta = false;
     if (phase.spectral()) {
         const Spectrum ratio = phase.ratio(cosine, path_.lambda);
@@ -114,7 +118,7 @@ template <EffectBits E> void PathLoop<E>::touch(const Medium& medium) {
 
 template <EffectBits E>
 void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
-    if (context_.settings.technique.strategy == Strategy::bsdfOnly || context_.lights.empty()) return;
+    if (!context_.how.asksLights || context_.lights.empty()) return;
     const PickedLight picked = context_.lights.pick(sample.pick, p);
     const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
@@ -126,7 +130,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     if (!anyNonZero(passing)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     BsdfEval eval;
-    eval.pdfSolidAngle = value;
+    eval.pdfSolidAngle = context_.how.uniform ? kSpherePdf : value;
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);

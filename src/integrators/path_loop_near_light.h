@@ -14,7 +14,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     auto& leg = media_.leg;
     const auto& settings = context_.settings;
     leg.media = {};
-    if (!context_.lights.placed() || !path_.delta || settings.technique.strategy == Strategy::bsdfOnly ||
+    if (!context_.lights.placed() || !path_.delta || !context_.how.asksLights ||
         (settings.maxDepth && depth >= settings.maxDepth))
         return;
     leg.ray = ray;
@@ -45,7 +45,10 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
         BsdfEval eval;
         eval.pdfSolidAngle = phase.value(cosine);
         checkDensity(eval.pdfSolidAngle, {at.medium, "phase function"});
-        Spectrum value = at.coefficient * (eval.pdfSolidAngle * lightWeight(lightPdf, eval, light->delta));
+        const float density = eval.pdfSolidAngle;
+        if (context_.how.uniform) [[unlikely]]
+            eval.pdfSolidAngle = kSpherePdf;
+        Spectrum value = at.coefficient * (density * lightWeight(lightPdf, eval, light->delta));
         if (phase.spectral()) value *= phase.ratio(cosine, path_.lambda);
         scattered += value;
     }

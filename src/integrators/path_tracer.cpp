@@ -62,8 +62,8 @@ PathTally tallyOf(const TileResult& r, double seconds) {
     return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds};
 }
 
-bool drawsChoices(const Scene& scene, const LightSampler& lights) {
-    return lights.needsChoice() || scene.camera->usesLens() ||
+bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
+    return lights.needsChoice() || technique.directions == Technique::Directions::uniform || scene.camera->usesLens() ||
            std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
 }
 
@@ -73,8 +73,9 @@ class RenderJob {
     RenderJob(const Kernel& kernel, const Scene& scene, Film& film, const RenderSettings& settings,
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
-          lights_(scene.lights, settings.technique.lightChoice), context_{scene, lights_, settings,
-                                                                          drawsChoices(scene, lights_)},
+          lights_(scene.lights, settings.technique.lightChoice),
+          context_{scene, lights_, settings, drawsChoices(scene, lights_, settings.technique),
+                   settings.samplesPerReplicate(film.replicates())},
           range_(settings.range(film.replicates())), ownState_(ownState(film, range_, control)),
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
         statistics_.kernel = kernel.name;

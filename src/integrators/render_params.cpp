@@ -1,5 +1,7 @@
 #include "integrators/render_params.h"
 
+#include "integrators/technique_words.h"
+
 namespace abbe {
 
 using namespace schema;
@@ -68,15 +70,37 @@ TypeInfo renderType() {
                     .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
                     .example("replicates 8"),
                 field(FieldType::choice, "sampler", &P::sampler)
-                    .choices({"sobol", "random"})
+                    .choices({"sobol", "stratified", "random"})
                     .byDefault("sobol")
-                    .doc("Owen-scrambled Sobol points, or independent random numbers for comparison.")
+                    .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
                     .example("sampler sobol"),
                 field(FieldType::choice, "strategy", &P::strategy)
                     .choices({"mis", "lights", "bsdf"})
                     .byDefault("mis")
                     .doc("How light is found: by both techniques, or by one alone, for comparison.")
                     .example("strategy mis"),
+                field(FieldType::choice, "mis-weights", &P::weights)
+                    .choices({"balance", "power", "equal"})
+                    .byDefault("balance")
+                    .synonyms({"mis-heuristic", "heuristic"})
+                    .doc("How `strategy mis` weighs its two techniques: by a heuristic, or one half each, to compare.")
+                    .example("mis-weights power"),
+                field(FieldType::choice, "directions", &P::directions)
+                    .choices({"importance", "uniform"})
+                    .byDefault("importance")
+                    .doc("Where paths go on: as the surface scatters, or evenly all around for comparison.")
+                    .example("directions uniform"),
+                field(FieldType::choice, "roulette", &P::roulette)
+                    .choices({"pilot", "throughput", "off"})
+                    .byDefault("pilot")
+                    .synonyms({"rr", "russian-roulette"})
+                    .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
+                    .example("roulette throughput"),
+                field(FieldType::integer, "wavelengths", &P::wavelengths)
+                    .range(1, 8)
+                    .byDefault("8")
+                    .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer for comparison.")
+                    .example("wavelengths 4"),
                 field(FieldType::choice, "light-choice", &P::lightChoice)
                     .choices({"tree", "power", "uniform"})
                     .byDefault("tree")
@@ -86,10 +110,23 @@ TypeInfo renderType() {
             }};
 }
 
-Technique::LightChoice lightChoice(std::string_view word) {
-    using enum Technique::LightChoice;
-    return word == "power" ? power : word == "uniform" ? uniform : tree;
+bool possibleWavelengths(std::int64_t count) { return count == 1 || count == 2 || count == 4 || count == 8; }
+
+namespace {
+
+Technique technique(const RenderParams& p) {
+    Technique t;
+    t.numbers = numbersOf(p.sampler.word);
+    t.strategy = strategyOf(p.strategy.word);
+    t.weights = weightsOf(p.weights.word);
+    t.directions = directionsOf(p.directions.word);
+    t.lightChoice = lightChoiceOf(p.lightChoice.word);
+    t.roulette = rouletteOf(p.roulette.word);
+    t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
+    return t;
 }
+
+} // namespace
 
 RenderSettings renderSettings(const RenderParams& p) {
     RenderSettings s;
@@ -99,12 +136,7 @@ RenderSettings renderSettings(const RenderParams& p) {
     s.noiseTarget = p.noise;
     s.timeLimit = p.timeLimit;
     s.adaptive = p.adaptive;
-    s.technique.numbers = p.sampler.word == "random" ? Technique::Numbers::random : Technique::Numbers::sobol;
-    using Strategy = Technique::Strategy;
-    s.technique.strategy = p.strategy.word == "lights" ? Strategy::lightsOnly
-                           : p.strategy.word == "bsdf" ? Strategy::bsdfOnly
-                                                       : Strategy::mis;
-    s.technique.lightChoice = lightChoice(p.lightChoice.word);
+    s.technique = technique(p);
     return s;
 }
 

@@ -19,12 +19,17 @@ struct RenderParams {
     schema::TableRows forbid; // rows of one word: effects that the scene must not need
     schema::Choice sampler{"sobol", {}};
     schema::Choice strategy{"mis", {}};
+    schema::Choice weights{"balance", {}};
+    schema::Choice directions{"importance", {}};
+    schema::Choice roulette{"pilot", {}};
+    std::int64_t wavelengths = 8; // 1, 2, 4 or 8
     schema::Choice lightChoice{"tree", {}};
 };
 
 schema::TypeInfo renderType();
-RenderSettings renderSettings(const RenderParams&);
-// By the words of `light-choice`; the tree for any other.
-Technique::LightChoice lightChoice(std::string_view word);
+// Requires possibleWavelengths(params.wavelengths).
+RenderSettings renderSettings(const RenderParams& params);
+// Whether a path can have so many different ones, which repeat evenly in its lanes.
+bool possibleWavelengths(std::int64_t count);
 
 } // namespace abbe

@@ -58,7 +58,7 @@ RouletteReference::RouletteReference(const PilotFilm& pilot)
 }
 
 float RouletteReference::scale(int x, int y) const {
-    if (expected_.empty()) return 1 / kThreshold;
+    if (expected_.empty()) return scaleWithout_;
     // Between the centres of cells.
     const auto place = [this](int pixel, int first, int count) {
         const float at = (static_cast<float>(pixel - first) + 0.5f) / static_cast<float>(cellSize_) - 0.5f;

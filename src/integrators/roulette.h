@@ -21,6 +21,12 @@ class RouletteReference {
     // Every pixel counts as average.
     RouletteReference() = default;
     explicit RouletteReference(const PilotFilm&);
+    // The same scale for all pixels, whatever they show; finite and positive.
+    static RouletteReference constant(float scale) {
+        RouletteReference result;
+        result.scaleWithout_ = scale;
+        return result;
+    }
     // L̄ / (t Î) of a pixel of the frame.
     float scale(int x, int y) const;
     static float survival(float meanThroughput, float scale) { return std::clamp(meanThroughput * scale, kFloor, 1.f); }
@@ -28,7 +34,8 @@ class RouletteReference {
   private:
     PixelBounds frame_;
     int cellSize_ = 1, columns_ = 0, rows_ = 0;
-    std::vector<float> expected_; // t Î / L̄ of cells; empty: 0.3 everywhere
+    std::vector<float> expected_; // t Î / L̄ of cells; empty: the same everywhere
+    float scaleWithout_ = 1 / kThreshold;
 };
 
 } // namespace abbe

@@ -5,6 +5,7 @@
 #include "math/random_stream.h"
 #include "math/sobol.h"
 #include "math/vec.h"
+#include "render/technique.h"
 
 namespace abbe {
 
@@ -22,22 +23,28 @@ struct VertexSample {
 // and BSDF of the third 11-14, time 15, lens 16-17, light and lobe choice of those vertices 18-19, 20-21 and 22-23.
 // Every later vertex has an independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose
 // cost is one register.
+//
+// Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
+// every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
+// the samples of a replicate that is what is usually called stratified sampling.
 class Sampler final {
   public:
     static constexpr std::uint32_t kJointVertices = 3;
 
-    // Of one (pixel, replicate). `random`: independent random numbers instead, for comparison. `choices`: whether lens,
-    // light choice or lobe choice will be asked for at all; else their dimensions are left out.
-    void startPixel(std::uint64_t pixelSeed, bool random, bool choices) {
+    // Of one (pixel, replicate). `choices`: whether lens, light choice or lobe choice will be asked for at all; else
+    // their dimensions are left out. `strata`: N, at least 1.
+    void startPixel(std::uint64_t pixelSeed, Technique::Numbers numbers, bool choices, std::uint32_t strata = 1) {
         seed_ = static_cast<std::uint32_t>(pixelSeed);
         stream_ = pixelSeed;
-        random_ = random;
+        numbers_ = numbers;
+        strata_ = strata;
         groups_ = choices ? 3 : 2;
         for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
     }
     void start(std::uint32_t index) {
         index_ = index;
-        if (random_) return fillRandom(0, joint_, 24);
+        if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
+            return fillOther(0, true, joint_);
         const std::uint32_t shuffled = shuffleIndex(index, seed_);
         for (int g = 0; g < groups_; ++g)
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
@@ -73,17 +80,13 @@ class Sampler final {
 
   private:
     void fillSet(std::uint32_t set) {
-        if (random_) return fillRandom(set, set_, 8);
+        if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
+            return fillOther(set, false, set_);
         const std::uint32_t seed = mix32(seed_ + set * 0x9e3779b9u);
         scrambledSobol8(shuffleIndex(index_, seed), seed, 0, set_);
     }
-    void fillRandom(std::uint32_t set, float* out, int count) {
-        std::uint64_t state = combine64(stream_, (std::uint64_t{index_} << 32) | set);
-        for (int i = 0; i < count; ++i) {
-            state += 0x9e3779b97f4a7c15ull; // SplitMix64
-            out[i] = unitFloat(static_cast<std::uint32_t>(mix64(state) >> 32));
-        }
-    }
+    [[gnu::cold]] void fillOther(std::uint32_t set, bool joint, float* out) const;
+    [[gnu::cold]] void fillRandom(std::uint32_t set, float* out, int count) const;
 
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
@@ -91,7 +94,8 @@ class Sampler final {
     int groups_ = 0;
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;
-    bool random_ = false;
+    std::uint32_t strata_ = 1;
+    Technique::Numbers numbers_ = Technique::Numbers::sobol;
 };
 
 } // namespace abbe

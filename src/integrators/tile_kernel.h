@@ -87,7 +87,7 @@ template <EffectBits E> class TileKernel {
         const float rouletteScale = job_.roulette->scale(x, y);
         ExactXyz sum;
         std::uint32_t counted = 0;
-        sampler_.startPixel(seed, context_.settings.technique.numbers == Technique::Numbers::random, context_.choices);
+        sampler_.startPixel(seed, context_.settings.technique.numbers, context_.choices, context_.strata);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
         for (std::uint32_t i = range.first; i < range.last; ++i) {
@@ -112,7 +112,9 @@ template <EffectBits E> class TileKernel {
         const FilterSample filter = film_.filter(sampler_.film());
         const Vec2 place{static_cast<float>(x) + 0.5f + filter.offset.x,
                          static_cast<float>(y) + 0.5f + filter.offset.y};
-        const Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
+        Wavelengths lambda = context_.scene.wavelengths.sample(sampler_.wavelength());
+        if (context_.how.wavelengths != kLanes) [[unlikely]]
+            lambda = LoopTechnique::repeated(lambda, context_.how.wavelengths);
         const CameraSample at{place, sampler_.lens(), sampler_.time(), lambda.nm[0]};
         const CameraRay camera = context_.scene.camera->ray(at);
         radiance_ = Spectrum(0.f);

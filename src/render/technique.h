@@ -8,12 +8,27 @@
 namespace abbe {
 
 struct Technique {
-    // Owen-scrambled Sobol points, or independent random numbers.
-    enum class Numbers : std::uint8_t { sobol, random } numbers = Numbers::sobol;
-    // How light is found: by asking lights and by scattering, or by one alone.
+    // Owen-scrambled Sobol points; jittered strata, as many as a replicate has samples, in every pair of dimensions;
+    // or independent random numbers.
+    enum class Numbers : std::uint8_t { sobol, stratified, random } numbers = Numbers::sobol;
+    // How light is found: by asking lights and by scattering, or by one alone. What lights cannot be asked for
+    // (mirrors, parts of the sky that a light never samples) is found by scattering in any case.
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
+    // How the two are weighed where both find the same light: the heuristics of [Veach1997, sec. 9.2], or one half
+    // each.
+    enum class Weights : std::uint8_t { balance, power, equal } weights = Weights::balance;
+    // Where paths go on: as the surface or medium scatters, or evenly over the hemisphere, or the sphere where light
+    // is let through. Mirrors and clear glass are followed in any case.
+    enum class Directions : std::uint8_t { importance, uniform } directions = Directions::importance;
     // Which light is asked: by what it may give to the place; by its power alone, or evenly.
     enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
+    // Which paths go on: by what the pixel is expected to show, by their throughput, or all but those that carry next
+    // to nothing. Paths beyond PathLoop::kLongPath vertices are never certain to go on.
+    enum class Roulette : std::uint8_t { pilot, throughput, off } roulette = Roulette::pilot;
+    // How many different ones a path has: 1, 2, 4 or 8. Fewer are repeated in the lanes.
+    std::uint8_t wavelengths = 8;
+
+    friend bool operator==(const Technique&, const Technique&) = default;
 };
 
 } // namespace abbe

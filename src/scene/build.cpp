@@ -90,7 +90,16 @@ void SceneBuilder::buildSettings(BuiltScene& built) {
         }
     if (findFaults(built.film).empty()) built.scene.sensor = makeSensor(built.film);
     if (const Definition* render = only(Kind::render, ""))
-        if (const auto params = bound<RenderParams>(*render)) built.render = *params;
+        if (const auto params = bound<RenderParams>(*render)) {
+            built.render = *params;
+            if (!possibleWavelengths(params->wavelengths)) {
+                diagnostics_
+                    .error("E0711", render->span, fmt::format("a path cannot have {} wavelengths", params->wavelengths),
+                           "wavelengths")
+                    .help = "1, 2, 4 or 8";
+                built.render.wavelengths = 8;
+            }
+        }
     if (options_.size) {
         built.film.size = {static_cast<double>(options_.size->x), static_cast<double>(options_.size->y)};
         built.film.crop.reset();

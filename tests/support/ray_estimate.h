@@ -17,7 +17,7 @@ inline RayEstimate seenAlong(const TestScene& scene, Vec3 origin, Vec3 direction
     const PathContext context{scene.scene(), lights, {}, true};
     auto media = PathLoop<all>::makeMedia(scene.scene());
     Sampler sampler;
-    sampler.startPixel(7, true, true);
+    sampler.startPixel(7, Technique::Numbers::random, true);
     Arena arena;
     PathCounters counters;
     const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);

@@ -42,9 +42,9 @@ template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const P
         for (int r = 0; r < s.replicates; ++r) {
             const std::uint64_t seed = combine64(combine64(s.seed, pixel), static_cast<std::uint64_t>(r) + 1000);
             Xyz sum;
-            sampler.startPixel(seed, false, true);
+            sampler.startPixel(seed, Technique::Numbers::sobol, true);
             for (std::uint32_t i = 0; i < s.samples; ++i) {
-                sampler.startPixel(seed, false, true);
+                sampler.startPixel(seed, Technique::Numbers::sobol, true);
                 sampler.start(i);
                 const FilterSample filter = film.filter(sampler.film());
                 const CameraRay eye = scene.camera->ray(

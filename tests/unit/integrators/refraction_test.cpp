@@ -147,7 +147,7 @@ shape sphere { center 0 0 -3; radius 1; material dielectric { ior 1; absorption 
         for (const float u : {0.05f, 0.4f, 0.77f}) {
             const Wavelengths lambda = Wavelengths::sample(u);
             Sampler sampler;
-            sampler.startPixel(1, false, true);
+            sampler.startPixel(1, Technique::Numbers::sobol, true);
             sampler.start(0);
             Arena arena;
             PathCounters counters;

@@ -17,7 +17,8 @@ template <typename F> SlopeFit slope(F&& f, double exact, bool random) {
         Moments squares;
         for (int k = 0; k < scrambles; ++k) {
             Sampler s;
-            s.startPixel(mix64(static_cast<std::uint64_t>(k) * 977 + n), random, true);
+            s.startPixel(mix64(static_cast<std::uint64_t>(k) * 977 + n),
+                         random ? Technique::Numbers::random : Technique::Numbers::sobol, true);
             double sum = 0;
             for (std::uint32_t i = 0; i < n; ++i) {
                 s.start(i);

@@ -35,7 +35,7 @@ Point jointPoint(Sampler& s) {
 
 Sampler pixelSampler(std::uint64_t seed, bool random = false) {
     Sampler s;
-    s.startPixel(seed, random, true);
+    s.startPixel(seed, random ? Technique::Numbers::random : Technique::Numbers::sobol, true);
     return s;
 }
 
@@ -276,7 +276,7 @@ TEST_CASE("sampler: numbers belong to a purpose, not to an order of use") {
     }
     // What a scene does not ask for is left out, and moves nothing.
     Sampler with = pixelSampler(42), without;
-    without.startPixel(42, false, false);
+    without.startPixel(42, Technique::Numbers::sobol, false);
     for (std::uint32_t i = 0; i < 64; ++i) {
         with.start(i);
         without.start(i);

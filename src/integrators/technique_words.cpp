@@ -1,0 +1,52 @@
+#include "integrators/technique_words.h"
+
+#include <array>
+
+namespace abbe {
+
+namespace {
+
+// In the order of the enumerators; the first is the default.
+template <typename E> constexpr std::array<std::string_view, 3> kWords{};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::Numbers>{"sobol", "stratified", "random"};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::Strategy>{"mis", "lights", "bsdf"};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::Weights>{"balance", "power", "equal"};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::Directions>{"importance", "uniform"};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
+template <> constexpr std::array<std::string_view, 3> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
+
+template <typename E> E find(std::string_view word) {
+    for (std::size_t i = 1; i < kWords<E>.size(); ++i)
+        if (!word.empty() && kWords<E>[i] == word) return static_cast<E>(i);
+    return static_cast<E>(0);
+}
+template <typename E> std::string_view wordOf(E e) { return kWords<E>[static_cast<std::size_t>(e)]; }
+
+} // namespace
+
+Technique::Numbers numbersOf(std::string_view word) { return find<Technique::Numbers>(word); }
+Technique::Strategy strategyOf(std::string_view word) { return find<Technique::Strategy>(word); }
+Technique::Weights weightsOf(std::string_view word) { return find<Technique::Weights>(word); }
+Technique::Directions directionsOf(std::string_view word) { return find<Technique::Directions>(word); }
+Technique::LightChoice lightChoiceOf(std::string_view word) { return find<Technique::LightChoice>(word); }
+Technique::Roulette rouletteOf(std::string_view word) { return find<Technique::Roulette>(word); }
+
+std::string_view word(Technique::Numbers e) { return wordOf(e); }
+std::string_view word(Technique::Strategy e) { return wordOf(e); }
+std::string_view word(Technique::Weights e) { return wordOf(e); }
+std::string_view word(Technique::Directions e) { return wordOf(e); }
+std::string_view word(Technique::LightChoice e) { return wordOf(e); }
+std::string_view word(Technique::Roulette e) { return wordOf(e); }
+
+std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
+    const auto text = [](auto e) { return std::string(word(e)); };
+    return {{"sampler", text(t.numbers)},
+            {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},
+            {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)},
+            {"roulette", text(t.roulette)},
+            {"wavelengths", std::to_string(t.wavelengths)}};
+}
+
+} // namespace abbe
