@@ -54,32 +54,39 @@ std::array<DenoiseChannel, 3> channels(const LayerPlanes& layers, const std::str
 LadderRender::LadderRender(const StudySubject& subject, const StudyVariant& variant, std::uint64_t seed,
                            const std::atomic<bool>* stop)
     : subject_(subject), variant_(variant), settings_(variant.settings(subject.settings)), stop_(stop),
-      integrator_(makePathTracer(subject.largestKernel ? kLoopEffects : subject.built->scene.effects)),
-      film_(frameOf(subject.film), PixelFilter(subject.film.filter, subject.film.filterRadius), subject.replicates),
-      state_(film_.bounds(), 0) {
+      integrator_(makePathTracer(subject.largestKernel ? kLoopEffects : subject.built->scene.effects)) {
     settings_.seed = seed;
     settings_.noiseTarget = settings_.timeLimit = 0;
     settings_.part = settings_.parts = 1;
-    const Scene& scene = subject.built->scene;
+    begin();
+}
+
+void LadderRender::begin() {
+    const FilmSettings& film = subject_.film;
+    const Scene& scene = subject_.built->scene;
+    film_.emplace(frameOf(film), PixelFilter(film.filter, film.filterRadius), subject_.replicates);
+    state_.emplace(film_->bounds(), 0);
+    cost_ = {};
     LayerPlan plan;
-    plan.halves = plan.albedo = plan.normal = plan.depth = variant.denoised; // as `layers { denoise }`
-    if (variant.denoised)
-        film_.keepLayers(plan, scene.names, rgbSpace(subject.film.space),
-                         {scene.intersector.get(), scene.camera.get()});
+    plan.halves = plan.albedo = plan.normal = plan.depth = variant_.denoised; // as `layers { denoise }`
+    if (variant_.denoised)
+        film_->keepLayers(plan, scene.names, rgbSpace(film.space), {scene.intersector.get(), scene.camera.get()});
 }
 
 std::optional<LadderRung> LadderRender::advance(std::uint32_t samplesPerReplicate,
                                                 const std::function<void(double)>& progress) {
+    if (settings_.technique.numbers == Technique::Numbers::stratified && state_->reached() > 0) begin();
     settings_.samples = samplesPerReplicate * static_cast<std::uint32_t>(subject_.replicates);
-    RenderControl control{stop_, {}, &state_};
+    RenderControl control{stop_, {}, &*state_};
     if (progress) control.progress = [&](const Progress& p) { progress(p.fraction); };
     const auto start = Clock::now();
-    const RenderStatistics statistics = integrator_->render(subject_.built->scene, film_, settings_, control);
-    if (statistics.stopped || state_.reached() < samplesPerReplicate) return std::nullopt;
+    const RenderStatistics statistics = integrator_->render(subject_.built->scene, *film_, settings_, control);
+    if (statistics.stopped || state_->reached() < samplesPerReplicate) return std::nullopt;
     account(statistics, secondsSince(start));
     LadderRung rung{settings_.samples, {}, cost_};
     const FilmSettings& film = subject_.film;
-    ResolvedImage picture = film_.resolve(rgbSpace(film.space).fromXyz() * film.whiteBalance, subject_.built->exposure);
+    ResolvedImage picture =
+        film_->resolve(rgbSpace(film.space).fromXyz() * film.whiteBalance, subject_.built->exposure);
     if (!variant_.denoised) {
         rung.image = interleaved(film, picture.r, picture.g, picture.b);
         return rung;
@@ -114,7 +121,7 @@ StudyImage LadderRender::denoised(ResolvedImage& picture) const {
     const RgbSpace& space = rgbSpace(film.space);
     const LayerView view{&space, space.fromXyz() * film.whiteBalance, subject_.built->exposure,
                          subject_.built->scene.origin};
-    const LayerPlanes layers = layerPlanes(film_, picture, view);
+    const LayerPlanes layers = layerPlanes(*film_, picture, view);
     constexpr Names kRgb{"R", "G", "B"}, kXyz{"X", "Y", "Z"};
     DenoiseInput input{film.width, film.height, channels(layers, "", kRgb), {}};
     input.colour[0].mean = picture.r;

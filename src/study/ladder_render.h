@@ -21,7 +21,9 @@ struct LadderRung {
     RungRun cost;
 };
 
-// A variant with one seed. Rungs are one progressive render: a ladder takes as long as its last rung.
+// A variant with one seed. Rungs are one progressive render: a ladder takes as long as its last rung. Stratified
+// numbers alone begin anew at each, because the strata are as many as the samples; a rung then costs what it takes by
+// itself.
 class LadderRender {
   public:
     // The subject outlives it. `stop` may be null.
@@ -36,6 +38,7 @@ class LadderRender {
     std::uint64_t dropped() const { return dropped_; }
 
   private:
+    void begin();
     void account(const RenderStatistics&, double seconds);
     StudyImage denoised(ResolvedImage&) const;
 
@@ -44,8 +47,8 @@ class LadderRender {
     RenderSettings settings_;
     const std::atomic<bool>* stop_;
     std::unique_ptr<const Integrator> integrator_;
-    PixelFilm film_;
-    RenderState state_;
+    std::optional<PixelFilm> film_;
+    std::optional<RenderState> state_;
     RungRun cost_;                 // of rendering, so far
     std::uint64_t firstPilot_ = 0; // rays of the look ahead
     double pilotCoreSeconds_ = 0;

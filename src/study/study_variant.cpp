@@ -12,9 +12,7 @@ namespace {
 using Reason = std::optional<std::string>;
 
 bool sameMeans(const RenderSettings& a, const RenderSettings& b) {
-    const Technique &s = a.technique, &t = b.technique;
-    return s.numbers == t.numbers && s.strategy == t.strategy && s.lightChoice == t.lightChoice &&
-           a.adaptive == b.adaptive;
+    return a.technique == b.technique && a.adaptive == b.adaptive;
 }
 
 Reason needsLights(const StudySubject& s) {
@@ -73,6 +71,25 @@ const std::vector<StudyVariant>& studyVariants() {
         {"lights-only", "light sampling alone", "light sampling", "light that is met by chance does not count", exact,
          "behind mirrors and glass, where sampling a light cannot work, met light counts still",
          [](S& s) { s.technique.strategy = T::Strategy::lightsOnly; }, false, needsLights},
+        {"power-weights", "power heuristic", "light sampling", "the two ways to find light weighed by squares", exact,
+         "", [](S& s) { s.technique.weights = T::Weights::power; }, false, needsLights},
+        {"no-mis", "no MIS", "light sampling", "the two ways to find light count one half each", exact,
+         "where only one of them can find it, that one counts in full",
+         [](S& s) { s.technique.weights = T::Weights::equal; }, false, needsLights},
+        {"uniform-directions", "uniform directions", "directions", "paths go on evenly all around", exact,
+         "mirrors and clear glass are followed still; inside rough glass the variance has no bound",
+         [](S& s) { s.technique.directions = T::Directions::uniform; }},
+        {"roulette-throughput", "roulette by throughput", "roulette", "paths live by what they carry alone", exact, "",
+         [](S& s) { s.technique.roulette = T::Roulette::throughput; }},
+        {"no-roulette", "no roulette", "roulette", "paths end when they carry next to nothing", exact,
+         "paths of more than 64 vertices are never certain to go on",
+         [](S& s) { s.technique.roulette = T::Roulette::off; }},
+        {"wavelengths-1", "1 wavelength", "wavelengths", "each path has one wavelength", exact, "",
+         [](S& s) { s.technique.wavelengths = 1; }},
+        {"wavelengths-4", "4 wavelengths", "wavelengths", "each path has four wavelengths", exact, "",
+         [](S& s) { s.technique.wavelengths = 4; }},
+        {"stratified", "stratified numbers", "numbers", "jittered strata, as many as the samples of a replicate", exact,
+         "every rung is a render of its own", [](S& s) { s.technique.numbers = T::Numbers::stratified; }},
         {"sobol", "Owen–Sobol numbers", "numbers", "Owen-scrambled Sobol points", exact, "",
          [](S& s) { s.technique.numbers = T::Numbers::sobol; }},
         {"random", "independent numbers", "numbers", "independent random numbers", exact, "",
