@@ -294,7 +294,7 @@ void StudyCommand::write(const StudyReport& report, bool complete) {
 
 ExitCode listVariants(const Console& console) {
     std::string text;
-    for (const StudyVariant& v : studyVariants()) text += fmt::format("{:<20}{:<28}{}\n", v.id, v.label, v.change);
+    for (const StudyVariant& v : studyVariants()) text += fmt::format("{:<23}{:<28}{}\n", v.id, v.label, v.change);
     console.data(text);
     return ExitCode::done;
 }

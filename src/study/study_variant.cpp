@@ -55,6 +55,97 @@ using S = RenderSettings;
 using T = Technique;
 using enum BiasClass;
 
+std::vector<StudyVariant> lightSampling() {
+    constexpr const char* kGroup = "light sampling";
+    return {
+        {"no-nee", "no light sampling", kGroup, "light is met by chance alone", exact,
+         "no next-event estimation: paths find lamps only by running into them",
+         [](S& s) { s.technique.strategy = T::Strategy::bsdfOnly; }, false, needsExtent},
+        {"lights-only", "light sampling alone", kGroup, "light that is met by chance does not count", exact,
+         "behind mirrors and glass, where sampling a light cannot work, met light counts still",
+         [](S& s) { s.technique.strategy = T::Strategy::lightsOnly; }, false, needsLights},
+        {"mis", "both, by MIS", kGroup, "lights are sampled and met, weighted against each other", exact, "",
+         [](S& s) { s.technique.strategy = T::Strategy::mis; }, false, needsLights},
+        {"no-mis", "no MIS", kGroup, "sampled and met light count half each", exact,
+         "both ways to find light without multiple importance sampling; where only one can, that one counts in full",
+         [](S& s) {
+             s.technique.strategy = T::Strategy::mis;
+             s.technique.weights = T::Weights::equal;
+         },
+         false, needsLights},
+        {"power-weights", "power heuristic", kGroup, "MIS weights by squares of densities", exact, "",
+         [](S& s) { s.technique.weights = T::Weights::power; }, false, needsLights},
+        {"balance-weights", "balance heuristic", kGroup, "MIS weights by densities", exact, "",
+         [](S& s) { s.technique.weights = T::Weights::balance; }, false, needsLights},
+    };
+}
+
+std::vector<StudyVariant> directions() {
+    constexpr const char* kGroup = "directions";
+    return {
+        {"uniform-directions", "uniform directions", kGroup, "paths go on evenly in all directions", exact,
+         "no importance sampling of materials; mirrors and clear glass are followed still; inside rough glass the "
+         "variance has no bound",
+         [](S& s) { s.technique.directions = T::Directions::uniform; }},
+        {"importance-directions", "directions by importance", kGroup, "paths go on as the material scatters", exact, "",
+         [](S& s) { s.technique.directions = T::Directions::importance; }},
+    };
+}
+
+std::vector<StudyVariant> numbers() {
+    constexpr const char* kGroup = "numbers";
+    return {
+        {"sobol", "Owen–Sobol numbers", kGroup, "Owen-scrambled Sobol points", exact, "",
+         [](S& s) { s.technique.numbers = T::Numbers::sobol; }},
+        {"stratified", "stratified numbers", kGroup, "jittered strata in pairs of dimensions", exact,
+         "strata depend on how many samples there will be, so each rung is a render of its own",
+         [](S& s) { s.technique.numbers = T::Numbers::stratified; }},
+        {"random", "independent numbers", kGroup, "independent random numbers", exact, "",
+         [](S& s) { s.technique.numbers = T::Numbers::random; }},
+        {"adaptive", "adaptive samples", kGroup, "more samples where a pilot finds more noise", exact,
+         "a rung has its samples on average over the pixels; the pilot's time counts", [](S& s) { s.adaptive = true; }},
+        {"even", "even samples", kGroup, "the same samples for each pixel", exact, "",
+         [](S& s) { s.adaptive = false; }},
+    };
+}
+
+std::vector<StudyVariant> wavelengths() {
+    constexpr const char* kGroup = "wavelengths";
+    return {
+        {"wavelengths-1", "1 wavelength", kGroup, "one wavelength for each path", exact, "",
+         [](S& s) { s.technique.wavelengths = 1; }},
+        {"wavelengths-4", "4 wavelengths", kGroup, "four wavelengths for each path", exact, "",
+         [](S& s) { s.technique.wavelengths = 4; }},
+        {"wavelengths-8", "8 wavelengths", kGroup, "eight wavelengths for each path", exact, "",
+         [](S& s) { s.technique.wavelengths = 8; }},
+    };
+}
+
+std::vector<StudyVariant> roulette() {
+    constexpr const char* kGroup = "roulette";
+    return {
+        {"no-roulette", "no roulette", kGroup, "only paths that carry next to nothing are ended", exact,
+         "paths of more than 64 vertices are never certain to go on",
+         [](S& s) { s.technique.roulette = T::Roulette::off; }},
+        {"roulette-throughput", "roulette by throughput", kGroup, "paths end by what they carry", exact, "",
+         [](S& s) { s.technique.roulette = T::Roulette::throughput; }},
+        {"roulette-pilot", "roulette by contribution", kGroup, "paths end by what their pixel is expected to show",
+         exact, "", [](S& s) { s.technique.roulette = T::Roulette::pilot; }},
+    };
+}
+
+std::vector<StudyVariant> lightChoice() {
+    constexpr const char* kGroup = "light choice";
+    return {
+        {"light-tree", "light tree", kGroup, "lights are asked by what they may give to the place", exact, "",
+         [](S& s) { s.technique.lightChoice = T::LightChoice::tree; }, false, needsManyLights},
+        {"light-power", "lights by power", kGroup, "lights are asked by their power", exact, "",
+         [](S& s) { s.technique.lightChoice = T::LightChoice::power; }, false, needsManyLights},
+        {"light-uniform", "lights evenly", kGroup, "each light is asked as often", exact, "",
+         [](S& s) { s.technique.lightChoice = T::LightChoice::uniform; }, false, needsManyLights},
+    };
+}
+
 } // namespace
 
 std::string_view name(BiasClass b) {
@@ -63,50 +154,14 @@ std::string_view name(BiasClass b) {
 }
 
 const std::vector<StudyVariant>& studyVariants() {
-    static const std::vector<StudyVariant> variants{
-        {"abbe", "as rendered", "main", "nothing changed", exact, ""},
-        {"no-nee", "no light sampling", "light sampling", "light is met by chance alone", exact,
-         "no next-event estimation: what is left are the directions that surfaces prefer",
-         [](S& s) { s.technique.strategy = T::Strategy::bsdfOnly; }, false, needsExtent},
-        {"lights-only", "light sampling alone", "light sampling", "light that is met by chance does not count", exact,
-         "behind mirrors and glass, where sampling a light cannot work, met light counts still",
-         [](S& s) { s.technique.strategy = T::Strategy::lightsOnly; }, false, needsLights},
-        {"power-weights", "power heuristic", "light sampling", "the two ways to find light weighed by squares", exact,
-         "", [](S& s) { s.technique.weights = T::Weights::power; }, false, needsLights},
-        {"no-mis", "no MIS", "light sampling", "the two ways to find light count one half each", exact,
-         "where only one of them can find it, that one counts in full",
-         [](S& s) { s.technique.weights = T::Weights::equal; }, false, needsLights},
-        {"uniform-directions", "uniform directions", "directions", "paths go on evenly all around", exact,
-         "mirrors and clear glass are followed still; inside rough glass the variance has no bound",
-         [](S& s) { s.technique.directions = T::Directions::uniform; }},
-        {"roulette-throughput", "roulette by throughput", "roulette", "paths live by what they carry alone", exact, "",
-         [](S& s) { s.technique.roulette = T::Roulette::throughput; }},
-        {"no-roulette", "no roulette", "roulette", "paths end when they carry next to nothing", exact,
-         "paths of more than 64 vertices are never certain to go on",
-         [](S& s) { s.technique.roulette = T::Roulette::off; }},
-        {"wavelengths-1", "1 wavelength", "wavelengths", "each path has one wavelength", exact, "",
-         [](S& s) { s.technique.wavelengths = 1; }},
-        {"wavelengths-4", "4 wavelengths", "wavelengths", "each path has four wavelengths", exact, "",
-         [](S& s) { s.technique.wavelengths = 4; }},
-        {"stratified", "stratified numbers", "numbers", "jittered strata, as many as the samples of a replicate", exact,
-         "every rung is a render of its own", [](S& s) { s.technique.numbers = T::Numbers::stratified; }},
-        {"sobol", "Owen–Sobol numbers", "numbers", "Owen-scrambled Sobol points", exact, "",
-         [](S& s) { s.technique.numbers = T::Numbers::sobol; }},
-        {"random", "independent numbers", "numbers", "independent random numbers", exact, "",
-         [](S& s) { s.technique.numbers = T::Numbers::random; }},
-        {"light-tree", "light tree", "light choice", "lights are asked by what they may give to the place", exact, "",
-         [](S& s) { s.technique.lightChoice = T::LightChoice::tree; }, false, needsManyLights},
-        {"light-power", "lights by power", "light choice", "lights are asked by their power", exact, "",
-         [](S& s) { s.technique.lightChoice = T::LightChoice::power; }, false, needsManyLights},
-        {"light-uniform", "lights evenly", "light choice", "each light is asked as often", exact, "",
-         [](S& s) { s.technique.lightChoice = T::LightChoice::uniform; }, false, needsManyLights},
-        {"adaptive", "adaptive samples", "numbers", "more samples where a pilot finds more noise", exact,
-         "a rung has its samples on average over the pixels; the pilot's time counts", [](S& s) { s.adaptive = true; }},
-        {"even", "even samples", "numbers", "the same samples for each pixel", exact, "",
-         [](S& s) { s.adaptive = false; }},
-        {"denoised", "denoised", "post", "each image goes through the denoiser", biased,
-         "the time of its layers and of the denoiser counts", nullptr, true, needsHalves},
-    };
+    static const std::vector<StudyVariant> variants = [] {
+        std::vector<StudyVariant> all{{"abbe", "as rendered", "main", "nothing changed", exact, ""}};
+        for (const auto& group : {lightSampling(), directions(), numbers(), wavelengths(), roulette(), lightChoice()})
+            all.insert(all.end(), group.begin(), group.end());
+        all.push_back({"denoised", "denoised", "post", "each image goes through the denoiser", biased,
+                       "the time of its layers and of the denoiser counts", nullptr, true, needsHalves});
+        return all;
+    }();
     return variants;
 }
 

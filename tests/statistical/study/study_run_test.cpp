@@ -122,6 +122,21 @@ TEST_CASE("the image of a rung is that of a render") {
     CHECK(same);
 }
 
+// Strata are as many as there will be samples, so a rung with fewer of them has other samples: it is no part of a
+// longer render.
+TEST_CASE("rungs of strata are renders of their own") {
+    const auto scene = TestScene::load("tests/cli/scenes/room.scene");
+    const StudySubject subject = subjectOf(scene);
+    const ChosenVariants chosen = chooseVariants(subject, {"stratified"});
+    REQUIRE(chosen.variants.size() == 2);
+    LadderRender ladder(subject, chosen.variants[1], 7, nullptr), direct(subject, chosen.variants[1], 7, nullptr);
+    const auto first = ladder.advance(4), rung = ladder.advance(16), whole = direct.advance(16);
+    REQUIRE(rung);
+    CHECK(rung->image.rgb == whole->image.rgb);
+    CHECK(rung->cost.rays == whole->cost.rays); // without those of the first rung
+    CHECK(rung->image.rgb != first->image.rgb);
+}
+
 TEST_CASE("a denoised curve is better and biased") {
     const auto scene = TestScene::load("tests/cli/scenes/room.scene", [] {
         BuildOptions options;
