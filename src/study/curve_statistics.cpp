@@ -175,7 +175,8 @@ std::optional<double> CurveStatistics::errorAtTime(std::span<const double> error
         const double more = std::log(seconds / ladderSeconds.back());
         if (more < 1e-12) return errors.back();
         const auto slope = slopeOf(errors);
-        return slope ? std::optional(errors.back() * std::exp(*slope * more)) : std::nullopt;
+        if (!slope || !(*slope < 0)) return std::nullopt; // rare bright paths: the curve says nothing of what follows
+        return errors.back() * std::exp(*slope * more);
     }
     std::size_t above = 1;
     while (above + 1 < rungs() && ladderSeconds[above] < seconds) ++above;

@@ -158,6 +158,10 @@ TEST_CASE("efficiency against another curve at equal time") {
     main.sigma = slow.sigma = 0;
     slow.secondsPerSample = 1;
     CHECK(slow.make(1).efficiencyAgainst(main.make(1)).value == doctest::Approx(0.005));
+    // One that rises is not continued.
+    main.power = 0.5;
+    CHECK_FALSE(slow.make(1).efficiencyAgainst(main.make(1)).known());
+    main.power = -1;
     // No seed in common.
     CHECK_FALSE(slow.make(1, 8, 101).efficiencyAgainst(main.make(1)).known());
 }
