@@ -19,7 +19,7 @@ Json rowJson(const BillRow& row, double seconds) {
                               {"elsewhere", row.elsewhere},
                               {"rays", row.rays}});
     if (!row.counted.empty()) json.set("count", row.count).set("counted", row.counted);
-    if (row.first > 0 || row.before > 0) json.set("first", row.first).set("before", row.before);
+    if (row.first > 0) json.set("first", row.first);
     if (!row.note.empty()) json.set("note", row.note);
     return json;
 }
@@ -60,7 +60,6 @@ BillRow readRow(const nlohmann::json& json) {
     row.count = json.value("count", std::uint64_t{0});
     row.counted = json.value("counted", std::string());
     row.note = json.value("note", std::string());
-    row.before = json.value("before", 0.0);
     row.first = json.value("first", std::uint64_t{0});
     return row;
 }

@@ -72,6 +72,7 @@ Examples:
   abbe study room.scene --size 640x360 --samples 1024 --seeds 16
   abbe study room.scene --variants no-nee,random,denoised
   abbe study room.scene --variants list        what can be changed
+  abbe study room.scene --effects              what each effect of the scene is worth
   abbe study room.scene --time 20min           as much as that allows
   abbe study room.scene --resume               goes on where it was interrupted)";
 
@@ -106,6 +107,7 @@ void addStudyArguments(CLI::App& command, StudyOptions& o, CommonOptions& common
             throw CLI::ValidationError("--time", fmt::format("`{}` is not a time such as 20min", text));
         o.timeLimit = value;
     });
+    command.add_flag("--effects", o.effects, "Measure what each effect costs and shows, in place of curves");
     command.add_flag("--resume", o.resume, "Go on from what an interrupted study has saved");
     command.add_option("-t,--threads", common.threads, "Threads; without it one per core")
         ->check(CLI::Range(1, 4096).description(""))

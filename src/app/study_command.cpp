@@ -6,6 +6,7 @@
 #include "app/provenance.h"
 #include "app/render_identity.h"
 #include "app/render_report.h"
+#include "app/study_effects.h"
 #include "app/study_files.h"
 #include "app/study_page.h"
 #include "app/study_progress.h"
@@ -42,6 +43,7 @@ class StudyCommand {
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         choosePlan();
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
+        if (options_.effects) return studyEffects(options_, common_, *loaded_, build_, outputBase());
         InterruptGuard interrupt;
         if (!probe(interrupt)) return stopped(interrupt);
         try {

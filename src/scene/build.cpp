@@ -22,7 +22,8 @@ SceneBuilder::SceneBuilder(const schema::SceneTree& tree, const schema::TypeTabl
     : tree_(tree), types_(types), options_(options), diagnostics_(diagnostics) {}
 
 const Curve* SceneBuilder::curve(const schema::SpectrumValue& value, schema::SpectrumRole role, Diagnostics& d) {
-    return curves_.curve(value, role, d);
+    const Curve* const made = curves_.curve(value, role, d);
+    return role == schema::SpectrumRole::index ? switchedIndex(made, value.span) : made;
 }
 
 schema::ComplexIndex SceneBuilder::metal(std::string_view name, Span span, Diagnostics& d) {

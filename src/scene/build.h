@@ -7,6 +7,7 @@
 #include "integrators/render_params.h"
 #include "math/interval.h"
 #include "render/scene.h"
+#include "scene/effect_switches.h"
 #include "schema/scene_tree.h"
 
 #include <optional>
@@ -27,6 +28,7 @@ struct BuildOptions {
     std::optional<bool> adaptive;
     std::string strategy, sampler; // words of `render`; empty: the scene's
     bool geometry = true;          // false: check only; no acceleration structure is built
+    EffectSwitches without;        // what is left out of the scene
     bool textures = false;         // then read images to their ends all the same
 };
 
@@ -52,7 +54,8 @@ struct BuiltScene {
     Interval shutter;    // when the camera's shutter is open, from its first light to its last
     double exposure = 1; // factor from the camera's exposure in stops
     SceneFacts facts;
-    double commitSeconds = 0; // of the building, what the acceleration structure took
+    std::vector<EffectAsker> askers; // of what can be left out, be it so or not
+    double commitSeconds = 0;        // of the building, what the acceleration structure took
 };
 
 // Builds everything, or returns what could be built together with errors in `diagnostics`: the caller must not render

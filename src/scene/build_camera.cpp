@@ -75,14 +75,16 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     built.exposure = placed->exposure;
     const Shutter& shutter = placed->shutter;
     built.shutter = {shutter.open, shutter.duration()};
-    embree_.setShutter(built.shutter.open, built.shutter.duration);
     if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)
         built.scene.camera = std::make_unique<ShutterCamera>(
             std::move(built.scene.camera), placed->toWorld.then(Transform::translate(-placed->origin)), shutter);
+    switchCamera(built, *definition, placed->toWorld.moves());
+    embree_.setShutter(built.shutter.open, built.shutter.duration);
     if (built.scene.camera->disperses())
         noteEffect(Effect::dispersion, definition->span, "the glass of its lens disperses");
     if (built.scene.camera->usesLens()) noteEffect(Effect::depthOfField, definition->span, "its lens has a width");
-    if (placed->toWorld.moves()) noteEffect(Effect::motion, definition->span, "the camera moves");
+    if (placed->toWorld.moves() && built.shutter.duration > 0)
+        noteEffect(Effect::motion, definition->span, "the camera moves");
 }
 
 } // namespace abbe

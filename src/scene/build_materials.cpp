@@ -13,7 +13,7 @@
 namespace abbe {
 
 std::uint32_t SceneBuilder::keepMaterial(std::unique_ptr<const Material> material, Span asker) {
-    materials_.push_back(std::move(material));
+    materials_.push_back(switchedAbsorption(std::move(material), asker));
     const auto index = static_cast<std::uint32_t>(materials_.size() - 1);
     materialAskers_.emplace_back(index, asker);
     return index;
@@ -34,7 +34,12 @@ schema::Reference SceneBuilder::materialReference(const Definition& d) {
     }
     openMaterials_.push_back(&d);
     openAskers_.emplace_back();
-    MadeMaterial made = makeMaterial(d.type->name, bindInto, {materials_, d, diagnostics_});
+    const auto bindSwitched = [&](void* params) {
+        const bool sound = bindInto(params);
+        if (sound) switchParameters(d, params);
+        return sound;
+    };
+    MadeMaterial made = makeMaterial(d.type->name, bindSwitched, {materials_, d, diagnostics_});
     auto askers = std::move(openAskers_.back());
     openAskers_.pop_back();
     openMaterials_.pop_back();
@@ -59,6 +64,7 @@ std::unique_ptr<const Material> SceneBuilder::translucent(std::unique_ptr<const 
     optics.phase = std::make_shared<HenyeyGreenstein>(inside.anisotropy);
     optics.own = {inside.extinction, inside.albedo};
     const std::uint32_t medium = keepMedium(std::make_unique<HomogeneousMedium>(std::move(optics)), d);
+    if (leavesOut({SwitchedEffect::medium, nameOf(d)}, d.span)) return surface;
     const Material& inner = *undressed_.emplace_back(std::move(surface));
     return std::make_unique<FilledMaterial>(inner, *media_[medium]);
 }
@@ -103,11 +109,12 @@ std::optional<std::pair<NormalMap, BumpMap>> SceneBuilder::mapsOf(const Material
 std::unique_ptr<const Material> SceneBuilder::dressed(std::unique_ptr<const Material> material,
                                                       const MaterialDress& dress, const Definition& d) {
     if (!checkDress(*material, dress, d)) return nullptr;
-    const auto maps = mapsOf(dress);
+    auto maps = mapsOf(dress);
     if (!maps) return nullptr;
+    if ((dress.normal || dress.bump) && leavesOut({SwitchedEffect::bumps}, d.span)) maps.emplace();
     const DressedMaterial::Dress wear{NumberInput(dress.opacity, 0, 1), maps->first, maps->second,
                                       static_cast<int>(dress.priority)};
-    if (wear.opacity.is(1) && !dress.normal && !dress.bump && wear.priority == 0) return material;
+    if (wear.opacity.is(1) && !wear.normal.texture && !wear.bump.texture && wear.priority == 0) return material;
     const Material& inner = *undressed_.emplace_back(std::move(material));
     return std::make_unique<DressedMaterial>(inner, wear);
 }

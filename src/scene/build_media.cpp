@@ -55,6 +55,7 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
             .help = "media that fill shapes (`interior`) may move and be instanced";
         return;
     }
+    if (leavesOut({SwitchedEffect::medium, nameOf(d)}, d.span)) return; // before it becomes a light
     const Transform toRender = atOpening(place.motion);
     std::unique_ptr<Medium> medium;
     if (type == "atmosphere") {
@@ -74,7 +75,8 @@ void SceneBuilder::placeVolume(const Definition& d, const Place& place) {
 void SceneBuilder::placeAtmosphere(const Definition& d) {
     const Definition* const named = tree_.find(Kind::medium, d.target);
     if (!named) return;
-    if (const schema::Reference medium = reference(*named, diagnostics_); medium.valid())
+    if (const schema::Reference medium = reference(*named, diagnostics_);
+        medium.valid() && !leavesOut({SwitchedEffect::medium, nameOf(*named)}, d.span))
         openMedia_.emplace_back(media_[medium.index].get(), d.span);
 }
 
@@ -107,6 +109,9 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
         return surface;
     }
     const Medium& medium = *media_[params.interior.index];
+    const std::size_t number = medium.number;
+    if (leavesOut({SwitchedEffect::medium, built_->scene.mediumUses[number].name}, mediumSpans_[number]))
+        return surface;
     auto& index = filled_[{surface, &medium}];
     if (!index) {
         index = static_cast<std::uint32_t>(materials_.size());

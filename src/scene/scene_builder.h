@@ -130,6 +130,13 @@ class SceneBuilder final : public schema::Resolver {
     void checkForbidden();
     void checkCompiled();
 
+    // effect_switches.cpp
+    bool leavesOut(EffectSwitch, Span asker);
+    const Curve* switchedIndex(const Curve*, Span asker);
+    std::unique_ptr<const Material> switchedAbsorption(std::unique_ptr<const Material>, Span asker);
+    void switchParameters(const Definition&, void* params);
+    void switchCamera(BuiltScene&, const Definition& camera, bool moves);
+
     // build_materials.cpp
     schema::Reference materialReference(const Definition&);
     std::uint32_t keepMaterial(std::unique_ptr<const Material>, Span asker);

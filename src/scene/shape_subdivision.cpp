@@ -96,8 +96,9 @@ bool SceneBuilder::loadSubdivision(const Definition& d, LoadedShape& shape) {
     if (!choices) return true;
     const Texture* const map = textureFor(params->displacementMap, TextureUse::heights,
                                           params->displacement ? params->displacement->span : d.span);
-    const auto displacement = chooseDisplacement(*params, map, loaded->cage, diagnostics_);
+    auto displacement = chooseDisplacement(*params, map, loaded->cage, diagnostics_);
     if (!displacement) return true;
+    if (displacement->moves && leavesOut({SwitchedEffect::displacement}, d.span)) displacement.emplace();
     shape.sound = true;
     shape.deforms = !keys->times.empty() && deforms(keys->times);
     if (holdsMedium(*params)) shape.cageEdges = openEdges(loaded->cage);

@@ -85,11 +85,6 @@ class BillMaker {
         textures.counted = "lookups";
     }
 
-    WorkCharge chargedBefore(Work work) const {
-        return work_.sum(
-            [=](Work w, std::size_t flags, std::size_t cause) { return w == work && cause == 0 && !(flags & kPilot); });
-    }
-
     void addVolume(std::size_t place, std::string id, std::string label) {
         const VolumeCounts& counts = effects_.volumes[place];
         const Work own = volumeWork(place);
@@ -99,7 +94,6 @@ class BillMaker {
                                 return w != own && cause == place + 1 && !(flags & kPilot);
                             })
                             .seconds;
-        row.before = chargedBefore(own).seconds;
         row.rays = counts.scattered;
         row.first = counts.first;
         row.count = counts.collisions + counts.lookups;

@@ -22,9 +22,7 @@ struct BillRow {
     std::uint64_t count = 0;  // of what `counted` says
     std::string counted = {}; // "lookups"; empty: nothing but rays
     std::string note = {};    // what the row cannot tell; empty: nothing
-    // Of volumes: seconds of the row before the path was scattered by any medium, and paths that it scattered first.
-    double before = 0;
-    std::uint64_t first = 0;
+    std::uint64_t first = 0;  // of volumes: paths that it was the first to scatter
 };
 
 struct Bill {

@@ -1,0 +1,49 @@
+// Cameras and materials without an effect that they have.
+#pragma once
+
+#include "render/camera.h"
+#include "scene/forwarding_material.h"
+
+#include <memory>
+
+namespace abbe {
+
+// A camera whose rays go through the middle of the lens, or all belong to the middle of the exposure. `still` requires
+// a scene in which nothing else moves.
+class HeldCamera final : public Camera {
+  public:
+    HeldCamera(std::unique_ptr<const Camera> inner, bool centred, bool still)
+        : inner_(std::move(inner)), centred_(centred), still_(still) {}
+
+    CameraRay ray(const CameraSample& sample) const noexcept override {
+        CameraSample held = sample;
+        if (centred_) held.lens = {0.5f, 0.5f};
+        if (still_) held.time = 0.5f;
+        CameraRay result = inner_->ray(held);
+        if (still_) result.ray.time = 0;
+        return result;
+    }
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override {
+        return inner_->project(p, still_ ? 0.5 : time, near);
+    }
+    bool usesLens() const override { return !centred_ && inner_->usesLens(); }
+    bool disperses() const override { return inner_->disperses(); }
+
+  private:
+    std::unique_ptr<const Camera> inner_;
+    bool centred_, still_;
+};
+
+// A dielectric that absorbs nothing.
+class ClearMaterial final : public ForwardingMaterial {
+  public:
+    using ForwardingMaterial::ForwardingMaterial;
+
+    Effects needs() const override {
+        const auto absorbs = static_cast<Effects::Bits>(Effect::absorption);
+        return Effects::fromBits(static_cast<Effects::Bits>(inner_.needs().bits() & ~absorbs));
+    }
+    const Curve* absorption() const override { return nullptr; }
+};
+
+} // namespace abbe
