@@ -78,7 +78,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)
         built.scene.camera = std::make_unique<ShutterCamera>(
             std::move(built.scene.camera), placed->toWorld.then(Transform::translate(-placed->origin)), shutter);
-    switchCamera(built, *definition, placed->toWorld.moves());
+    switchCamera(built, *definition);
     embree_.setShutter(built.shutter.open, built.shutter.duration);
     if (built.scene.camera->disperses())
         noteEffect(Effect::dispersion, definition->span, "the glass of its lens disperses");

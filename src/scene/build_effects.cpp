@@ -29,6 +29,7 @@ void unknownEffect(const schema::TableCell& cell, Diagnostics& diagnostics) {
 
 void SceneBuilder::noteEffect(Effect effect, Span asker, std::string_view why) {
     built_->scene.effects |= effect;
+    if (effect == Effect::motion) leavesOut({SwitchedEffect::motion}, asker); // noted here, whatever moves
     auto& reasons = built_->scene.reasons;
     const bool known = std::ranges::any_of(
         reasons, [&](const EffectReason& r) { return r.effect == effect && r.asker == asker && r.why == why; });

@@ -141,7 +141,6 @@ void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definit
         Place place = outer;
         place.motion = within(outer.motion, own);
         noteEffect(Effect::motion, d.span, "it moves while the shutter is open");
-        leavesOut({SwitchedEffect::motion}, d.span);
         return placeMoving(d, *geometry, place);
     }
     carry(own, outer, d.span, [&](const Place& place) {

@@ -58,7 +58,6 @@ void SceneBuilder::carry(const KeyedTransform& own, const Place& outer, Span ask
     Place place = outer;
     place.motion = within(outer.motion, own);
     if (!place.motion.moves() || (outer.into != outer.base && !moves(own))) return build(place);
-    leavesOut({SwitchedEffect::motion}, asker);
     if (!checkMotion(place.motion, asker)) return;
     noteEffect(Effect::motion, asker, "it moves while the shutter is open");
     const Motion onwards = fromOpening(place.motion);

@@ -48,9 +48,8 @@ void SceneBuilder::switchParameters(const Definition& d, void* params) {
 }
 
 // Before anything is placed; the shutter of the scene is known.
-void SceneBuilder::switchCamera(BuiltScene& built, const Definition& camera, bool moves) {
+void SceneBuilder::switchCamera(BuiltScene& built, const Definition& camera) {
     const bool centred = built.scene.camera->usesLens() && leavesOut({SwitchedEffect::depthOfField}, camera.span);
-    if (moves && built.shutter.duration > 0) leavesOut({SwitchedEffect::motion}, camera.span);
     const bool still = options_.without.leavesOut(SwitchedEffect::motion);
     if (still) built.shutter = {built.shutter.open + built.shutter.duration / 2, 0};
     if (centred || still)

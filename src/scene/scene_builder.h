@@ -135,7 +135,7 @@ class SceneBuilder final : public schema::Resolver {
     const Curve* switchedIndex(const Curve*, Span asker);
     std::unique_ptr<const Material> switchedAbsorption(std::unique_ptr<const Material>, Span asker);
     void switchParameters(const Definition&, void* params);
-    void switchCamera(BuiltScene&, const Definition& camera, bool moves);
+    void switchCamera(BuiltScene&, const Definition& camera);
 
     // build_materials.cpp
     schema::Reference materialReference(const Definition&);
