@@ -39,11 +39,14 @@ inline Spectrum hypot(Spectrum x, Spectrum y) {
 // Conductor with complex index n + ik against a medium of index 1; n >= 0, k >= 0, cosI in [0, 1].
 //
 // a + ib = √((n + ik)² - sin²θ) [Born1999, §14.2]. Of a and b the larger one is taken from the root and the other from
-// 2ab = 2nk, and the numerators are sums of squares, so that k ≈ 0 and large k keep their digits (case 29).
+// 2ab = 2nk, and the numerators are sums of squares, so that k ≈ 0 and large k keep their digits (case 29). With n < 1
+// and k ≈ 0 there is a critical angle as for dielectrics, where n² - 1 + c² cancels: rounding errors are carried along.
 inline Spectrum fresnelConductor(Spectrum cosI, Spectrum n, Spectrum k) {
     const Float8 c = cosI.v, s2 = (1.f - c) * (1.f + c);
     const Float8 twoNk = 2.f * n.v * k.v;
-    const Float8 real = (n.v - k.v) * (n.v + k.v) - s2;
+    const Spectrum one(1.f), n2 = n * n, shifted = n2 - one, c2 = cosI * cosI, k2 = k * k;
+    const Spectrum lost = (fma(n, n, -n2) + (n2 - (shifted + one))) + (fma(cosI, cosI, -c2) - fma(k, k, -k2));
+    const Float8 real = (((shifted + c2) - k2) + lost).v;
     const Float8 modulus = hypot(Spectrum(real), Spectrum(twoNk)).v;
     const Float8 larger = sqrt(Spectrum(0.5f * (modulus + abs(Spectrum(real)).v))).v;
     const Float8 smaller = 0.5f * twoNk / max(Spectrum(larger), Spectrum(1e-20f)).v;

@@ -23,9 +23,10 @@ list(APPEND allowed_media volumes)
 set(allowed_modules textures)
 set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
 set(allowed_study ${allowed_scene} scene denoise)
-set(allowed_app ${allowed_scene} parser scene denoise study)
+set(allowed_doctor ${allowed_scene} parser scene)
+set(allowed_app ${allowed_scene} parser scene denoise study doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules integrators scene study app)
+            modules integrators scene study doctor app)
 
 # Libraries that only one folder may know, or two.
 set(library_folders

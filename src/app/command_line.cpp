@@ -5,6 +5,7 @@
 #include "app/command_line_compare.h"
 #include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
+#include "app/command_line_doctor.h"
 #include "app/command_line_help.h"
 #include "app/command_line_replay.h"
 #include "app/command_line_study.h"
@@ -23,8 +24,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render",  "merge",  "check",   "explain", "info",    "convert",
-                                     "compare", "volume", "denoise", "replay",  "certify", "study"};
+constexpr const char* kCommands[] = {"render", "merge",   "check",  "explain", "info",  "convert", "compare",
+                                     "volume", "denoise", "replay", "certify", "study", "doctor"};
 
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {
@@ -45,6 +46,7 @@ class Reader {
         addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
         addDenoiseArguments(*add("denoise", kDenoiseHelp), denoise_, common_);
         addReplayArguments(*add("replay", kReplayHelp), replay_, common_);
+        addDoctorArguments(*add("doctor", kDoctorHelp), doctor_, common_);
         CLI::App* certify = add("certify", kCertifyHelp);
         addCertifyArguments(*certify, certify_, common_.json);
         addView(certify, certify_.view);
@@ -150,6 +152,7 @@ class Reader {
     ReplayOptions replay_;
     CertifyOptions certify_;
     StudyOptions study_;
+    DoctorOptions doctor_;
 };
 
 void Reader::addGoals(CLI::App* c) {
@@ -341,6 +344,7 @@ Command Reader::command(const Words& words) {
     if (name == "replay") return {replay_, common_};
     if (name == "certify") return {certify_, common_};
     if (name == "study") return {study_, common_};
+    if (name == "doctor") return {doctor_, common_};
     return {compare_, common_};
 }
 

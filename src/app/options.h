@@ -114,6 +114,10 @@ struct CertifyOptions {
     ViewOptions view;
 };
 
+struct DoctorOptions {
+    bool numerics = false; // measure hard cases, too
+};
+
 struct DenoiseOptions {
     std::string input, output; // no output: the input gets the layer
     DenoiseMethod method = DenoiseMethod::nfor;
@@ -144,7 +148,7 @@ struct MergeOptions {
 
 using Options =
     std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
-                 VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions>;
+                 VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions, DoctorOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -160,5 +164,6 @@ ExitCode run(const DenoiseOptions&, const CommonOptions&);
 ExitCode run(const ReplayOptions&, const CommonOptions&);
 ExitCode run(const CertifyOptions&, const CommonOptions&);
 ExitCode run(const StudyOptions&, const CommonOptions&);
+ExitCode run(const DoctorOptions&, const CommonOptions&);
 
 } // namespace abbe

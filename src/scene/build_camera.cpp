@@ -36,7 +36,7 @@ std::optional<Vec3d> SceneBuilder::middleOfShape(std::string_view name, double t
     const Transform place = loaded.common.transform.at(time).then(toWorld);
     Bounds3d box;
     if (loaded.mesh) {
-        for (const Vec3& p : loaded.mesh->positions) box.add(place.point(Vec3d(p)));
+        for (const Vec3& p : loaded.mesh->positions) box.add(place.point(loaded.meshOrigin + Vec3d(p)));
     } else if (const auto shape = loaded.place(place)) {
         box = {Vec3d(shape->bounds().lower), Vec3d(shape->bounds().upper)};
     }

@@ -202,10 +202,12 @@ std::unique_ptr<const Shape> SceneBuilder::lightShape(const Definition& d, const
     } else if (type == "mesh") {
         const auto p = bound<LightMeshParams>(d);
         if (!p) return nullptr;
-        auto mesh = loadMesh(p->file, tree_.header.length, p->points, p->faces, d.span, diagnostics_, tree_.header.zUp);
+        const Vec3d origin = farMiddle(p->points);
+        auto mesh = loadMesh(p->file, tree_.header.length, relativeTo(origin, p->points), p->faces, d.span,
+                             diagnostics_, tree_.header.zUp);
         if (!mesh) return nullptr;
         if (!p->file.value.empty()) built_->facts.files.push_back(p->file.value);
-        return placeMesh(std::move(*mesh), take(*p), d.span, diagnostics_);
+        return placeMesh(std::move(*mesh), Transform::translate(origin).then(take(*p)), d.span, diagnostics_);
     } else {
         bound<AreaLightParams>(d); // unknown type: report what is wrong besides
     }

@@ -111,15 +111,16 @@ void SceneBuilder::loadMeshShape(const Definition& d, LoadedShape& shape) {
     if (!params->keys.empty()) return deformMesh(d, *params, shape);
     FaceGroups groups;
     const bool grouped = !params->groupMaterials.empty();
-    auto mesh = loadMesh(params->file, tree_.header.length, params->points, params->faces, d.span, diagnostics_,
-                         tree_.header.zUp, grouped ? &groups : nullptr);
+    shape.meshOrigin = farMiddle(params->points);
+    auto mesh = loadMesh(params->file, tree_.header.length, relativeTo(shape.meshOrigin, params->points), params->faces,
+                         d.span, diagnostics_, tree_.header.zUp, grouped ? &groups : nullptr);
     if (!mesh || !addPointData(*params, !params->file.value.empty(), *mesh, d.span, diagnostics_)) return;
     if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
     shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
     shape.sound = true;
     if (grouped) chooseFaceMaterials(shape, groups);
     shape.place = [this, &shape, span = d.span](const Transform& t) {
-        return placeMesh(*shape.mesh, t, span, diagnostics_);
+        return placeMesh(*shape.mesh, Transform::translate(shape.meshOrigin).then(t), span, diagnostics_);
     };
 }
 

@@ -84,6 +84,21 @@ std::optional<MeshData> fromRows(const std::vector<Vec3d>& points, const schema:
 
 } // namespace
 
+Vec3d farMiddle(const std::vector<Vec3d>& points) {
+    if (points.empty()) return {};
+    Vec3d lower = points[0], upper = points[0];
+    for (const Vec3d p : points) lower = min(lower, p), upper = max(upper, p);
+    const Vec3d middle = (lower + upper) * 0.5;
+    constexpr double far = 64; // sizes of the mesh: six bits less for its details
+    const bool isFar = maxComponent(abs(middle)) > far * maxComponent(upper - lower);
+    return isFar && isFinite(middle) ? middle : Vec3d();
+}
+
+std::vector<Vec3d> relativeTo(Vec3d origin, std::vector<Vec3d> points) {
+    for (Vec3d& p : points) p = p - origin;
+    return points;
+}
+
 std::optional<MeshData> statedMesh(const schema::Text& file, double unit, const std::vector<Vec3d>& points,
                                    const schema::IndexRows& faces, Span span, Diagnostics& diagnostics, bool zUp,
                                    FaceGroups* groups) {

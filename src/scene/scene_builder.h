@@ -65,6 +65,7 @@ class SceneBuilder final : public schema::Resolver {
         const Definition* definition = nullptr;
         ShapeParams common;
         std::shared_ptr<const MeshData> mesh; // mesh shapes
+        Vec3d meshOrigin;                     // in the shape's own space; positions of `mesh` are relative to it
         std::function<std::unique_ptr<const Shape>(const Transform&)> place;
         std::vector<std::uint16_t> faceMaterials;          // of the last placement: of its triangles, then of its quads
         std::size_t strands = 0, segments = 0, points = 0; // of curves and points

@@ -174,8 +174,9 @@ void SceneBuilder::loadBox(const Definition& d, LoadedShape& shape) {
     shape.common = *p;
     shape.mesh = std::make_shared<const MeshData>(boxMesh(size * -0.5, size * 0.5));
     shape.sound = true;
-    shape.place = [this, &shape, center, span = d.span](const Transform& t) {
-        return placeMesh(*shape.mesh, Transform::translate(center).then(t), span, diagnostics_);
+    shape.meshOrigin = center;
+    shape.place = [this, &shape, span = d.span](const Transform& t) {
+        return placeMesh(*shape.mesh, Transform::translate(shape.meshOrigin).then(t), span, diagnostics_);
     };
 }
 

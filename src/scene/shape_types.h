@@ -57,6 +57,11 @@ schema::TypeInfo diskType();
 schema::TypeInfo planeType();
 schema::TypeInfo meshType();
 
+// What to take off the points of a mesh that is small against its distance from the origin, before they are rounded to
+// single precision, and to put back in front of the map that places it (docs/hard_cases.md, case 7). 0 for others.
+Vec3d farMiddle(const std::vector<Vec3d>& points);
+std::vector<Vec3d> relativeTo(Vec3d origin, std::vector<Vec3d> points);
+
 // Shapes in the space that `place` leads to. Each returns null, or nothing, after an error located at `span`.
 std::unique_ptr<const Shape> makeQuad(const std::vector<Vec3d>& points, Vec2d size, const Transform& place, Span,
                                       Diagnostics&);

@@ -1,58 +1,11 @@
 // Dielectrics inside one another: what fills the space decides, however the walls were modelled.
 #include "materials/dielectric.h"
-#include "support/ray_estimate.h"
+#include "support/tank.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
 namespace abbe::test {
-namespace {
-
-// A closed box as a mesh, or the hollow of one.
-std::string box(double half, bool hollow, int first) {
-    std::string faces;
-    for (const std::array<int, 4>& f :
-         {std::array{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
-        faces += hollow ? fmt::format("- {} {} {} {}; ", f[3] + first, f[2] + first, f[1] + first, f[0] + first)
-                        : fmt::format("- {} {} {} {}; ", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
-    static_cast<void>(half);
-    return faces;
-}
-std::string corners(double h) {
-    return fmt::format("- -{0} -{0} -{0}; - {0} -{0} -{0}; - {0} {0} -{0}; - -{0} {0} -{0}; - -{0} -{0} {0}; "
-                       "- {0} -{0} {0}; - {0} {0} {0}; - -{0} {0} {0}; ",
-                       fmt::format("{:.12f}", h));
-}
-
-// A tank of glass, 24 mm wide with walls of 2 mm, and a block of inky water in it whose half width is given.
-TestScene tank(double water, int glassPriority = 2) {
-    return TestScene::parse(fmt::format(
-        R"(scene 1
-camera {{ from 0 0 0.2; look-at 0 0 0 }}
-light sky {{ radiance 1 }}
-material glass dielectric {{ ior 1.5; priority {} }}
-material water dielectric {{ ior 1.33; absorption 30; priority 1 }}
-shape mesh {{ material glass; points {{ {}{} }}; faces {{ {}{} }} }}
-shape mesh {{ material water; points {{ {} }}; faces {{ {} }} }}
-)",
-        glassPriority, corners(0.012), corners(0.01), box(0.012, false, 0), box(0.01, true, 8), corners(water),
-        box(water, false, 0)));
-}
-
-// Reflected and transmitted share of a stack of layers, seen from one side, all lit with 1 from both sides.
-struct Stack {
-    double r = 0, t = 1, back = 0;   // back: reflection seen from the far side
-    void add(double r2, double t2) { // a symmetric layer
-        const double bounces = 1 / (1 - back * r2);
-        const double reflected = r + t * t * r2 * bounces, through = t * t2 * bounces;
-        back = r2 + t2 * t2 * back * bounces;
-        r = reflected;
-        t = through;
-    }
-};
-double interfaceReflectance(double n1, double n2) { return ((n1 - n2) / (n1 + n2)) * ((n1 - n2) / (n1 + n2)); }
-
-} // namespace
 
 TEST_CASE("a tank of water is as bright along its axis as the layers say, with overlapping and coincident walls") {
     const double outer = interfaceReflectance(1, 1.5), inner = interfaceReflectance(1.5, 1.33);

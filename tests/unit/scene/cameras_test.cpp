@@ -45,12 +45,19 @@ TEST_CASE("cameras: a lens of dispersing glass keeps the light of a thin lens") 
 TEST_CASE("cameras: the focus is measured to a shape, through groups") {
     const std::string ball = "light sky { radiance 1 }\ngroup g { transform { translate 0 0 -3 }; shape ball sphere { "
                              "center 0 0 -2; radius 0.5 } }\n";
-    const auto scene = seenBy("camera { from 0 0 5; look-at 0 0 0; f-stop 1; focus on=ball }", ball);
-    REQUIRE(scene.report() == "");
-    const Ray a = scene.scene().camera->ray({{3, 3}, {0.1f, 0.2f}, 0, 550}).ray;
-    const Ray b = scene.scene().camera->ray({{3, 3}, {0.8f, 0.9f}, 0, 550}).ray;
-    const auto at = [](const Ray& r) { return r.origin + r.direction * ((-10 - r.origin.z) / r.direction.z); };
-    CHECK(length(at(a) - at(b)) < 1e-4f);
+    // A box and a mesh far from the origin keep their middle apart from their corners.
+    const std::string box = "light sky { radiance 1 }\nshape ball box { center 0 0 -5 }\n";
+    const std::string mesh =
+        "light sky { radiance 1 }\ngroup { transform { translate 0 0 -1000 }\nshape ball mesh { points { "
+        "- -0.1 0 995; - 0.1 0 995; - 0 0.1 995 }; faces { - 0 1 2 } } }\n";
+    for (const std::string& shape : {ball, box, mesh}) {
+        const auto scene = seenBy("camera { from 0 0 5; look-at 0 0 0; f-stop 1; focus on=ball }", shape);
+        REQUIRE(scene.report() == "");
+        const Ray a = scene.scene().camera->ray({{3, 3}, {0.1f, 0.2f}, 0, 550}).ray;
+        const Ray b = scene.scene().camera->ray({{3, 3}, {0.8f, 0.9f}, 0, 550}).ray;
+        const auto at = [](const Ray& r) { return r.origin + r.direction * ((-10 - r.origin.z) / r.direction.z); };
+        CHECK(length(at(a) - at(b)) < 1e-4f);
+    }
     CHECK(codes(seenBy("camera { focus on=balls }", ball)) == "E0202");
     CHECK(codes(seenBy("camera { f-stop 1; focus 2 on=ball }", ball)) == "E0306");
     CHECK(codes(seenBy("camera { f-stop 1; focus at=ball }", ball)) == "E0210");

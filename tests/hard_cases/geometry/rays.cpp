@@ -1,4 +1,5 @@
-// Rays that leave surfaces: docs/hard_cases.md, cases 1-5 and 8.
+// Rays that leave surfaces and meet others: cases 1 to 5 of docs/hard_cases.md.
+#include "doctor/geometry_checks.h"
 #include "geometry/disk.h"
 #include "geometry/embree_scene.h"
 #include "geometry/mesh.h"
@@ -6,6 +7,7 @@
 #include "geometry/quad.h"
 #include "geometry/sphere.h"
 #include "geometry/transformed.h"
+#include "hard_cases/hard_case.h"
 #include "support/statistics.h"
 #include "unit/geometry/test_meshes.h"
 
@@ -34,8 +36,8 @@ Vec3 leaving(Random& random, Vec3 n, int i) {
     return normalize(Frame::fromNormal(n).toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}));
 }
 
-// How often rays that leave the outside of a convex shape meet it again.
-int falseHits(const Shape& shape, Vec3d centre, double radius, int rays) {
+// The share of the rays leaving the outside of a convex shape that meet it again. spawn(hit, w) is where they begin.
+template <typename Spawn> double falseHits(const Shape& shape, Vec3d centre, double radius, int rays, Spawn&& spawn) {
     const auto scene = sceneOf({&shape});
     Random random(7);
     int met = 0, again = 0;
@@ -45,39 +47,56 @@ int falseHits(const Shape& shape, Vec3d centre, double radius, int rays) {
         SurfaceHit hit, second;
         const Vec3 d(normalize(target - Vec3d(origin)));
         if (!scene->intersect({origin, d}, hit) || dot(hit.ng, d) >= 0) continue;
-        ++met;
         const Vec3 w = leaving(random, hit.ng, i);
         if (dot(w, hit.ng) <= 0) continue;
-        const Ray ray{spawnOrigin(hit, w), w};
-        again += scene->occluded(ray);
-        again += scene->intersect(ray, second);
+        ++met;
+        again += scene->intersect({spawn(hit, w), w}, second);
     }
-    CHECK(met > rays * 9 / 10);
-    return again;
+    CHECK(met > rays * 8 / 10);
+    return static_cast<double>(again) / met;
+}
+double falseHits(const Shape& shape, Vec3d centre, double radius, int rays) {
+    return falseHits(shape, centre, radius, rays, [](const SurfaceHit& hit, Vec3 w) { return spawnOrigin(hit, w); });
 }
 
 } // namespace
 
-TEST_CASE("case 1: no ray that leaves a convex mesh meets it again") {
+TEST_CASE("case 1: a ray leaves a surface") {
+    HardCase c;
+    c.doctor();
     const Mesh sphere(uvSphere(256, 64, {}, 1));
-    CHECK(falseHits(sphere, {}, 1, 1000000) == 0);
+    c.naive("from the point of the hit itself",
+            falseHits(sphere, {}, 1, 100000, [](const SurfaceHit& hit, Vec3) { return hit.p; }));
 }
 
-TEST_CASE("case 2: nor far from the origin") {
+TEST_CASE("case 2: the same far from the origin") {
+    HardCase c;
+    c.doctor();
     // The radius grows beyond 1e4: there a facet of the small sphere is a few roundings wide, and the rounded mesh is
     // no longer convex.
+    double worst = 0;
     for (double offset : {10.0, 1e3, 1e4, 1e5}) {
         const Vec3d centre(offset, 0.7 * offset, -0.3 * offset);
         const double radius = offset > 1e4 ? 100 : 1;
-        CHECK(falseHits(Mesh(uvSphere(256, 64, centre, radius)), centre, radius, 200000) == 0);
-        CHECK(falseHits(Sphere(centre, radius), centre, radius, 200000) == 0);
         const Transform squash =
             Transform::scale({radius, 0.8 * radius, 1.2 * radius}).then(Transform::translate(centre));
-        CHECK(falseHits(Transformed(std::make_unique<Sphere>(Vec3d(), 1.0), squash), centre, radius, 200000) == 0);
+        const Mesh mesh(uvSphere(256, 64, centre, radius));
+        const Sphere sphere(centre, radius);
+        const Transformed ellipsoid(std::make_unique<Sphere>(Vec3d(), 1.0), squash);
+        for (const Shape* shape : std::initializer_list<const Shape*>{&mesh, &sphere, &ellipsoid})
+            worst = std::max(worst, falseHits(*shape, centre, radius, 100000));
     }
+    c.measured("share of rays that meet the surface they leave, meshes, spheres and ellipsoids 10 to 1e5 m away", worst,
+               1e-6);
+    const Vec3d far(1e4, 7e3, -3e3);
+    c.naive("offset of 1e-4 m along the normal, 1e4 m away",
+            falseHits(Mesh(uvSphere(256, 64, far, 1)), far, 1, 100000,
+                      [](const SurfaceHit& hit, Vec3) { return hit.p + hit.ng * 1e-4f; }));
 }
 
 TEST_CASE("case 2: nor from instances") {
+    HardCase c;
+    int all = 0;
     for (double offset : {0.0, 10.0, 1e3, 1e4}) {
         const Mesh sphere(uvSphere(128, 64, {3, 1, 2}, 1));
         const Vec3d centre(offset, 0.7 * offset, -0.3 * offset);
@@ -90,7 +109,7 @@ TEST_CASE("case 2: nor from instances") {
         const auto scene = builder.build();
         Random random(3);
         int met = 0, again = 0;
-        for (int i = 0; i < 200000; ++i) {
+        for (int i = 0; i < 100000; ++i) {
             const Vec3 origin(centre + Vec3d(randomDirection(random)) * 6.0);
             const Vec3 d(normalize(centre + Vec3d(randomDirection(random)) * 1.8 - Vec3d(origin)));
             SurfaceHit hit;
@@ -99,12 +118,15 @@ TEST_CASE("case 2: nor from instances") {
             const Vec3 w = leaving(random, hit.ng, i);
             if (dot(w, hit.ng) > 0) again += scene->occluded({spawnOrigin(hit, w), w});
         }
-        CHECK(met > 180000);
-        CHECK(again == 0);
+        CHECK(met > 90000);
+        all += again;
     }
+    c.measured("rays that meet the instance they leave, of 4e5, up to 1e4 m away", all, 0);
 }
 
 TEST_CASE("case 1: flat shapes through the origin, where the error bound vanishes") {
+    HardCase c;
+    int all = 0;
     const Quad quad({-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1});
     const Plane plane({0, 0, 0}, {0, 1, 0});
     const Plane tilted({0, 0, 0}, {1, 2, 3});
@@ -128,11 +150,14 @@ TEST_CASE("case 1: flat shapes through the origin, where the error bound vanishe
             if (dot(w, n) > 0) again += scene->occluded({spawnOrigin(hit, w), w});
         }
         CHECK(met > 20000);
-        CHECK(again == 0);
+        all += again;
     }
+    c.measured("rays that meet the flat shape through the origin they leave, of 2.5e5", all, 0);
 }
 
-TEST_CASE("case 3: two sheets 1e-5 apart at a distance of 10") {
+TEST_CASE("case 3: two sheets closer than an offset") {
+    HardCase c;
+    int allLeaks = 0, allSelf = 0, naive = 0, rays = 0;
     for (Vec3 normal : {Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(-1, 0.1f, 0.2f)}) {
         const Frame f = Frame::fromNormal(normalize(normal));
         const auto sheet = [&](double height) {
@@ -155,7 +180,7 @@ TEST_CASE("case 3: two sheets 1e-5 apart at a distance of 10") {
         const auto scene = sceneOf({&near, &far});
         Random random(9);
         int leaks = 0, self = 0;
-        for (int i = 0; i < 300000; ++i) {
+        for (int i = 0; i < 335000; ++i) {
             const Vec3 target = f.z * 10 + f.x * (8 * random.uniform() - 4) + f.y * (8 * random.uniform() - 4);
             SurfaceHit hit, second;
             if (!scene->intersect({{0, 0, 0}, normalize(target)}, hit)) {
@@ -166,18 +191,35 @@ TEST_CASE("case 3: two sheets 1e-5 apart at a distance of 10") {
             const float cosine = i & 1 ? std::max(1e-4f, random.uniform()) : 0.01f + 0.1f * random.uniform();
             const float sine = safeSqrt(1 - cosine * cosine), phi = 2 * kPi * random.uniform();
             const Vec3 w = normalize(f.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}));
+            ++rays;
+            naive += !scene->intersect({hit.p + f.z * 1e-4f, w}, second);
             if (!scene->intersect({spawnOrigin(hit, w), w}, second))
                 ++leaks;
             else if (dot(second.p - hit.p, f.z) < 0.2f * static_cast<float>(gap))
                 ++self;
         }
-        CHECK(leaks == 0);
-        CHECK(self == 0);
+        allLeaks += leaks;
+        allSelf += self;
     }
+    c.measured("of 1e6 rays into a gap of 1e-5 m at a distance of 10 m, those that pass the second sheet", allLeaks, 0);
+    c.naive("share with an offset of 1e-4 m", static_cast<double>(naive) / rays);
+    c.measured("and those that meet the first sheet again", allSelf, 0);
+}
+
+// Möller and Trumbore's test in single precision; t, or 0.
+static float plainTriangle(Vec3 a, Vec3 b, Vec3 c, Vec3 o, Vec3 d) {
+    const Vec3 e1 = b - a, e2 = c - a, p = cross(d, e2);
+    const float det = dot(e1, p);
+    if (det == 0) return 0;
+    const Vec3 s = o - a, q = cross(s, e1);
+    const float u = dot(s, p) / det, v = dot(d, q) / det;
+    return u >= 0 && v >= 0 && u + v <= 1 ? std::max(0.f, dot(e2, q) / det) : 0;
 }
 
 // Thin triangles far away, met edge-on, as in Embree's issues 387, 416 and 423: hits that are not there.
 TEST_CASE("case 4: slivers met edge-on") {
+    HardCase hardCase;
+    int absurd = 0;
     Random random(1);
     int hits = 0, wrong = 0, expected = 0, lost = 0;
     for (int k = 0; k < 2000; ++k) {
@@ -203,6 +245,8 @@ TEST_CASE("case 4: slivers met edge-on") {
             SurfaceHit hit;
             const bool met = scene->intersect({o, d}, hit);
             hits += met;
+            const float plain = plainTriangle(m.positions[0], m.positions[1], m.positions[2], o, d);
+            absurd += plain > 0 && std::abs(static_cast<double>(plain) - t) > 1;
             const bool certain = inside > 0.02 && t > 1 && std::abs(angle) > 1e-3;
             expected += certain;
             lost += certain && !met;
@@ -215,25 +259,36 @@ TEST_CASE("case 4: slivers met edge-on") {
     }
     CHECK(hits > 4000);
     CHECK(expected > 2000);
-    CHECK(wrong == 0);
-    CHECK(lost <= expected / 200); // Embree itself misses a few
+    hardCase.measured("of 2e5 rays at 2000 slivers, hits whose place is off by more than 16 times their bound", wrong,
+                      0);
+    hardCase.naive("hits off by more than 1 m by the textbook's test in single precision", absurd);
+    hardCase.measured("share of certain hits that are lost", static_cast<double>(lost) / expected, 0.005);
 }
 
-TEST_CASE("case 5: nothing escapes from a closed mesh") {
-    const Mesh sphere(icosphere(6, {0.3, 0.2, 0.1}, 1));
-    const auto scene = sceneOf({&sphere});
+TEST_CASE("case 5: rays at edges and vertices") {
+    HardCase c;
+    c.measured("of 1e6 rays at the edges of a closed mesh, those that escape", doctor::escapesAtEdges(1000000), 0);
+    const MeshData m = icosphere(2, {}, 1);
     Random random(2);
     int escaped = 0;
-    for (int i = 0; i < 1000000; ++i) {
-        SurfaceHit hit;
-        const Vec3 origin = Vec3(0.3f, 0.2f, 0.1f) + randomDirection(random) * (0.9f * random.uniform());
-        escaped += !scene->intersect({origin, randomDirection(random)}, hit);
+    for (int i = 0; i < 10000; ++i) {
+        const auto& t = m.triangles[random.bits() % m.triangles.size()];
+        const Vec3 a = m.positions[t[0]], b = m.positions[t[1]],
+                   o = randomDirection(random) * (0.9f * random.uniform());
+        const Vec3 d = normalize(a + (b - a) * random.uniform() - o);
+        bool met = false;
+        for (const auto& f : m.triangles)
+            met = met || plainTriangle(m.positions[f[0]], m.positions[f[1]], m.positions[f[2]], o, d) > 0;
+        escaped += !met;
     }
-    CHECK(escaped == 0);
+    c.naive("of 1e4 at edges of 320 faces by the textbook's test", escaped);
+    c.measured("share of rays aimed at its very vertices that escape", doctor::escapesAtVertices(100000), 0.01);
 }
 
 // The whole chain of a shadow ray to a lamp: it must not be stopped by the lamp or by the surface it leaves.
 TEST_CASE("case 1: shadow rays end before the lamp") {
+    HardCase c;
+    int all = 0;
     for (float scale : {1e-5f, 1.f, 1e5f}) {
         const auto at = [scale](float x, float y, float z) { return Vec3(x, y, z) * scale; };
         const Quad floor(at(-9, 0.3f, -9), at(-9, 0.3f, 9), at(9, 0.3f, 9), at(9, 0.3f, -9));
@@ -262,41 +317,8 @@ TEST_CASE("case 1: shadow rays end before the lamp") {
             ++tried;
         }
         CHECK(tried > 40000);
-        CHECK(blocked == 0);
+        all += blocked;
     }
-}
-
-TEST_CASE("case 8: the same scene at 1e-5 and 1e5 of its size") {
-    std::vector<double> sums;
-    for (double scale : {1e-5, 1.0, 1e5}) {
-        const MeshData room =
-            moved(cube({-2.78f, -2.74f, -2.8f}, {2.78f, 2.74f, 2.8f}), Transform::scale({scale, scale, scale}));
-        const MeshData box = moved(cube({-1, -2.74f, -1}, {0.5f, -1, 0.5f}),
-                                   Transform::rotate({0, 1, 0}, 0.3).then(Transform::scale({scale, scale, scale})));
-        const Mesh roomMesh(room), boxMesh(box);
-        const Sphere ball(Vec3d(1, -1, 1) * scale, 0.7 * scale);
-        const auto scene = sceneOf({&roomMesh, &boxMesh, &ball});
-        Random random(4);
-        int escaped = 0;
-        double sum = 0;
-        // Light paths of ten segments bounce about: all stay inside, and all take the same way.
-        for (int i = 0; i < 20000; ++i) {
-            Vec3 origin = Vec3(Vec3d(0, 2, 0) * scale), d = randomDirection(random);
-            for (int bounce = 0; bounce < 10; ++bounce) {
-                SurfaceHit hit;
-                if (!scene->intersect({origin, d}, hit)) {
-                    ++escaped;
-                    break;
-                }
-                if (bounce < 3) sum += static_cast<double>(hit.distance) / scale;
-                const Vec3 n = dot(hit.ng, d) < 0 ? hit.ng : -hit.ng;
-                d = leaving(random, n, 0);
-                origin = spawnOrigin(hit, d);
-            }
-        }
-        CHECK(escaped == 0);
-        sums.push_back(sum);
-    }
-    CHECK(sums[0] == doctest::Approx(sums[1]).epsilon(1e-4));
-    CHECK(sums[2] == doctest::Approx(sums[1]).epsilon(1e-4));
+    c.measured("shadow rays stopped by the lamp they go to, of 3e5 in scenes of 1e-5, 1 and 1e5 times the size", all,
+               0);
 }
