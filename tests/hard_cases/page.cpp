@@ -38,7 +38,8 @@ measures some of them on any machine.
 
 )";
 
-constexpr const char* kEnd = R"(## How this page is made
+constexpr const char* kEnd = R"(
+## How this page is made
 
     ctest --test-dir build/dev -R hard_
     build/dev/tests/hard_case_page docs/hard_cases.md build/dev/tests/hard_*.jsonl
