@@ -28,13 +28,13 @@ std::string meshText(const MeshData& m, Vec3d offset, bool rounded) {
 double carried(const TestScene& scene, Vec3 origin, Vec3 direction) {
     static const LightSampler lights(scene.scene().lights);
     static const PathContext context{scene.scene(), lights, {}, true};
-    static auto media = PathLoop<kAllEffects.bits()>::makeMedia(scene.scene());
+    static auto media = PathLoop<kLoopEffects.bits()>::makeMedia(scene.scene());
     static Sampler sampler;
     static Arena arena;
     PathCounters counters;
     sampler.startPixel(7, true, true);
     sampler.start(0);
-    PathLoop<kAllEffects.bits()> loop(context, sampler, arena, counters, media);
+    PathLoop<kLoopEffects.bits()> loop(context, sampler, arena, counters, media);
     const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
     loop.startIn(surroundingsAt(scene.scene(), eye, 0));
     return mean(loop.radiance({eye, direction}, Wavelengths::sample(0.3f), 1e9f));
