@@ -32,7 +32,7 @@ double carried(const TestScene& scene, Vec3 origin, Vec3 direction) {
     static Sampler sampler;
     static Arena arena;
     PathCounters counters;
-    sampler.startPixel(7, true, true);
+    sampler.startPixel(7, Technique::Numbers::random, true);
     sampler.start(0);
     PathLoop<kLoopEffects.bits()> loop(context, sampler, arena, counters, media);
     const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);

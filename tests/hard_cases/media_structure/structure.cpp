@@ -39,7 +39,7 @@ TEST_CASE("case 75: too many dimensions, too long sequences, equal seeds") {
     double before = 0.5;
     for (std::uint64_t pixel = 0; pixel < 20000; ++pixel) {
         Sampler sampler;
-        sampler.startPixel(combine64(combine64(1, pixel), 0), false, true);
+        sampler.startPixel(combine64(combine64(1, pixel), 0), Technique::Numbers::sobol, true);
         sampler.start(4000000000u); // an index next to 2³²
         const double u = static_cast<double>(sampler.film().x);
         neighbours.add((u - 0.5) * (before - 0.5) * 12);
@@ -65,7 +65,8 @@ TEST_CASE("case 76: a random number of 1") {
     Sampler sampler;
     for (const bool random : {false, true})
         for (std::uint32_t i = 0; i < 200000; ++i) {
-            if (i % 1000 == 0) sampler.startPixel(mix64(i), random, true);
+            if (i % 1000 == 0)
+                sampler.startPixel(mix64(i), random ? Technique::Numbers::random : Technique::Numbers::sobol, true);
             sampler.start(i * 40503u);
             const VertexSample v = sampler.vertex(i % 9);
             for (const float u : {sampler.wavelength(), sampler.film().x, sampler.lens().y, v.light.x, v.bsdf.y, v.pick,
