@@ -6,108 +6,118 @@ namespace abbe {
 
 using namespace schema;
 
+namespace {
+
+using P = RenderParams;
+
+std::vector<FieldInfo> goalFields() {
+    return {field(FieldType::choice, "integrator", &P::integrator)
+                .choices({"path"})
+                .byDefault("path")
+                .doc("Algorithm: path tracing with next-event estimation.")
+                .example("integrator path"),
+            field(FieldType::integer, "samples", &P::samples)
+                .range(1, 4294967295.0)
+                .byDefault("64")
+                .synonyms({"spp", "pixelsamples", "sample_count"})
+                .doc("Samples per pixel; the render ends here unless another goal is met before.")
+                .example("samples 256"),
+            field(FieldType::quantity, "noise", &P::noise)
+                .unit({Dimension::fraction})
+                .range(0, 1)
+                .byDefault("0 %")
+                .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
+                .doc("Relative error of the image at which to stop; 0: none.")
+                .example("noise 0.5 %"),
+            field(FieldType::quantity, "time-limit", &P::timeLimit)
+                .unit({Dimension::time})
+                .range(0, 1e9)
+                .byDefault("0 s")
+                .doc("Wall-clock time after which to stop; 0: none.")
+                .example("time-limit 45 min"),
+            field(FieldType::number, "texture-cache", &P::textureCache)
+                .range(16, 1e9)
+                .byDefault("2048")
+                .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
+                .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
+                .example("texture-cache 512"),
+            field(FieldType::toggle, "adaptive", &P::adaptive)
+                .byDefault("off")
+                .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
+                .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
+                .example("adaptive on"),
+            field(FieldType::table, "forbid", &P::forbid)
+                .namedRows()
+                .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
+                .example("forbid { motion; thin-film }"),
+            field(FieldType::integer, "max-depth", &P::maxDepth)
+                .range(0, 100000)
+                .byDefault("0")
+                .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
+                .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
+                .example("max-depth 16"),
+            field(FieldType::integer, "seed", &P::seed)
+                .range(0, 9007199254740992.0)
+                .byDefault("0")
+                .doc("Chooses the random numbers; the same seed gives the same bits.")
+                .example("seed 7"),
+            field(FieldType::integer, "replicates", &P::replicates)
+                .range(1, 16)
+                .byDefault("2")
+                .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
+                .example("replicates 8")};
+}
+
+// How light is estimated: the same image by other means, to compare.
+std::vector<FieldInfo> techniqueFields() {
+    return {field(FieldType::choice, "sampler", &P::sampler)
+                .choices({"sobol", "stratified", "random"})
+                .byDefault("sobol")
+                .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
+                .example("sampler sobol"),
+            field(FieldType::choice, "strategy", &P::strategy)
+                .choices({"mis", "lights", "bsdf"})
+                .byDefault("mis")
+                .doc("How light is found: by both techniques, or by one alone, for comparison.")
+                .example("strategy mis"),
+            field(FieldType::choice, "mis-weights", &P::weights)
+                .choices({"balance", "power", "equal"})
+                .byDefault("balance")
+                .synonyms({"mis-heuristic", "heuristic"})
+                .doc("How `strategy mis` weighs its two techniques: by a heuristic, or one half each, to compare.")
+                .example("mis-weights power"),
+            field(FieldType::choice, "directions", &P::directions)
+                .choices({"importance", "uniform"})
+                .byDefault("importance")
+                .doc("Where paths go on: as the surface scatters, or evenly all around for comparison.")
+                .example("directions uniform"),
+            field(FieldType::choice, "roulette", &P::roulette)
+                .choices({"pilot", "throughput", "off"})
+                .byDefault("pilot")
+                .synonyms({"rr", "russian-roulette"})
+                .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
+                .example("roulette throughput"),
+            field(FieldType::integer, "wavelengths", &P::wavelengths)
+                .range(1, 8)
+                .byDefault("8")
+                .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer for comparison.")
+                .example("wavelengths 4"),
+            field(FieldType::choice, "light-choice", &P::lightChoice)
+                .choices({"tree", "power", "uniform"})
+                .byDefault("tree")
+                .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
+                .doc("Which light is asked: by what it may give to each place; by power or evenly to compare.")
+                .example("light-choice tree")};
+}
+
+} // namespace
+
 TypeInfo renderType() {
-    using P = RenderParams;
-    return {Kind::render,
-            "settings",
-            "How long and by which means to render.",
-            "render { samples 256; noise 0.5 % }",
-            true,
-            {
-                field(FieldType::choice, "integrator", &P::integrator)
-                    .choices({"path"})
-                    .byDefault("path")
-                    .doc("Algorithm: path tracing with next-event estimation.")
-                    .example("integrator path"),
-                field(FieldType::integer, "samples", &P::samples)
-                    .range(1, 4294967295.0)
-                    .byDefault("64")
-                    .synonyms({"spp", "pixelsamples", "sample_count"})
-                    .doc("Samples per pixel; the render ends here unless another goal is met before.")
-                    .example("samples 256"),
-                field(FieldType::quantity, "noise", &P::noise)
-                    .unit({Dimension::fraction})
-                    .range(0, 1)
-                    .byDefault("0 %")
-                    .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
-                    .doc("Relative error of the image at which to stop; 0: none.")
-                    .example("noise 0.5 %"),
-                field(FieldType::quantity, "time-limit", &P::timeLimit)
-                    .unit({Dimension::time})
-                    .range(0, 1e9)
-                    .byDefault("0 s")
-                    .doc("Wall-clock time after which to stop; 0: none.")
-                    .example("time-limit 45 min"),
-                field(FieldType::number, "texture-cache", &P::textureCache)
-                    .range(16, 1e9)
-                    .byDefault("2048")
-                    .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
-                    .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
-                    .example("texture-cache 512"),
-                field(FieldType::toggle, "adaptive", &P::adaptive)
-                    .byDefault("off")
-                    .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
-                    .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
-                    .example("adaptive on"),
-                field(FieldType::table, "forbid", &P::forbid)
-                    .namedRows()
-                    .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
-                    .example("forbid { motion; thin-film }"),
-                field(FieldType::integer, "max-depth", &P::maxDepth)
-                    .range(0, 100000)
-                    .byDefault("0")
-                    .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
-                    .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
-                    .example("max-depth 16"),
-                field(FieldType::integer, "seed", &P::seed)
-                    .range(0, 9007199254740992.0)
-                    .byDefault("0")
-                    .doc("Chooses the random numbers; the same seed gives the same bits.")
-                    .example("seed 7"),
-                field(FieldType::integer, "replicates", &P::replicates)
-                    .range(1, 16)
-                    .byDefault("2")
-                    .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
-                    .example("replicates 8"),
-                field(FieldType::choice, "sampler", &P::sampler)
-                    .choices({"sobol", "stratified", "random"})
-                    .byDefault("sobol")
-                    .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
-                    .example("sampler sobol"),
-                field(FieldType::choice, "strategy", &P::strategy)
-                    .choices({"mis", "lights", "bsdf"})
-                    .byDefault("mis")
-                    .doc("How light is found: by both techniques, or by one alone, for comparison.")
-                    .example("strategy mis"),
-                field(FieldType::choice, "mis-weights", &P::weights)
-                    .choices({"balance", "power", "equal"})
-                    .byDefault("balance")
-                    .synonyms({"mis-heuristic", "heuristic"})
-                    .doc("How `strategy mis` weighs its two techniques: by a heuristic, or one half each, to compare.")
-                    .example("mis-weights power"),
-                field(FieldType::choice, "directions", &P::directions)
-                    .choices({"importance", "uniform"})
-                    .byDefault("importance")
-                    .doc("Where paths go on: as the surface scatters, or evenly all around for comparison.")
-                    .example("directions uniform"),
-                field(FieldType::choice, "roulette", &P::roulette)
-                    .choices({"pilot", "throughput", "off"})
-                    .byDefault("pilot")
-                    .synonyms({"rr", "russian-roulette"})
-                    .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
-                    .example("roulette throughput"),
-                field(FieldType::integer, "wavelengths", &P::wavelengths)
-                    .range(1, 8)
-                    .byDefault("8")
-                    .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer for comparison.")
-                    .example("wavelengths 4"),
-                field(FieldType::choice, "light-choice", &P::lightChoice)
-                    .choices({"tree", "power", "uniform"})
-                    .byDefault("tree")
-                    .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
-                    .doc("Which light is asked: by what it may give to each place; by power or evenly to compare.")
-                    .example("light-choice tree"),
-            }};
+    TypeInfo type{
+        Kind::render, "settings",  "How long and by which means to render.", "render { samples 256; noise 0.5 % }",
+        true,         goalFields()};
+    for (FieldInfo& technique : techniqueFields()) type.fields.push_back(std::move(technique));
+    return type;
 }
 
 bool possibleWavelengths(std::int64_t count) { return count == 1 || count == 2 || count == 4 || count == 8; }
