@@ -39,6 +39,11 @@ class Shown {
 
 void showWork() { thread_local const Shown shown; }
 
+double untilNextLook(double elapsed, double& spread) {
+    spread = std::fmod(spread + 0.6180339887498949, 1.0);
+    return std::clamp(elapsed * 2e-4, 0.002, 0.01) * (0.5 + spread);
+}
+
 struct WorkClock::Impl {
     using Clock = std::chrono::steady_clock;
 
@@ -82,13 +87,9 @@ struct WorkClock::Impl {
         if (const double rest = since - share * charged; rest > 1e-12) charge({0, 0, 0}, rest);
     }
 
-    // A millisecond at first; when ten thousand looks have been taken, so long that their number grows with the
-    // logarithm of the time. Spread by the golden ratio, so that no work with a period of its own is always met at the
-    // same place.
     Clock::duration untilNext() {
-        spread = std::fmod(spread + 0.6180339887498949, 1.0);
-        const double mean = std::clamp(reading.seconds * 1e-4, 0.001, 0.01);
-        return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(mean * (0.5 + spread)));
+        return std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(untilNextLook(reading.seconds, spread)));
     }
 
     void run() {

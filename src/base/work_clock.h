@@ -1,4 +1,4 @@
-// Where the time goes: looks at what every thread is at, about a thousand times a second, and charges the time since
+// Where the time goes: looks at what every thread is at, several hundred times a second, and charges the time since
 // the last look to it (docs/decisions/023-bill.md).
 #pragma once
 
@@ -7,6 +7,11 @@
 #include <memory>
 
 namespace abbe {
+
+// When to look next, in s from now, `elapsed` s after the start: 2 ms in the mean, after ten seconds rarer, at most
+// 10 ms. Spread by the golden ratio, so that no work with a period of its own is always met at the same place; `spread`
+// belongs to the caller and begins at 0.
+double untilNextLook(double elapsed, double& spread);
 
 // Looks on from a thread of its own, from construction to destruction. Of several at a time each sees the same.
 class WorkClock {

@@ -4,6 +4,7 @@
 #include "base/work_clock.h"
 
 #include <chrono>
+#include <cmath>
 #include <doctest/doctest.h>
 #include <thread>
 
@@ -36,7 +37,7 @@ TEST_CASE("clock of work: what a thread is at has the time, and all adds up") {
     const auto start = Clock::now();
     WorkClock clock(1);
     double surface = 0, lights = 0;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 60; ++i) {
         surface += work(Work::surface, 0.004);
         lights += work(Work::lights, 0.012);
     }
@@ -44,23 +45,27 @@ TEST_CASE("clock of work: what a thread is at has the time, and all adds up") {
     const double wall = secondsSince(start);
     CHECK(reading.seconds == doctest::Approx(wall).epsilon(0.02));
     CHECK(everything(reading) == doctest::Approx(reading.seconds).epsilon(1e-9));
-    // Three standard errors of looks of a millisecond come to 8 %.
-    CHECK(charged(reading, Work::surface) == doctest::Approx(surface).epsilon(0.2));
+    // Three standard errors of 480 looks.
+    CHECK(charged(reading, Work::surface) == doctest::Approx(surface).epsilon(0.25));
     CHECK(charged(reading, Work::lights) == doctest::Approx(lights).epsilon(0.1));
     CHECK(charged(reading, Work::film) == 0);
     CHECK(charged(reading, Work::tracing) == 0);
 }
 
 TEST_CASE("clock of work: work with the period of the looks is not met at one place") {
-    WorkClock clock(1);
-    double surface = 0, camera = 0;
-    for (int i = 0; i < 400; ++i) {
-        camera += work(Work::camera, 0.0005);
-        surface += work(Work::surface, 0.0005);
+    for (const double period : {0.0005, 0.001, 0.002, 0.004}) {
+        double at = 0.0003, spread = 0;
+        int early = 0;
+        for (int i = 0; i < 2000; ++i) {
+            at += untilNextLook(1, spread);
+            early += std::fmod(at, period) < period / 2;
+        }
+        CAPTURE(period);
+        CHECK(early / 2000. == doctest::Approx(0.5).epsilon(0.1));
+        CHECK((at - 0.0003) / 2000 == doctest::Approx(0.002).epsilon(0.01));
     }
-    const WorkReading reading = clock.read();
-    CHECK(charged(reading, Work::camera) / reading.seconds ==
-          doctest::Approx(camera / (camera + surface)).epsilon(0.25));
+    double spread = 0;
+    CHECK(untilNextLook(1e6, spread) <= 0.015);
 }
 
 TEST_CASE("clock of work: threads share the time, with those that have nothing to do") {
@@ -110,7 +115,7 @@ TEST_CASE("clock of work: circumstances are kept apart, and readings add up") {
     };
     CHECK(all.sum(flagged).seconds == doctest::Approx(0.2).epsilon(0.1));
     CHECK(all.seconds == doctest::Approx(0.4).epsilon(0.1));
-    CHECK(all.sum(flagged).looks > 100);
+    CHECK(all.sum(flagged).looks > 40);
 }
 
 TEST_CASE("scopes of work: what was before comes back, and costs of loops end with them") {
