@@ -65,7 +65,7 @@ template <typename Number> void writeNumbers(ByteWriter& out, const std::vector<
 template <typename Number> std::vector<Number> readNumbers(ByteReader& in) {
     const auto bytes = in.take(in.number<std::uint64_t>() * sizeof(Number));
     std::vector<Number> numbers(bytes.size() / sizeof(Number));
-    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    if (!bytes.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size()); // null is no argument, even of 0 bytes
     return numbers;
 }
 

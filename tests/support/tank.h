@@ -53,4 +53,26 @@ struct Stack {
 };
 inline double interfaceReflectance(double n1, double n2) { return ((n1 - n2) / (n1 + n2)) * ((n1 - n2) / (n1 + n2)); }
 
+// What is seen along the middle of the tank: walls on either side of the water.
+inline double tankBrightness() {
+    const double outer = interfaceReflectance(1, 1.5), inner = interfaceReflectance(1.5, 1.33);
+    Stack stack;
+    stack.add(outer, 1 - outer);
+    stack.add(inner, 1 - inner);
+    stack.add(0, std::exp(-30 * 0.02));
+    stack.add(inner, 1 - inner);
+    stack.add(outer, 1 - outer);
+    return stack.r + stack.t;
+}
+
+// The same with a film of air between the walls and so much water, in metres.
+inline double filmedTankBrightness(double water) {
+    const double outer = interfaceReflectance(1, 1.5), wet = interfaceReflectance(1, 1.33);
+    Stack stack;
+    for (const double r : {outer, outer, wet}) stack.add(r, 1 - r);
+    stack.add(0, std::exp(-30 * water));
+    for (const double r : {wet, outer, outer}) stack.add(r, 1 - r);
+    return stack.r + stack.t;
+}
+
 } // namespace abbe::test

@@ -2,7 +2,7 @@
 #include "hard_cases/hard_case.h"
 #include "materials/ggx.h"
 #include "materials/ggx_albedo.h"
-#include "statistical/materials/suite.h"
+#include "statistical/materials/extremes.h"
 
 using namespace abbe;
 using namespace abbe::test;
@@ -11,26 +11,6 @@ namespace {
 
 constexpr float kCosines[] = {1, 0.5f, 1e-2f, 1e-3f, 1e-5f, 1e-8f, 1e-20f, 1e-37f, 1e-38f, 0};
 constexpr float kNumbers[] = {0, 1e-7f, 0.5f, 0.999f, kOneMinusEpsilon};
-
-Vec3 withCosine(float c, float azimuth) {
-    const float r = std::sqrt(1 - c * c);
-    return {r * std::cos(azimuth), r * std::sin(azimuth), c};
-}
-
-std::vector<BsdfUnderTest> everything() {
-    static const CauchyCurve flint(1.6, 0.02);
-    static const ConstantCurve matched(1.00001), nearly(1.0000001);
-    std::vector<BsdfUnderTest> all = roughSuite();
-    for (const float r : {0.f, 0.02f, 0.0225f}) {
-        all.push_back(conductor(0, 3, r));
-        all.push_back(conductor(0.2, 3, r, 1));
-        all.push_back(dielectric(1.5, r));
-        all.push_back(dispersiveGlass(flint, r, Wavelengths::sample(0.9f)));
-    }
-    for (const Curve* ior : {static_cast<const Curve*>(&matched), static_cast<const Curve*>(&nearly)})
-        for (const float r : {0.f, 0.5f, 1.f}) all.push_back(dispersiveGlass(*ior, r, Wavelengths::single(500)));
-    return all;
-}
 
 } // namespace
 
@@ -94,7 +74,7 @@ TEST_CASE("case 26: `wi` equal or opposite to `wo`") {
         for (const float side : {1.f, -1.f})
             for (const float azimuth : {0.f, 0.4f, 0.4f + kPi}) directions.push_back(withCosine(side * z, azimuth));
     int bad = 0, pairs = 0;
-    for (const BsdfUnderTest& b : everything())
+    for (const BsdfUnderTest& b : extremeSuite())
         for (const Vec3 wo : directions)
             for (std::size_t i = 0; i <= directions.size(); ++i) {
                 const BsdfEval e = b.bsdf->eval(wo, i < directions.size() ? directions[i] : -wo, Transport::radiance);
@@ -112,7 +92,7 @@ TEST_CASE("case 27: grazing directions") {
     HardCase c;
     int bad = 0;
     float heaviest = 0;
-    for (const BsdfUnderTest& b : everything())
+    for (const BsdfUnderTest& b : extremeSuite())
         for (const float cosine : kCosines)
             for (const float side : {1.f, -1.f})
                 for (const float lobe : kNumbers)

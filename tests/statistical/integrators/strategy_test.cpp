@@ -1,6 +1,7 @@
 // Next-event estimation alone, BSDF sampling alone and both together must make the same picture: three estimators that
 // share neither densities nor weights.
 #include "support/environment_file.h"
+#include "support/open_box.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -46,35 +47,26 @@ void checkStrategies(const StrategyScene& s) {
     }
 }
 
-// A box of 2 m around the origin, open towards the eye at +z: white floor, ceiling and back, coloured sides.
-const std::string kBox = R"(
-camera { from 0 0 4.2; look-at 0 0 0; fov 36 deg }
-material white diffuse { reflectance 0.7 }
-shape floor   quad { material white; points -1 -1 1  1 -1 1  1 -1 -1  -1 -1 -1 }
-shape ceiling quad { material white; points -1 1 -1  1 1 -1  1 1 1  -1 1 1 }
-shape back    quad { material white; points -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1 }
-shape left    quad { material diffuse { reflectance rgb 0.7 0.1 0.1 }; points -1 -1 1  -1 -1 -1  -1 1 -1  -1 1 1 }
-shape right   quad { material diffuse { reflectance rgb 0.1 0.6 0.1 }; points 1 -1 -1  1 -1 1  1 1 1  1 1 -1 }
-)";
 const std::string kLamp = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n";
 
 } // namespace
 
 TEST_CASE("strategies: matte box, quad light") {
-    checkStrategies({"box", kBox + kLamp + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
+    checkStrategies(
+        {"box", kOpenBox + kLamp + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
 }
 
 TEST_CASE("strategies: lamps with textures") {
     const std::string ball = "shape sphere { center 0.3 -0.6 0; radius 0.4; material conductor { index metal Au; "
                              "roughness 0.5 } }\n";
     checkStrategies({"screen",
-                     kBox + ball +
+                     kOpenBox + ball +
                          "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 4; "
                          "texture checker { even rgb 1 0.3 0.1; odd ramp { over v; stop 0.3 0; stop 1 rgb 0.2 0.3 1 }; "
                          "scale 3 } }\n",
                      512});
     checkStrategies({"ball and mesh",
-                     kBox + ball +
+                     kOpenBox + ball +
                          "shape sphere { center -0.5 0.1 0.2; radius 0.25; emission checker { even 1; odd rgb 0.1 0.4 "
                          "0.1; scale 5 } }\n"
                          "light mesh { points { - 0.2 0.9 0.5; - 0.2 0.9 -0.5; - 0.8 0.9 -0.5; - 0.8 0.7 0.5 }; "
@@ -84,7 +76,7 @@ TEST_CASE("strategies: lamps with textures") {
 
 TEST_CASE("strategies: rough metals") {
     checkStrategies({"metals",
-                     kBox + kLamp +
+                     kOpenBox + kLamp +
                          "shape sphere { center -0.45 -0.5 0; radius 0.45;"
                          " material conductor { index metal Au; roughness 0.6 } }\n"
                          "shape sphere { center 0.5 -0.5 0.1; radius 0.45;"
@@ -97,7 +89,7 @@ TEST_CASE("strategies: rough glass, plain, dispersive and absorbing") {
                               "ior glass SF11; roughness 0.7; absorption table 400 6  600 0.5  700 2"})
         checkStrategies(
             {glass,
-             kBox + kLamp +
+             kOpenBox + kLamp +
                  fmt::format("shape sphere {{ center 0 -0.3 0; radius 0.6; material dielectric {{ {} }} }}\n", glass),
              512, 0, 0.004});
 }
@@ -107,8 +99,8 @@ TEST_CASE("strategies: a matte thing inside rough absorbing glass, with the lamp
     const std::string block = "shape sphere { center 0 -0.2 0; radius 0.75;"
                               " material dielectric { ior 1.5; roughness 0.8; absorption 1.2 } }\n";
     checkStrategies(
-        {"inside", kBox + block + "light sphere { center 0 -0.2 0; radius 0.3; radiance 6 }\n", 512, 0, 0.004});
-    checkStrategies({"outside", kBox + kLamp + block, 512, 0, 0.004});
+        {"inside", kOpenBox + block + "light sphere { center 0 -0.2 0; radius 0.3; radiance 6 }\n", 512, 0, 0.004});
+    checkStrategies({"outside", kOpenBox + kLamp + block, 512, 0, 0.004});
 }
 
 TEST_CASE("strategies: many lights of different kinds and powers") {
@@ -119,7 +111,7 @@ TEST_CASE("strategies: many lights of different kinds and powers") {
     lights += "light disk { center 0 0.95 0; normal 0 -1 0.3; radius 0.3; radiance 3 }\n"
               "light sky { radiance 0.3 }\nlight sun { elevation 20 deg; azimuth 160 deg; angular-diameter 30 deg;"
               " radiance 2 }\n";
-    checkStrategies({"many lights", kBox + lights, 768, 0, 0.004});
+    checkStrategies({"many lights", kOpenBox + lights, 768, 0, 0.004});
 }
 
 TEST_CASE("strategies: environment image") {

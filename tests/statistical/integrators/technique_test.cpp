@@ -1,6 +1,7 @@
 // Every technique makes the same picture: each against the default, on scenes that need all of the loop. Surfaces of
 // all kinds, dispersion, media, textures and lights that only some techniques can find.
 #include "support/environment_file.h"
+#include "support/open_box.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -12,15 +13,6 @@ namespace abbe::test {
 namespace {
 
 constexpr const char* kHeader = "scene 1\nfilm { size 24 24; filter box 0.5 }\n";
-const std::string kBox = R"(
-camera { from 0 0 4.2; look-at 0 0 0; fov 36 deg }
-material white diffuse { reflectance 0.7 }
-shape floor   quad { material white; points -1 -1 1  1 -1 1  1 -1 -1  -1 -1 -1 }
-shape ceiling quad { material white; points -1 1 -1  1 1 -1  1 1 1  -1 1 1 }
-shape back    quad { material white; points -1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1 }
-shape left    quad { material diffuse { reflectance rgb 0.7 0.1 0.1 }; points -1 -1 1  -1 -1 -1  -1 1 -1  -1 1 1 }
-shape right   quad { material diffuse { reflectance rgb 0.1 0.6 0.1 }; points 1 -1 -1  1 -1 1  1 1 1  1 1 -1 }
-)";
 const std::string kLamp = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n"
                           "light sphere { center -0.7 -0.3 0.5; radius 0.15; radiance 3 }\n";
 
@@ -32,28 +24,28 @@ struct TechniqueScene {
 
 // Matte, rough metal, and gloss over a matte ground: a delta lobe beside others.
 TechniqueScene surfaces() {
-    return {kBox + kLamp +
+    return {kOpenBox + kLamp +
             "shape sphere { center -0.4 -0.55 0; radius 0.42; material conductor { index metal Au; roughness 0.6 } }\n"
             "shape sphere { center 0.5 -0.55 0.1; radius 0.42; material openpbr { base-color 0.5; specular-roughness 0 "
             "} }\n"};
 }
 // Rough dispersive glass, whose densities depend on wavelength.
 TechniqueScene roughGlass() {
-    return {kBox + kLamp +
+    return {kOpenBox + kLamp +
                 "shape sphere { center 0 -0.45 0; radius 0.5; material dielectric { ior cauchy 1.4 0.03; roughness 0.9;"
                 " absorption table 400 0.5 700 0.1 } }\n",
             512};
 }
 // Polished glass, which ends all wavelengths but one.
 TechniqueScene polishedGlass() {
-    return {kBox + kLamp +
+    return {kOpenBox + kLamp +
                 "shape sphere { center 0.3 -0.6 0.2; radius 0.35; material dielectric { ior glass SF11 } }\n",
             512};
 }
 // Fog whose extinction depends on wavelength, a lamp in it, and a diffuse transmitter.
 TechniqueScene fog() {
     return {
-        kBox + kLamp +
+        kOpenBox + kLamp +
             "volume atmosphere { scattering table 400 0.5 700 0.2; absorption 0.05; phase henyey-greenstein { g 0.4 "
             "} }\n"
             "shape quad { points -0.5 -0.4 0.2  0.5 -0.4 0.2  0.5 0.3 -0.1  -0.5 0.3 -0.1; material "
@@ -158,7 +150,7 @@ TEST_CASE("techniques: what a light is never asked for is found by scattering") 
 // Nothing is absorbed and nothing leaves: only the rule for long paths ends them, and light from the lamp adds up to no
 // end but for the lamp itself, which is black.
 TEST_CASE("techniques: paths end in a closed white box, whatever the roulette") {
-    std::string text = "scene 1\nfilm { size 4 4; filter box 0.5 }\n" + kBox +
+    std::string text = "scene 1\nfilm { size 4 4; filter box 0.5 }\n" + kOpenBox +
                        "shape front quad { material white; points -1 -1 5  -1 1 5  1 1 5  1 -1 5 }\n"
                        "shape a quad { material white; points -1 -1 5  1 -1 5  1 -1 1  -1 -1 1 }\n"
                        "shape b quad { material white; points -1 1 1  1 1 1  1 1 5  -1 1 5 }\n"

@@ -1,6 +1,6 @@
 // Directions and numbers at the edge of their ranges (docs/hard_cases.md, cases 25 to 27).
+#include "extremes.h"
 #include "materials/ggx_albedo.h"
-#include "suite.h"
 
 #include <doctest/doctest.h>
 
@@ -12,34 +12,13 @@ using namespace test;
 constexpr float kCosines[] = {1, 0.5f, 1e-2f, 1e-3f, 1e-5f, 1e-8f, 1e-12f, 1e-20f, 1e-30f, 1e-37f, 1e-38f, 0};
 constexpr float kNumbers[] = {0, 1e-7f, 0.25f, 0.5f, 0.999f, kOneMinusEpsilon};
 
-Vec3 withCosine(float c, float azimuth) {
-    const float r = std::sqrt(1 - c * c);
-    return {r * std::cos(azimuth), r * std::sin(azimuth), c};
-}
-
-std::vector<BsdfUnderTest> everything() {
-    static const CauchyCurve flint(1.6, 0.02);
-    static const ConstantCurve matched(1.00001), nearly(1.0000001);
-    std::vector<BsdfUnderTest> all = roughSuite();
-    for (const float r : {0.f, 0.02f, 0.0225f}) {
-        all.push_back(conductor(0, 3, r));
-        all.push_back(conductor(0.2, 3, r, 1));
-        all.push_back(dielectric(1.5, r));
-        all.push_back(dispersiveGlass(flint, r, Wavelengths::sample(0.9f)));
-    }
-    for (const Curve* ior : {static_cast<const Curve*>(&matched), static_cast<const Curve*>(&nearly)})
-        for (const float r : {0.f, 0.5f, 1.f}) all.push_back(dispersiveGlass(*ior, r, Wavelengths::single(500)));
-    all.push_back(conductor(0, 3, 1, 1));
-    return all;
-}
-
 bool finite(const BsdfEval& e) {
     return allFinite(e.fcos) && allFinite(e.pdfRatio) && std::isfinite(e.pdfSolidAngle) && e.pdfSolidAngle >= 0 &&
            !anyNonZero(Spectrum(min(e.fcos, Spectrum(0.f))));
 }
 
 TEST_CASE("samples at every cosine and number are finite, and no weight is large") {
-    for (const BsdfUnderTest& b : everything()) {
+    for (const BsdfUnderTest& b : extremeSuite()) {
         bool good = true;
         float heaviest = 0;
         for (const float c : kCosines)
@@ -72,7 +51,7 @@ TEST_CASE("eval is finite for all pairs of directions, equal and opposite ones a
         for (const float side : {1.f, -1.f})
             for (const float azimuth : {0.f, 0.4f, 2.f, 0.4f + kPi})
                 directions.push_back(withCosine(side * c, azimuth));
-    for (const BsdfUnderTest& b : everything()) {
+    for (const BsdfUnderTest& b : extremeSuite()) {
         bool good = true;
         for (const Vec3 wo : directions) {
             for (const Vec3 wi : directions) good = good && finite(b.bsdf->eval(wo, wi, Transport::radiance));
