@@ -42,7 +42,7 @@ function readArguments() {
     try {
         read = parseArgs({allowPositionals: true, options: {
             abbe: text(join(root, "build/release/abbe")), out: text(join(root, "docs/gallery")), work: text(join(root, "build/gallery")), threads: text("0"),
-            "study-time": text("200"), "study-samples": text(""), "study-size": text("112"), seeds: text("8"), variants: text("no-nee,lights-only,random,denoised"),
+            "study-time": text("120"), "study-samples": text(""), "study-size": text("112"), seeds: text("8"), variants: text("no-nee,lights-only,random,denoised"),
             "samples-scale": text("1"), "size-scale": text("1"), only: text("")}});
     } catch (error) {
         fail(error.message);
