@@ -23,10 +23,11 @@ list(APPEND allowed_media volumes)
 set(allowed_modules textures)
 set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
 set(allowed_study ${allowed_scene} scene denoise)
+set(allowed_verify ${allowed_scene} scene)
 set(allowed_doctor ${allowed_scene} parser scene)
-set(allowed_app ${allowed_scene} parser scene denoise study doctor)
+set(allowed_app ${allowed_scene} parser scene denoise study verify doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules integrators scene study doctor app)
+            modules integrators scene study verify doctor app)
 
 # Libraries that only one folder may know, or two.
 set(library_folders

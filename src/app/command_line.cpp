@@ -9,6 +9,7 @@
 #include "app/command_line_help.h"
 #include "app/command_line_replay.h"
 #include "app/command_line_study.h"
+#include "app/command_line_verify.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
 #include "schema/scene_tree.h"
@@ -25,7 +26,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr const char* kCommands[] = {"render", "merge",   "check",  "explain", "info",  "convert", "compare",
-                                     "volume", "denoise", "replay", "certify", "study", "doctor"};
+                                     "volume", "denoise", "replay", "certify", "study", "verify",  "doctor"};
 
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {
@@ -53,6 +54,9 @@ class Reader {
         CLI::App* study = add("study", kStudyHelp);
         addStudyArguments(*study, study_, common_);
         addDefines(study, study_.input.defines);
+        CLI::App* verify = add("verify", kVerifyHelp);
+        addVerifyArguments(*verify, verify_, common_);
+        addDefines(verify, verify_.input.defines);
     }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
@@ -152,6 +156,7 @@ class Reader {
     ReplayOptions replay_;
     CertifyOptions certify_;
     StudyOptions study_;
+    VerifyOptions verify_;
     DoctorOptions doctor_;
 };
 
@@ -344,6 +349,7 @@ Command Reader::command(const Words& words) {
     if (name == "replay") return {replay_, common_};
     if (name == "certify") return {certify_, common_};
     if (name == "study") return {study_, common_};
+    if (name == "verify") return {verify_, common_};
     if (name == "doctor") return {doctor_, common_};
     return {compare_, common_};
 }

@@ -138,6 +138,17 @@ struct StudyOptions {
     bool quiet = false;
 };
 
+struct VerifyOptions {
+    SceneInput input;
+    BuildOptions build;                  // camera and size; without a size at most kVerifySide pixels
+    double resolution = 0.001;           // relative standard error of the difference
+    double timeLimit = 300;              // s
+    std::optional<std::int64_t> samples; // per pixel of either, in place of the two
+    double level = 0.001;                // of the test
+    bool strict = false;
+    bool quiet = false;
+};
+
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string scene;  // empty: where it was when the first part was made
@@ -146,9 +157,9 @@ struct MergeOptions {
     ViewOptions view;
 };
 
-using Options =
-    std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions, CompareOptions,
-                 VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions, DoctorOptions>;
+using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
+                             CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions,
+                             VerifyOptions, DoctorOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -164,6 +175,7 @@ ExitCode run(const DenoiseOptions&, const CommonOptions&);
 ExitCode run(const ReplayOptions&, const CommonOptions&);
 ExitCode run(const CertifyOptions&, const CommonOptions&);
 ExitCode run(const StudyOptions&, const CommonOptions&);
+ExitCode run(const VerifyOptions&, const CommonOptions&);
 ExitCode run(const DoctorOptions&, const CommonOptions&);
 
 } // namespace abbe

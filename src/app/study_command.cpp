@@ -6,6 +6,7 @@
 #include "app/provenance.h"
 #include "app/render_identity.h"
 #include "app/render_report.h"
+#include "app/small_size.h"
 #include "app/study_effects.h"
 #include "app/study_files.h"
 #include "app/study_page.h"
@@ -58,7 +59,6 @@ class StudyCommand {
 
   private:
     ExitCode load();
-    void chooseSize();
     ExitCode checkOutputs();
     void choosePlan();
     bool probe(InterruptGuard&);
@@ -105,22 +105,11 @@ class StudyCommand {
     double secondsPerSample_ = 0; // of the whole picture
 };
 
-// The frame of the scene, made smaller.
-void StudyCommand::chooseSize() {
-    build_ = options_.build;
-    if (build_.size) return;
-    BuildOptions look = build_;
-    look.geometry = false;
-    Diagnostics ignored; // they come again
-    const Vec2d size = buildScene(loaded_->tree, loaded_->types, look, ignored).film.size;
-    const double scale = std::min(1.0, kStudySide / std::max({size.x, size.y, 1.0}));
-    const auto scaled = [scale](double v) { return std::max(1, static_cast<int>(std::lround(v * scale))); };
-    build_.size = Vec2i{scaled(size.x), scaled(size.y)};
-}
-
 ExitCode StudyCommand::load() {
     loaded_ = loadScene(options_.input);
-    if (loaded_->readable && !loaded_->diagnostics.hasErrors()) chooseSize();
+    build_ = options_.build;
+    if (!build_.size && loaded_->readable && !loaded_->diagnostics.hasErrors())
+        build_.size = smallSize(*loaded_, build_, kStudySide);
     if (loaded_->readable) built_ = buildScene(loaded_->tree, loaded_->types, build_, loaded_->diagnostics);
     messages_->diagnostics(loaded_->diagnostics, loaded_->sources);
     if (const ExitCode code = loaded_->exitCode(); code != ExitCode::done) return code;

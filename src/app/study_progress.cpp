@@ -26,8 +26,9 @@ void StudyProgressLine::show(const StudyProgress& p) {
         return;
     }
     if (first && !console_.interactive()) return; // nothing is known yet
-    std::string text = fmt::format("{:3d} %   {}/{}   {}   {} elapsed", static_cast<int>(100 * p.fraction), p.renders,
-                                   p.totalRenders, p.what, clockText(p.elapsed));
+    std::string text = fmt::format("{:3d} %   ", static_cast<int>(100 * p.fraction));
+    if (p.totalRenders > 0) text += fmt::format("{}/{}   ", p.renders, p.totalRenders);
+    text += fmt::format("{}   {} elapsed", p.what, clockText(p.elapsed));
     if (p.left >= 0) text += fmt::format("   {} left", clockText(p.left));
     if (!console_.interactive()) {
         console_.line(text);

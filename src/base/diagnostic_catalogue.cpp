@@ -251,7 +251,8 @@ constexpr CodeInfo kCodes[] = {
     {"W0731", "an unfinished study is replaced", "Beside the outputs there is what an interrupted study has saved, and `--resume` was not given."},
     {"W0732", "no study to go on with", "`--resume` found nothing beside the outputs, so the study begins anew. What was saved is removed when a study is done."},
     {"W0733", "the reference is not much better", "A study wants a reference with a twentieth of the relMSE of its best image. The reference's noise cancels in the mean of what is measured, but makes it vary more from study to study. More time makes a better reference."},
-    {"W0734", "dropped samples in a study", "Some samples were dropped, as in any render, because something in them was not a number, infinite or negative. The errors that were measured are those without them; a reference lacks them, too."},
+    {"W0734", "dropped samples in a study or a verification", "Some samples were dropped, as in any render, because something in them was not a number, infinite or negative. The errors that were measured are those without them; a reference lacks them, too."},
+    {"W0735", "two estimators that nobody can compare", "`abbe verify` could not come to know the difference of its two estimators as well as it was asked to, in the time it was given. Faults smaller than what it says would have been seen may be there."},
     {"W0740", "a dark light", "The light states an amount of 0, its texture is black, or what it is made of has no area. It is seen as black and never chosen when light is looked for."},
     {"W0750", "a dark lamp", "The photometric file says that the lamp sends no light in any direction. It is left out."},
 };

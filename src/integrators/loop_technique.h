@@ -2,13 +2,16 @@
 #pragma once
 
 #include "integrators/roulette.h"
+#include "math/warp.h"
 #include "render/technique.h"
 #include "spectrum/wavelengths.h"
 
 namespace abbe {
 
 struct LoopTechnique {
-    enum class Rule : std::uint8_t { balance, power, equal, lightsOnly };
+    enum class Rule : std::uint8_t { balance, power, equal, favourLights, favourScattering, lightsOnly };
+    // How many samples of the favoured technique each of its samples pretends to be.
+    static constexpr float kFavour = 16;
 
     LoopTechnique() = default;
     explicit LoopTechnique(const Technique& t)
@@ -16,8 +19,11 @@ struct LoopTechnique {
           rule(t.strategy == Technique::Strategy::lightsOnly ? Rule::lightsOnly
                : t.weights == Technique::Weights::power      ? Rule::power
                : t.weights == Technique::Weights::equal      ? Rule::equal
+               : t.weights == Technique::Weights::lights     ? Rule::favourLights
+               : t.weights == Technique::Weights::scattering ? Rule::favourScattering
                                                              : Rule::balance),
-          balanced(rule == Rule::balance), uniform(t.directions == Technique::Directions::uniform) {
+          balanced(rule == Rule::balance), evenly(t.directions != Technique::Directions::importance),
+          mixed(t.directions == Technique::Directions::mixed) {
         if (t.roulette == Technique::Roulette::throughput) leastAfterDelta = 0;
     }
 
@@ -33,6 +39,10 @@ struct LoopTechnique {
             return ratio * ratio;
         case Rule::equal:
             return 1;
+        case Rule::favourLights: // the balance heuristic of unequal numbers of samples [Veach1997, eq. 9.8]
+            return ratio * (foundByLights ? 1 / kFavour : kFavour);
+        case Rule::favourScattering:
+            return ratio * (foundByLights ? kFavour : 1 / kFavour);
         case Rule::lightsOnly:
             return foundByLights ? 0 : kInfinity;
         }
@@ -60,7 +70,19 @@ struct LoopTechnique {
     bool asksLights = true;    // next-event estimation
     Rule rule = Rule::balance; // between lights and scattering; without lights there is nothing to weigh
     bool balanced = true;      // by the balance heuristic
-    bool uniform = false;      // directions
+    bool evenly = false;       // some of the directions are drawn evenly, or all
+    bool mixed = false;        // some
+
+    // Share of them at a vertex. Mixed: densities are then at least 1 - share of the own ones, and the product of that
+    // over n vertices is 1/(n + 1): weights grow with the length of a path, not exponentially.
+    float evenShare(std::uint32_t depth) const { return mixed ? 1 / static_cast<float>(depth + 2) : 1; }
+    // With which a medium's vertex finds a direction that its phase function finds with `own`.
+    float mixedDensity(float own, std::uint32_t depth) const {
+        if (!evenly) [[likely]]
+            return own;
+        const float even = evenShare(depth);
+        return even * kSpherePdf + (1 - even) * own;
+    }
 };
 
 } // namespace abbe

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/work.h"
+#include "integrators/defensive_bsdf.h"
 #include "integrators/light_sampler.h"
 #include "integrators/loop_technique.h"
 #include "integrators/medium_tracker.h"
@@ -11,7 +12,6 @@
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
 #include "integrators/surroundings_at.h"
-#include "integrators/uniform_bsdf.h"
 #include "math/equiangular.h"
 #include "render/effect_counts.h"
 #include "render/integrator.h"
@@ -165,7 +165,7 @@ template <EffectBits E> class PathLoop {
     void leaveScene(Vec3 direction);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
-    [[gnu::cold]] const Bsdf* evenly(const SurfaceHit&, Vec3 direction);
+    [[gnu::cold]] const Bsdf* evenly(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
     bool survives(std::uint32_t depth, float rouletteScale);
     bool occluded(Vec3 origin, const LightSample& light) const {
         const Intersector& world = *context_.scene.intersector;
@@ -246,7 +246,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         }
         arena_.reset();
         const Bsdf& bsdf =
-            context_.how.uniform ? *evenly(hit, ray.direction) : *hit.material->bsdf(hit, path_.lambda, arena_);
+            context_.how.evenly ? *evenly(hit, ray.direction, depth) : *hit.material->bsdf(hit, path_.lambda, arena_);
         const Directions eye{hit.shading.toLocal(-ray.direction), -ray.direction};
         path_.from = receiver(hit, bsdf, eye);
         if (context_.lights.asksForLobes()) viewLobes(bsdf, eye);
@@ -254,8 +254,8 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         // Drawn before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
         if constexpr (kTextures)
-            if (context_.how.uniform && next) [[unlikely]]
-                ownPdf_ = static_cast<const UniformBsdf&>(bsdf).ownDensity(eye.wo, next->wi);
+            if (context_.how.evenly && next) [[unlikely]]
+                ownPdf_ = static_cast<const DefensiveBsdf&>(bsdf).ownDensity(eye.wo, next->wi);
         if (observer_) [[unlikely]]
             observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
         setWork(Work::lights);
@@ -352,8 +352,8 @@ template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float ro
     return true;
 }
 
-// What stands for the scattering at a surface whose directions are drawn evenly.
-template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, Vec3 direction) {
+// What stands for the scattering at a surface some of whose directions are drawn evenly.
+template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     const Bsdf& own = *hit.material->bsdf(hit, path_.lambda, arena_);
     float eta = 1;
     if (const Curve* inside = hit.material->ior()) {
@@ -361,7 +361,7 @@ template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, V
         if (hit.outside) eta /= hit.outside->at(path_.lambda)[0];
         if (dot(hit.shading.z, direction) > 0) eta = 1 / eta; // on the way out
     }
-    return arena_.make<UniformBsdf>(own, eta);
+    return arena_.make<DefensiveBsdf>(own, eta, context_.how.evenShare(depth));
 }
 
 // Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a

@@ -78,8 +78,8 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     setWork(Work::lights);
     sampleLightInMedium(ray.origin, ray.direction, sample, depth);
     setWork(volumeWork(collided_->number));
-    const bool uniform = context_.how.uniform;
-    const float cosine = uniform ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
+    const float even = context_.how.evenly ? context_.how.evenShare(depth) : 0;
+    const float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
     const Blame blame{collided_, "phase function"};
     if (!(std::abs(cosine) < 1.001f)) condemn(cosine, blame);
     const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
@@ -88,10 +88,10 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     path_.scatters.outline.count = 0;
     path_.bsdfPdf = phase.value(cosine);
     checkDensity(path_.bsdfPdf, blame);
-    if (uniform) [[unlikely]] {
+    if (even > 0) [[unlikely]] {
         ownPdf_ = path_.bsdfPdf;
-        path_.beta *= ownPdf_ / kSpherePdf;
-        path_.bsdfPdf = kSpherePdf;
+        path_.bsdfPdf = context_.how.mixedDensity(ownPdf_, depth);
+        path_.beta *= ownPdf_ / path_.bsdfPdf;
     }
     path_.delta = false;
     if (phase.spectral()) {
@@ -130,7 +130,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     if (!anyNonZero(passing)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
     BsdfEval eval;
-    eval.pdfSolidAngle = context_.how.uniform ? kSpherePdf : value;
+    eval.pdfSolidAngle = context_.how.mixedDensity(value, depth);
     Spectrum contribution =
         path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);

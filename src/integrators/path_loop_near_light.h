@@ -46,8 +46,7 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
         eval.pdfSolidAngle = phase.value(cosine);
         checkDensity(eval.pdfSolidAngle, {at.medium, "phase function"});
         const float density = eval.pdfSolidAngle;
-        if (context_.how.uniform) [[unlikely]]
-            eval.pdfSolidAngle = kSpherePdf;
+        eval.pdfSolidAngle = context_.how.mixedDensity(density, depth);
         Spectrum value = at.coefficient * (density * lightWeight(lightPdf, eval, light->delta));
         if (phase.spectral()) value *= phase.ratio(cosine, path_.lambda);
         scattered += value;

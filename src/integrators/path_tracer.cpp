@@ -63,7 +63,8 @@ PathTally tallyOf(const TileResult& r, double seconds) {
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
-    return lights.needsChoice() || technique.directions == Technique::Directions::uniform || scene.camera->usesLens() ||
+    return lights.needsChoice() || technique.directions != Technique::Directions::importance ||
+           scene.camera->usesLens() ||
            std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
 }
 

@@ -81,15 +81,15 @@ std::vector<FieldInfo> techniqueFields() {
                 .doc("How light is found: by both techniques, or by one alone, for comparison.")
                 .example("strategy mis"),
             field(FieldType::choice, "mis-weights", &P::weights)
-                .choices({"balance", "power", "equal"})
+                .choices({"balance", "power", "equal", "lights", "scattering"})
                 .byDefault("balance")
                 .synonyms({"mis-heuristic", "heuristic"})
-                .doc("How `strategy mis` weighs its two techniques: by a heuristic, or one half each, to compare.")
+                .doc("How `strategy mis` weighs its two techniques; other than `balance` to compare.")
                 .example("mis-weights power"),
             field(FieldType::choice, "directions", &P::directions)
-                .choices({"importance", "uniform"})
+                .choices({"importance", "uniform", "mixed"})
                 .byDefault("importance")
-                .doc("Where paths go on: as the surface scatters, or evenly all around for comparison.")
+                .doc("Where paths go on: as the surface scatters; evenly all around, or by a mixture, to compare.")
                 .example("directions uniform"),
             field(FieldType::choice, "roulette", &P::roulette)
                 .choices({"pilot", "throughput", "off"})

@@ -7,13 +7,15 @@ namespace abbe {
 namespace {
 
 // In the order of the enumerators; the first is the default.
-template <typename E> constexpr std::array<std::string_view, 3> kWords{};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::Numbers>{"sobol", "stratified", "random"};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::Strategy>{"mis", "lights", "bsdf"};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::Weights>{"balance", "power", "equal"};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::Directions>{"importance", "uniform"};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
-template <> constexpr std::array<std::string_view, 3> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
+template <typename E> constexpr std::array<std::string_view, 5> kWords{};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Numbers>{"sobol", "stratified", "random"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Strategy>{"mis", "lights", "bsdf"};
+template <>
+constexpr std::array<std::string_view, 5> kWords<Technique::Weights>{"balance", "power", "equal", "lights",
+                                                                     "scattering"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Directions>{"importance", "uniform", "mixed"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
 
 template <typename E> E find(std::string_view word) {
     for (std::size_t i = 1; i < kWords<E>.size(); ++i)

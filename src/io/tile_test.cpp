@@ -1,6 +1,7 @@
 #include "io/tile_test.h"
 
 #include "base/check.h"
+#include "math/student.h"
 #include "math/vec.h"
 
 #include <algorithm>
@@ -18,12 +19,6 @@ constexpr int kTile = 8;
 constexpr double kLevel = 0.01;
 
 double normalBelow(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
-// Student's t with `freedom` degrees as a normal score [Wallace1959].
-double normalScore(double t, double freedom) {
-    const double size = std::sqrt(freedom * std::log1p(t * t / freedom)) * (8 * freedom + 1) / (8 * freedom + 3);
-    return std::copysign(size, t);
-}
 
 // The probability that n numbers of the distribution are this far from it or farther [Stephens1970].
 double kolmogorovProbability(double distance, double n) {
@@ -61,7 +56,7 @@ struct TileScore {
         const double variance = a.variance + b.variance;
         const double freedom =
             square(variance) / (a.squaredVariance / (replicatesA + 1) + b.squaredVariance / (replicatesB + 1));
-        return normalScore((a.value - b.value) / std::sqrt(variance), freedom);
+        return studentScore((a.value - b.value) / std::sqrt(variance), freedom);
     }
 };
 

@@ -14,12 +14,12 @@ struct Technique {
     // How light is found: by asking lights and by scattering, or by one alone. What lights cannot be asked for
     // (mirrors, parts of the sky that a light never samples) is found by scattering in any case.
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
-    // How the two are weighed where both find the same light: the heuristics of [Veach1997, sec. 9.2], or one half
-    // each.
-    enum class Weights : std::uint8_t { balance, power, equal } weights = Weights::balance;
-    // Where paths go on: as the surface or medium scatters, or evenly over the hemisphere, or the sphere where light
-    // is let through. Mirrors and clear glass are followed in any case.
-    enum class Directions : std::uint8_t { importance, uniform } directions = Directions::importance;
+    // How the two are weighed where both find the same light: the heuristics of [Veach1997, sec. 9.2], one half each,
+    // or the balance heuristic as if one of the two had more samples than it has.
+    enum class Weights : std::uint8_t { balance, power, equal, lights, scattering } weights = Weights::balance;
+    // Where paths go on: as the surface or medium scatters; evenly over the hemisphere, or the sphere where light is
+    // let through; or by a mixture of both, weighed by its density. Mirrors and clear glass are followed in any case.
+    enum class Directions : std::uint8_t { importance, uniform, mixed } directions = Directions::importance;
     // Which light is asked: by what it may give to the place; by its power alone, or evenly.
     enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
     // Which paths go on: by what the pixel is expected to show, by their throughput, or all but those that carry next

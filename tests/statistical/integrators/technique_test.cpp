@@ -70,7 +70,12 @@ std::map<std::string, Technique> techniques() {
     all["random"].numbers = T::Numbers::random;
     all["power weights"].weights = T::Weights::power;
     all["equal weights"].weights = T::Weights::equal;
+    all["weights that favour lights"].weights = T::Weights::lights;
+    all["weights that favour scattering"].weights = T::Weights::scattering;
     all["uniform directions"].directions = T::Directions::uniform;
+    all["mixed directions"].directions = T::Directions::mixed;
+    all["mixed, lights"] = {.weights = T::Weights::lights, .directions = T::Directions::mixed};
+    all["mixed, scattering"] = {.weights = T::Weights::scattering, .directions = T::Directions::mixed};
     all["roulette by throughput"].roulette = T::Roulette::throughput;
     all["no roulette"].roulette = T::Roulette::off;
     for (const int n : {1, 2, 4}) all[fmt::format("{} wavelengths", n)].wavelengths = static_cast<std::uint8_t>(n);

@@ -12,7 +12,8 @@ namespace abbe::test {
 TEST_CASE("technique: weights from either side sum to 1, however extreme the densities") {
     constexpr float kLargest = std::numeric_limits<float>::max(), kLeast = std::numeric_limits<float>::denorm_min();
     const float densities[] = {kLeast, 1e-38f, 1e-20f, 0.3f, 1, 7, 1e20f, kLargest};
-    for (const auto weights : {Technique::Weights::balance, Technique::Weights::power, Technique::Weights::equal}) {
+    using W = Technique::Weights;
+    for (const auto weights : {W::balance, W::power, W::equal, W::lights, W::scattering}) {
         const LoopTechnique how(Technique{.weights = weights});
         for (const float a : densities)
             for (const float b : densities) {
@@ -22,6 +23,11 @@ TEST_CASE("technique: weights from either side sum to 1, however extreme the den
                 INFO("densities " << a << " and " << b);
                 CHECK(one + other == doctest::Approx(1).epsilon(1e-6));
                 if (weights == Technique::Weights::power && a > 1e3f * b) CHECK(one > 0.999f);
+                // Favour moves weights by up to a factor, never to 0: tails stay those of the balance heuristic.
+                if (weights == W::lights && a / b > 1e-3f && b / a > 1e-3f) CHECK(one > 1 / (1 + b / a));
+                if (weights == W::scattering && a / b > 1e-3f && b / a > 1e-3f)
+                    CHECK(one * LoopTechnique::kFavour > 1 / (1 + b / a));
+                if (weights == W::scattering && b / a > 1e-3f && a / b > 1e-3f) CHECK(one < 1 / (1 + b / a));
             }
         CHECK(how.odds(0, true) == 0); // found in one way only: all of it counts
         CHECK(how.odds(0, false) == 0);
@@ -86,7 +92,7 @@ TEST_CASE("technique: every word says what it says") {
     CHECK(directionsOf("uniform") == Technique::Directions::uniform);
     CHECK(rouletteOf("off") == Technique::Roulette::off);
     CHECK(lightChoiceOf("none") == Technique::LightChoice::tree);
-    for (const char* w : {"balance", "power", "equal"}) CHECK(word(weightsOf(w)) == w);
+    for (const char* w : {"balance", "power", "equal", "lights", "scattering"}) CHECK(word(weightsOf(w)) == w);
     for (const char* w : {"pilot", "throughput", "off"}) CHECK(word(rouletteOf(w)) == w);
     for (const char* w : {"mis", "lights", "bsdf"}) CHECK(word(strategyOf(w)) == w);
 }
