@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 
+#include <algorithm>
 #include <array>
 
 namespace abbe {
@@ -20,12 +21,7 @@ class Search {
 
     // The box of what passes from a film point at `radius`.
     Box box(double radius) const {
-        const Box all = reach(radius);
-        for (const int cells : {32, 128, 512}) {
-            const Box coarse = scan(all, radius, cells);
-            if (coarse.area() > 0) return scan(coarse, radius, 48);
-        }
-        return {};
+        return findPupil(reach(radius), [&](Vec2d p) { return passes(radius, p); });
     }
 
   private:
@@ -45,22 +41,6 @@ class Search {
         return b;
     }
 
-    // The cells in whose middle a ray passes, and those around them.
-    Box scan(const Box& area, double radius, int cells) const {
-        const Vec2d step{(area.upper.x - area.lower.x) / cells, (area.upper.y - area.lower.y) / cells};
-        Box found{{1, 1}, {-1, -1}};
-        bool any = false;
-        for (int j = 0; j < cells; ++j)
-            for (int i = 0; i < cells; ++i) {
-                const Vec2d p{area.lower.x + (i + 0.5) * step.x, area.lower.y + (j + 0.5) * step.y};
-                if (!passes(radius, p)) continue;
-                const Box cell{{p.x - 1.5 * step.x, p.y - 1.5 * step.y}, {p.x + 1.5 * step.x, p.y + 1.5 * step.y}};
-                found = any ? hull(found, cell) : cell;
-                any = true;
-            }
-        return any ? found : Box{};
-    }
-
     bool passes(double radius, Vec2d p) const {
         for (const double nm : kWavelengths) {
             const Vec3d from{radius, 0, film_};
@@ -71,13 +51,6 @@ class Search {
         return false;
     }
 
-  public:
-    static Box hull(const Box& a, const Box& b) {
-        return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y)},
-                {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y)}};
-    }
-
-  private:
     const LensTrain& train_;
     const Aperture& opening_;
     double film_;
@@ -94,7 +67,7 @@ ExitPupil::ExitPupil(const LensTrain& train, const Aperture& opening, double fil
     Box last = search.box(0);
     for (int i = 1; i <= kIntervals; ++i) {
         const Box next = search.box(i / scale_);
-        boxes_.push_back(last.area() == 0 ? next : next.area() == 0 ? last : Search::hull(last, next));
+        boxes_.push_back(Box::hull(last, next));
         last = next;
     }
 }

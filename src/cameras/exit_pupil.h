@@ -2,8 +2,7 @@
 #pragma once
 
 #include "cameras/lens_train.h"
-
-#include <algorithm>
+#include "cameras/pupil_box.h"
 
 namespace abbe {
 
@@ -13,10 +12,7 @@ namespace abbe {
 // each is a cell of the search grid larger than what was found.
 class ExitPupil {
   public:
-    struct Box {
-        Vec2d lower, upper; // m; empty: no light reaches this distance
-        double area() const { return std::max(0.0, upper.x - lower.x) * std::max(0.0, upper.y - lower.y); }
-    };
+    using Box = PupilBox; // empty: no light reaches this distance
 
     ExitPupil() = default;
     // `film`: z of the film plane, behind the last surface; `radius`: of its farthest corner, m.

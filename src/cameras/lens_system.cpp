@@ -1,6 +1,7 @@
 #include "cameras/lens_system.h"
 
 #include "base/check.h"
+#include "cameras/connection.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -124,23 +125,40 @@ LensSystemCamera::LensSystemCamera(const Frame& axes, Vec2i filmSize, double wid
     weight_ = 4 * optics_.fNumber * optics_.fNumber / (kPiD * distance * distance);
 }
 
+const EntrancePupil& LensSystemCamera::entrancePupil() const {
+    std::call_once(searched_, [this] {
+        const double radius = std::hypot(corner_.x, corner_.y);
+        entrancePupil_ = EntrancePupil(train_, optics_.opening, optics_.pupil, exitPupil_, optics_.film, radius);
+    });
+    return entrancePupil_;
+}
+
+LensSystemCamera::Zone LensSystemCamera::zoneOf(Vec2d film) const noexcept {
+    const double r = std::hypot(film.x, film.y);
+    return {r > 0 ? Vec2d{film.x / r, film.y / r} : Vec2d{1, 0}, &exitPupil_.at(r)};
+}
+
+Vec3d LensSystemCamera::inLens(Vec3 p) const noexcept { return axes_.toLocal(Vec3d(p)) + Vec3d{0, 0, optics_.pupil}; }
+
 // The illuminance at a film point is the integral of L cos⁴θ / Z² over the exit pupil's plane at distance Z
-// [Kolb1995].
+// [Kolb1995]; `cosine` is that of θ.
+double LensSystemCamera::rayWeight(const ExitPupil::Box& box, double cosine) const noexcept {
+    const double square = cosine * cosine;
+    return weight_ * box.area() * square * square;
+}
+
 CameraRay LensSystemCamera::ray(const CameraSample& sample) const noexcept {
     CameraRay result;
     result.heroOnly = train_.disperses();
     // The image on the film stands on its head.
     const Vec2d film{-(corner_.x + pixel_ * static_cast<double>(sample.film.x)),
                      -(corner_.y - pixel_ * static_cast<double>(sample.film.y))};
-    const double r = std::hypot(film.x, film.y);
-    const ExitPupil::Box& box = exitPupil_.at(r);
-    const double x = box.lower.x + static_cast<double>(sample.lens.x) * (box.upper.x - box.lower.x);
-    const double y = box.lower.y + static_cast<double>(sample.lens.y) * (box.upper.y - box.lower.y);
-    const double cosine = r > 0 ? film.x / r : 1, sine = r > 0 ? film.y / r : 0;
+    const auto [turn, box] = zoneOf(film);
+    const double x = box->lower.x + static_cast<double>(sample.lens.x) * (box->upper.x - box->lower.x);
+    const double y = box->lower.y + static_cast<double>(sample.lens.y) * (box->upper.y - box->lower.y);
     const Vec3d from{film.x, film.y, optics_.film};
-    LensRay ray{from, normalize(Vec3d{cosine * x - sine * y, sine * x + cosine * y, train_.length()} - from)};
-    const double square = ray.d.z * ray.d.z;
-    result.weight = static_cast<float>(weight_ * box.area() * square * square);
+    LensRay ray{from, normalize(Vec3d{turn.x * x - turn.y * y, turn.y * x + turn.x * y, train_.length()} - from)};
+    result.weight = static_cast<float>(rayWeight(*box, ray.d.z));
     if (!(result.weight > 0) || !train_.toScene(ray, static_cast<double>(sample.wavelength), optics_.opening)) {
         result.weight = 0;
         return result;
@@ -149,6 +167,53 @@ CameraRay LensSystemCamera::ray(const CameraSample& sample) const noexcept {
     result.ray.direction = normalize(axes_.toWorld(Vec3(ray.d)));
     result.ray.time = sample.time;
     return result;
+}
+
+// weight d(film) d(lens) of ray() is weight_ Z² / pixel² times the étendue cosθ dA dω behind the lens, dA on the film
+// and dω = cos³θ/Z² of a patch of the exit pupil; and the étendue of a bundle is the same in the air before the lens,
+// however the glass bends it [Born1999, §4.8.3]. So the importance that the lens emits is a constant where it lets
+// light through.
+double LensSystemCamera::importance(Vec3d p, Vec3d target, const PupilBox& box) const noexcept {
+    const double z = optics_.film - train_.length(), emitted = weight_ * z * z / (pixel_ * pixel_);
+    const Vec3d way = target - p;
+    const double d2 = lengthSquared(way);
+    return emitted * (way.z / std::sqrt(d2)) * box.area() / d2;
+}
+
+std::optional<LensConnection> LensSystemCamera::connect(const LensQuery& query) const noexcept {
+    const Vec3d p = inLens(query.p);
+    const auto aim = entrancePupil().towards(p);
+    if (!aim) return std::nullopt;
+    const Vec3d target = aim->at({static_cast<double>(query.lens.x), static_cast<double>(query.lens.y)});
+    const Vec3d away = normalize(p - target);
+    LensRay ray{p, -away};
+    Vec3d entry;
+    if (!train_.toFilm(ray, static_cast<double>(query.wavelength), optics_.opening, &entry)) return std::nullopt;
+    const auto on = [&](double z) {
+        const double way = (z - ray.p.z) / ray.d.z;
+        return Vec2d{ray.p.x + ray.d.x * way, ray.p.y + ray.d.y * way};
+    };
+    const Vec2d film = on(optics_.film), exit = on(train_.length());
+    const auto [turn, box] = zoneOf(film);
+    if (!box->contains({turn.x * exit.x + turn.y * exit.y, turn.x * exit.y - turn.y * exit.x})) return std::nullopt;
+    CameraConnection found;
+    found.lens = entry - Vec3d{0, 0, optics_.pupil};
+    found.away = away;
+    found.distance = dot(p - entry, away);
+    found.film = {(-film.x - corner_.x) / pixel_, (corner_.y + film.y) / pixel_};
+    found.weight = rayWeight(*box, ray.d.z);
+    found.pdfFacingArea = importance(p, target, aim->box) / found.weight;
+    found.heroOnly = train_.disperses();
+    return connection(axes_, query, found);
+}
+
+float LensSystemCamera::pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept {
+    const Vec3d p = inLens(query.p), d = axes_.toLocal(Vec3d(ray.ray.direction));
+    const auto aim = entrancePupil().towards(p);
+    if (!aim || !(d.z < 0)) return 0;
+    const Vec3d from = inLens(ray.ray.origin), target = from + d * ((aim->plane - from.z) / d.z);
+    if (!aim->contains(target)) return 0;
+    return static_cast<float>(importance(p, target, aim->box) / static_cast<double>(ray.weight));
 }
 
 // The ray through the middle of the entrance pupil, followed to the film.

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "cameras/camera_params.h"
+#include "cameras/entrance_pupil.h"
 #include "cameras/exit_pupil.h"
+
+#include <mutex>
 
 namespace abbe {
 
@@ -32,18 +35,37 @@ class LensSystemCamera final : public Camera {
     // sine condition and is focused at infinity, less towards the corners and at close range.
     CameraRay ray(const CameraSample&) const noexcept override;
     std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
+    // The lens numbers draw a point of the entrance pupil, from which light is traced to the film.
+    std::optional<LensConnection> connect(const LensQuery&) const noexcept override;
+    float pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept override;
+    bool sharesLens() const override { return false; }
     bool disperses() const override { return train_.disperses(); }
     const LensTrain& train() const { return train_; }
     const Optics& optics() const { return optics_; }
     const ExitPupil& exitPupil() const { return exitPupil_; }
+    // Found when it is first asked for, which takes about 0.1 s.
+    const EntrancePupil& entrancePupil() const;
 
   private:
+    // A film point, in lens coordinates, and the box of the exit pupil that belongs to it; turned about the axis so
+    // that it lies on +x.
+    struct Zone {
+        Vec2d turn; // cosine and sine of the film point's azimuth
+        const ExitPupil::Box* box;
+    };
+    Zone zoneOf(Vec2d film) const noexcept;
+    Vec3d inLens(Vec3 p) const noexcept; // lens coordinates
+    double rayWeight(const ExitPupil::Box&, double cosine) const noexcept;
+    double importance(Vec3d p, Vec3d target, const PupilBox&) const noexcept;
+
     Frame axes_;
     LensTrain train_;
     Optics optics_;
     ExitPupil exitPupil_;
-    double pixel_;  // m
-    Vec2d corner_;  // of the upright picture, m
+    double pixel_; // m
+    Vec2d corner_; // of the upright picture, m
+    mutable std::once_flag searched_;
+    mutable EntrancePupil entrancePupil_;
     double weight_; // 4 N² / π over the squared distance of the film from the last vertex
 };
 

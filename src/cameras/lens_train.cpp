@@ -34,8 +34,7 @@ double LensTrain::index(std::uint32_t medium, double nm) const {
     return n[0] + (x - cell) * (n[1] - n[0]);
 }
 
-double LensTrain::rearEdge() const {
-    const Surface& s = surfaces_.back();
+double LensTrain::edge(const Surface& s) {
     const double h2 = s.semiAperture * s.semiAperture, c = s.curvature;
     return s.z + c * h2 / (1 + std::sqrt(std::max(0.0, 1 - c * c * h2)));
 }
@@ -79,12 +78,13 @@ bool LensTrain::toScene(LensRay& ray, double nm, const Aperture& opening) const 
     return true;
 }
 
-bool LensTrain::toFilm(LensRay& ray, double nm, const Aperture& opening) const noexcept {
+bool LensTrain::toFilm(LensRay& ray, double nm, const Aperture& opening, Vec3d* entry) const noexcept {
     if (!(ray.d.z > 0)) return false;
     double n = 1;
     for (const Surface& s : surfaces_) {
         const double next = s.behind == 0 ? 1 : index(s.behind, nm);
         if (!cross(s, ray, n / next, 1, opening) || !(ray.d.z > 0)) return false;
+        if (entry && &s == &surfaces_.front()) *entry = ray.p;
         n = next;
     }
     return true;

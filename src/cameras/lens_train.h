@@ -28,8 +28,8 @@ class LensTrain {
     // A ray that comes from the film, through all surfaces and the stop, into the scene: replaced by the ray in front
     // of the lens. False if it is lost: at a rim, at the stop's opening, or by total reflection.
     bool toScene(LensRay&, double nm, const Aperture& opening) const noexcept;
-    // The other way.
-    bool toFilm(LensRay&, double nm, const Aperture& opening) const noexcept;
+    // The other way; `entry` is told where the ray met the first surface.
+    bool toFilm(LensRay&, double nm, const Aperture& opening, Vec3d* entry = nullptr) const noexcept;
 
     CardinalPoints cardinalPoints(double nm) const;
     // Where the scene sees the middle of the stop, and how large: radius per radius of the stop. Paraxial.
@@ -40,7 +40,9 @@ class LensTrain {
     double stopRadius() const { return surfaces_[stop_].semiAperture; } // wide open, m
     double length() const { return surfaces_.back().z; }                // from the first vertex to the last
     double rearRadius() const { return surfaces_.back().semiAperture; }
-    double rearEdge() const; // z of the rim of the last surface
+    double rearEdge() const { return edge(surfaces_.back()); } // z of the rim of the last surface
+    double frontRadius() const { return surfaces_.front().semiAperture; }
+    double frontEdge() const { return edge(surfaces_.front()); }
 
   private:
     struct Surface {
@@ -56,6 +58,7 @@ class LensTrain {
     };
     static constexpr int kCells = 470; // of 1 nm
 
+    static double edge(const Surface&);
     double index(std::uint32_t medium, double nm) const;
     Matrix matrix(std::size_t surfaces, double nm) const; // through that many surfaces, with the way to the last one
     bool cross(const Surface&, LensRay&, double ratio, double forward, const Aperture&) const noexcept;

@@ -1,6 +1,7 @@
 #include "cameras/orthographic.h"
 
 #include "base/check.h"
+#include "cameras/connection.h"
 
 #include <cmath>
 
@@ -56,6 +57,24 @@ std::optional<Vec2d> OrthographicCamera::project(Vec3d p, double, Vec2d) const n
     if (!(seen.z < 0)) return std::nullopt;
     const auto scale = static_cast<double>(scale_);
     return Vec2d{(seen.x - static_cast<double>(corner_.x)) / scale, (static_cast<double>(corner_.y) - seen.y) / scale};
+}
+
+// The direction is a delta and the place follows from p: a pixel sees the same area at any distance.
+std::optional<LensConnection> OrthographicCamera::connect(const LensQuery& query) const noexcept {
+    const Vec3d seen = axes_.toLocal(Vec3d(query.p));
+    if (!(seen.z < 0)) return std::nullopt;
+    const auto scale = static_cast<double>(scale_);
+    return connection(
+        axes_, query,
+        {.lens = {seen.x, seen.y, 0},
+         .away = {0, 0, -1},
+         .distance = -seen.z,
+         .film = {(seen.x - static_cast<double>(corner_.x)) / scale, (static_cast<double>(corner_.y) - seen.y) / scale},
+         .pdfFacingArea = 1 / (scale * scale)});
+}
+
+float OrthographicCamera::pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept {
+    return 1 / (scale_ * scale_);
 }
 
 std::optional<PlacedCamera> makeOrthographic(const OrthographicParams& params, const CameraContext& context,

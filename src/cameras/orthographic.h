@@ -18,6 +18,8 @@ class OrthographicCamera final : public Camera {
     OrthographicCamera(const Frame& axes, Vec2i filmSize, double pixel);
     CameraRay ray(const CameraSample&) const noexcept override;
     std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
+    std::optional<LensConnection> connect(const LensQuery&) const noexcept override;
+    float pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept override;
     bool usesLens() const override { return false; }
 
   private:

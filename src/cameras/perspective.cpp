@@ -1,6 +1,7 @@
 #include "cameras/perspective.h"
 
 #include "base/check.h"
+#include "cameras/connection.h"
 #include "math/warp.h"
 
 #include <cmath>
@@ -119,10 +120,14 @@ PerspectiveCamera::PerspectiveCamera(const Frame& axes, Vec2i filmSize, const Th
     lean_ = {static_cast<float>(-m.x / lens.focalLength), static_cast<float>(-m.y / lens.focalLength)};
 }
 
+Vec3 PerspectiveCamera::lensPoint(Vec2 u) const noexcept {
+    const Vec2 p = aperture_.sample(u);
+    return lensX_ * (p.x * invSqueeze_) + lensY_ * p.y;
+}
+
 // A point of the lens; bends the ray's direction.
 Vec3 PerspectiveCamera::special(Vec2 u, Vec3& direction) const noexcept {
-    const Vec2 p = aperture_.sample(u);
-    const Vec3 lens = lensX_ * (p.x * invSqueeze_) + lensY_ * p.y;
+    const Vec3 lens = lensPoint(u);
     const float invDistance = std::fma(direction.x, lean_.x, std::fma(direction.y, lean_.y, invFocus_));
     direction = direction - lens * invDistance;
     return lens;
@@ -145,6 +150,41 @@ CameraRay PerspectiveCamera::ray(const CameraSample& sample) const noexcept {
     result.ray.direction = normalize(axes_.toWorld(direction));
     result.ray.time = sample.time;
     return result;
+}
+
+// From the point l of the lens, what its middle sees in the direction c = (cx, cy, -1) lies in the direction v = c - l
+// (k·c) with k = (lean, -1/focus): a linear map I - l kᵀ, of determinant 1 - k·l, and a multiple of c belongs to a unit
+// vector w = v/|v| as w + l (k·w)/(1 - k·l) [Sherman1950]. As dω = |det(v, ∂v/∂cx, ∂v/∂cy)| / |v|³ dcx dcy, that
+// is |1 - k·l| / |v|³, and |v| = 1/|z| for the multiple's z.
+PerspectiveCamera::Sight PerspectiveCamera::sight(Vec3d lens, Vec3d away) const noexcept {
+    const Vec3d k{static_cast<double>(lean_.x), static_cast<double>(lean_.y), -static_cast<double>(invFocus_)};
+    const double determinant = 1 - dot(k, lens);
+    const Vec3d middle = away + lens * (dot(k, away) / determinant);
+    if (!(middle.z < 0)) return {};
+    const auto scale = static_cast<double>(scale_);
+    const double z = -middle.z;
+    return {middle * (1 / z), 1 / (z * z * z * std::abs(determinant) * scale * scale)};
+}
+
+std::optional<LensConnection> PerspectiveCamera::connect(const LensQuery& query) const noexcept {
+    CameraConnection found;
+    if (lensRadius_ > 0) found.lens = Vec3d(lensPoint(query.lens));
+    const Vec3d way = axes_.toLocal(Vec3d(query.p)) - found.lens;
+    found.distance = length(way);
+    found.away = way * (1 / found.distance);
+    const Sight seen = sight(found.lens, found.away);
+    if (!(seen.density > 0)) return std::nullopt;
+    const auto scale = static_cast<double>(scale_);
+    found.film = {(seen.middle.x - static_cast<double>(corner_.x)) / scale,
+                  (static_cast<double>(corner_.y) - seen.middle.y) / scale};
+    found.pdfFacingArea = seen.density / (found.distance * found.distance);
+    return connection(axes_, query, found);
+}
+
+float PerspectiveCamera::pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept {
+    const Sight seen = sight(axes_.toLocal(Vec3d(ray.ray.origin)), axes_.toLocal(Vec3d(ray.ray.direction)));
+    const Vec3d way = Vec3d(query.p) - Vec3d(ray.ray.origin);
+    return static_cast<float>(seen.density / lengthSquared(way));
 }
 
 std::optional<Vec2d> PerspectiveCamera::project(Vec3d p, double, Vec2d) const noexcept {

@@ -40,10 +40,20 @@ class PerspectiveCamera final : public Camera {
         : PerspectiveCamera(axes, filmSize, ThinLens{tanHalfFov, Aperture(lensRadius), 1, focus, {}, {}, 1}) {}
     CameraRay ray(const CameraSample&) const noexcept override;
     std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
+    std::optional<LensConnection> connect(const LensQuery&) const noexcept override;
+    float pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept override;
     bool usesLens() const override { return lensRadius_ > 0; }
 
   private:
+    // What a point of the lens sees in a direction.
+    struct Sight {
+        Vec3d middle;       // the direction in which the middle of the lens sees the same place of the film; z = -1
+        double density = 0; // pixels/sr; 0: nothing
+    };
+
     Vec3 special(Vec2 lens, Vec3& direction) const noexcept;
+    Vec3 lensPoint(Vec2 u) const noexcept;
+    Sight sight(Vec3d lens, Vec3d away) const noexcept;
 
     Frame axes_;
     float scale_;      // of a pixel at distance 1

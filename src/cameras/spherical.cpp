@@ -1,8 +1,10 @@
 #include "cameras/spherical.h"
 
 #include "base/check.h"
+#include "cameras/connection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace abbe {
@@ -60,6 +62,65 @@ std::optional<Vec2d> SphericalCamera::project(Vec3d p, double, Vec2d near) const
     const double latitude = std::asin(std::clamp(seen.y / distance, -1.0, 1.0));
     const double x = (longitude - corner_.x) / scale_.x, turn = 2 * kPiD / scale_.x;
     return Vec2d{x + turn * std::round((near.x - x) / turn), (corner_.y - latitude) / scale_.y};
+}
+
+// Turns about the upright axis repeat across, and so do those over a pole, which show the other side of it.
+struct SphericalCamera::Places {
+    struct Row {
+        double x = 0, y = 0; // of the first one
+        double count = 0;    // with one turn from each to the next
+    };
+    std::array<Row, 3> rows;
+    double turn = 0;    // pixels
+    double count = 0;   // of all
+    double density = 0; // of each, pixels/sr
+
+    Vec2d at(double index) const {
+        for (const Row& r : rows) {
+            if (index < r.count) return {r.x + turn * index, r.y};
+            index -= r.count;
+        }
+        return {rows[0].x, rows[0].y};
+    }
+};
+
+SphericalCamera::Places SphericalCamera::places(Vec3d w, const LensQuery& query) const noexcept {
+    const double longitude = std::atan2(w.x, -w.z), across = std::hypot(w.x, w.z), latitude = std::atan2(w.y, across);
+    Places result;
+    result.turn = 2 * kPiD / scale_.x;
+    result.density = 1 / (across * scale_.x * scale_.y);
+    const std::array<Vec2d, 3> angles{
+        Vec2d{longitude, latitude}, {longitude + kPiD, kPiD - latitude}, {longitude + kPiD, -kPiD - latitude}};
+    const Vec2d lower{static_cast<double>(query.filmLower.x), static_cast<double>(query.filmLower.y)};
+    const Vec2d upper{static_cast<double>(query.filmUpper.x), static_cast<double>(query.filmUpper.y)};
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        const double x = (angles[i].x - corner_.x) / scale_.x, y = (corner_.y - angles[i].y) / scale_.y;
+        if (!(y >= lower.y && y < upper.y)) continue;
+        const double first = std::ceil((lower.x - x) / result.turn), end = std::ceil((upper.x - x) / result.turn);
+        result.rows[i] = {x + first * result.turn, y, std::max(0.0, end - first)};
+        result.count += result.rows[i].count;
+    }
+    return result;
+}
+
+std::optional<LensConnection> SphericalCamera::connect(const LensQuery& query) const noexcept {
+    const Vec3d way = axes_.toLocal(Vec3d(query.p));
+    const double distance = length(way);
+    const Vec3d away = way * (1 / distance);
+    const Places found = places(away, query);
+    if (!(found.count > 0)) return std::nullopt;
+    const double index = std::min(std::floor(static_cast<double>(query.lens.x) * found.count), found.count - 1);
+    return connection(axes_, query,
+                      {.lens = {},
+                       .away = away,
+                       .distance = distance,
+                       .film = found.at(index),
+                       .pdfFacingArea = found.count * found.density / (distance * distance)});
+}
+
+float SphericalCamera::pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept {
+    const Places found = places(axes_.toLocal(Vec3d(ray.ray.direction)), query);
+    return static_cast<float>(found.count * found.density / lengthSquared(Vec3d(query.p)));
 }
 
 std::optional<PlacedCamera> makeSpherical(const SphericalParams& params, const CameraContext& context,

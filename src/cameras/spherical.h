@@ -20,9 +20,17 @@ class SphericalCamera final : public Camera {
     SphericalCamera(const Frame& axes, Vec2i filmSize, double width, double height);
     CameraRay ray(const CameraSample&) const noexcept override;
     std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
+    // Where filters reach beyond the edges of a whole sphere, a point is seen at several places: the lens numbers
+    // choose.
+    std::optional<LensConnection> connect(const LensQuery&) const noexcept override;
+    float pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept override;
     bool usesLens() const override { return false; }
 
   private:
+    // All places of the film with one direction.
+    struct Places;
+    Places places(Vec3d direction, const LensQuery&) const noexcept;
+
     Frame axes_;
     Vec2d scale_; // rad per pixel
     Vec2d corner_;

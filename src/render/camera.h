@@ -1,6 +1,7 @@
 // From a place on the film to a ray.
 #pragma once
 
+#include "render/lens_connection.h"
 #include "render/ray.h"
 
 #include <optional>
@@ -32,6 +33,26 @@ class Camera {
         static_cast<void>(p), static_cast<void>(time), static_cast<void>(near);
         return std::nullopt;
     }
+    // Ray::time for a CameraSample::time, which ray() gives its rays.
+    virtual float rayTime(float u) const noexcept { return u; }
+    // The ray of this time and wavelength that comes from p, with the point of the lens that the query's numbers draw.
+    // Nothing: no ray does, it falls outside of the film, or p is too near for finite numbers. For evenly drawn lens
+    // numbers the expected sum of what light paths add is what ray() makes of the same light [Veach1997, ch. 8 and 10]:
+    //     pixel = ∫ h(x) weight L dx du = ∫ h(x) We L cosθ dA dω,    We cosθ dA dω = weight dx du,
+    // with x on the film in pixels, u the lens numbers and h the pixel's filter. A lens point drawn with density q per
+    // m² turns dA dω into dA' |cosθ'| / (d² q) at p; importance = We cosθ / (d² q) is all of that but |cosθ'|.
+    virtual std::optional<LensConnection> connect(const LensQuery& query) const noexcept {
+        static_cast<void>(query);
+        return std::nullopt;
+    }
+    // LensConnection::pdfFacingArea where `ray`, with a weight above 0, found p; the query's lens numbers do not
+    // matter. 0: connect() never comes along this ray.
+    virtual float pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept {
+        static_cast<void>(query), static_cast<void>(ray);
+        return 0;
+    }
+    // True if the same lens numbers stand for the same point of the lens in ray() and in connect().
+    virtual bool sharesLens() const { return true; }
     // False if ray() does not look at CameraSample::lens.
     virtual bool usesLens() const { return true; }
     // True if ray() may set CameraRay::heroOnly. A scene seen by such a camera has Effect::dispersion.

@@ -26,10 +26,29 @@ class HeldCamera final : public Camera {
     std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override {
         return inner_->project(p, still_ ? 0.5 : time, near);
     }
+    float rayTime(float u) const noexcept override { return still_ ? 0 : inner_->rayTime(u); }
+    // The middle of a lens whose points ray() finds otherwise than connect() is met by no connection.
+    std::optional<LensConnection> connect(const LensQuery& query) const noexcept override {
+        return reachable() ? inner_->connect(held(query)) : std::nullopt;
+    }
+    float pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept override {
+        if (!reachable()) return 0;
+        CameraRay inner = ray;
+        if (still_) inner.ray.time = inner_->rayTime(0.5f);
+        return inner_->pdfFacingArea(held(query), inner);
+    }
+    bool sharesLens() const override { return inner_->sharesLens(); }
     bool usesLens() const override { return !centred_ && inner_->usesLens(); }
     bool disperses() const override { return inner_->disperses(); }
 
   private:
+    bool reachable() const { return !centred_ || !inner_->usesLens() || inner_->sharesLens(); }
+    LensQuery held(LensQuery query) const {
+        if (centred_) query.lens = {0.5f, 0.5f};
+        if (still_) query.time = inner_->rayTime(0.5f);
+        return query;
+    }
+
     std::unique_ptr<const Camera> inner_;
     bool centred_, still_;
 };
