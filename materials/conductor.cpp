@@ -1,6 +1,7 @@
 #include "materials/conductor.h"
 
 #include "base/check.h"
+#include "materials/delta_pairs.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
 #include "materials/ggx_albedo.h"
@@ -20,6 +21,10 @@ class SmoothConductorBsdf final : public Bsdf {
         if (wo.z == 0) return std::nullopt;
         return std::optional<BsdfSample>(std::in_place, Vec3{-wo.x, -wo.y, wo.z},
                                          fresnelConductor(std::abs(wo.z), n_, k_) * tint_, 1.f, lobes());
+    }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        if (!isMirrored(wo, wi)) return {};
+        return {fresnelConductor(std::abs(wo.z), n_, k_) * tint_, 1};
     }
 
   private:

@@ -1,5 +1,6 @@
 #include "materials/dielectric_bsdf.h"
 
+#include "materials/delta_pairs.h"
 #include "materials/fresnel.h"
 #include "materials/ggx_albedo.h"
 #include "materials/refracting_halves.h"
@@ -52,6 +53,17 @@ std::optional<BsdfSample> SmoothDielectricBsdf::transmit(Vec3 wo, Spectrum eta, 
     if (disperses_) lobe |= Lobe::dispersive;
     return std::optional<BsdfSample>(std::in_place, wi, share * compression(eta, transport) / probability, probability,
                                      lobe, eta[0]);
+}
+
+DeltaEval SmoothDielectricBsdf::evalDelta(Vec3 wo, Vec3 wi) const noexcept {
+    if (absent_) return isStraight(wo, wi) ? DeltaEval{Spectrum(1.f), 1} : DeltaEval{};
+    if (wo.z == 0) return {};
+    const Spectrum eta = relativeIndex(n_, wo.z > 0);
+    const Spectrum reflectance = fresnelDielectric(std::abs(wo.z), eta);
+    const float probability = mean(reflectance);
+    if (isMirrored(wo, wi)) return {reflectance, probability};
+    if (!isRefracted(wo, wi, eta[0])) return {};
+    return {(Spectrum(1.f) - reflectance) * compression(eta, Transport::radiance), 1 - probability};
 }
 
 // ---- rough

@@ -23,6 +23,7 @@ class SmoothDielectricBsdf final : public Bsdf {
     Lobes lobes() const noexcept override;
     BsdfEval eval(Vec3, Vec3, Transport) const noexcept override { return {}; }
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept override;
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override;
 
   private:
     std::optional<BsdfSample> transmit(Vec3 wo, Spectrum eta, Spectrum share, float probability, Transport) const;

@@ -1,5 +1,6 @@
 #include "materials/layered.h"
 
+#include "materials/delta_pairs.h"
 #include "materials/gloss.h"
 #include "materials/part_bsdf.h"
 #include "math/vec.h"
@@ -85,6 +86,16 @@ class LayeredBsdf final : public Bsdf {
         s->pdfRatio = fma(s->pdfRatio, Spectrum(own / pdf), Spectrum(coat.pdf * p / pdf));
         s->pdfSolidAngle = pdf;
         return s;
+    }
+
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        DeltaEval result = base_.evalDelta(wo, wi);
+        if (!(wo.z > 0)) return result;
+        const float p = coatShare(wo);
+        result.ratio *= passing(wo, wi);
+        result.probability *= 1 - p;
+        if (gloss_.smooth() && !gloss_.absent() && isMirrored(wo, wi)) result += {Spectrum(gloss_.albedo(wo.z)), p};
+        return result;
     }
 
     ScatterOutline outline(Vec3 wo) const noexcept override {

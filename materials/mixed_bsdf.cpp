@@ -43,6 +43,15 @@ std::optional<BsdfSample> MixedBsdf::sample(Vec3 wo, float uLobe, Vec2 u, Transp
     return s;
 }
 
+DeltaEval MixedBsdf::evalDelta(Vec3 wo, Vec3 wi) const noexcept {
+    DeltaEval result;
+    for (int i = 0; i < 2; ++i) {
+        const DeltaEval part = parts_[i]->evalDelta(wo, wi);
+        result += {part.ratio * shares_[i], part.probability * shares_[i]};
+    }
+    return result;
+}
+
 ScatterOutline MixedBsdf::outline(Vec3 wo) const noexcept {
     ScatterOutline result{.diffuse = 0};
     for (int i = 0; i < 2; ++i) result.add(parts_[i]->outline(wo), shares_[i]);

@@ -16,6 +16,7 @@ class MixedBsdf final : public Bsdf {
     Lobes lobes() const noexcept override { return parts_[0]->lobes() | parts_[1]->lobes(); }
     BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept override;
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept override;
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override;
     ScatterOutline outline(Vec3 wo) const noexcept override;
 
   private:

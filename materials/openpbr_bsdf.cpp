@@ -1,5 +1,6 @@
 #include "materials/openpbr_bsdf.h"
 
+#include "materials/delta_pairs.h"
 #include "materials/dielectric_bsdf.h"
 #include "materials/refracting_halves.h"
 #include "math/warp.h"
@@ -296,40 +297,67 @@ std::optional<Vec3> OpenPbrBsdf::refracted(const View& v, Vec3 m, float c) const
     return wi.z < 0 ? std::optional(wi) : std::nullopt;
 }
 
+DeltaEval OpenPbrBsdf::coatMirror(const View& v) const {
+    const Spectrum reflected = v.coatScale * point_.cover.coatReflectance(Spectrum(v.coatWo.z));
+    return {reflected * (v.ground * point_.cover.coat), v.pick[kCoat]};
+}
+
+DeltaEval OpenPbrBsdf::sheetPassage(const View& v) const {
+    return {passing(v, 1, false).clear * v.sheet * v.clear, v.pick[kSheet]};
+}
+
+DeltaEval OpenPbrBsdf::baseMirror(const View& v, const Facet& at) const {
+    const Passing pass = passing(v, inCoat(v, {-v.wo.x, -v.wo.y, v.wo.z}).z, true);
+    return {at.opaque * pass.opaque + at.clear * pass.clear, v.pick[kSpecular] * reflectionShare(at)};
+}
+
+DeltaEval OpenPbrBsdf::basePassage(const View& v, const Facet& at, float cosI, Transport transport) const {
+    const Spectrum eta = v.within ? kOne / point_.dielectric.eta() : point_.dielectric.eta();
+    const Spectrum out = v.within && coatAbsorbs_ ? leavingCoat(cosI) : passing(v, 1, false).clear;
+    return {at.transmitted * point_.through * out * compression(eta, transport),
+            v.pick[kSpecular] * (1 - reflectionShare(at))};
+}
+
+DeltaEval OpenPbrBsdf::evalDelta(Vec3 wo, Vec3 wi) const noexcept {
+    if (!(wo.z != 0 && wi.z != 0) || (point_.filled && wo.z < 0)) return {};
+    const View& v = view(wo);
+    if (wo.z < 0) wi = flipped(wi);
+    DeltaEval result;
+    if (v.pick[kCoat] > 0 && point_.coat.smooth()) {
+        const Vec3 mirror = outOfCoat(v, {-v.coatWo.x, -v.coatWo.y, v.coatWo.z});
+        if (wi.z > 0 && mirror.z > 0 && nearlyEqual({wi.x, wi.y}, {mirror.x, mirror.y})) result += coatMirror(v);
+    }
+    if (v.pick[kSheet] > 0 && point_.sheet.smooth() && isStraight(v.wo, wi)) result += sheetPassage(v);
+    if (!(v.pick[kSpecular] > 0) || !smooth_) return result;
+    const float n = point_.dielectric.eta()[0];
+    const Facet at = facet(v, Spectrum(v.wo.z));
+    if (isMirrored(v.wo, wi)) result += baseMirror(v, at);
+    if (refracts() && isRefracted(v.wo, wi, v.within ? 1 / n : n))
+        result += basePassage(v, at, -wi.z, Transport::radiance);
+    return result;
+}
+
 std::optional<BsdfSample> OpenPbrBsdf::sampleSmooth(const View& v, Choice choice, float rest,
                                                     Transport transport) const {
-    const float p = v.pick[choice];
-    const Vec3 mirror{-v.wo.x, -v.wo.y, v.wo.z};
-    const Spectrum c(v.wo.z);
     const Lobes through = Lobes(Lobe::delta) | Lobe::transmission, back = Lobes(Lobe::delta) | Lobe::reflection;
+    const auto sampled = [](Vec3 wi, const DeltaEval& e, Lobes lobe, float eta = 1) {
+        return std::optional<BsdfSample>(std::in_place, wi, e.ratio / e.probability, e.probability, lobe, eta);
+    };
     if (choice == kCoat) {
         const Vec3 wi = outOfCoat(v, {-v.coatWo.x, -v.coatWo.y, v.coatWo.z});
-        const Spectrum reflected = v.coatScale * point_.cover.coatReflectance(Spectrum(v.coatWo.z));
-        if (!(wi.z > 0)) return std::nullopt;
-        return std::optional<BsdfSample>(std::in_place, wi, reflected * (v.ground * point_.cover.coat / p), p, back);
+        return wi.z > 0 ? sampled(wi, coatMirror(v), back) : std::nullopt;
     }
-    if (choice == kSheet)
-        return std::optional<BsdfSample>(std::in_place, -v.wo, passing(v, 1, false).clear * v.sheet * (v.clear / p), p,
-                                         through);
-    const Facet at = facet(v, c);
+    if (choice == kSheet) return sampled(-v.wo, sheetPassage(v), through);
+    const Facet at = facet(v, Spectrum(v.wo.z));
     const float share = reflectionShare(at);
-    if (rest < share) {
-        const Passing pass = passing(v, inCoat(v, mirror).z, true);
-        return std::optional<BsdfSample>(
-            std::in_place, mirror, (at.opaque * pass.opaque + at.clear * pass.clear) / (p * share), p * share, back);
-    }
+    if (rest < share) return sampled({-v.wo.x, -v.wo.y, v.wo.z}, baseMirror(v, at), back);
     // Snell's law in double: wi is then right to the last bit of its floats.
     const Spectrum eta = v.within ? kOne / point_.dielectric.eta() : point_.dielectric.eta();
     const double ratio = 1 / static_cast<double>(eta[0]), x = -ratio * v.wo.x, y = -ratio * v.wo.y;
     const double cos2 = 1 - x * x - y * y;
     if (!(cos2 > 0 && share < 1)) return std::nullopt; // total reflection of the hero alone
-    const double z = -std::sqrt(cos2);
-    const Vec3 wi{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-    const Spectrum out = v.within && coatAbsorbs_ ? leavingCoat(-wi.z) : passing(v, 1, false).clear;
-    const float probability = p * (1 - share);
-    return std::optional<BsdfSample>(std::in_place, wi,
-                                     at.transmitted * point_.through * out * compression(eta, transport) / probability,
-                                     probability, disperses_ ? through | Lobe::dispersive : through, eta[0]);
+    const Vec3 wi{static_cast<float>(x), static_cast<float>(y), static_cast<float>(-std::sqrt(cos2))};
+    return sampled(wi, basePassage(v, at, -wi.z, transport), disperses_ ? through | Lobe::dispersive : through, eta[0]);
 }
 
 } // namespace abbe

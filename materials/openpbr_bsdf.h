@@ -48,6 +48,7 @@ class OpenPbrBsdf final : public Bsdf {
     Lobes lobes() const noexcept override;
     BsdfEval eval(Vec3 wo, Vec3 wi, Transport) const noexcept override;
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept override;
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override;
     ScatterOutline outline(Vec3 wo) const noexcept override;
 
   private:
@@ -102,7 +103,6 @@ class OpenPbrBsdf final : public Bsdf {
     LaneEval entering(const View&, Vec3 wi) const;
     BsdfEval leaving(Vec3 wi) const;
     LaneEval refraction(const View&, Vec3 wi, Transport) const;
-    std::optional<BsdfSample> sampleSmooth(const View&, Choice, float uLobe, Transport) const;
     std::optional<Vec3> direction(const View&, Choice, float uLobe, Vec2 u) const;
     std::optional<Vec3> refracted(const View&, Vec3 m, float c) const;
     // Factor of light that leaves a translucent base through the coat at cosine cosI.
@@ -118,6 +118,13 @@ class OpenPbrBsdf final : public Bsdf {
         Spectrum opaque, clear, transmitted;
     };
     Facet facet(const View&, Spectrum c) const;
+    std::optional<BsdfSample> sampleSmooth(const View&, Choice, float uLobe, Transport) const;
+    // The delta lobes from v.wo: off the coat, straight through a sheet, off the base and, with its direction's cosine
+    // below, into or out of the base.
+    DeltaEval coatMirror(const View&) const;
+    DeltaEval sheetPassage(const View&) const;
+    DeltaEval baseMirror(const View&, const Facet&) const;
+    DeltaEval basePassage(const View&, const Facet&, float cosI, Transport) const;
     // Probability of reflection against refraction there; 1 unless the base refracts.
     float reflectionShare(const Facet&) const;
     bool refracts() const { return point_.transmission > 0 && !point_.thinWalled && point_.metalness < 1; }

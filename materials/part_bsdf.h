@@ -26,6 +26,10 @@ class TurnedBsdf final : public Bsdf {
         if (!sidesAgree(wo, result->wi, o, i)) result.reset();
         return result;
     }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        const Vec3 o = own_.toLocal(wo), i = own_.toLocal(wi);
+        return sidesAgree(wo, wi, o, i) ? inner_.evalDelta(o, i) : DeltaEval{};
+    }
 
   private:
     static bool sidesAgree(Vec3 wo, Vec3 wi, Vec3 o, Vec3 i) {

@@ -1,5 +1,6 @@
 #include "materials/subsurface.h"
 
+#include "materials/delta_pairs.h"
 #include "materials/dielectric.h"
 #include "materials/gloss.h"
 #include "math/warp.h"
@@ -37,6 +38,11 @@ class DiffuseBoundaryBsdf final : public Bsdf {
         wi.z = std::copysign(wi.z, -wo.z);
         return std::optional<BsdfSample>(std::in_place, wi, Spectrum(1.f), pdf,
                                          Lobes(Lobe::diffuse) | Lobe::transmission);
+    }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        if (!(wo.z > 0) || !gloss_.smooth() || gloss_.absent() || !isMirrored(wo, wi)) return {};
+        const float reflected = gloss_.albedo(wo.z);
+        return {Spectrum(reflected), reflected};
     }
 
   private:

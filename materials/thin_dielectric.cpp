@@ -1,5 +1,6 @@
 #include "materials/thin_dielectric.h"
 
+#include "materials/delta_pairs.h"
 #include "materials/fresnel.h"
 #include "render/surface_input.h"
 
@@ -27,6 +28,14 @@ class ThinDielectricBsdf final : public Bsdf {
                                              kReflection);
         if (!(straight > 0)) return std::nullopt; // all of it mirrored, up to rounding
         return std::optional<BsdfSample>(std::in_place, -wo, s.transmitted / straight, straight, kTransmission);
+    }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        const bool mirrored = isMirrored(wo, wi);
+        if (!mirrored && !isStraight(wo, wi)) return {};
+        const Shares s = shares(std::abs(wo.z));
+        const float r = mean(s.reflected), t = mean(s.transmitted);
+        if (!(r + t > 0)) return {};
+        return mirrored ? DeltaEval{s.reflected, r / (r + t)} : DeltaEval{s.transmitted, t / (r + t)};
     }
 
   private:

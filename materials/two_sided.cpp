@@ -17,6 +17,7 @@ class TwoSidedBsdf final : public Bsdf {
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport transport) const noexcept override {
         return side(wo).sample(wo, uLobe, u, transport);
     }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override { return side(wo).evalDelta(wo, wi); }
     ScatterOutline outline(Vec3 wo) const noexcept override { return side(wo).outline(wo); }
 
   private:

@@ -43,6 +43,11 @@ class DefensiveBsdf final : public Bsdf {
         lobe |= through ? Lobe::transmission : Lobe::reflection;
         return weighed(wo, wi, lobe, through ? eta_ : 1.f, transport);
     }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
+        DeltaEval e = own_.evalDelta(wo, wi);
+        e.probability *= 1 - even_;
+        return e;
+    }
     ScatterOutline outline(Vec3 wo) const noexcept override { return own_.outline(wo); }
     // With which the surface itself would have found a direction.
     float ownDensity(Vec3 wo, Vec3 wi) const { return own_.eval(wo, wi, Transport::radiance).pdfSolidAngle; }

@@ -25,7 +25,9 @@ enum class Lobe : std::uint8_t {
 };
 using Lobes = Flags<Lobe>;
 
-// Which way the path runs: radiance from the eye, importance from a light. Refraction scales radiance by 1/η².
+// Which way the path runs: radiance from the eye, importance from a light. Refraction scales radiance by 1/η². That is
+// all that the way changes here: where f is not reciprocal, light paths need f with its directions exchanged, which
+// is LightVertex's business (render/light_vertex.h).
 enum class Transport : std::uint8_t { radiance, importance };
 
 // Densities at each lane's wavelength over the hero's.
@@ -54,6 +56,18 @@ struct BsdfSample {
     [[no_unique_address]] DensityRatio pdfRatio;
 };
 
+// What delta lobes scatter from wi to wo.
+struct DeltaEval {
+    Spectrum ratio{0.f};   // of the deltas, for Transport::radiance: weight times probability of sample() from wo
+    float probability = 0; // that sample() from wo goes to wi
+
+    DeltaEval& operator+=(const DeltaEval& b) {
+        ratio += b.ratio;
+        probability += b.probability;
+        return *this;
+    }
+};
+
 // Lives in an Arena: trivially destructible, no longer than the vertex. Random choices between lobes that depend on
 // spectral values use the mean over the lanes, so that they are the same for all rotations of the hero [Wilkie2014].
 class Bsdf {
@@ -65,6 +79,9 @@ class Bsdf {
     // place, `return std::optional<BsdfSample>(std::in_place, …)`: one that is filled field by field and then copied is
     // read back in wider pieces than it was written, which stalls the processor (measured: 15 ns a vertex).
     virtual std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport) const noexcept = 0;
+    // The delta lobes between two directions, one of which a delta sample has led to from the other, up to rounding;
+    // nothing for other pairs. All of them together where several lead the same way.
+    virtual DeltaEval evalDelta([[maybe_unused]] Vec3 wo, [[maybe_unused]] Vec3 wi) const noexcept { return {}; }
     // How it scatters light towards wo. Asked for only with Lobe::glossy; delta lobes are left out.
     virtual ScatterOutline outline([[maybe_unused]] Vec3 wo) const noexcept { return {}; }
 

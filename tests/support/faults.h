@@ -103,6 +103,7 @@ class FaultyBsdf final : public Bsdf {
         s->wi = injection_.apply(Site::turn, s->wi, {uLobe, u.x, u.y});
         return s;
     }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override { return sound_.evalDelta(wo, wi); }
     ScatterOutline outline(Vec3 wo) const noexcept override { return sound_.outline(wo); }
 
   private:

@@ -31,6 +31,7 @@ class ScaledBsdf final : public Bsdf {
         if (s && what_ == Scaled::weight && !s->lobe.has(Lobe::delta)) s->weight *= factor_;
         return s;
     }
+    DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override { return sound_.evalDelta(wo, wi); }
     ScatterOutline outline(Vec3 wo) const noexcept override { return sound_.outline(wo); }
 
   private:
