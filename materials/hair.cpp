@@ -49,6 +49,7 @@ class Hair final : public Material {
 
     // All that happens in a fibre has happened where light met it from outside: on its way out of a tube it goes on.
     Effects needs() const override { return Effect::interfaces; }
+    bool reversible() const override { return false; }
     bool mayBeOpen() const override { return true; }
     float opacity(const SurfaceHit& hit) const noexcept override { return dot(hit.arrival, hit.ng) > 0 ? 0.f : 1.f; }
 

@@ -164,6 +164,7 @@ class Layered final : public Material {
         return base_.usesTextures() || gloss_.textured() || tint_.textured() || scale_.textured() ||
                darkening_.textured();
     }
+    bool reversible() const override { return base_.reversible(); }
     bool seesOutside() const override { return base_.seesOutside(); }
     bool mayBeOpen() const override { return base_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override { return base_.opacity(hit); }

@@ -49,6 +49,7 @@ class TwoSided final : public Material {
     bool choosesLobe() const override { return front_.choosesLobe() || back_.choosesLobe(); }
     bool usesTextures() const override { return front_.usesTextures() || back_.usesTextures(); }
     bool seesOutside() const override { return front_.seesOutside() || back_.seesOutside(); }
+    bool reversible() const override { return front_.reversible() && back_.reversible(); }
     // Nothing for the whole: asks for hit.arrival.
     bool bends() const override { return true; }
     bool mayBeOpen() const override { return front_.mayBeOpen() || back_.mayBeOpen(); }

@@ -30,10 +30,11 @@ struct LightVertexSample {
 //
 // Directions are drawn with the Bsdf that light itself sees. Where normals bend towards the eye, or a sheet has two
 // different sides, these may miss some of what the eye sees by that light: pdfSolidAngle is 0 there, and camera paths
-// have all of it. Not for hair, whose fibres are met in other places by light than by the eye.
+// have all of it.
 class LightVertex {
   public:
     // `met`: as the intersector made it, before Material::bend(); its arrival is the direction of travel of the light.
+    // Requires Material::reversible().
     // Both arenas outlive this; `eye` is emptied for every question.
     LightVertex(const SurfaceHit& met, const Wavelengths& lambda, Arena& own, Arena& eye)
         : met_(met), lambda_(lambda), eye_(eye), own_(seenAlong(met.arrival, own)) {}

@@ -36,6 +36,10 @@ class Material {
     // True if there is no surface, only the boundary of an interior: light goes straight on.
     virtual bool isBoundary() const { return false; }
 
+    // False if light and eye meet it in different places: hair, whose fibres are met on the near side, whatever goes
+    // through them. Light paths end there, and camera paths have all that it scatters.
+    virtual bool reversible() const { return true; }
+
     // Whether bsdf(), opacity() or bend() look at the parametrisation of the hit (SurfaceHit::dpdu and after).
     virtual bool usesTextures() const { return false; }
     // Whether bend() changes anything. It is then called before bsdf(), to turn hit.shading; hit.shading.z stays in the

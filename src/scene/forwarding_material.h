@@ -18,6 +18,7 @@ class ForwardingMaterial : public Material {
     const Curve* absorption() const override { return inner_.absorption(); }
     const Medium* interior() const override { return inner_.interior(); }
     bool isBoundary() const override { return inner_.isBoundary(); }
+    bool reversible() const override { return inner_.reversible(); }
     bool usesTextures() const override { return inner_.usesTextures(); }
     bool bends() const override { return inner_.bends(); }
     void bend(SurfaceHit& hit) const noexcept override { inner_.bend(hit); }

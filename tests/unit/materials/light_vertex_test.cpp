@@ -1,5 +1,6 @@
 // Light paths at every material against camera paths there: both directions must carry the same light.
 #include "materials/diffuse_transmission.h"
+#include "materials/hair.h"
 #include "materials/layered.h"
 #include "materials/mix.h"
 #include "materials/sheen.h"
@@ -352,6 +353,19 @@ TEST_CASE("both densities of a light path's step are those of the samplers, and 
                 CHECK(vertex.towards(next->away).pdfSolidAngle == doctest::Approx(camera.towards(from).pdfReverse));
             }
         }
+}
+
+TEST_CASE("light paths end at hair, alone or as a part") {
+    const auto hair = makeHair({}), matte = makeDiffuse({});
+    CHECK_FALSE(hair->reversible());
+    CHECK_FALSE(makeMix({{}, {}, {0.5, nullptr, {}}}, *matte, *hair)->reversible());
+    CHECK_FALSE(makeMix({{}, {}, {0.5, nullptr, {}}}, *hair, *matte)->reversible());
+    CHECK_FALSE(makeTwoSided(*matte, *hair)->reversible());
+    CHECK_FALSE(makeTwoSided(*hair, *matte)->reversible());
+    LayeredParams coat;
+    coat.ior = &flat(1.5);
+    CHECK_FALSE(makeLayered(coat, *hair)->reversible());
+    for (const Surface& s : surfaces()) CHECK(s.material->reversible());
 }
 
 } // namespace
