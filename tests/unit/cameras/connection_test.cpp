@@ -5,6 +5,7 @@
 #include "cameras/perspective.h"
 #include "cameras/shutter_camera.h"
 #include "cameras/spherical.h"
+#include "scene/reduced.h"
 #include "support/chi_square.h"
 
 #include <array>
@@ -164,6 +165,22 @@ void addOthers(std::vector<View>& all) {
     all.push_back(std::move(moving));
 }
 
+// Without depth of field, and without motion.
+void addHeld(std::vector<View>& all) {
+    const std::size_t count = all.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool lens = all[i].name == "blades, squeeze and shift", moving = all[i].name == "moving";
+        if (!lens && !moving) continue;
+        std::vector<View> again;
+        if (lens) addPerspectives(again);
+        if (moving) addOthers(again);
+        View held = std::move(*std::ranges::find(again, all[i].name, &View::name));
+        held.name += ", held";
+        held.placed.camera = std::make_unique<HeldCamera>(std::move(held.placed.camera), lens, moving);
+        all.push_back(std::move(held));
+    }
+}
+
 LensSystemParams lens(std::string_view name, double stop) {
     LensSystemParams p;
     p.prescription.word = std::string(name);
@@ -195,6 +212,7 @@ const std::vector<View>& views() {
         std::vector<View> v;
         addPerspectives(v);
         addOthers(v);
+        addHeld(v);
         addLensSystems(v);
         return v;
     }();
@@ -503,6 +521,15 @@ TEST_CASE("places outside of the film are none") {
         }
         CHECK((inside > 50 && inside < 1950));
     }
+}
+
+TEST_CASE("a lens of glass held at one point of the film's side is met by no connection") {
+    View v = view("held", makeLensSystem, lens("singlet", 11), {36, 24}, sheet({0, 0, -1}, {1, 0, 0}, {0, 1, 0}));
+    v.placed.camera = std::make_unique<HeldCamera>(std::move(v.placed.camera), true, false);
+    Random random(37);
+    const Sighting s = sighting(v, random);
+    CHECK_FALSE(v.placed.camera->connect(s.query).has_value());
+    CHECK(v.placed.camera->pdfFacingArea(s.query, s.ray) == 0);
 }
 
 } // namespace

@@ -131,6 +131,15 @@ class Surfaces {
             p.fuzzWeight = number(0.3);
             add(fmt::format("openpbr, glass {} under coat and fuzz", roughness), makeOpenPbr(p));
         }
+        for (const double roughness : {0.0, 0.4}) {
+            p = {};
+            p.geometryThinWalled = true;
+            p.transmissionWeight = number(0.7);
+            p.specularRoughness = number(roughness);
+            p.coatWeight = number(0.5);
+            p.coatColor = color(kTint);
+            add(fmt::format("openpbr, sheet {} under a coat", roughness), makeOpenPbr(p));
+        }
         for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
             const OpenPbrParams q = random_(seed % 2 == 0, seed % 3 != 0, seed > 3);
             add("openpbr " + describe(q), makeOpenPbr(q));
@@ -352,6 +361,30 @@ TEST_CASE("both densities of a light path's step are those of the samplers, and 
                 CHECK(vertex.towards(next->away).pdfReverse == doctest::Approx(camera.towards(from).pdfSolidAngle));
                 CHECK(vertex.towards(next->away).pdfSolidAngle == doctest::Approx(camera.towards(from).pdfReverse));
             }
+        }
+}
+
+TEST_CASE("refraction spreads solid angles as its directions move") {
+    const BsdfUnderTest glass = dielectric(1.5, 0);
+    const Surface s{"glass", glass.material.get()};
+    Arenas arenas;
+    for (const double lean : {0.0, 0.3})
+        for (const Vec3 from :
+             {directionAt(15), directionAt(50, 2), mirrored(directionAt(8)), mirrored(directionAt(15, 1))}) {
+            const auto through = [&](Vec3 w) { return arenas.vertex(s, lean, w).sample(0.999f, {0.5f, 0.5f}); };
+            const Frame about = Frame::fromNormal(from);
+            const auto moved = [&](Vec3 axis) {
+                const float step = 2e-3f;
+                const auto a = through(normalize(from + axis * step)), b = through(normalize(from - axis * step));
+                REQUIRE((a && b));
+                return (a->away - b->away) * (0.5f / step);
+            };
+            const auto at = through(from);
+            REQUIRE(at);
+            REQUIRE(at->lobe.has(Lobe::transmission));
+            const float spread = length(cross(moved(about.x), moved(about.y)));
+            const LightScattering back = arenas.vertex(s, lean, at->away).deltaTowards(from, 1 / at->eta);
+            CHECK(at->scattering.pdfReverse / back.pdfSolidAngle == doctest::Approx(spread).epsilon(2e-3));
         }
 }
 
