@@ -295,6 +295,37 @@ TEST_CASE("the way a path runs changes no direction, no density, and of weights 
         }
 }
 
+// What the camera path's Bsdf says of light from `from`, per projected solid angle of both ends.
+double seenByEye(const Surface& s, double lean, Vec3 away, Vec3 from, Arena& arena) {
+    SurfaceHit hit = metFrom(s, -away, lean);
+    if (s.material->bends()) s.material->bend(hit);
+    arena.reset();
+    const Bsdf& bsdf = *s.material->bsdf(hit, s.wavelengths, arena);
+    const Vec3 wo = hit.shading.toLocal(away), wi = hit.shading.toLocal(from);
+    if ((away.z * from.z > 0) != (wo.z * wi.z > 0)) return 0;
+    return static_cast<double>(bsdf.eval(wo, wi, Transport::radiance).fcos[0] / std::abs(from.z));
+}
+
+TEST_CASE("light that goes on from a light path is the light that the eye sees from there") {
+    Random random(44);
+    Arenas arenas;
+    Arena arena;
+    int lit = 0;
+    for (const Surface& s : surfaces())
+        for (const double lean : {0.0, 0.4})
+            for (int i = 0; i < 500; ++i) {
+                CAPTURE(s.name);
+                const Vec3 from = squareToSphere({random.uniform(), random.uniform()}),
+                           away = squareToSphere({random.uniform(), random.uniform()});
+                const double seen = seenByEye(s, lean, away, from, arena);
+                const double sent = static_cast<double>(arenas.vertex(s, lean, from).towards(away).fcos[0]) /
+                                    static_cast<double>(std::abs(away.z));
+                CHECK(std::abs(sent - seen) <= 1e-4 * seen);
+                lit += seen > 0;
+            }
+    CHECK(lit > 10'000);
+}
+
 // Of delta samples from one direction: how many went one way, and what they brought.
 struct Way {
     Vec3 wi;
