@@ -81,11 +81,16 @@ std::optional<UvPoint> Disk::uvPoint(Vec2 uv) const {
     return UvPoint{Vec3(p), analyticError(p, magnitude_), Vec3(z_), static_cast<float>(2 * kPiD * radius_ * r)};
 }
 
-std::optional<ShapeSample> Disk::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+std::optional<ShapePoint> Disk::samplePoint(std::uint32_t part, Vec2 u) const {
     const Vec2 q = squareToDisk(u);
     const Vec3d p = centre_ + x_ * (radius_ * static_cast<double>(q.x)) + y_ * (radius_ * static_cast<double>(q.y));
-    ShapeSample s{Vec3(p), analyticError(p, magnitude_), Vec3(z_), 0};
-    s.pdfSolidAngle = areaToSolidAngle(static_cast<float>(1 / area()), s.p - from.p, s.ng);
+    return ShapePoint{Vec3(p), analyticError(p, magnitude_), Vec3(z_), pdfPoint(part, Vec3(z_))};
+}
+
+std::optional<ShapeSample> Disk::sample(const Receiver& from, std::uint32_t part, Vec2 u) const {
+    const ShapePoint point = *samplePoint(part, u);
+    ShapeSample s{point.p, point.pError, point.ng, 0};
+    s.pdfSolidAngle = areaToSolidAngle(point.pdfArea, s.p - from.p, s.ng);
     if (!(s.pdfSolidAngle > 0)) return std::nullopt;
     return s;
 }

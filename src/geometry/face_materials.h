@@ -43,6 +43,10 @@ class FaceMaterials final : public Shape {
     float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const override {
         return shape_->pdfSolidAngle(from, hit);
     }
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override {
+        return shape_->samplePoint(part, u);
+    }
+    float pdfPoint(std::uint32_t part, Vec3 ng) const override { return shape_->pdfPoint(part, ng); }
     std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray& ray) const override {
         return shape_->locate(p, part, ray);
     }

@@ -187,34 +187,55 @@ EmitterPart Mesh::emitterPart(std::uint32_t i) const {
     return part;
 }
 
-std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t part, Vec2 u) const {
-    if (lone_) return lone_->sample(from, 0, u);
-    auto [i, count] = trianglesOf(part);
+Mesh::TrianglePoint Mesh::pointOfPart(std::uint32_t primitive, double area, Vec2 u) const {
+    auto [i, count] = trianglesOf(primitive);
+    if (count > 1) {
+        const auto first = static_cast<float>(triangleArea(i) / area);
+        const bool second = !(u.x < first);
+        u.x = std::min(second ? (u.x - first) / (1 - first) : u.x / first, kOneMinusEpsilon);
+        i += second;
+    }
+    return {i, squareToTriangle(u)};
+}
+
+std::optional<ShapePoint> Mesh::samplePoint(std::uint32_t part, Vec2 u) const {
+    if (lone_) return lone_->samplePoint(0, u);
     const double area = partArea(part);
     if (!(area > 0)) return std::nullopt;
-    Vec2 b;
+    const TrianglePoint in = pointOfPart(part, area, u);
+    const auto [i0, i1, i2] = triangle(in.triangle);
+    const auto& p = data_.positions;
+    ShapePoint s{.p = {}, .pError = {}, .ng = faceNormals_[in.triangle], .pdfArea = static_cast<float>(1 / area)};
+    trianglePoint(p[i0], p[i1], p[i2], in.weights.x, in.weights.y, s.p, s.pError);
+    return s;
+}
+
+float Mesh::pdfPoint(std::uint32_t part, Vec3 ng) const {
+    if (lone_) return lone_->pdfPoint(0, ng);
+    const double area = partArea(part);
+    return area > 0 ? static_cast<float>(1 / area) : 0;
+}
+
+std::optional<ShapeSample> Mesh::sample(const Receiver& from, std::uint32_t part, Vec2 u) const {
+    if (lone_) return lone_->sample(from, 0, u);
+    const double area = partArea(part);
+    if (!(area > 0)) return std::nullopt;
+    TrianglePoint in;
     float pdf = 0;
     const auto near = nearPolygon(data_, part, from);
     if (near) {
         const auto s = near->sample(u);
         if (!s) return std::nullopt;
-        i += static_cast<std::uint64_t>(s->half);
-        b = s->weights;
+        in = {trianglesOf(part).first + static_cast<std::uint64_t>(s->half), s->weights};
         pdf = s->pdf;
     } else {
-        if (count > 1) {
-            const auto first = static_cast<float>(triangleArea(i) / area);
-            const bool second = !(u.x < first);
-            u.x = std::min(second ? (u.x - first) / (1 - first) : u.x / first, kOneMinusEpsilon);
-            i += second;
-        }
-        b = squareToTriangle(u);
+        in = pointOfPart(part, area, u);
     }
-    const auto [i0, i1, i2] = triangle(i);
+    const auto [i0, i1, i2] = triangle(in.triangle);
     const auto& p = data_.positions;
     Vec3 point, pError;
-    trianglePoint(p[i0], p[i1], p[i2], b.x, b.y, point, pError);
-    const Vec3 ng = faceNormals_[i];
+    trianglePoint(p[i0], p[i1], p[i2], in.weights.x, in.weights.y, point, pError);
+    const Vec3 ng = faceNormals_[in.triangle];
     if (!near) pdf = areaToSolidAngle(static_cast<float>(1 / area), point - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
     return std::optional<ShapeSample>(std::in_place, point, pError, ng, pdf);

@@ -44,6 +44,8 @@ class Mesh final : public Shape {
     // A lone quad as Quad does; polygons seen large as NearPolygon does, others uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
+    float pdfPoint(std::uint32_t part, Vec3 ng) const override;
     std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray&) const override;
 
   private:
@@ -52,6 +54,11 @@ class Mesh final : public Shape {
     double triangleArea(std::uint64_t) const;
     std::pair<std::uint64_t, int> trianglesOf(std::uint32_t primitive) const;
     double partArea(std::uint32_t primitive) const;
+    struct TrianglePoint {
+        std::uint64_t triangle;
+        Vec2 weights; // barycentric
+    };
+    TrianglePoint pointOfPart(std::uint32_t primitive, double area, Vec2 u) const; // even per area
     void shade(const MeshCorners&, SurfaceHit&) const;
     void countNormals();
 

@@ -20,6 +20,8 @@ class ParametricShape : public Shape {
     // Uniform per area of the shape in its own space.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
+    float pdfPoint(std::uint32_t part, Vec3 ng) const override;
 
   protected:
     // Own space. `part` tells surfaces apart that meet in an edge.

@@ -142,6 +142,16 @@ void Quad::sampleArea(Vec2 u, Vec3& p, Vec3& ng) const {
     ng = half.frame.z;
 }
 
+std::optional<ShapePoint> Quad::samplePoint(std::uint32_t, Vec2 u) const {
+    if (!rectangle_) {
+        ShapePoint s{.p = {}, .pError = pError_, .ng = {}, .pdfArea = pdfArea_};
+        sampleArea(u, s.p, s.ng);
+        return s;
+    }
+    const Half& half = halves_[0];
+    return ShapePoint{half.corner + half.edgeS * u.x + half.edgeT * u.y, pError_, rectangle_->z, pdfArea_};
+}
+
 std::optional<RawHit> Quad::locate(Vec3 p, std::uint32_t, const Ray&) const {
     Vec2 q;
     for (const bool second : {false, true}) {

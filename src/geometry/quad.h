@@ -24,6 +24,8 @@ class Quad final : public Shape {
     // cosine there; everything else: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
+    float pdfPoint(std::uint32_t, Vec3) const override { return pdfArea_; }
     std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray&) const override;
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 

@@ -129,6 +129,11 @@ std::optional<ShapeSample> Sphere::sample(const Receiver& from, std::uint32_t, V
     return s;
 }
 
+std::optional<ShapePoint> Sphere::samplePoint(std::uint32_t part, Vec2 u) const {
+    const ShapeSample s = at(normalize(Vec3d(squareToSphere(u))));
+    return ShapePoint{s.p, s.pError, s.ng, pdfPoint(part, s.ng)};
+}
+
 float Sphere::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     const Vec3d d = centre_ - Vec3d(from.p);
     const double d2 = lengthSquared(d), r2 = radius_ * radius_;

@@ -28,6 +28,8 @@ class Sphere final : public Shape {
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
+    float pdfPoint(std::uint32_t, Vec3) const override { return static_cast<float>(1 / area()); }
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:

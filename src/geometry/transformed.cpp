@@ -109,6 +109,19 @@ float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) co
     return std::isfinite(static_cast<float>(pdf)) ? static_cast<float>(pdf) : 0;
 }
 
+std::optional<ShapePoint> Transformed::samplePoint(std::uint32_t part, Vec2 u) const {
+    const auto inner = shape_->samplePoint(part, u);
+    if (!inner) return std::nullopt;
+    const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
+    return ShapePoint{hit.p, hit.pError, hit.ng, pdfPoint(part, hit.ng)};
+}
+
+// Own area per render area is 1 / |cof(A) n| for the own normal n, and |cof(A⁻¹) n'| for the one here.
+float Transformed::pdfPoint(std::uint32_t part, Vec3 ng) const {
+    const Vec3d back = inverse_.normal(Vec3d(ng));
+    return static_cast<float>(static_cast<double>(shape_->pdfPoint(part, Vec3(normalize(back)))) * length(back));
+}
+
 std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {
     const auto inner = shape_->uvPoint(uv);
     if (!inner) return std::nullopt;

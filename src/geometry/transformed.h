@@ -24,6 +24,9 @@ class Transformed final : public Shape {
     double area() const override { return area_; }
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
+    // Even per area of the shape itself.
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
+    float pdfPoint(std::uint32_t part, Vec3 ng) const override;
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:

@@ -3,6 +3,8 @@
 #include "lights/area_light_types.h"
 #include "lights/light_context.h"
 #include "lights/moving_light.h"
+#include "math/frame.h"
+#include "math/warp.h"
 
 namespace abbe {
 
@@ -62,7 +64,9 @@ std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from, 
     const float rounding = 0x1p-21f * distance;
     const Vec3 p = spawnOrigin(s.p, s.pError + Vec3{rounding, rounding, rounding}, s.ng, -wi);
     // In place, as every Bsdf::sample (render/bsdf.h).
-    return std::optional<LightSample>(std::in_place, wi, p, distance, radiance_.at(lambda) * factor, s.pdfSolidAngle);
+    std::optional<LightSample> sample(std::in_place, wi, p, distance, radiance_.at(lambda) * factor, s.pdfSolidAngle);
+    sample->n = s.ng;
+    return sample;
 }
 
 Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {
@@ -74,6 +78,46 @@ float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, floa
     if (!emits(hit.ng, from.p - hit.p)) return 0;
     const float pdf = texture_ ? texture_->pdfSolidAngle(from, hit) : shape_.pdfSolidAngle(from, hit);
     return pdf < kInfinity ? pdf : 0; // as in sample
+}
+
+std::optional<LightOrigin> AreaLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                                   float time) const noexcept {
+    LightOrigin origin;
+    const auto s = texture_ ? texture_->samplePoint(part, u, lambda, origin.factor) : shape_.samplePoint(part, u);
+    if (!s || !(s->pdfArea > 0) || !(s->pdfArea < kInfinity)) return std::nullopt;
+    origin.p = s->p;
+    origin.pError = s->pError;
+    origin.n = s->ng;
+    origin.pdf = s->pdfArea;
+    origin.sides = sides();
+    origin.time = time;
+    return origin;
+}
+
+LightOrigin AreaLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    const float pdf = texture_ ? texture_->pdfPoint(part, p, n) : shape_.pdfPoint(part, n);
+    LightOrigin origin;
+    origin.p = p;
+    origin.n = n;
+    origin.pdf = pdf < kInfinity ? pdf : 0; // as in origin
+    origin.sides = sides();
+    origin.time = time;
+    return origin;
+}
+
+Vec3 AreaLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {
+    const bool back = twoSided_ && !(u.x < 0.5f);
+    if (twoSided_) u.x = back ? 2 * u.x - 1 : 2 * u.x;
+    return Frame::fromNormal(back ? -origin.n : origin.n).toWorld(squareToCosineHemisphere(u));
+}
+
+float AreaLight::pdfDirection(const LightOrigin& origin, Vec3 w) const noexcept {
+    const float cosine = dot(origin.n, w);
+    return twoSided_ ? 0.5f * kInvPi * std::abs(cosine) : cosineHemispherePdf(cosine);
+}
+
+Spectrum AreaLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths& lambda) const noexcept {
+    return emits(origin.n, w) ? radiance_.at(lambda) * origin.factor : Spectrum(0.f);
 }
 
 std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape& shape, const LightContext& context,

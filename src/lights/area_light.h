@@ -29,6 +29,15 @@ class AreaLight : public Light {
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
 
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
+                                            float time) const noexcept override;
+    LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
+    // In proportion to the cosine, on the sides that emit.
+    Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
+    float pdfDirection(const LightOrigin&, Vec3 w) const noexcept override;
+    Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths&) const noexcept override;
+
   protected:
     Vec3 centre() const { return centre_; } // of its bounds
     // A point of a part, and what dims the light there. As Shape::sample, at rest.
@@ -40,6 +49,9 @@ class AreaLight : public Light {
 
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
+    LightOrigin::Sides sides() const noexcept {
+        return twoSided_ ? LightOrigin::Sides::both : LightOrigin::Sides::front;
+    }
     const Shape& shape_;
     Vec3 centre_;
     ScaledCurve radiance_;

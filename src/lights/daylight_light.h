@@ -66,6 +66,7 @@ class DaylightSky final : public Light {
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     struct Totals {

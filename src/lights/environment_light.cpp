@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "lights/scene_disk.h"
+#include "math/warp.h"
 #include "spectrum/observer.h"
 #include "spectrum/sampled_curve.h"
 
@@ -125,7 +126,7 @@ Vec3d EnvironmentLight::cellMean(int column, int row) const noexcept {
     return mean;
 }
 
-Distribution2D EnvironmentLight::density(bool compensated) const {
+Distribution2D EnvironmentLight::density(bool compensated) {
     std::vector<double> luminance;
     luminance.reserve(image_.rgb.size() / 3);
     double total = 0;
@@ -149,7 +150,10 @@ Distribution2D EnvironmentLight::density(bool compensated) const {
         const std::vector<double> excess = weights(mean);
         double sum = 0;
         for (double w : excess) sum += w;
-        if (sum > kEven) return {excess, static_cast<std::size_t>(image_.width)};
+        if (sum > kEven) {
+            dimShare_ = 1 - sum / total;
+            return {excess, static_cast<std::size_t>(image_.width)};
+        }
     }
     return {weights(0), static_cast<std::size_t>(image_.width)};
 }
@@ -220,6 +224,10 @@ std::optional<LightSample> EnvironmentLight::samplePortals(const Receiver& from,
 std::optional<LightSample> EnvironmentLight::sample(const Receiver& from, std::uint32_t, Vec2 u,
                                                     const Wavelengths& lambda, float) const noexcept {
     if (!portals_.empty()) return samplePortals(from, u, lambda);
+    return sampleImage(u, lambda);
+}
+
+LightSample EnvironmentLight::sampleImage(Vec2 u, const Wavelengths& lambda) const noexcept {
     const CellSample cell = distribution_.sample(u);
     // Uniform in the cosine within the cell, so that its density is constant even at the poles.
     const double cosTheta = lerp(rowCosine_[cell.row], rowCosine_[cell.row + 1], static_cast<double>(cell.offset.y));
@@ -229,8 +237,22 @@ std::optional<LightSample> EnvironmentLight::sample(const Receiver& from, std::u
     const Vec3 local{sinTheta * std::sin(phi), static_cast<float>(cosTheta), -sinTheta * std::cos(phi)};
     const Vec3 wi = normalize(axes_.toWorld(local));
     const double pdf = cell.probability / cellSolidAngle(static_cast<int>(cell.row));
-    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, escaped(wi, lambda, 0),
-                                      static_cast<float>(pdf));
+    return {wi, Vec3{}, kInfinity, escaped(wi, lambda, 0), static_cast<float>(pdf)};
+}
+
+// Radiance is at most the excess over its mean, which distribution_ follows, and that mean: so this mixture follows the
+// light to within the smaller share, and all of it.
+std::optional<LightSample> EnvironmentLight::sampleDistant(Vec2 u, const Wavelengths& lambda, float) const noexcept {
+    const float dim = static_cast<float>(dimShare_);
+    const bool even = u.x < dim;
+    u.x = std::min(even ? u.x / dim : (u.x - dim) / (1 - dim), kOneMinusEpsilon);
+    const Vec3 w = even ? squareToSphere(u) : sampleImage(u, lambda).wi;
+    return std::optional<LightSample>(std::in_place, w, Vec3{}, kInfinity, escaped(w, lambda, 0), pdfDistant(w, 0));
+}
+
+float EnvironmentLight::pdfDistant(Vec3 w, float) const noexcept {
+    const float dim = static_cast<float>(dimShare_);
+    return dim * kSpherePdf + (1 - dim) * pdfImage(w);
 }
 
 Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexcept {

@@ -65,6 +65,10 @@ class EnvironmentLight final : public Light {
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
+    // By the image, and evenly for what compensation took off; portals are seen from places alone.
+    std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths&, float) const noexcept override;
+    float pdfDistant(Vec3 w, float) const noexcept override;
 
   private:
     // The portals that a receiver sees, and how they are sampled together.
@@ -72,11 +76,12 @@ class EnvironmentLight final : public Light {
     Seen seen(const Receiver&) const noexcept;
     float pdfPortals(const Seen&, Vec3 w) const noexcept;
     float pdfImage(Vec3 w) const noexcept;
+    LightSample sampleImage(Vec2 u, const Wavelengths&) const noexcept;
     std::optional<LightSample> samplePortals(const Receiver&, Vec2 u, const Wavelengths&) const noexcept;
     Vec2 imagePoint(Vec3 local) const noexcept;
     Vec3 texel(int column, int row) const noexcept;
     Vec3 lookup(Vec2 point) const noexcept;
-    Distribution2D density(bool compensated) const;
+    Distribution2D density(bool compensated); // sets dimShare_
     double cellSolidAngle(int row) const noexcept;
     Vec3d cellMean(int column, int row) const noexcept;
     Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
@@ -87,6 +92,7 @@ class EnvironmentLight final : public Light {
     Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
     std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
     Vec3d channelWeights_;          // of luminance()
+    double dimShare_ = 0;           // of all light: what compensation took off
     Distribution2D distribution_;
     std::vector<Portal> portals_;
     std::unique_ptr<const Curve> powerShape_; // null where all is black

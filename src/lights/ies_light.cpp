@@ -136,7 +136,7 @@ double IesProfile::integrate() const {
 }
 
 IesLight::IesLight(Vec3 position, const Frame& axes, IesProfile profile, ScaledCurve perCandela)
-    : position_(position), axes_(axes), profile_(std::move(profile)), perCandela_(perCandela),
+    : position_(position), axes_(axes), profile_(std::move(profile)), perCandela_(perCandela), directions_(density()),
       power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale),
       visiblePower_(profile_.lumens() * visibleIntegral(*perCandela.curve) * perCandela.scale) {}
 
@@ -146,15 +146,74 @@ std::optional<LightSample> IesLight::sample(const Receiver& from, std::uint32_t,
     const float d2 = lengthSquared(offset);
     if (!(d2 >= std::numeric_limits<float>::min())) return std::nullopt; // at the light: no direction
     const float distance = std::sqrt(d2);
-    const Vec3 wi = offset / distance, local = axes_.toLocal(-wi);
-    const double fromAxis = std::atan2(std::hypot(static_cast<double>(local.x), static_cast<double>(local.y)),
-                                       static_cast<double>(local.z));
-    // y points the other way round for one who looks along the axis.
-    const double about = std::atan2(-static_cast<double>(local.y), static_cast<double>(local.x));
-    const float candela = static_cast<float>(profile_.candela(fromAxis, about));
+    const Vec3 wi = offset / distance;
+    const Angles at = angles(-wi);
+    const float candela = static_cast<float>(profile_.candela(at.fromAxis, at.about));
     if (!(candela > 0)) return std::nullopt;
     return std::optional<LightSample>(std::in_place, wi, position_, distance, perCandela_.at(lambda) * (candela / d2),
                                       1.f, true);
+}
+
+IesLight::Angles IesLight::angles(Vec3 w) const noexcept {
+    const Vec3d local(axes_.toLocal(w));
+    // y points the other way round for one who looks along the axis.
+    return {std::atan2(std::hypot(local.x, local.y), local.z), std::atan2(-local.y, local.x)};
+}
+
+namespace {
+
+// Cells of directions; within one the density is even per solid angle.
+constexpr int kRows = 90, kColumns = 24;
+
+double rowEdge(std::size_t row) { return kPiD * static_cast<double>(row) / kRows; }
+// 2 sin a sin b for cos(a - b) - cos(a + b): nothing cancels near the axis.
+double cellSolidAngle(std::size_t row) {
+    return 2 * kPiD / kColumns * 2 * std::sin((rowEdge(row) + rowEdge(row + 1)) / 2) * std::sin(kPiD / (2 * kRows));
+}
+
+} // namespace
+
+// The mean of three by three points of each cell. Where these see nothing there may be a little light all the same: a
+// hundredth of the mean goes everywhere.
+Distribution2D IesLight::density() const {
+    constexpr int points = 3;
+    const double floor = 0.01 * profile_.lumens() / (4 * kPiD);
+    std::vector<double> weights;
+    for (std::size_t row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            double sum = 0;
+            for (int i = 0; i < points; ++i)
+                for (int j = 0; j < points; ++j)
+                    sum += profile_.candela(std::lerp(rowEdge(row), rowEdge(row + 1), (i + 0.5) / points),
+                                            2 * kPiD * (column + (j + 0.5) / points) / kColumns - kPiD);
+            weights.push_back((sum / (points * points) + floor) * cellSolidAngle(row));
+        }
+    return {weights, kColumns};
+}
+
+Vec3 IesLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {
+    const CellSample cell = directions_.sample(u);
+    const double upper = rowEdge(cell.row), lower = rowEdge(cell.row + 1), share = static_cast<double>(cell.offset.y);
+    // Even in the cosine: sin² of half the angle is linear in it, and does not cancel near the axis.
+    const double half2 = std::lerp(square(std::sin(upper / 2)), square(std::sin(lower / 2)), share);
+    const double sine = 2 * std::sqrt(half2 * (1 - half2)), cosine = 1 - 2 * half2;
+    const double about = 2 * kPiD * (cell.column + static_cast<double>(cell.offset.x)) / kColumns - kPiD;
+    const Vec3 local(Vec3d{sine * std::cos(about), -sine * std::sin(about), cosine});
+    return normalize(axes_.toWorld(local));
+}
+
+float IesLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept {
+    const Angles at = angles(w);
+    const auto cell = [](double share, int count) {
+        return static_cast<std::size_t>(std::clamp(static_cast<int>(share * count), 0, count - 1));
+    };
+    const std::size_t row = cell(at.fromAxis / kPiD, kRows), column = cell(at.about / (2 * kPiD) + 0.5, kColumns);
+    return static_cast<float>(directions_.probability(column, row) / cellSolidAngle(row));
+}
+
+Spectrum IesLight::leaving(const LightOrigin&, Vec3 w, const Wavelengths& lambda) const noexcept {
+    const Angles at = angles(w);
+    return perCandela_.at(lambda) * static_cast<float>(profile_.candela(at.fromAxis, at.about));
 }
 
 std::unique_ptr<Light> makeIesLight(const IesLightParams& params, IntensityTable table, const LightContext& context,

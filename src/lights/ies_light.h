@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "math/distribution_2d.h"
 #include "math/frame.h"
 #include "math/intensity_table.h"
 #include "render/light.h"
@@ -58,11 +59,31 @@ class IesLight final : public Light {
         return LightReach{position_, 0, tMax};
     }
 
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
+                                            float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    // About in proportion to the intensity.
+    Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
+    float pdfDirection(const LightOrigin&, Vec3 w) const noexcept override;
+    Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths&) const noexcept override;
+
   private:
+    struct Angles {
+        double fromAxis, about; // 0 … π, -π … π
+    };
+    Angles angles(Vec3 w) const noexcept; // w leaves the light
+    Distribution2D density() const;
+
     Vec3 position_;
     Frame axes_;
     IesProfile profile_;
     ScaledCurve perCandela_;
+    Distribution2D directions_; // cells of the angle about the axis and of that from it
     double power_, visiblePower_;
 };
 

@@ -215,12 +215,50 @@ double LightTexture::surveyPart(Survey& survey, std::uint32_t part, int points) 
     return visible;
 }
 
-float LightTexture::pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept {
+double LightTexture::pdfChartArea(Vec2 uv) const noexcept {
     const auto cell = [](float x) { return static_cast<std::size_t>(std::clamp(x * kGrid, 0.f, kGrid - 1.f)); };
     const auto point = shape_.uvPoint(uv);
     if (!point || !(point->area > 0)) return 0;
-    const double pdfUv = chart_->probability(cell(uv.x), cell(uv.y)) * (kGrid * kGrid);
-    return solidAngle(pdfUv / static_cast<double>(point->area), p - from, ng);
+    return chart_->probability(cell(uv.x), cell(uv.y)) * (kGrid * kGrid) / static_cast<double>(point->area);
+}
+
+float LightTexture::pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept {
+    return solidAngle(pdfChartArea(uv), p - from, ng);
+}
+
+float LightTexture::pdfMixed(std::uint32_t part, Vec3 ng, Vec2 uv) const noexcept {
+    const float even = shape_.pdfPoint(part, ng);
+    if (!chart_) return even;
+    return kChartShare * static_cast<float>(pdfChartArea(uv)) + (1 - kChartShare) * even;
+}
+
+// The density is that of the point's own texture coordinates, on whichever side of a cell's border they round to: as
+// pdfPoint() will find them.
+std::optional<ShapePoint> LightTexture::samplePoint(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                                    Spectrum& factor) const noexcept {
+    std::optional<ShapePoint> s;
+    if (chart_ && u.x < kChartShare) {
+        const CellSample cell = chart_->sample({u.x / kChartShare, u.y});
+        const auto point = shape_.uvPoint({(static_cast<float>(cell.column) + cell.offset.x) / kGrid,
+                                           (static_cast<float>(cell.row) + cell.offset.y) / kGrid});
+        if (!point || !(point->area > 0)) return std::nullopt;
+        s = ShapePoint{.p = point->p, .pError = point->pError, .ng = point->ng};
+    } else {
+        if (chart_) u.x = std::min((u.x - kChartShare) / (1 - kChartShare), kOneMinusEpsilon);
+        s = shape_.samplePoint(part, u);
+    }
+    if (!s) return s;
+    const auto hit = hitAt(s->p, s->ng, part);
+    if (!hit) return std::nullopt;
+    factor = at(*hit, lambda);
+    s->pdfArea = pdfMixed(part, s->ng, hit->uv);
+    return s;
+}
+
+float LightTexture::pdfPoint(std::uint32_t part, Vec3 p, Vec3 ng) const noexcept {
+    if (!chart_) return shape_.pdfPoint(part, ng);
+    const auto hit = hitAt(p, ng, part);
+    return hit ? pdfMixed(part, ng, hit->uv) : 0;
 }
 
 std::optional<ShapeSample> LightTexture::sample(const Receiver& from, std::uint32_t part, Vec2 u,

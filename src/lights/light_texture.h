@@ -41,6 +41,11 @@ class LightTexture {
                                       Spectrum& factor) const noexcept;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const noexcept;
 
+    // The same with no regard to a receiver, as Shape::samplePoint and pdfPoint.
+    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u, const Wavelengths&,
+                                          Spectrum& factor) const noexcept;
+    float pdfPoint(std::uint32_t part, Vec3 p, Vec3 ng) const noexcept;
+
   private:
     struct Survey;
     std::optional<SurfaceHit> hitAt(Vec3 p, Vec3 ng, std::uint32_t part) const noexcept;
@@ -49,6 +54,8 @@ class LightTexture {
     double surveyCell(Survey&, int column, int row) const;
     void surveyParts(Survey&);
     double surveyPart(Survey&, std::uint32_t part, int points) const;
+    double pdfChartArea(Vec2 uv) const noexcept; // 1/m²
+    float pdfMixed(std::uint32_t part, Vec3 ng, Vec2 uv) const noexcept;
     float pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept;
 
     const Shape& shape_;

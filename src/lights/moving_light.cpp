@@ -26,6 +26,9 @@ ShapeSample toRender(const LightPose& pose, const ShapeSample& s) {
     return {Vec3(p), Vec3(error), Vec3(normalize(m.normal(Vec3d(s.ng)))), s.pdfSolidAngle};
 }
 
+// A direction, taken to another space.
+Vec3 turned(const Transform& m, Vec3 w) { return Vec3(normalize(m.vector(Vec3d(w)))); }
+
 } // namespace
 
 std::optional<LightBounds> MovingLight::bounds(std::uint32_t part) const {
@@ -63,6 +66,53 @@ float MovingLight::pdfEscaped(const Receiver& from, Vec3 w, float time) const no
     return pose ? atRest_->pdfEscaped(pose->rest(from), Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
 }
 
+std::optional<LightOrigin> MovingLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                                     float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    auto origin = atRest_->sampleOrigin(part, u, lambda, time);
+    if (origin) origin->p = Vec3(pose->toRender.point(Vec3d(origin->p)));
+    return origin;
+}
+
+LightOrigin MovingLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return {};
+    LightOrigin origin = atRest_->originAt(part, pose->rest(p), n, time);
+    origin.p = Vec3(pose->toRender.point(Vec3d(origin.p)));
+    return origin;
+}
+
+// The light has no surface: what leaves it depends on the direction alone.
+Vec3 MovingLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {
+    const auto pose = motion_.at(origin.time);
+    const Vec3 w = atRest_->sampleDirection(origin, u);
+    return pose ? turned(pose->toRender, w) : w;
+}
+
+float MovingLight::pdfDirection(const LightOrigin& origin, Vec3 w) const noexcept {
+    const auto pose = motion_.at(origin.time);
+    return pose ? atRest_->pdfDirection(origin, turned(pose->toRest, w)) : 0;
+}
+
+Spectrum MovingLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths& lambda) const noexcept {
+    const auto pose = motion_.at(origin.time);
+    return pose ? atRest_->leaving(origin, turned(pose->toRest, w), lambda) : Spectrum(0.f);
+}
+
+std::optional<LightSample> MovingLight::sampleDistant(Vec2 u, const Wavelengths& lambda, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    auto s = atRest_->sampleDistant(u, lambda, time);
+    if (s) s->wi = turned(pose->toRender, s->wi);
+    return s;
+}
+
+float MovingLight::pdfDistant(Vec3 w, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    return pose ? atRest_->pdfDistant(turned(pose->toRest, w), time) : 0;
+}
+
 std::optional<LightReach> MovingLight::reach(const Ray& ray, float tMax) const noexcept {
     const auto pose = motion_.at(ray.time);
     if (!pose) return std::nullopt;
@@ -96,6 +146,31 @@ std::optional<LightSample> MovingAreaLight::sample(const Receiver& from, std::ui
 float MovingAreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? AreaLight::pdfSolidAngle(pose->rest(from), pose->rest(hit), time) : 0;
+}
+
+std::optional<LightOrigin> MovingAreaLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                                         float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    auto origin = AreaLight::sampleOrigin(part, u, lambda, time);
+    if (!origin) return origin;
+    const ShapeSample moved = toRender(*pose, ShapeSample(origin->p, origin->pError, origin->n, origin->pdf));
+    origin->p = moved.p;
+    origin->pError = moved.pError;
+    origin->n = moved.ng;
+    origin->pdf *= static_cast<float>(1 / square(pose->scale));
+    return origin;
+}
+
+LightOrigin MovingAreaLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return {};
+    const Vec3 normal(normalize(pose->toRest.normal(Vec3d(n))));
+    LightOrigin origin = AreaLight::originAt(part, pose->rest(p), normal, time);
+    origin.p = p;
+    origin.n = n;
+    origin.pdf *= static_cast<float>(1 / square(pose->scale));
+    return origin;
 }
 
 std::unique_ptr<Light> inMotion(std::unique_ptr<Light> light, const LightContext& context) {

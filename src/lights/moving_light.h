@@ -26,6 +26,17 @@ class MovingLight final : public Light {
     float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
+    // Intensity stays when the scale changes.
+    LightPaths paths() const override { return atRest_->paths(); }
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
+                                            float time) const noexcept override;
+    LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
+    Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
+    float pdfDirection(const LightOrigin&, Vec3 w) const noexcept override;
+    Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths&) const noexcept override;
+    std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths&, float time) const noexcept override;
+    float pdfDistant(Vec3 w, float time) const noexcept override;
+
   private:
     std::unique_ptr<Light> atRest_;
     LightMotion motion_;
@@ -44,6 +55,9 @@ class MovingAreaLight final : public AreaLight {
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float time) const noexcept override;
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
+                                            float time) const noexcept override;
+    LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
 
   private:
     LightMotion motion_;

@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "math/warp.h"
 #include "render/light.h"
 
 #include <memory>
@@ -31,6 +32,20 @@ class PointLight final : public Light {
     const Curve* powerShape() const override { return intensity_.curve; }
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
+    }
+
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
+                                            float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override { return squareToSphere(u); }
+    float pdfDirection(const LightOrigin&, Vec3) const noexcept override { return kSpherePdf; }
+    Spectrum leaving(const LightOrigin&, Vec3, const Wavelengths& lambda) const noexcept override {
+        return intensity_.at(lambda);
     }
 
   private:

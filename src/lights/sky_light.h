@@ -30,6 +30,7 @@ class SkyLight final : public Light {
                                       float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths& lambda, float) const noexcept override { return radiance_.at(lambda); }
     float pdfEscaped(const Receiver&, Vec3, float) const noexcept override;
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     ScaledCurve radiance_;

@@ -1,6 +1,7 @@
 #include "lights/spot_light.h"
 
 #include "lights/amount_fields.h"
+#include "math/frame.h"
 
 #include <fmt/format.h>
 
@@ -128,6 +129,28 @@ std::optional<LightReach> SpotLight::reach(const Ray& ray, float tMax) const noe
     to = std::min(to, static_cast<double>(tMax));
     if (!(from < to)) return std::nullopt;
     return LightReach{position_, static_cast<float>(from), static_cast<float>(to)};
+}
+
+// With h = 1 - cos θ, dω = dφ dh: even up to the inner cone, then falling as t²(3 - 2t), where t runs from 1 there to 0
+// at the outer cone. The fall is drawn by its integral, t³ - t⁴/2 = u/2: convex and rising, so that Newton's method
+// from above comes down to the root without stepping over it.
+Vec3 SpotLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {
+    const double inner = static_cast<double>(innerOneMinusCos_), ramp = static_cast<double>(outerOneMinusCos_) - inner;
+    double h = static_cast<double>(u.x) * (inner + ramp / 2);
+    if (h > inner) {
+        const double share = 1 - (h - inner) / (ramp / 2); // of the fall, from the outer cone
+        double t = std::cbrt(share);
+        for (int i = 0; i < 6 && t > 0; ++i) t -= (t * t * t * (1 - t / 2) - share / 2) / (t * t * (3 - 2 * t));
+        h = inner + ramp * (1 - std::clamp(t, 0.0, 1.0));
+    }
+    const double sine = safeSqrt(h * (2 - h)), phi = 2 * kPiD * static_cast<double>(u.y);
+    const Frame frame = Frame::fromNormal(axis_);
+    return Vec3(normalize(Vec3d(frame.x) * (sine * std::cos(phi)) + Vec3d(frame.y) * (sine * std::sin(phi)) +
+                          Vec3d(axis_) * (1 - h)));
+}
+
+float SpotLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept {
+    return falloff(w) / (kPi * (innerOneMinusCos_ + outerOneMinusCos_)); // solidAngle()
 }
 
 std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightContext& context,

@@ -44,6 +44,21 @@ class SpotLight final : public Light {
     // The part of the ray within the cone.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
+                                            float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
+        return LightOrigin::at(position_, time);
+    }
+    // In proportion to the intensity.
+    Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
+    float pdfDirection(const LightOrigin&, Vec3 w) const noexcept override;
+    Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths& lambda) const noexcept override {
+        return intensity_.at(lambda) * falloff(w);
+    }
+
   private:
     float falloff(Vec3 w) const noexcept; // w leaves the light
     Vec3 position_;

@@ -36,6 +36,7 @@ class SunLight final : public Light {
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
+    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     bool inside(Vec3 w) const noexcept;

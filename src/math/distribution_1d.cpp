@@ -36,6 +36,12 @@ BinSample sampleCumulative(std::span<const double> cumulative, float u) noexcept
 Distribution1D::Distribution1D(std::span<const double> weights)
     : cumulative_(weights.size() + 1), total_(buildCumulative(weights, cumulative_)) {}
 
+std::uint32_t Distribution1D::pick(double u) const noexcept {
+    ABBE_DCHECK(u >= 0 && u < 1);
+    return static_cast<std::uint32_t>(std::upper_bound(cumulative_.begin() + 1, cumulative_.end() - 1, u) -
+                                      cumulative_.begin() - 1);
+}
+
 std::size_t Distribution1D::bin(float x) const noexcept {
     const double scaled = std::max(0.0, static_cast<double>(x) * static_cast<double>(size()));
     return std::min(static_cast<std::size_t>(scaled), size() - 1);

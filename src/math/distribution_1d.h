@@ -31,6 +31,8 @@ class Distribution1D {
     std::size_t size() const { return cumulative_.size() - 1; }
     double total() const { return total_; } // of the weights; 0 means that nothing should be sampled
     BinSample sample(float u) const noexcept { return sampleCumulative(cumulative_, u); }
+    // The bin alone, by a number with the digits to tell bins apart that are less likely than those of a float.
+    std::uint32_t pick(double u) const noexcept;
     double probability(std::size_t bin) const noexcept { return cumulative_[bin + 1] - cumulative_[bin]; }
 
     // The same as a density over [0, 1).

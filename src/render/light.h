@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/light_bounds.h"
+#include "render/light_origin.h"
 #include "render/ray.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
@@ -25,6 +26,14 @@ struct LightSample {
     Spectrum radiance;   // W·m⁻²·sr⁻¹·nm⁻¹
     float pdfSolidAngle; // > 0
     bool delta;          // cannot be met by chance: MIS weight 1
+    Vec3 n;              // unit normal of the light's surface at that point, outside; 0 where it has none
+};
+
+// How paths of light can start at a light.
+enum class LightPaths : std::uint8_t {
+    none,    // not at all: it is dark, or a medium that shines, which is found along rays alone
+    placed,  // at points of it
+    distant, // in a direction, from infinitely far away: all across the scene alike
 };
 
 // Where a light shines along a ray, and what point it shines from, more or less: distances drawn around it find more of
@@ -80,6 +89,36 @@ class Light {
     // with which sample(from, 0, ·) makes that direction. Asked of no other light.
     virtual Spectrum escaped(Vec3 /*w*/, const Wavelengths&, float /*time*/) const noexcept { return Spectrum(0.f); }
     virtual float pdfEscaped(const Receiver& /*from*/, Vec3 /*w*/, float /*time*/) const noexcept { return 0; }
+
+    // Paths that start here. What follows is asked as this says.
+    virtual LightPaths paths() const { return LightPaths::none; }
+
+    // Lights at a place. A point of a part, of which every one that gives light has a density; nothing where there is
+    // none. u in [0, 1)².
+    virtual std::optional<LightOrigin> sampleOrigin(std::uint32_t /*part*/, Vec2 /*u*/, const Wavelengths&,
+                                                    float /*time*/) const noexcept {
+        return std::nullopt;
+    }
+    // The same for a point of the part that is known, with its unit normal: its density (0 if sampleOrigin() cannot
+    // make it), and `factor` left at 1. Lights that are a point need neither.
+    virtual LightOrigin originAt(std::uint32_t /*part*/, Vec3 /*p*/, Vec3 /*n*/, float /*time*/) const noexcept {
+        return {};
+    }
+    // The light's own distribution of unit directions, about in proportion to the light that leaves: a direction, and
+    // the density of any, 1/sr. Directions into which light leaves have a density.
+    virtual Vec3 sampleDirection(const LightOrigin& origin, Vec2 /*u*/) const noexcept { return origin.n; }
+    virtual float pdfDirection(const LightOrigin&, Vec3 /*w*/) const noexcept { return 0; }
+    // Radiance that leaves in a unit direction, W·m⁻²·sr⁻¹·nm⁻¹; without a surface intensity, W·sr⁻¹·nm⁻¹.
+    virtual Spectrum leaving(const LightOrigin&, Vec3 /*w*/, const Wavelengths&) const noexcept {
+        return Spectrum(0.f);
+    }
+
+    // Lights far away: a direction for the scene as a whole, as sample() has it, and its density, 1/sr, for the unit
+    // direction w to the light. All that gives light has a density. A delta carries irradiance.
+    virtual std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths& lambda, float time) const noexcept {
+        return sample(Vec3{}, 0, u, lambda, time);
+    }
+    virtual float pdfDistant(Vec3 w, float time) const noexcept { return pdfEscaped(Vec3{}, w, time); }
 };
 
 } // namespace abbe

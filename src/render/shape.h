@@ -34,6 +34,14 @@ struct ShapeSample {
     float pdfSolidAngle;
 };
 
+// A point of a shape, drawn with no regard to where it is seen from.
+struct ShapePoint {
+    Vec3 p;
+    Vec3 pError;
+    Vec3 ng;           // unit, outside
+    float pdfArea = 0; // 1/m²
+};
+
 // A point by its texture coordinates, and m² per unit of them there.
 struct UvPoint {
     Vec3 p;
@@ -140,6 +148,13 @@ class Shape {
     // Density with which sample(from, part of the hit, ·) makes the point of `hit`, which lies on this shape; 0 if it
     // cannot.
     virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const = 0;
+
+    // What paths that start at an emitter need. A point of a part, even per area where the shape was made; nothing for
+    // shapes that cannot emit. u in [0, 1)².
+    virtual std::optional<ShapePoint> samplePoint(std::uint32_t /*part*/, Vec2 /*u*/) const { return std::nullopt; }
+    // Density per m² with which samplePoint(part, ·) makes a point of the part where the unit normal is ng; 0 if it
+    // cannot.
+    virtual float pdfPoint(std::uint32_t /*part*/, Vec3 /*ng*/) const { return 0; }
 
     // What only emitters with textures need. What surface() and parametrize() are to be given at a point of a part,
     // where the normal is ng; nothing if it is not on the shape. The ray is the one to go with it.

@@ -1,0 +1,47 @@
+// The directions from a point to a ball.
+#pragma once
+
+#include "integrators/emission_plan.h"
+#include "math/frame.h"
+
+#include <cmath>
+#include <optional>
+
+namespace abbe {
+
+// Even over them, in double: a target may be millions of its radii away (docs/hard_cases.md, case 30).
+class AimCone {
+  public:
+    // Nothing from inside of the ball. Directions are floats: the cone is wider than the ball by a few of their steps,
+    // so that rounding takes no ray past it and the density of a ball that is all but a point stays finite.
+    static std::optional<AimCone> seen(const AimTarget& target, Vec3 from) {
+        const Vec3d d = Vec3d(target.centre) - Vec3d(from);
+        const double d2 = lengthSquared(d), distance = std::sqrt(d2);
+        const double sine = static_cast<double>(target.radius) / distance + kSteps;
+        if (!(sine < 1)) return std::nullopt; // and at its centre, where it is infinite
+        return AimCone(d / distance, sine * sine);
+    }
+
+    Vec3 sample(Vec2 u) const {
+        const double h = static_cast<double>(u.x) * oneMinusCos_; // 1 - cos θ
+        const double sine = safeSqrt(h * (2 - h)), phi = 2 * kPiD * static_cast<double>(u.y);
+        const Frame frame = Frame::fromNormal(Vec3(axis_));
+        return Vec3(normalize(axis_ * (1 - h) + Vec3d(frame.x) * (sine * std::cos(phi)) +
+                              Vec3d(frame.y) * (sine * std::sin(phi))));
+    }
+    bool contains(Vec3 w) const {
+        const Vec3d v(w);
+        return dot(axis_, v) > 0 && lengthSquared(cross(axis_, v)) <= sin2_;
+    }
+    double pdf() const { return 1 / (2 * kPiD * oneMinusCos_); } // 1/sr, within it
+
+  private:
+    static constexpr double kSteps = 0x1p-22; // four half steps of a float near 1
+
+    AimCone(Vec3d axis, double sin2) : axis_(axis), sin2_(sin2), oneMinusCos_(sin2 / (1 + std::sqrt(1 - sin2))) {}
+
+    Vec3d axis_; // unit
+    double sin2_, oneMinusCos_;
+};
+
+} // namespace abbe

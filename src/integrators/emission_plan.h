@@ -1,0 +1,30 @@
+// What paths of light that start at the lights are sent to.
+#pragma once
+
+#include "math/vec.h"
+
+#include <vector>
+
+namespace abbe {
+
+// A ball about something that focuses light. Render space, m; at all times while the shutter is open.
+struct AimTarget {
+    Vec3 centre;
+    float radius = 0; // > 0
+};
+
+// Frozen before light is gathered: densities must not depend on what they are used for. All numbers are relative,
+// finite and >= 0. The density of a direction looks at every target: whoever makes them groups what is many.
+struct EmissionPlan {
+    std::vector<AimTarget> targets;
+    // How useful a watt of each light is; empty: all alike.
+    std::vector<double> usefulness;
+    // How useful each target is: a row for all lights, or a row for each, one after the other; empty: all alike. A row
+    // of zeros aims at nothing.
+    std::vector<double> aim;
+    // Of the paths of each light, those that take its own directions and, from far away, the whole scene: so that no
+    // light is ever missed. In (0, 1].
+    float uniformShare = 0.25f;
+};
+
+} // namespace abbe
