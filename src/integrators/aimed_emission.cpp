@@ -48,8 +48,9 @@ AimedEmission::AimedEmission(const std::vector<std::unique_ptr<const Light>>& li
     start_ = scene_.radius;
     for (const AimTarget& target : plan_.targets) {
         ABBE_CHECK(target.radius > 0 && std::isfinite(target.radius) && isFinite(target.centre));
-        balls_.push_back({target.centre, target.radius + steps});
-        start_ = std::max(start_, length(target.centre - scene_.centre) + balls_.back().radius);
+        const float wider = target.radius + steps;
+        balls_.push_back(wider < scene_.radius ? AimTarget{target.centre, wider} : scene_);
+        start_ = std::max(start_, length(balls_.back().centre - scene_.centre) + balls_.back().radius);
     }
     addAim(lights.size());
     addLights(lights);

@@ -7,7 +7,8 @@
 
 namespace abbe {
 
-// A ball about something that focuses light. Render space, m; at all times while the shutter is open.
+// A ball about something that focuses light, for all the time that the shutter is open. Render space, m. From far away
+// one that is larger than the scene's counts as that.
 struct AimTarget {
     Vec3 centre;
     float radius = 0; // > 0
@@ -17,7 +18,7 @@ struct AimTarget {
 // finite and >= 0. The density of a direction looks at every target: whoever makes them groups what is many.
 struct EmissionPlan {
     std::vector<AimTarget> targets;
-    // How useful a watt of each light is; empty: all alike.
+    // How useful a watt of each light is; empty: all alike. No path starts at a light of 0.
     std::vector<double> usefulness;
     // How useful each target is: a row for all lights, or a row for each, one after the other; empty: all alike. A row
     // of zeros aims at nothing.

@@ -159,6 +159,69 @@ TEST_CASE("emission: aimed directions and places follow the density of the whole
     }
 }
 
+// The first vertex on a tilted wall: its density per area there, as weights compare it with that of paths from the eye.
+TEST_CASE("emission: where paths arrive follows the density per area of the wall") {
+    constexpr int cells = 16;
+    constexpr double half = 0.8; // m
+    Random random(34);
+    for (const EmissionCase& lamp : emissionCases()) {
+        CAPTURE(lamp.text);
+        const TestScene test = emissionScene(lamp);
+        const Scene& scene = test.scene();
+        const AimedEmission emission(scene.lights, scene.intersector->bounds(), someTargets(Vec3(scene.origin)));
+        const Light& light = *scene.lights.at(0);
+        constexpr float time = 0.7f;
+        EmissionNumbers fixed = emissionNumbers(random);
+        const auto draw = [&] {
+            fixed.aim = random.uniform();
+            (lamp.distant ? fixed.position : fixed.direction) = {random.uniform(), random.uniform()};
+            return emission.sample(fixed, kAt, time);
+        };
+        std::optional<EmittedRay> some;
+        // From a point that faces the wall.
+        while (!(some = draw()) || (lengthSquared(some->n) > 0 && dot(some->n, kAhead) < 0.3f))
+            fixed = emissionNumbers(random);
+        // Facing what comes from far away, or in front of a lamp.
+        const Vec3 facing = normalize((lamp.distant ? some->ray.direction : kAhead) + Vec3{0.3f, -0.4f, 0.2f});
+        const Vec3 centre = (lamp.distant ? Vec3{} : kAhead * 1.4f) - Vec3(scene.origin);
+        const Frame frame = Frame::fromNormal(facing);
+        std::vector<double> observed(cells * cells, 0), expected(cells * cells, 0);
+        const int samples = chiSquareSamples();
+        for (int i = 0; i < samples; ++i) {
+            const auto ray = draw();
+            if (!ray) continue;
+            const float t = dot(centre - ray->ray.origin, facing) / dot(ray->ray.direction, facing);
+            const Vec3 local = frame.toLocal(ray->ray.origin + ray->ray.direction * t - centre);
+            const auto cell = [](float x) {
+                return static_cast<int>(std::floor((static_cast<double>(x) / half + 1) / 2 * cells));
+            };
+            const int row = cell(local.y), column = cell(local.x);
+            if (t > 0 && row >= 0 && row < cells && column >= 0 && column < cells)
+                observed[static_cast<std::size_t>(row * cells + column)] += 1;
+        }
+        const auto origin = light.sampleOrigin(some->part, fixed.position, kAt, time);
+        for (int i = 0; i < cells * kFine; ++i)
+            for (int j = 0; j < cells * kFine; ++j) {
+                const auto at = [](int k) { return static_cast<float>(((k + 0.5) / (cells * kFine) * 2 - 1) * half); };
+                const Vec3 p = centre + frame.x * at(j) + frame.y * at(i);
+                const Vec3 way = lamp.distant ? some->ray.direction : p - origin->p, w = normalize(way);
+                if (!lamp.distant && !anyNonZero(light.leaving(*origin, w, kAt))) continue;
+                const EmissionDensity d = lamp.distant
+                                              ? emission.density(&light, p, w, time)
+                                              : emission.density(&light, some->part, origin->p, origin->n, w, time);
+                expected[static_cast<std::size_t>(i / kFine * cells + j / kFine)] +=
+                    d.arriving(static_cast<double>(dot(w, facing)), static_cast<double>(lengthSquared(way))) * samples *
+                    square(2 * half / (cells * kFine));
+            }
+        for (double& e : expected) e += 1e-3;
+        const ChiSquareResult result = chiSquareTest(observed, expected);
+        CAPTURE(result.statistic);
+        CAPTURE(result.degrees);
+        CHECK(result.degrees > 100);
+        CHECK(result.pValue > 1e-5);
+    }
+}
+
 TEST_CASE("emission: a path that is found from its other end has the density with which it was made") {
     Random random(33);
     for (const EmissionCase& lamp : emissionCases()) {
