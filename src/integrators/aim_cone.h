@@ -22,6 +22,15 @@ class AimCone {
         return AimCone(d / distance, sine * sine);
     }
 
+    // True only if there is a cone and w lies outside of it: a quick answer for most of many targets, by a bound on the
+    // distance of the line from the ball's middle instead of roots.
+    static bool passes(const AimTarget& target, Vec3 from, Vec3 w) {
+        const Vec3d d = Vec3d(target.centre) - Vec3d(from);
+        const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // >= its length
+        const double wide = square(static_cast<double>(target.radius) + 1.001 * kSteps * sum);
+        return lengthSquared(cross(d, Vec3d(w))) > wide && lengthSquared(d) > 1.00001 * wide;
+    }
+
     Vec3 sample(Vec2 u) const {
         const double h = static_cast<double>(u.x) * oneMinusCos_; // 1 - cos θ
         const double sine = safeSqrt(h * (2 - h)), phi = 2 * kPiD * static_cast<double>(u.y);

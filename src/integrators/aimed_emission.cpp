@@ -143,7 +143,10 @@ double AimedEmission::pdfDirection(const Source& source, const LightOrigin& orig
     for (std::uint32_t t = 0; t < plan_.targets.size(); ++t) {
         const double share = aim.probability(t + 1);
         if (!(share > 0)) continue;
-        const auto cone = coneOf(plan_.targets[t], origin);
+        const AimTarget& target = plan_.targets[t];
+        const bool hidden = behind(target, origin);
+        if (!hidden && t != chosen && AimCone::passes(target, origin.p, w)) continue;
+        const auto cone = hidden ? std::nullopt : AimCone::seen(target, origin.p);
         if (!cone)
             own += share;
         else if (t == chosen || cone->contains(w))

@@ -50,6 +50,30 @@ TEST_CASE("aim cone: directions stay within it, fill it evenly and point at the 
     }
 }
 
+TEST_CASE("aim cone: what passes by quickly is outside, and most of what is outside passes by quickly") {
+    test::Random random(4);
+    const auto around = [&random](float size) {
+        return Vec3{random.uniform() - 0.5f, random.uniform() - 0.5f, random.uniform() - 0.5f} * size;
+    };
+    int outside = 0, quick = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const Vec3 from = around(4);
+        const AimTarget target{around(4), std::pow(10.f, 1 - 8 * random.uniform())};
+        const auto cone = AimCone::seen(target, from);
+        // About the ball, or right at the edge of it.
+        const Vec3 w =
+            normalize(i % 2 || !cone ? around(1) : cone->sample({kOneMinusEpsilon, random.uniform()}) + around(1e-7f));
+        const bool passes = AimCone::passes(target, from, w);
+        if (passes) CHECK((cone && !cone->contains(w)));
+        if (i % 2 && cone && !cone->contains(w)) {
+            ++outside;
+            quick += passes;
+        }
+    }
+    CHECK(outside > 30000);
+    CHECK(quick > 0.99 * outside);
+}
+
 TEST_CASE("aim cone: none from inside of the ball, on it or at its centre; a half of all directions just outside") {
     const AimTarget ball{{0, 0, 0}, 2};
     CHECK_FALSE(AimCone::seen(ball, {0, 0, 0}));
