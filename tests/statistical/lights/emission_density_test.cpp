@@ -181,8 +181,9 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
         // From a point that faces the wall.
         while (!(some = draw()) || (lengthSquared(some->n) > 0 && dot(some->n, kAhead) < 0.3f))
             fixed = emissionNumbers(random);
-        // Facing what comes from far away, or in front of a lamp.
-        const Vec3 facing = normalize((lamp.distant ? some->ray.direction : kAhead) + Vec3{0.3f, -0.4f, 0.2f});
+        // Aslant to what comes from far away, or before a lamp.
+        const Vec3 towards = lamp.distant ? some->ray.direction : kAhead;
+        const Vec3 facing = normalize(towards + Frame::fromNormal(towards).x * 0.8f);
         const Vec3 centre = (lamp.distant ? Vec3{} : kAhead * 1.4f) - Vec3(scene.origin);
         const Frame frame = Frame::fromNormal(facing);
         std::vector<double> observed(cells * cells, 0), expected(cells * cells, 0);
