@@ -86,11 +86,14 @@ std::optional<ShapePoint> ParametricShape::samplePoint(std::uint32_t part, Vec2 
 
 float ParametricShape::pdfPoint(std::uint32_t, Vec3 ng) const { return static_cast<float>(pdfArea(Vec3d(ng))); }
 
-std::optional<ShapeSample> ParametricShape::sample(const Receiver& from, std::uint32_t part, Vec2 u) const {
-    const ShapePoint s = *samplePoint(part, u);
-    const float pdf = areaToSolidAngle(s.pdfArea, s.p - from.p, s.ng);
+std::optional<ShapeSample> ParametricShape::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
+    const LocalPoint local = sampleLocal(Vec2d{static_cast<double>(u.x), static_cast<double>(u.y)});
+    const Vec3d p = map_.point(local.p);
+    const Vec3 ng(normalize(map_.normal(local.n)));
+    const Vec3 rounded(p);
+    const float pdf = areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(ng))), rounded - from.p, ng);
     if (!(pdf > 0)) return std::nullopt;
-    return std::optional<ShapeSample>(std::in_place, s.p, s.pError, s.ng, pdf);
+    return std::optional<ShapeSample>(std::in_place, rounded, analyticError(p, magnitude_), ng, pdf);
 }
 
 float ParametricShape::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
