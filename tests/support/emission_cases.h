@@ -7,6 +7,7 @@
 #include "support/scene_test.h"
 #include "support/statistics.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -29,31 +30,47 @@ struct EmissionCase {
 
 inline const Vec3 kAhead = normalize(Vec3{0.2f, 0.1f, 1});
 
-// A lamp that is brighter in one plane, and brightest 20 degrees off its axis.
-inline std::string lopsidedLamp() {
-    const auto path = std::filesystem::temp_directory_path() / fmt::format("abbe_emission_{}.ies", getpid());
-    std::ofstream file(path);
-    file << "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 19 4 1 2 0 0 0\n1 1 10\n";
-    for (int v = 0; v <= 90; v += 5) file << v << ' ';
-    file << "\n0 90 270 360\n";
-    for (const double bright : {1.0, 2.0, 0.5, 1.0})
-        for (int v = 0; v <= 90; v += 5)
-            file << bright * 100 * std::max(0.0, std::cos((v - 20) * kPiD / 180) - 0.3) << ' ';
-    return path.string();
-}
+// What the lights read, for as long as the process lives.
+class EmissionFiles {
+  public:
+    EmissionFiles() {
+        writeLamp();
+        writeEnvironment(sky(), 24, 12, skyColor);
+    }
+    EmissionFiles(const EmissionFiles&) = delete;
+    EmissionFiles& operator=(const EmissionFiles&) = delete;
+    ~EmissionFiles() {
+        std::error_code ignored;
+        for (const std::string& path : {lamp(), sky()}) std::filesystem::remove(path, ignored);
+    }
+    std::string lamp() const { return place("ies"); }
+    std::string sky() const { return place("exr"); }
 
-// A sky with a sun and a dark ground.
-inline std::string sunnySky() {
-    const auto path = std::filesystem::temp_directory_path() / fmt::format("abbe_emission_{}.exr", getpid());
-    writeEnvironment(path.string(), 24, 12, [](int x, int y) -> std::array<float, 3> {
+  private:
+    static std::string place(const char* extension) {
+        const auto name = fmt::format("abbe_emission_{}.{}", getpid(), extension);
+        return (std::filesystem::temp_directory_path() / name).string();
+    }
+    // Brighter in one plane, and brightest 20 degrees off its axis.
+    void writeLamp() const {
+        std::ofstream file(lamp());
+        file << "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 19 4 1 2 0 0 0\n1 1 10\n";
+        for (int v = 0; v <= 90; v += 5) file << v << ' ';
+        file << "\n0 90 270 360\n";
+        for (const double bright : {1.0, 2.0, 0.5, 1.0})
+            for (int v = 0; v <= 90; v += 5)
+                file << bright * 100 * std::max(0.0, std::cos((v - 20) * kPiD / 180) - 0.3) << ' ';
+    }
+    // With a sun and a dark ground.
+    static std::array<float, 3> skyColor(int x, int y) {
         if (x == 5 && y == 3) return {90, 80, 60};
         if (y < 6) return {0.6f, 0.8f, 1.2f + 0.03f * static_cast<float>(x)};
         return {0.1f, 0.1f, 0.05f};
-    });
-    return path.string();
-}
+    }
+};
 
 inline std::vector<EmissionCase> emissionCases() {
+    static const EmissionFiles files;
     const std::string turn = "transform { at 0 s { rotate y -20 deg; translate -0.3 0 0 }\n"
                              "at 1 s { rotate y 25 deg; translate 0.3 0.2 0 } } ",
                       grow = "transform { at 0 s { scale 0.5 }\nat 1 s { scale 1.5; translate 0.2 0 0 } } ",
@@ -67,8 +84,8 @@ inline std::vector<EmissionCase> emissionCases() {
                       place = "position 0.1 0.2 -0.1; ", facing = "toward 0.2 0.1 1; ",
                       shape = "emission 0.5; transform { rotate x 60 deg; scale 0.5 0.5 0.8 } }",
                       environment =
-                          fmt::format("light environment \"{}\" {{ transform {{ rotate y 25 deg }}; ", sunnySky()),
-                      lamp = fmt::format("light ies \"{}\" {{ ", lopsidedLamp()) + facing + "turn 30 deg; ";
+                          fmt::format("light environment \"{}\" {{ transform {{ rotate y 25 deg }}; ", files.sky()),
+                      lamp = fmt::format("light ies \"{}\" {{ ", files.lamp()) + facing + "turn 30 deg; ";
     return {
         {"light point { " + place + flame + "}"},
         {"light spot { " + place + facing + "angle 80 deg; inner-angle 30 deg; " + flame + "}"},
