@@ -13,22 +13,26 @@ namespace abbe {
 class AimCone {
   public:
     // Nothing from inside of the ball. Directions are floats: the cone is wider than the ball by a few of their steps,
-    // so that rounding takes no ray past it and the density of a ball that is all but a point stays finite.
-    static std::optional<AimCone> seen(const AimTarget& target, Vec3 from) {
+    // so that rounding takes no ray past it and the density of a ball that is all but a point stays finite. Nothing for
+    // one that is too wide to be of use, too: from a density of `least` on, 1/sr.
+    static std::optional<AimCone> seen(const AimTarget& target, Vec3 from, double least = 0) {
         const Vec3d d = Vec3d(target.centre) - Vec3d(from);
         const double d2 = lengthSquared(d), distance = std::sqrt(d2);
         const double sine = static_cast<double>(target.radius) / distance + kSteps;
         if (!(sine < 1)) return std::nullopt; // and at its centre, where it is infinite
-        return AimCone(d / distance, sine * sine);
+        const AimCone cone(d / distance, sine * sine);
+        return cone.pdf() > least ? std::optional(cone) : std::nullopt;
     }
 
     // True only if there is a cone and w lies outside of it: a quick answer for most of many targets, by a bound on the
     // distance of the line from the ball's middle instead of roots.
-    static bool passes(const AimTarget& target, Vec3 from, Vec3 w) {
+    static bool passes(const AimTarget& target, Vec3 from, Vec3 w, double least = 0) {
         const Vec3d d = Vec3d(target.centre) - Vec3d(from);
         const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // >= its length
         const double wide = square(static_cast<double>(target.radius) + 1.001 * kSteps * sum);
-        return lengthSquared(cross(d, Vec3d(w))) > wide && lengthSquared(d) > 1.00001 * wide;
+        if (!(lengthSquared(cross(d, Vec3d(w))) > wide)) return false;
+        const double d2 = lengthSquared(d); // the density is at least 1 / (2π sin² θ), as 1 - cos θ <= sin² θ
+        return d2 > 1.00001 * wide && d2 > 1.00001 * 2 * kPiD * wide * least;
     }
 
     Vec3 sample(Vec2 u) const {

@@ -21,9 +21,15 @@ bool behind(const AimTarget& target, const LightOrigin& origin) {
     return origin.sides == LightOrigin::Sides::front && dot(target.centre - origin.p, origin.n) <= -target.radius;
 }
 
+// Nothing where the light's own directions are as dense, such as the narrow beam of a spot on a wide target.
 std::optional<AimCone> coneOf(const AimTarget& target, const LightOrigin& origin) {
     if (behind(target, origin)) return std::nullopt;
-    return AimCone::seen(target, origin.p);
+    return AimCone::seen(target, origin.p, static_cast<double>(origin.largest));
+}
+
+// Whether there is such a cone that w surely misses.
+bool passes(const AimTarget& target, const LightOrigin& origin, Vec3 w) {
+    return AimCone::passes(target, origin.p, w, static_cast<double>(origin.largest)) && !behind(target, origin);
 }
 
 // Whether the line through p meets the ball: its middle's distance from the line, in double.
@@ -144,9 +150,8 @@ double AimedEmission::pdfDirection(const Source& source, const LightOrigin& orig
         const double share = aim.probability(t + 1);
         if (!(share > 0)) continue;
         const AimTarget& target = plan_.targets[t];
-        const bool hidden = behind(target, origin);
-        if (!hidden && t != chosen && AimCone::passes(target, origin.p, w)) continue;
-        const auto cone = hidden ? std::nullopt : AimCone::seen(target, origin.p);
+        if (t != chosen && passes(target, origin, w)) continue;
+        const auto cone = coneOf(target, origin);
         if (!cone)
             own += share;
         else if (t == chosen || cone->contains(w))

@@ -80,29 +80,31 @@ float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, floa
     return pdf < kInfinity ? pdf : 0; // as in sample
 }
 
+LightOrigin AreaLight::originOf(Vec3 p, Vec3 n, float pdf, float time) const noexcept {
+    LightOrigin origin;
+    origin.p = p;
+    origin.n = n;
+    origin.pdf = pdf;
+    origin.largest = twoSided_ ? 0.5f * kInvPi : kInvPi; // along the normal
+    origin.sides = twoSided_ ? LightOrigin::Sides::both : LightOrigin::Sides::front;
+    origin.time = time;
+    return origin;
+}
+
 std::optional<LightOrigin> AreaLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
                                                    float time) const noexcept {
-    LightOrigin origin;
-    const auto s = texture_ ? texture_->samplePoint(part, u, lambda, origin.factor) : shape_.samplePoint(part, u);
+    Spectrum factor(1.f);
+    const auto s = texture_ ? texture_->samplePoint(part, u, lambda, factor) : shape_.samplePoint(part, u);
     if (!s || !(s->pdfArea > 0) || !(s->pdfArea < kInfinity)) return std::nullopt;
-    origin.p = s->p;
+    LightOrigin origin = originOf(s->p, s->ng, s->pdfArea, time);
     origin.pError = s->pError;
-    origin.n = s->ng;
-    origin.pdf = s->pdfArea;
-    origin.sides = sides();
-    origin.time = time;
+    origin.factor = factor;
     return origin;
 }
 
 LightOrigin AreaLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
     const float pdf = texture_ ? texture_->pdfPoint(part, p, n) : shape_.pdfPoint(part, n);
-    LightOrigin origin;
-    origin.p = p;
-    origin.n = n;
-    origin.pdf = pdf < kInfinity ? pdf : 0; // as in origin
-    origin.sides = sides();
-    origin.time = time;
-    return origin;
+    return originOf(p, n, pdf < kInfinity ? pdf : 0, time); // as in sampleOrigin
 }
 
 Vec3 AreaLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {

@@ -49,9 +49,7 @@ class AreaLight : public Light {
 
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
-    LightOrigin::Sides sides() const noexcept {
-        return twoSided_ ? LightOrigin::Sides::both : LightOrigin::Sides::front;
-    }
+    LightOrigin originOf(Vec3 p, Vec3 n, float pdf, float time) const noexcept;
     const Shape& shape_;
     Vec3 centre_;
     ScaledCurve radiance_;

@@ -137,7 +137,7 @@ double IesProfile::integrate() const {
 
 IesLight::IesLight(Vec3 position, const Frame& axes, IesProfile profile, ScaledCurve perCandela)
     : position_(position), axes_(axes), profile_(std::move(profile)), perCandela_(perCandela), directions_(density()),
-      power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale),
+      largestPdf_(largestDensity()), power_(profile_.lumens() * radiantIntegral(*perCandela.curve) * perCandela.scale),
       visiblePower_(profile_.lumens() * visibleIntegral(*perCandela.curve) * perCandela.scale) {}
 
 std::optional<LightSample> IesLight::sample(const Receiver& from, std::uint32_t, Vec2, const Wavelengths& lambda,
@@ -189,6 +189,14 @@ Distribution2D IesLight::density() const {
             weights.push_back((sum / (points * points) + floor) * cellSolidAngle(row));
         }
     return {weights, kColumns};
+}
+
+float IesLight::largestDensity() const {
+    double largest = 0;
+    for (std::size_t row = 0; row < kRows; ++row)
+        for (std::size_t column = 0; column < kColumns; ++column)
+            largest = std::max(largest, directions_.probability(column, row) / cellSolidAngle(row));
+    return static_cast<float>(largest);
 }
 
 Vec3 IesLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {

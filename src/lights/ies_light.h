@@ -62,10 +62,10 @@ class IesLight final : public Light {
     LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, largestPdf_);
     }
     LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, largestPdf_);
     }
     // About in proportion to the intensity.
     Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
@@ -78,12 +78,14 @@ class IesLight final : public Light {
     };
     Angles angles(Vec3 w) const noexcept; // w leaves the light
     Distribution2D density() const;
+    float largestDensity() const;
 
     Vec3 position_;
     Frame axes_;
     IesProfile profile_;
     ScaledCurve perCandela_;
     Distribution2D directions_; // cells of the angle about the axis and of that from it
+    float largestPdf_;
     double power_, visiblePower_;
 };
 

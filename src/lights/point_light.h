@@ -37,10 +37,10 @@ class PointLight final : public Light {
     LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, kSpherePdf);
     }
     LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, kSpherePdf);
     }
     Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override { return squareToSphere(u); }
     float pdfDirection(const LightOrigin&, Vec3) const noexcept override { return kSpherePdf; }

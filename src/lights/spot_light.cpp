@@ -149,9 +149,7 @@ Vec3 SpotLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {
                           Vec3d(axis_) * (1 - h)));
 }
 
-float SpotLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept {
-    return falloff(w) / (kPi * (innerOneMinusCos_ + outerOneMinusCos_)); // solidAngle()
-}
+float SpotLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept { return falloff(w) * largestPdf(); }
 
 std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightContext& context,
                                      Diagnostics& diagnostics) {

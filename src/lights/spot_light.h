@@ -47,10 +47,10 @@ class SpotLight final : public Light {
     LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, largestPdf());
     }
     LightOrigin originAt(std::uint32_t, Vec3, Vec3, float time) const noexcept override {
-        return LightOrigin::at(position_, time);
+        return LightOrigin::at(position_, time, largestPdf());
     }
     // In proportion to the intensity.
     Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
@@ -61,6 +61,7 @@ class SpotLight final : public Light {
 
   private:
     float falloff(Vec3 w) const noexcept; // w leaves the light
+    float largestPdf() const noexcept { return 1 / (kPi * (innerOneMinusCos_ + outerOneMinusCos_)); } // solidAngle()
     Vec3 position_;
     Vec3 axis_;
     float innerOneMinusCos_;

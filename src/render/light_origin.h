@@ -15,18 +15,20 @@ struct LightOrigin {
     enum class Sides : std::uint8_t { all, front, both };
 
     // On a light that is a point: its density is a delta.
-    static LightOrigin at(Vec3 point, float time) {
+    static LightOrigin at(Vec3 point, float time, float largest) {
         LightOrigin origin;
         origin.p = point;
         origin.time = time;
         origin.pdf = 1;
+        origin.largest = largest;
         return origin;
     }
 
     Vec3 p;
-    Vec3 pError;   // bound on the absolute error of p, per axis
-    Vec3 n;        // unit, outside; 0 without a surface
-    float pdf = 0; // 1/m², of the point among those of its part; 1 without a surface
+    Vec3 pError;       // bound on the absolute error of p, per axis
+    Vec3 n;            // unit, outside; 0 without a surface
+    float pdf = 0;     // 1/m², of the point among those of its part; 1 without a surface
+    float largest = 0; // 1/sr: the largest density of the light's own directions there
     Sides sides = Sides::all;
     float time = 0;       // Ray::time
     Spectrum factor{1.f}; // what dims the light there: a texture

@@ -65,6 +65,8 @@ TEST_CASE("aim cone: what passes by quickly is outside, and most of what is outs
             normalize(i % 2 || !cone ? around(1) : cone->sample({kOneMinusEpsilon, random.uniform()}) + around(1e-7f));
         const bool passes = AimCone::passes(target, from, w);
         if (passes) CHECK((cone && !cone->contains(w)));
+        const double least = random.uniformDouble();
+        if (AimCone::passes(target, from, w, least)) CHECK(AimCone::seen(target, from, least));
         if (i % 2 && cone && !cone->contains(w)) {
             ++outside;
             quick += passes;

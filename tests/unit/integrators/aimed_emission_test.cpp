@@ -88,6 +88,32 @@ TEST_CASE("aimed emission: targets around, at, behind and far from a light, of a
     }
 }
 
+TEST_CASE("aimed emission: a beam that is narrower than its target is not spread, a wide one is aimed") {
+    for (const double degrees : {0.1, 5.0, 120.0}) {
+        CAPTURE(degrees);
+        const TestScene test =
+            scene("light spot { toward 0.1 0 1; angle " + std::to_string(degrees) + " deg; power 10 W }");
+        const Light& light = *test.scene().lights.at(0);
+        const EmissionPlan plan{
+            .targets = {{Vec3{0, 0, 2} - Vec3(test.scene().origin), 0.5f}}, .usefulness = {}, .aim = {}};
+        const AimedEmission emission(test.scene().lights, test.scene().intersector->bounds(), plan);
+        Random random(5);
+        int aimed = 0, lit = 0;
+        constexpr int samples = 1000;
+        for (int i = 0; i < samples; ++i) {
+            const auto ray = emission.sample(numbers(random), Wavelengths::single(550), 0);
+            if (!ray) continue;
+            ++lit;
+            aimed += ray->target == 0;
+            const LightOrigin origin = light.originAt(0, {}, {}, 0);
+            CHECK(light.pdfDirection(origin, ray->ray.direction) <= origin.largest);
+        }
+        CHECK(lit == samples);
+        CHECK(aimed > (degrees > 100 ? 0.7 * samples : -1));
+        CHECK(aimed <= (degrees > 100 ? 0.8 * samples : 0));
+    }
+}
+
 TEST_CASE("aimed emission: light from far away is not counted before the place where its paths start") {
     const TestScene test = scene("light sun { toward 0 -1 0 }");
     const Light& sun = *test.scene().lights.at(0);
