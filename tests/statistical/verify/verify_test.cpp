@@ -14,9 +14,16 @@ struct Case {
     bool light; // takes seconds
 };
 const Case kCases[] = {
-    {"cornell-box", true},       {"color-bleeding", true},  {"parametric-shapes", true},       {"textures", true},
-    {"glass-caustic", true},     {"first", true},           {"subdivision-still-life", false}, {"shader-ball", false},
-    {"displaced-stones", false}, {"instance-field", false}, {"screen-and-lanterns", false},
+    {"cornell-box", true},
+    {"color-bleeding", true},
+    {"parametric-shapes", true},
+    {"textures", true},
+    {"glass-caustic", true},
+    {"first", true},
+    {"subdivision-still-life", false},
+    {"shader-ball", false},
+    {"displaced-stones", false},
+    {"screen-and-lanterns", false},
 };
 
 TestScene small(const Case& c) {
