@@ -1,23 +1,10 @@
 // Paths of light that are sent to what lies badly: finite, and not one watt more or less.
-#include "integrators/aimed_emission.h"
-#include "render/intersector.h"
-#include "support/scene_test.h"
-#include "support/statistics.h"
+#include "support/emission_cases.h"
 
 #include <doctest/doctest.h>
 
 namespace abbe::test {
 namespace {
-
-EmissionNumbers numbers(Random& random) {
-    EmissionNumbers u;
-    u.light = random.uniformDouble();
-    u.part = random.uniformDouble();
-    u.aim = random.uniform();
-    u.position = {random.uniform(), random.uniform()};
-    u.direction = {random.uniform(), random.uniform()};
-    return u;
-}
 
 TestScene scene(const std::string& lights) {
     return TestScene::parse("scene 1\ncamera { from 0 0 9; shutter 1 s }\nshape box { size 3 3 3 }\n" + lights + "\n");
@@ -66,7 +53,7 @@ TEST_CASE("aimed emission: targets around, at, behind and far from a light, of a
             int finite = 0;
             constexpr int samples = 20000;
             for (int k = 0; k < samples; ++k) {
-                EmissionNumbers u = numbers(random);
+                EmissionNumbers u = emissionNumbers(random);
                 if (k < 16) { // the corners of all squares
                     u.position = {k & 1 ? kOneMinusEpsilon : 0.f, k & 2 ? kOneMinusEpsilon : 0.f};
                     u.direction = {k & 4 ? kOneMinusEpsilon : 0.f, k & 8 ? kOneMinusEpsilon : 0.f};
@@ -101,7 +88,7 @@ TEST_CASE("aimed emission: a beam that is narrower than its target is not spread
         int aimed = 0, lit = 0;
         constexpr int samples = 1000;
         for (int i = 0; i < samples; ++i) {
-            const auto ray = emission.sample(numbers(random), Wavelengths::single(550), 0);
+            const auto ray = emission.sample(emissionNumbers(random), Wavelengths::single(550), 0);
             if (!ray) continue;
             ++lit;
             aimed += ray->target == 0;
@@ -126,7 +113,7 @@ TEST_CASE("aimed emission: light from far away is not counted before the place w
     CHECK(emission.density(&sun, Vec3{100, 0, 0} - origin, down, 0).total() == 0);  // a floor beside the scene
     Random random(2);
     for (int i = 0; i < 100; ++i) {
-        const auto ray = emission.sample(numbers(random), Wavelengths::single(550), 0);
+        const auto ray = emission.sample(emissionNumbers(random), Wavelengths::single(550), 0);
         REQUIRE(ray);
         const Bounds3 box = test.scene().intersector->bounds();
         CHECK(dot(ray->ray.origin - box.centre(), ray->ray.direction) < -0.999f * box.radius());
@@ -144,7 +131,7 @@ TEST_CASE("aimed emission: a light that is of no use, a row that aims at nothing
     CHECK(one.density(lights[1].get(), 0, {}, {}, {0, 0, 1}, 0).pick == 1);
     Random random(3);
     for (int i = 0; i < 1000; ++i) {
-        const auto ray = one.sample(numbers(random), Wavelengths::single(550), 0);
+        const auto ray = one.sample(emissionNumbers(random), Wavelengths::single(550), 0);
         REQUIRE(ray);
         CHECK(ray->light == lights[1].get());
         CHECK(ray->target == EmittedRay::kNoTarget);
