@@ -1,6 +1,6 @@
 #include "app/json.h"
 #include "app/options.h"
-#include "app/stopwatch.h"
+#include "base/stopwatch.h"
 #include "denoise/denoise.h"
 #include "io/exr_append.h"
 #include "io/exr_channels.h"

@@ -1,6 +1,6 @@
 #include "app/load.h"
 
-#include "app/stopwatch.h"
+#include "base/stopwatch.h"
 #include "base/work.h"
 #include "parser/parse.h"
 #include "parser/presets.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/checkpoint_file.h"
-#include "app/stopwatch.h"
+#include "base/stopwatch.h"
 
 #include <condition_variable>
 #include <functional>

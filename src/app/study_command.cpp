@@ -1,12 +1,12 @@
 #include "app/image_output.h"
 #include "app/interrupt.h"
 #include "app/json.h"
+#include "app/measured_scene.h"
 #include "app/options.h"
 #include "app/progress_text.h"
 #include "app/provenance.h"
 #include "app/render_identity.h"
 #include "app/render_report.h"
-#include "app/small_size.h"
 #include "app/study_effects.h"
 #include "app/study_files.h"
 #include "app/study_page.h"
@@ -106,17 +106,11 @@ class StudyCommand {
 };
 
 ExitCode StudyCommand::load() {
-    loaded_ = loadScene(options_.input);
-    build_ = options_.build;
-    if (!build_.size && loaded_->readable && !loaded_->diagnostics.hasErrors())
-        build_.size = smallSize(*loaded_, build_, kStudySide);
-    if (loaded_->readable) built_ = buildScene(loaded_->tree, loaded_->types, build_, loaded_->diagnostics);
-    messages_->diagnostics(loaded_->diagnostics, loaded_->sources);
-    if (const ExitCode code = loaded_->exitCode(); code != ExitCode::done) return code;
-    built_.film.crop.reset(); // pixels of the size that the scene asks for
-    built_.film.overscan.clear();
-    for (const FilmFault& fault : findFaults(built_.film))
-        return refuse(std::string(fault.code), fault.message, fault.help, ExitCode::usage);
+    MeasuredScene scene = loadMeasured(options_.input, options_.build, kStudySide, *messages_);
+    loaded_ = std::move(scene.loaded);
+    build_ = scene.options;
+    built_ = std::move(scene.built);
+    if (scene.code != ExitCode::done) return scene.code;
     subject_.built = &built_;
     subject_.film = filmSettings(built_.film);
     subject_.settings = renderSettings(built_.render);

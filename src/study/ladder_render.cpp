@@ -1,11 +1,11 @@
 #include "study/ladder_render.h"
 
 #include "base/check.h"
+#include "base/stopwatch.h"
 #include "denoise/denoise.h"
 #include "film/layer_planes.h"
 #include "integrators/path_tracer.h"
 
-#include <chrono>
 #include <ctime>
 #include <numeric>
 #include <string>
@@ -13,10 +13,6 @@
 namespace abbe {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 double processSeconds() {
     timespec t;
@@ -79,10 +75,10 @@ std::optional<LadderRung> LadderRender::advance(std::uint32_t samplesPerReplicat
     settings_.samples = samplesPerReplicate * static_cast<std::uint32_t>(subject_.replicates);
     RenderControl control{stop_, {}, &*state_};
     if (progress) control.progress = [&](const Progress& p) { progress(p.fraction); };
-    const auto start = Clock::now();
+    const Stopwatch rendering;
     const RenderStatistics statistics = integrator_->render(subject_.built->scene, *film_, settings_, control);
     if (statistics.stopped || state_->reached() < samplesPerReplicate) return std::nullopt;
-    account(statistics, secondsSince(start));
+    account(statistics, rendering.seconds());
     LadderRung rung{settings_.samples, {}, cost_};
     const FilmSettings& film = subject_.film;
     ResolvedImage picture =
@@ -91,10 +87,10 @@ std::optional<LadderRung> LadderRender::advance(std::uint32_t samplesPerReplicat
         rung.image = interleaved(film, picture.r, picture.g, picture.b);
         return rung;
     }
-    const auto begin = Clock::now();
+    const Stopwatch denoising;
     const double before = processSeconds();
     rung.image = denoised(picture);
-    rung.cost.seconds += secondsSince(begin);
+    rung.cost.seconds += denoising.seconds();
     rung.cost.coreSeconds += processSeconds() - before;
     return rung;
 }

@@ -2,6 +2,7 @@
 
 #include "math/student.h"
 #include "math/vec.h"
+#include "verify/replicate_mean.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,30 +19,9 @@ constexpr double kRounding = 1e-5;
 // hardly ever above a third.
 constexpr double kMostOfVariance = 0.5;
 
-// Of the mean of one estimator's replicates.
-struct Mean {
-    double value = 0, variance = 0;
-    double freedom = 1;
-    double largestPart = 0; // of a single replicate, in the variance
-
-    Mean(const BlockSums& sums, std::size_t channel) {
-        const auto n = static_cast<double>(sums.replicates.size());
-        for (const auto& r : sums.replicates) value += r[channel] / n;
-        double squares = 0, largest = 0;
-        for (const auto& r : sums.replicates) {
-            const double d = square(r[channel] - value);
-            squares += d;
-            largest = std::max(largest, d);
-        }
-        freedom = n - 1;
-        variance = squares / (n * freedom);
-        if (squares > 0) largestPart = largest / squares;
-    }
-};
-
 BlockTest test(const BlockSums& blockA, const BlockSums& blockB, PixelBounds bounds, int channel) {
     const auto c = static_cast<std::size_t>(channel);
-    const Mean a(blockA, c), b(blockB, c);
+    const ReplicateMean a(blockA, c), b(blockB, c);
     BlockTest t;
     t.bounds = bounds;
     t.channel = channel;

@@ -38,6 +38,12 @@ PixelBounds TileSums::bounds(int column, int row) const {
     return {column * tile_, row * tile_, std::min((column + 1) * tile_, width_), std::min((row + 1) * tile_, height_)};
 }
 
+BlockSums TileSums::whole() const {
+    TileSums all = *this;
+    while (all.blocks_.size() > 1) all = all.coarser();
+    return all.blocks_[0];
+}
+
 TileSums TileSums::coarser() const {
     TileSums c;
     c.width_ = width_;

@@ -31,6 +31,8 @@ class TileSums {
     PixelBounds bounds(int column, int row) const;
     // Blocks of twice the size, put together from these.
     TileSums coarser() const;
+    // Of the whole picture.
+    BlockSums whole() const;
 
   private:
     TileSums() = default;

@@ -1,12 +1,13 @@
 #include "verify/verify_run.h"
 
+#include "base/stopwatch.h"
 #include "film/film_params.h"
 #include "integrators/path_tracer.h"
 #include "math/vec.h"
 #include "render/render_state.h"
+#include "verify/replicate_mean.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -20,10 +21,6 @@ constexpr std::uint32_t kPilotSamples = 4; // of each replicate
 constexpr double kReserve = 0.9;
 constexpr std::uint32_t kMostSamples = 1u << 24;
 
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 // One estimator's picture.
 struct Picture {
     std::optional<TileSums> sums;
@@ -32,14 +29,8 @@ struct Picture {
 
     // Relative variance of the picture's mean Y.
     double variance() const {
-        TileSums all = *sums;
-        while (all.columns() * all.rows() > 1) all = all.coarser();
-        double mean = 0, squares = 0;
-        const auto& replicates = all.at(0, 0).replicates;
-        const auto n = static_cast<double>(replicates.size());
-        for (const auto& r : replicates) mean += r[1] / n;
-        for (const auto& r : replicates) squares += square(r[1] - mean);
-        return mean != 0 ? squares / (n * (n - 1)) / square(mean) : 0;
+        const ReplicateMean y(sums->whole(), 1);
+        return y.value != 0 ? y.variance / square(y.value) : 0;
     }
     double rays() const { return static_cast<double>(statistics.rays() + statistics.pilotRays); }
 };
@@ -50,7 +41,7 @@ class VerifyRun {
         : built_(built), plan_(plan), control_(control), estimators_(verifyEstimators(built.scene.lights.size())) {}
 
     std::optional<VerifyReport> run() {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch clock;
         VerifyReport report;
         std::array<std::uint32_t, 2> samples{};
         if (plan_.samples) {
@@ -69,7 +60,7 @@ class VerifyRun {
                                droppedOf(pictures[i]), std::sqrt(pictures[i].variance())};
         }
         report.agreement = compare(*pictures[0].sums, *pictures[1].sums, plan_.level);
-        report.seconds = secondsSince(start);
+        report.seconds = clock.seconds();
         return report;
     }
 
@@ -131,9 +122,9 @@ bool VerifyRun::render(std::size_t estimator, std::uint32_t samplesPerReplicate,
     settings.technique = estimators_[estimator].technique;
     RenderControl control{control_.stop, {}};
     if (control_.progress) control.progress = [&](const Progress& p) { control_.progress(done + share * p.fraction); };
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     picture.statistics = makePathTracer(built_.scene.effects)->render(built_.scene, image, settings, control);
-    picture.seconds = secondsSince(start);
+    picture.seconds = clock.seconds();
     if (picture.statistics.stopped) return false;
     picture.sums.emplace(image);
     return true;
