@@ -2,16 +2,18 @@
 
 #include "base/check.h"
 #include "film/layer_recorder.h"
+#include "film/spectral_spread.h"
 #include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace abbe {
 
 FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names,
                        const RgbSpace& space, LayerSight sight)
     : bounds_(bounds), plan_(std::move(plan)), replicates_(replicates), sight_(sight),
-      stride_(static_cast<std::size_t>(plan_.offsets().total)) {
+      stride_(static_cast<std::size_t>(plan_.offsets().total)), at_(plan_.offsets()) {
     ABBE_CHECK(!plan_.motion || (sight.world && sight.camera));
     if (plan_.deep) deep_ = std::make_unique<DeepSums>(bounds, *plan_.deep);
     if (plan_.albedo) white_ = emissionFromRgb({1, 1, 1}, space).curve;
@@ -33,11 +35,42 @@ FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const
     if (plan_.coversMaterials()) mattes(Matte::materials).resize(pixels);
 }
 
-std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan) {
+std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan, bool splats) {
     const auto pixels = static_cast<std::uint64_t>(bounds.area());
-    const auto sums = static_cast<std::uint64_t>(plan.offsets().total) * (plan.halves ? 2 : 1);
+    const LayerPlan::Offsets at = plan.offsets();
+    const auto sums = static_cast<std::uint64_t>(at.total * (plan.halves ? 2 : 1) + (splats ? at.light() : 0));
     return pixels * (sums * sizeof(ExactSum) + (plan.deep ? 2 * sizeof(DeepSums::Bins) : 0) +
                      plan.seconds * sizeof(double) + plan.invalid * sizeof(std::uint32_t));
+}
+
+void FilmLayers::keepSplats() {
+    splats_.resize(static_cast<std::size_t>(bounds_.area()) * static_cast<std::size_t>(at_.light()));
+}
+
+void FilmLayers::splat(std::size_t pixel, const Splat& splat) noexcept {
+    if (splats_.empty()) return;
+    const auto sums = std::span(splats_).subspan(pixel * static_cast<std::size_t>(at_.light()),
+                                                 static_cast<std::size_t>(at_.light()));
+    const auto at = [&](int offset, std::size_t i) -> SharedSum& {
+        return sums[static_cast<std::size_t>(offset - at_.groups) + i];
+    };
+    const auto addThree = [&](int offset) {
+        at(offset, 0).add(ExactSum(splat.value.x));
+        at(offset, 1).add(ExactSum(splat.value.y));
+        at(offset, 2).add(ExactSum(splat.value.z));
+    };
+    if (plan_.groupCount() > 0) addThree(at_.groups + 3 * groupOf(splat.light));
+    if (plan_.components) addThree(at_.components + 3 * static_cast<int>(splat.component));
+    if (!plan_.spectral) return;
+    spreadOverBins(*plan_.spectral, splat.radiance, splat.lambda, splat.factor, [&](std::size_t bin, double term) {
+        if (std::abs(term) < ExactSum::kLargest) at(at_.spectral, bin).add(ExactSum(term));
+    });
+}
+
+double FilmLayers::splatted(std::size_t pixel, int offset) const noexcept {
+    if (splats_.empty()) return 0;
+    return splats_[pixel * static_cast<std::size_t>(at_.light()) + static_cast<std::size_t>(offset - at_.groups)]
+        .value();
 }
 
 std::unique_ptr<SampleRecorder> FilmLayers::makeRecorder() { return std::make_unique<LayerRecorder>(*this); }
@@ -139,6 +172,10 @@ void FilmLayers::appendPlanes(FilmPlanes& planes) {
     if (stride_ > 0)
         planes.push_back(std::make_unique<DensePlane<ExactSum>>(
             "layers", bounds_, stride_ * static_cast<std::size_t>(halves()), std::span<ExactSum>(sums_)));
+    if (!splats_.empty())
+        planes.push_back(std::make_unique<DensePlane<SharedSum>>("layer-splats", bounds_,
+                                                                 static_cast<std::size_t>(at_.light()),
+                                                                 std::span(splats_), PlaneChanges::byLightPaths));
     if (!invalid_.empty())
         planes.push_back(
             std::make_unique<DensePlane<std::uint32_t>>("invalid", bounds_, 1, std::span<std::uint32_t>(invalid_)));

@@ -21,6 +21,9 @@ static_assert(std::endian::native == std::endian::little, "bytes of files are th
 class FilmPlane {
   public:
     virtual ~FilmPlane() = default;
+    // Whether light paths add to it, which they do to any pixel at any time; else only samples of the pixels
+    // themselves.
+    virtual bool ofLightPaths() const { return false; }
     // With the layout of a pixel: films understand each other's bytes if the names are the same.
     virtual std::string name() const = 0;
     // Appends what was added to the pixels. Requires a rectangle within the film's bounds; nobody may be adding to
@@ -31,13 +34,19 @@ class FilmPlane {
 };
 using FilmPlanes = std::vector<std::unique_ptr<FilmPlane>>;
 
+// Who adds to a plane: FilmPlane::ofLightPaths().
+enum class PlaneChanges : std::uint8_t { bySamples, byLightPaths };
+
 // Some numbers for each pixel, row by row, that add up by +=: of whole numbers the order does not matter.
 template <typename Number> class DensePlane final : public FilmPlane {
   public:
     // `numbers`: `perPixel` of them for each pixel of the bounds.
-    DensePlane(const std::string& name, PixelBounds bounds, std::size_t perPixel, std::span<Number> numbers)
+    DensePlane(const std::string& name, PixelBounds bounds, std::size_t perPixel, std::span<Number> numbers,
+               PlaneChanges changes = PlaneChanges::bySamples)
         : name_(name + "/" + std::to_string(perPixel) + "x" + std::to_string(8 * sizeof(Number))), bounds_(bounds),
-          perPixel_(perPixel), numbers_(numbers) {}
+          perPixel_(perPixel), numbers_(numbers), changes_(changes) {}
+
+    bool ofLightPaths() const override { return changes_ == PlaneChanges::byLightPaths; }
 
     std::string name() const override { return name_; }
 
@@ -72,6 +81,7 @@ template <typename Number> class DensePlane final : public FilmPlane {
     PixelBounds bounds_;
     std::size_t perPixel_;
     std::span<Number> numbers_;
+    PlaneChanges changes_;
 };
 
 } // namespace abbe

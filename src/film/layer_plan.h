@@ -42,6 +42,8 @@ struct LayerPlan {
     struct Offsets {
         int surface = 0, position = 0, depth = 0, uv = 0, followed = 0, motion = 0, looks = 0, normal = 0, albedo = 0,
             groups = 0, components = 0, spectral = 0, total = 0;
+
+        int light() const { return total - groups; } // how many of them are parts of the picture: the last ones
     };
     Offsets offsets() const;
     bool coversObjects() const { return objects || objectIds; }

@@ -72,6 +72,10 @@ class PlaneMaker {
     Xyz three(std::size_t pixel, int offset, int halves) const {
         return {sum(pixel, offset, halves), sum(pixel, offset + 1, halves), sum(pixel, offset + 2, halves)};
     }
+    // What light paths add to the mean of a part of the picture, of both halves.
+    double splats(std::size_t pixel, int offset) const {
+        return lightPaths_ > 0 ? layers_.splatted(pixel, offset) / lightPaths_ * view_.scale : 0;
+    }
     static void store(const Vec3d& v, float* const* out) {
         *out[0] = static_cast<float>(v.x);
         *out[1] = static_cast<float>(v.y);
@@ -139,7 +143,8 @@ class PlaneMaker {
 
     void part(const std::string& name, int offset) {
         add(name, kRgb, [&](std::size_t i, float* const* out) {
-            const Xyz mean = three(i, offset, layers_.halves()) * (inverse(total_[i]) * view_.scale);
+            const Xyz mean = three(i, offset, layers_.halves()) * (inverse(total_[i]) * view_.scale) +
+                             Xyz{splats(i, offset), splats(i, offset + 1), splats(i, offset + 2)};
             store(view_.fromXyz.apply<Vec3d>(mean), out);
         });
     }
@@ -185,8 +190,9 @@ class PlaneMaker {
             const std::string channel = wavelength + "nm";
             const char* const channels[] = {channel.c_str()};
             add("S0", channels, [&, b](std::size_t i, float* const* out) {
+                const int at = at_.spectral + b;
                 *out[0] =
-                    static_cast<float>(sum(i, at_.spectral + b, layers_.halves()) * inverse(total_[i]) * view_.scale);
+                    static_cast<float>(sum(i, at, layers_.halves()) * inverse(total_[i]) * view_.scale + splats(i, at));
             });
         }
         result_.header.emplace_back("spectralLayoutVersion", "1.0");
@@ -223,6 +229,7 @@ class PlaneMaker {
     ResolvedImage& picture_;
     const LayerView& view_;
     std::vector<float> total_, inHalf_; // samples of pixels
+    const double lightPaths_ = static_cast<double>(film_.lightPaths());
     LayerPlanes result_;
 };
 

@@ -1,5 +1,6 @@
 #include "film/layer_recorder.h"
 
+#include "film/spectral_spread.h"
 #include "render/camera.h"
 #include "render/intersector.h"
 #include "spectrum/observer.h"
@@ -90,7 +91,7 @@ void LayerRecorder::gathers(const Spectrum& radiance, const void* source, bool p
         part.lit = true;
     }
     if (plan_.components) {
-        Part& part = components_[component(passing)];
+        Part& part = components_[static_cast<std::size_t>(component(passing))];
         part.radiance += radiance;
         part.lit = true;
     }
@@ -158,17 +159,10 @@ void LayerRecorder::keepParts(std::span<ExactSum> sums, const Sensor& sensor, do
             add(threeAt(sums, at_.components + 3 * c), sensor(components_[c].radiance, lambda_) * factor);
 }
 
-// Each lane is an estimate of the radiance at its wavelength with a density of its own; a bin gets those within it, so
-// that it holds the mean spectral radiance over its width, without bias, also where all lanes but the hero's ended.
 void LayerRecorder::keepSpectrum(std::span<ExactSum> sums, const Spectrum& radiance, double factor) const noexcept {
-    const SpectralBins& bins = *plan_.spectral;
-    const double scale = factor / (kLanes * bins.width);
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const double place = (static_cast<double>(lambda_.nm[lane]) - bins.first) / bins.width;
-        if (place < 0 || place >= bins.count()) continue;
-        const auto bin = static_cast<std::size_t>(at_.spectral) + static_cast<std::size_t>(place);
-        add(sums[bin], static_cast<double>(radiance[lane]) / static_cast<double>(lambda_.pdf[lane]) * scale);
-    }
+    const auto bins = sums.subspan(static_cast<std::size_t>(at_.spectral));
+    spreadOverBins(*plan_.spectral, radiance, lambda_, factor,
+                   [&](std::size_t bin, double term) { add(bins[bin], term); });
 }
 
 // Light that reaches the eye although nothing was met, as that of the sky, is of no depth.

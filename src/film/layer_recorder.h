@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film_layers.h"
+#include "render/path_component.h"
 #include "render/sample_recorder.h"
 
 namespace abbe {
@@ -24,16 +25,10 @@ class LayerRecorder final : public SampleRecorder {
     void pixelDone(double seconds) noexcept override;
 
   private:
-    // Paths by what they meet between the light and the eye; D scatters diffusely or in a medium, S does not.
-    enum Component : std::uint8_t {
-        direct,   // E S* D? L: at most one D, and no S between it and the light
-        indirect, // more than one D
-        caustic,  // E … D S+ L
-    };
-    Component component(bool passing) const {
+    PathComponent component(bool passing) const {
         const int diffuse = diffuse_ + passing;
-        if (!passing && specularSince_ && diffuse > 0) return caustic;
-        return diffuse <= 1 ? direct : indirect;
+        if (!passing && specularSince_ && diffuse > 0) return PathComponent::caustic;
+        return diffuse <= 1 ? PathComponent::direct : PathComponent::indirect;
     }
     struct FirstSurface {
         bool met = false;
@@ -85,7 +80,7 @@ class LayerRecorder final : public SampleRecorder {
     std::optional<End> end_;
     float left_ = 1; // of the share that ends there
     std::vector<Part> groups_;
-    Part components_[3];
+    Part components_[kPathComponents];
 };
 
 } // namespace abbe

@@ -19,71 +19,110 @@ PixelFilm::PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicat
     samples_.resize(cells);
 }
 
-std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates) {
+std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates, bool splats) {
     return static_cast<std::uint64_t>(bounds.area()) * static_cast<std::uint64_t>(replicates) *
-           (sizeof(ExactXyz) + sizeof(std::uint32_t));
+               (sizeof(ExactXyz) + sizeof(std::uint32_t)) +
+           (splats ? SplatSums::memoryBytes(bounds, replicates) : 0);
 }
 
-std::size_t PixelFilm::firstCell(int x, int y) const noexcept {
+std::size_t PixelFilm::cell(int x, int y, int replicate) const noexcept {
     ABBE_DCHECK(x >= bounds_.x0 && x < bounds_.x1 && y >= bounds_.y0 && y < bounds_.y1);
     const std::size_t row = static_cast<std::size_t>(y - bounds_.y0), column = static_cast<std::size_t>(x - bounds_.x0);
-    return (row * static_cast<std::size_t>(bounds_.width()) + column) * static_cast<std::size_t>(replicates_);
+    return (row * static_cast<std::size_t>(bounds_.width()) + column) * static_cast<std::size_t>(replicates_) +
+           static_cast<std::size_t>(replicate);
 }
 
 void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept {
     ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
-    const std::size_t cell = firstCell(x, y) + static_cast<std::size_t>(replicate);
-    sums_[cell] += sum;
-    samples_[cell] += samples;
-    ABBE_DCHECK(samples_[cell] >= samples); // no overflow of the count
+    const std::size_t i = cell(x, y, replicate);
+    sums_[i] += sum;
+    samples_[i] += samples;
+    ABBE_DCHECK(samples_[i] >= samples); // no overflow of the count
 }
 
 void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space, LayerSight sight) {
-    if (!plan.empty()) layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space, sight);
+    if (plan.empty()) return;
+    layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space, sight);
+    if (splats_) layers_->keepSplats();
 }
 
-Xyz PixelFilm::mean(int x, int y) const noexcept { return mean(x, y, 0, replicates_); }
+void PixelFilm::keepSplats() {
+    splats_ = std::make_unique<SplatSums>(bounds_, replicates_);
+    if (layers_) layers_->keepSplats();
+}
 
-std::uint64_t PixelFilm::samples(int x, int y) const noexcept { return samples(x, y, 0, replicates_); }
+void PixelFilm::splat(int x, int y, int replicate, const Splat& splat) noexcept {
+    ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
+    if (!splats_) return;
+    splats_->add(cell(x, y, replicate), splat.value);
+    if (layers_) layers_->splat(layers_->pixelIndex(x, y), splat);
+}
 
-Xyz PixelFilm::mean(int x, int y, int first, int last) const noexcept {
-    const std::size_t start = firstCell(x, y);
+void PixelFilm::countLightPaths(int replicate, std::uint64_t paths) noexcept {
+    ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
+    if (splats_) splats_->count(replicate, paths);
+}
+
+std::uint64_t PixelFilm::lightPaths(int first, int last) const noexcept {
+    return splats_ ? splats_->paths(first, last) : 0;
+}
+
+Xyz PixelFilm::sampleMean(int x, int y, int first, int last) const noexcept {
+    const std::size_t end = cell(x, y, last);
     ExactXyz sum;
     std::uint64_t count = 0;
-    for (std::size_t cell = start + static_cast<std::size_t>(first); cell < start + static_cast<std::size_t>(last);
-         ++cell) {
-        sum += sums_[cell];
-        count += samples_[cell];
+    for (std::size_t i = cell(x, y, first); i < end; ++i) {
+        sum += sums_[i];
+        count += samples_[i];
     }
     return count == 0 ? Xyz{} : sum.value() * (1 / static_cast<double>(count));
 }
 
+Xyz PixelFilm::splatMean(int x, int y, int first, int last) const noexcept {
+    const std::uint64_t count = lightPaths(first, last);
+    if (count == 0) return {};
+    return splats_->sum(cell(x, y, first), cell(x, y, last)) * (1 / static_cast<double>(count));
+}
+
+Xyz PixelFilm::mean(int x, int y, int first, int last) const noexcept {
+    const Xyz mean = sampleMean(x, y, first, last);
+    return splats_ ? mean + splatMean(x, y, first, last) : mean;
+}
+
 std::uint64_t PixelFilm::samples(int x, int y, int first, int last) const noexcept {
-    const std::size_t start = firstCell(x, y);
+    const std::size_t end = cell(x, y, last);
     std::uint64_t count = 0;
-    for (std::size_t cell = start + static_cast<std::size_t>(first); cell < start + static_cast<std::size_t>(last);
-         ++cell)
-        count += samples_[cell];
+    for (std::size_t i = cell(x, y, first); i < end; ++i) count += samples_[i];
     return count;
 }
 
 // The mean is Σ w_r m_r with w_r the replicate's share of the samples, so its variance is Σ w_r² Var(m_r); each term
 // is estimated by the squared deviation, and R/(R − 1) makes up for deviations from the mean itself. With equal shares
-// this is s²/R. Deviations of means in double never cancel, unlike E[x²] − E[x]².
+// this is s²/R. Deviations of means in double never cancel, unlike E[x²] − E[x]². Light paths add Σ v_r s_r, v_r the
+// replicate's share of them: what a replicate's samples and its light paths deviate by is added before it is squared,
+// since both may follow the same numbers.
 PixelFilm::Luminance PixelFilm::luminance(int x, int y) const noexcept {
-    const std::size_t first = firstCell(x, y), end = first + static_cast<std::size_t>(replicates_);
+    const std::size_t first = cell(x, y, 0);
+    const auto replicates = static_cast<std::size_t>(replicates_);
+    const std::uint64_t lightPaths = this->lightPaths();
     double total = 0, sum = 0;
     int used = 0;
-    for (std::size_t cell = first; cell < end; ++cell) {
-        sum += sums_[cell].y.value();
-        total += samples_[cell];
-        used += samples_[cell] > 0;
+    for (std::size_t r = 0; r < replicates; ++r) {
+        sum += sums_[first + r].y.value();
+        total += samples_[first + r];
+        used += samples_[first + r] > 0 && (lightPaths == 0 || splats_->paths(r) > 0);
     }
-    if (used == 0) return {};
-    Luminance result{sum / total, 0, used > 1};
+    const double splats = splatMean(x, y, 0, replicates_).y;
+    Luminance result{(total > 0 ? sum / total : 0) + splats, 0, used > 1};
     if (!result.known) return result;
-    for (std::size_t cell = first; cell < end; ++cell) // w (m − mean) = (sum − count · mean) / total
-        result.variance += square((sums_[cell].y.value() - samples_[cell] * result.mean) / total);
+    const double mean = sum / total;
+    for (std::size_t r = 0; r < replicates; ++r) { // w (m − mean) = (sum − count · mean) / total
+        double deviation = (sums_[first + r].y.value() - samples_[first + r] * mean) / total;
+        if (lightPaths > 0)
+            deviation += (splats_->luminance(first + r) - static_cast<double>(splats_->paths(r)) * splats) /
+                         static_cast<double>(lightPaths);
+        result.variance += square(deviation);
+    }
     result.variance *= static_cast<double>(used) / (used - 1);
     return result;
 }
@@ -146,6 +185,7 @@ FilmPlanes PixelFilm::planes() {
     planes.push_back(std::make_unique<DensePlane<ExactXyz>>("xyz", bounds_, replicates, std::span<ExactXyz>(sums_)));
     planes.push_back(std::make_unique<DensePlane<std::uint32_t>>("samples", bounds_, replicates,
                                                                  std::span<std::uint32_t>(samples_)));
+    if (splats_) splats_->appendPlanes(planes);
     if (layers_) layers_->appendPlanes(planes);
     return planes;
 }

@@ -1,9 +1,11 @@
-// The film of the renderer: 52 bytes per pixel and replicate, and no other plane of the image's size.
+// The film of the renderer: 52 bytes per pixel and replicate, 100 where light paths add to it, and no other plane of
+// the image's size.
 #pragma once
 
 #include "film/film_layers.h"
 #include "film/film_planes.h"
 #include "film/pixel_filter.h"
+#include "film/splat_sums.h"
 #include "render/film.h"
 #include "spectrum/matrix3.h"
 
@@ -28,26 +30,39 @@ class PixelFilm final : public Film {
     PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates);
     // Before the first sample: what else to keep. Throws std::bad_alloc.
     void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&, LayerSight = {});
+    // Before the first sample: a place for light from light paths, in the layers too. Throws std::bad_alloc.
+    void keepSplats();
     // Null if nothing else is kept.
     const FilmLayers* layers() const { return layers_.get(); }
     std::unique_ptr<SampleRecorder> makeRecorder() override { return layers_ ? layers_->makeRecorder() : nullptr; }
-    // What a film of this size takes.
-    static std::uint64_t memoryBytes(PixelBounds, int replicates);
+    // What a film of this size takes, without layers.
+    static std::uint64_t memoryBytes(PixelBounds, int replicates, bool splats = false);
 
     PixelBounds bounds() const override { return bounds_; }
     int replicates() const override { return replicates_; }
     FilterSample filter(Vec2 u) const noexcept override { return filter_.sample(u); }
     // Different pixels may be added to from different threads at once.
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override;
-    Xyz mean(int x, int y) const noexcept override;
-    std::uint64_t samples(int x, int y) const noexcept;
+    bool takesSplats() const override { return splats_ != nullptr; }
+    void splat(int x, int y, int replicate, const Splat&) noexcept override;
+    void countLightPaths(int replicate, std::uint64_t paths) noexcept override;
+
+    // Of what samples found and of what light paths brought, added up. No thread may be splatting, here and below.
+    Xyz mean(int x, int y) const noexcept override { return mean(x, y, 0, replicates_); }
+    std::uint64_t samples(int x, int y) const noexcept { return samples(x, y, 0, replicates_); }
+    std::uint64_t lightPaths() const noexcept { return lightPaths(0, replicates_); }
     // The same of the replicates [first, last) alone.
     Xyz mean(int x, int y, int first, int last) const noexcept;
     std::uint64_t samples(int x, int y, int first, int last) const noexcept;
+    std::uint64_t lightPaths(int first, int last) const noexcept;
+    // The two parts of that mean: over the samples of the pixel, and over the light paths of the frame.
+    Xyz sampleMean(int x, int y, int first, int last) const noexcept;
+    Xyz splatMean(int x, int y, int first, int last) const noexcept;
 
     // Variance of mean(x, y).y, unbiased for replicates of equal size: s²/R of the R replicate means, hence R − 1
     // degrees of freedom: a 95 % interval is ± studentFactor95(R − 1) standard errors. Nothing unless two replicates
-    // have samples.
+    // have samples, and light paths if there are any. Pixels that the same light paths add to vary together: what sums
+    // over pixels vary by is more than the sum of their variances.
     std::optional<double> variance(int x, int y) const noexcept;
     // Mean of variance() over the (2 radius + 1)² pixels around, as far as they are inside: with two replicates a
     // single pixel's estimate has one degree of freedom and is useless alone, 7×7 of them have up to 49.
@@ -65,7 +80,7 @@ class PixelFilm final : public Film {
     ResolvedImage resolve(const Matrix3& fromXyz, double scale) const;
 
   private:
-    std::size_t firstCell(int x, int y) const noexcept; // of the pixel's replicates
+    std::size_t cell(int x, int y, int replicate) const noexcept;
     // Mean Y of a pixel and the variance of that mean.
     struct Luminance {
         double mean = 0, variance = 0;
@@ -79,6 +94,7 @@ class PixelFilm final : public Film {
     PixelFilter filter_;
     std::vector<ExactXyz> sums_;         // [pixel][replicate]
     std::vector<std::uint32_t> samples_; // [pixel][replicate]
+    std::unique_ptr<SplatSums> splats_;  // null: none
     std::unique_ptr<FilmLayers> layers_;
 };
 

@@ -5,6 +5,7 @@
 #include "render/render_state.h"
 
 #include <atomic>
+#include <numeric>
 
 namespace abbe {
 
@@ -29,10 +30,14 @@ class Looker {
         PilotFilm pilot = look();
         if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();
-        for (std::size_t i = 0; i < state.tileCount(); ++i) {
+        for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
             const PixelBounds pixels = state.pixels(i);
             result_.tileCosts.push_back((1 + pilot.rays(pixels)) * result_.plan.meanFactor(pixels));
         }
+        // The pilot says nothing about light paths: as a tile, until there are measured ones.
+        const std::vector<double>& costs = result_.tileCosts;
+        const double mean = std::accumulate(costs.begin(), costs.end(), 0.0) / static_cast<double>(costs.size());
+        result_.tileCosts.resize(state.tileCount(), mean);
         result_.rays = rays_;
         return std::move(result_);
     }

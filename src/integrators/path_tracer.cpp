@@ -1,5 +1,6 @@
 #include "integrators/path_tracer.h"
 
+#include "base/check.h"
 #include "base/parallel.h"
 #include "integrators/look_ahead.h"
 #include "integrators/pass_schedule.h"
@@ -59,7 +60,7 @@ double threadSeconds() {
 
 PathTally tallyOf(const TileResult& r, double seconds) {
     const PathCounters& c = r.counters;
-    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds};
+    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
@@ -79,6 +80,8 @@ class RenderJob {
                    settings.samplesPerReplicate(film.replicates())},
           range_(settings.range(film.replicates())), ownState_(ownState(film, range_, control)),
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
+        // Here samples of pixels alone are taken: a block of light paths would pass for done without any.
+        ABBE_CHECK(state_.lightBlockCount() == 0);
         statistics_.kernel = kernel.name;
         count(state_.tally());
     }
@@ -162,7 +165,7 @@ class RenderJob {
             PathTally tally;
             const std::uint32_t first = tile.reached;
             {
-                const std::lock_guard hold(state_.mutex(i));
+                const auto hold = state_.hold(i);
                 const std::uint32_t end = std::min(last, tile.reached + portion(tile));
                 const double before = threadSeconds();
                 const TileResult result =
@@ -225,6 +228,8 @@ class RenderJob {
         statistics_.excess.add(t.excess);
         statistics_.effects.add(t.effects);
         statistics_.coreSeconds += t.coreSeconds;
+        statistics_.lightPaths += t.lightPaths;
+        statistics_.splats += t.splats;
         for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
     }
 

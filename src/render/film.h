@@ -3,6 +3,7 @@
 
 #include "math/vec.h"
 #include "render/sample_recorder.h"
+#include "render/splat.h"
 #include "spectrum/exact_xyz.h"
 
 #include <cstdint>
@@ -40,6 +41,16 @@ class Film {
     virtual Xyz mean(int x, int y) const noexcept = 0;
     // Estimated relative error of the image from the spread of the replicates; 0 with a single replicate or sample.
     virtual double relativeNoise() const = 0;
+
+    // Whether light from light paths has a place here. Without one the next two do nothing.
+    virtual bool takesSplats() const { return false; }
+    // Adds light to any pixel within bounds(), from several threads at once. Sums are exact: the order does not matter.
+    virtual void splat(int /*x*/, int /*y*/, int /*replicate*/, const Splat&) noexcept {}
+    // So many light paths have been followed for a replicate, whatever they brought; from several threads at once. A
+    // picture is what its samples came to, over their number, and what was splatted, over this one. Of the whole frame,
+    // also where the film is a crop.
+    virtual void countLightPaths(int /*replicate*/, std::uint64_t /*paths*/) noexcept {}
+
     // What else is to be kept of samples, for one thread; null: nothing. The film outlives it.
     virtual std::unique_ptr<SampleRecorder> makeRecorder() { return nullptr; }
 };

@@ -80,6 +80,8 @@ struct RenderStatistics {
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
     std::uint64_t rays() const { return vertices + shadowRays; }
+    std::uint64_t lightPaths = 0;           // that started at lights, beside `paths`
+    std::uint64_t splats = 0;               // pixels that they were added to
     std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
     std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even
     std::array<std::uint64_t, 3> dropped{}; // by DropCause

@@ -1,22 +1,26 @@
 // How far a render has come, tile by tile: with the film's sums all that is needed to go on with it.
 #pragma once
 
+#include "base/check.h"
 #include "base/work_reading.h"
 #include "render/integrator.h"
+#include "render/light_gate.h"
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <vector>
 
 namespace abbe {
 
-// What the samples of a tile came to. Whole numbers: the same in any order.
+// What the samples of a tile, or of a block of light paths, came to. Whole numbers: the same in any order.
 struct PathTally {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, cappedPaths = 0;
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     DensityExcess excess;
     EffectCounts effects;
     double coreSeconds = 0;
+    std::uint64_t lightPaths = 0, splats = 0; // paths that started at lights; pixels that they were added to
 
     void add(const PathTally& t) {
         paths += t.paths;
@@ -27,11 +31,13 @@ struct PathTally {
         excess.add(t.excess);
         effects.add(t.effects);
         coreSeconds += t.coreSeconds;
+        lightPaths += t.lightPaths;
+        splats += t.splats;
     }
 };
 
 // The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and no
-// others.
+// others; of a block of light paths, its paths of these samples.
 struct TileState {
     static constexpr std::size_t kExamples = 4;
 
@@ -40,40 +46,63 @@ struct TileState {
     std::vector<DroppedSample> examples = {}; // kExamples at most
 };
 
-// The tiles of a film's bounds, row by row. While a render goes on, a tile and the film's pixels in it are changed by
-// the holder of its mutex alone: who holds it finds both in step, at any moment and without stopping the render.
+// The tiles of a film's bounds, row by row, and behind them blocks of light paths: tiles without pixels, which a render
+// takes to the same samples. While it goes on, a tile and the film's pixels in it are changed by the holder of its
+// mutex alone: who holds it finds both in step, at any moment and without stopping the render. A block's light is all
+// over the film, so blocks and splats are in step together: while nobody is inside the gate.
 class RenderState {
   public:
     static constexpr int kTileSize = 16;
 
     // Nothing is done yet; samples will begin at `first`. Requires a non-empty rectangle.
-    RenderState(PixelBounds bounds, std::uint32_t first)
+    RenderState(PixelBounds bounds, std::uint32_t first, std::size_t lightBlocks = 0)
         : bounds_(bounds), first_(first), columns_((bounds.width() + kTileSize - 1) / kTileSize),
-          tiles_(static_cast<std::size_t>(columns_) *
-                 static_cast<std::size_t>((bounds.height() + kTileSize - 1) / kTileSize)),
-          mutexes_(tiles_.size()) {
+          pixelTiles_(static_cast<std::size_t>(columns_) *
+                      static_cast<std::size_t>((bounds.height() + kTileSize - 1) / kTileSize)),
+          tiles_(pixelTiles_ + lightBlocks), mutexes_(tiles_.size()) {
         for (TileState& tile : tiles_) tile.reached = first;
     }
 
     std::uint32_t first() const { return first_; }
     PixelBounds bounds() const { return bounds_; }
+    // Tiles of pixels come first, then blocks of light paths.
     std::size_t tileCount() const { return tiles_.size(); }
+    std::size_t pixelTileCount() const { return pixelTiles_; }
+    std::size_t lightBlockCount() const { return tiles_.size() - pixelTiles_; }
+    bool isLightBlock(std::size_t i) const { return i >= pixelTiles_; }
+    // Which of the blocks of light paths; requires one.
+    std::size_t lightBlock(std::size_t i) const {
+        ABBE_DCHECK(isLightBlock(i));
+        return i - pixelTiles_;
+    }
     TileState& tile(std::size_t i) { return tiles_[i]; }
     const TileState& tile(std::size_t i) const { return tiles_[i]; }
-    std::mutex& mutex(std::size_t i) { return mutexes_[i]; }
+    // Empty for a block of light paths.
     PixelBounds pixels(std::size_t i) const {
+        if (isLightBlock(i)) return {};
         const int x = bounds_.x0 + static_cast<int>(i) % columns_ * kTileSize;
         const int y = bounds_.y0 + static_cast<int>(i) / columns_ * kTileSize;
         return {x, y, std::min(x + kTileSize, bounds_.x1), std::min(y + kTileSize, bounds_.y1)};
     }
 
-    // Where the slowest tile stands. No render may be going on, here and below.
+    std::mutex& mutex(std::size_t i) { return mutexes_[i]; }
+    LightGate& lightGate() { return *lightGate_; }
+    // What a thread holds while it changes an entry and what that adds to the film.
+    struct Hold {
+        std::unique_lock<std::mutex> tile;
+        LightGate::Pass light; // of a block of light paths
+    };
+    [[nodiscard]] Hold hold(std::size_t i) {
+        return {std::unique_lock(mutexes_[i]), isLightBlock(i) ? lightGate_->enter() : LightGate::Pass()};
+    }
+
+    // Where the slowest entry stands. No render may be going on, here and below.
     std::uint32_t reached() const {
         return std::min_element(tiles_.begin(), tiles_.end(),
                                 [](const TileState& a, const TileState& b) { return a.reached < b.reached; })
             ->reached;
     }
-    // Whether all tiles stand at the same sample.
+    // Whether all entries stand at the same sample.
     bool even() const {
         return std::all_of(tiles_.begin(), tiles_.end(),
                            [&](const TileState& t) { return t.reached == tiles_[0].reached; });
@@ -84,7 +113,7 @@ class RenderState {
         return sum;
     }
 
-    // The first few, in the order of the tiles.
+    // The first few, in the order of the entries.
     std::vector<DroppedSample> examples() const {
         std::vector<DroppedSample> list;
         for (const TileState& tile : tiles_)
@@ -100,8 +129,10 @@ class RenderState {
     PixelBounds bounds_;
     std::uint32_t first_;
     int columns_;
+    std::size_t pixelTiles_;
     std::vector<TileState> tiles_;
     std::vector<std::mutex> mutexes_;
+    std::unique_ptr<LightGate> lightGate_ = std::make_unique<LightGate>();
 };
 
 } // namespace abbe

@@ -136,6 +136,8 @@ class Study {
         spent_.paths += s.paths;
         spent_.vertices += s.vertices;
         spent_.shadowRays += s.shadowRays;
+        spent_.lightPaths += s.lightPaths;
+        spent_.splats += s.splats;
         spent_.pilotRays += s.pilotRays;
         spent_.effects.add(s.effects);
         result_.bill = makeBill({&work_, &spent_, &with_.scene, work_.seconds, threadCount()});
