@@ -79,13 +79,16 @@ Json json(const ErrorFigure& f) {
 
 Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
     const auto dropped = [&s](DropCause cause) { return s.dropped[static_cast<std::size_t>(cause)]; };
-    return Json::object({{"per_pixel", Json::object({{"fewest", c.fewest}, {"mean", c.samples}, {"most", c.most}})},
-                         {"replicates", c.replicates},
-                         {"paths", s.paths},
-                         {"capped_paths", s.cappedPaths},
-                         {"dropped", Json::object({{"nan", dropped(DropCause::nan)},
-                                                   {"infinite", dropped(DropCause::infinite)},
-                                                   {"negative", dropped(DropCause::negative)}})}});
+    Json object =
+        Json::object({{"per_pixel", Json::object({{"fewest", c.fewest}, {"mean", c.samples}, {"most", c.most}})},
+                      {"replicates", c.replicates},
+                      {"paths", s.paths},
+                      {"capped_paths", s.cappedPaths},
+                      {"dropped", Json::object({{"nan", dropped(DropCause::nan)},
+                                                {"infinite", dropped(DropCause::infinite)},
+                                                {"negative", dropped(DropCause::negative)}})}});
+    if (s.lightPaths > 0) object.set("light_paths", s.lightPaths).set("splats", s.splats);
+    return object;
 }
 
 } // namespace
@@ -103,6 +106,10 @@ std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, con
     list.push_back({"abbe.samplesMost", std::to_string(c.most)});
     list.push_back({"abbe.paths", std::to_string(s.paths)});
     list.push_back({"abbe.cappedPaths", std::to_string(s.cappedPaths)});
+    if (s.lightPaths > 0) {
+        list.push_back({"abbe.lightPaths", std::to_string(s.lightPaths)});
+        list.push_back({"abbe.splats", std::to_string(s.splats)});
+    }
     return list;
 }
 

@@ -1,6 +1,7 @@
 #include "app/checkpoint_file.h"
 
 #include "app/checkpoint_bytes.h"
+#include "base/check.h"
 #include "io/atomic_file.h"
 #include "io/io_error.h"
 #include "math/byte_hash.h"
@@ -17,9 +18,9 @@ namespace abbe {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
-enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3 };
+enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
 // What comes before the bytes of a block; its hash comes after them.
 struct BlockHead {
@@ -104,7 +105,7 @@ std::vector<std::byte> bytesOf(const CheckpointHeader& h) {
     std::vector<std::byte> bytes;
     ByteWriter out(bytes);
     for (const int v : {h.bounds.x0, h.bounds.y0, h.bounds.x1, h.bounds.y1, h.replicates}) out.number(v);
-    for (const std::uint32_t v : {h.first, h.last, h.whole}) out.number(v);
+    for (const std::uint32_t v : {h.first, h.last, h.whole, h.lightBlocks}) out.number(v);
     out.number(h.seconds);
     writeWork(h.work, out);
     out.texts(h.planes);
@@ -121,7 +122,7 @@ std::vector<std::byte> bytesOf(const CheckpointHeader& h) {
 bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
     ByteReader in(bytes);
     for (int* v : {&h.bounds.x0, &h.bounds.y0, &h.bounds.x1, &h.bounds.y1, &h.replicates}) *v = in.number<int>();
-    for (std::uint32_t* v : {&h.first, &h.last, &h.whole}) *v = in.number<std::uint32_t>();
+    for (std::uint32_t* v : {&h.first, &h.last, &h.whole, &h.lightBlocks}) *v = in.number<std::uint32_t>();
     h.seconds = in.number<double>();
     if (!readWork(in, h.work)) return false;
     h.planes = in.texts();
@@ -140,16 +141,11 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
            h.replicates >= 1 && h.first <= h.last && h.last <= h.whole;
 }
 
-// Requires the tile's mutex to be held.
-void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes, std::vector<std::byte>& bytes) {
-    bytes.clear();
-    ByteWriter out(bytes);
-    const TileState& tile = state.tile(i);
+void writeTile(const TileState& tile, ByteWriter& out) {
     const PathTally& t = tile.tally;
-    out.number(static_cast<std::uint64_t>(i));
     out.number(tile.reached);
     for (const std::uint64_t v : {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1],
-                                  t.dropped[2], t.excess.lookups, t.excess.above})
+                                  t.dropped[2], t.excess.lookups, t.excess.above, t.lightPaths, t.splats})
         out.number(v);
     out.number(t.excess.most);
     out.number(t.coreSeconds);
@@ -160,13 +156,31 @@ void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes,
         out.number(s.index);
         out.number(s.cause);
     }
+}
+
+// Those that light paths add to, or all others.
+void writePlanes(const FilmPlanes& planes, bool ofLightPaths, PixelBounds pixels, std::vector<std::byte>& bytes) {
     for (const auto& plane : planes) {
+        if (plane->ofLightPaths() != ofLightPaths) continue;
         const std::size_t at = bytes.size();
-        out.number(std::uint64_t{0});
-        plane->store(state.pixels(i), bytes);
+        ByteWriter(bytes).number(std::uint64_t{0});
+        plane->store(pixels, bytes);
         const std::uint64_t size = bytes.size() - at - sizeof size;
         std::memcpy(bytes.data() + at, &size, sizeof size);
     }
+}
+
+bool hasPlanesOfLight(const FilmPlanes& planes) {
+    return std::ranges::any_of(planes, [](const auto& plane) { return plane->ofLightPaths(); });
+}
+
+// Requires the tile's mutex to be held.
+void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes, std::vector<std::byte>& bytes) {
+    bytes.clear();
+    ByteWriter out(bytes);
+    out.number(static_cast<std::uint64_t>(i));
+    writeTile(state.tile(i), out);
+    writePlanes(planes, false, state.pixels(i), bytes);
 }
 
 // False if it makes no sense.
@@ -174,7 +188,7 @@ bool readTile(ByteReader& in, TileState& tile) {
     PathTally& t = tile.tally;
     tile.reached = in.number<std::uint32_t>();
     for (std::uint64_t* v : {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1],
-                             &t.dropped[2], &t.excess.lookups, &t.excess.above})
+                             &t.dropped[2], &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.splats})
         *v = in.number<std::uint64_t>();
     t.excess.most = in.number<float>();
     t.coreSeconds = in.number<double>();
@@ -188,16 +202,8 @@ bool readTile(ByteReader& in, TileState& tile) {
     return true;
 }
 
-} // namespace
-
-bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
-                     RenderState& state, const std::function<bool()>& sound) {
-    AtomicFile file(path);
-    writeBytes(file, kMagic, sizeof kMagic);
-    const std::uint32_t version[2] = {kVersion, 0};
-    writeBytes(file, version, sizeof version);
-    writeBlock(file, headerBlock, bytesOf(header));
-    std::vector<std::size_t> left(state.tileCount()), busy;
+void writeTiles(AtomicFile& file, const FilmPlanes& planes, RenderState& state) {
+    std::vector<std::size_t> left(state.pixelTileCount()), busy;
     std::iota(left.begin(), left.end(), std::size_t{0});
     std::vector<std::byte> bytes;
     // Tiles in hand come last: waiting for one of them is then waiting for few.
@@ -216,7 +222,42 @@ bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, co
         }
         left = std::exchange(busy, {});
     }
-    bytes.clear();
+}
+
+// Blocks of light paths and all that they add to, of one moment, tile by tile: a copy would take as much memory again.
+void writeLight(AtomicFile& file, const FilmPlanes& planes, RenderState& state) {
+    const bool splats = hasPlanesOfLight(planes);
+    if (!splats && state.lightBlockCount() == 0) return;
+    const auto closure = state.lightGate().close();
+    std::vector<std::byte> bytes;
+    for (std::size_t i = state.pixelTileCount(); i < state.tileCount(); ++i) {
+        bytes.clear();
+        ByteWriter out(bytes);
+        out.number(static_cast<std::uint64_t>(i));
+        writeTile(state.tile(i), out);
+        writeBlock(file, lightBlock, bytes);
+    }
+    for (std::size_t i = 0; splats && i < state.pixelTileCount(); ++i) {
+        bytes.clear();
+        ByteWriter(bytes).number(static_cast<std::uint64_t>(i));
+        writePlanes(planes, true, state.pixels(i), bytes);
+        writeBlock(file, splatBlock, bytes);
+    }
+}
+
+} // namespace
+
+bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
+                     RenderState& state, const std::function<bool()>& sound) {
+    ABBE_CHECK(header.lightBlocks == state.lightBlockCount());
+    AtomicFile file(path);
+    writeBytes(file, kMagic, sizeof kMagic);
+    const std::uint32_t version[2] = {kVersion, 0};
+    writeBytes(file, version, sizeof version);
+    writeBlock(file, headerBlock, bytesOf(header));
+    writeTiles(file, planes, state);
+    writeLight(file, planes, state);
+    std::vector<std::byte> bytes;
     ByteWriter(bytes).number(static_cast<std::uint64_t>(state.tileCount()));
     writeBlock(file, endBlock, bytes);
     if (sound && !sound()) return false;
@@ -271,27 +312,56 @@ void CheckpointReader::readHeader() {
     const Block& block = next();
     if (block.kind != headerBlock || !readHeaderBytes(block.bytes, header_)) damaged(block.begin, "no header");
     // Before anything of that size is made: a tile takes far more than this.
-    if (static_cast<std::uint64_t>(header_.bounds.area()) / 256 > size_ / 64) damaged(block.begin, "too few tiles");
+    if (static_cast<std::uint64_t>(header_.bounds.area()) / 256 > size_ / 64 || header_.lightBlocks > size_ / 64)
+        damaged(block.begin, "too few tiles");
+}
+
+// The rest of the block.
+void CheckpointReader::addPlanes(ByteReader& in, const Block& block, const FilmPlanes& planes, bool ofLightPaths,
+                                 PixelBounds pixels) {
+    for (const auto& plane : planes) {
+        if (plane->ofLightPaths() != ofLightPaths) continue;
+        if (const auto bytes = in.take(in.number<std::uint64_t>()); !in.sound() || !plane->add(pixels, bytes))
+            damaged(block.begin, "a tile of another size");
+    }
+    if (!in.atEnd()) damaged(block.begin, "a tile of another size");
 }
 
 void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, RenderState& state,
                                std::vector<bool>& seen) {
     ByteReader in(block.bytes);
     const auto i = in.number<std::uint64_t>();
-    if (block.kind != tileBlock || i >= state.tileCount() || seen[i]) damaged(block.begin, "an unexpected block");
+    if (block.kind != tileBlock || i >= state.pixelTileCount() || seen[i]) damaged(block.begin, "an unexpected block");
     seen[i] = true;
     if (!readTile(in, state.tile(i))) damaged(block.begin, "a tile of another size");
     if (state.tile(i).reached < header_.first) damaged(block.begin, "a tile before its first sample");
-    for (const auto& plane : planes)
-        if (const auto bytes = in.take(in.number<std::uint64_t>()); !in.sound() || !plane->add(state.pixels(i), bytes))
-            damaged(block.begin, "a tile of another size");
-    if (!in.atEnd()) damaged(block.begin, "a tile of another size");
+    addPlanes(in, block, planes, false, state.pixels(i));
+}
+
+// In the order of writeLight().
+void CheckpointReader::addLight(const FilmPlanes& planes, RenderState& state) {
+    for (std::size_t i = state.pixelTileCount(); i < state.tileCount(); ++i) {
+        const Block& block = next();
+        ByteReader in(block.bytes);
+        if (block.kind != lightBlock || in.number<std::uint64_t>() != i) damaged(block.begin, "an unexpected block");
+        if (!readTile(in, state.tile(i)) || !in.sound() || !in.atEnd())
+            damaged(block.begin, "light paths of another size");
+        if (state.tile(i).reached < header_.first) damaged(block.begin, "light paths before their first sample");
+    }
+    if (!hasPlanesOfLight(planes)) return;
+    for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
+        const Block& block = next();
+        ByteReader in(block.bytes);
+        if (block.kind != splatBlock || in.number<std::uint64_t>() != i) damaged(block.begin, "an unexpected block");
+        addPlanes(in, block, planes, true, state.pixels(i));
+    }
 }
 
 RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
-    RenderState state(header_.bounds, header_.first);
-    std::vector<bool> seen(state.tileCount());
-    for (std::size_t i = 0; i < state.tileCount(); ++i) addTile(next(), planes, state, seen);
+    RenderState state(header_.bounds, header_.first, header_.lightBlocks);
+    std::vector<bool> seen(state.pixelTileCount());
+    for (std::size_t i = 0; i < state.pixelTileCount(); ++i) addTile(next(), planes, state, seen);
+    addLight(planes, state);
     if (const Block& end = next(); end.kind != endBlock || position_ != size_) damaged(end.begin, "no end");
     state.seconds = header_.seconds;
     state.work = header_.work;

@@ -14,6 +14,8 @@
 
 namespace abbe {
 
+class ByteReader;
+
 // Something that renders must have in common to be one: "seed", "7".
 struct Fact {
     std::string name, value;
@@ -28,6 +30,7 @@ struct CheckpointHeader {
     PixelBounds bounds;             // what is rendered of the frame
     int replicates = 1;
     std::uint32_t first = 0, last = 0; // samples of each replicate that are meant to be in it
+    std::uint32_t lightBlocks = 0;     // RenderState::lightBlockCount()
     std::uint32_t whole = 0;           // samples of each replicate of the render that this is a part of
     double seconds = 0;                // wall clock so far
     WorkReading work;                  // where it went
@@ -42,9 +45,10 @@ struct CheckpointFault : std::runtime_error {
 };
 
 // Writes the film's planes and the tiles in step with them; a render may go on meanwhile and is held up for one tile at
-// a time, while that is copied. The file is complete and on disk when it appears under its name, which it does only if
-// `sound` still says so after the last tile; returns whether it did. Throws IoError, and then an older file is as it
-// was.
+// a time, while that is copied. Light paths alone wait until all that they add to is written. The file is complete and
+// on disk when it appears under its name, which it does only if `sound` still says so after the last tile; returns
+// whether it did. Throws IoError, and then an older file is as it was. Requires the header's lightBlocks to be the
+// state's.
 bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&,
                      const std::function<bool()>& sound = {});
 
@@ -70,6 +74,8 @@ class CheckpointReader {
     [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
     void readHeader();
     void addTile(const Block&, const FilmPlanes&, RenderState&, std::vector<bool>& seen);
+    void addLight(const FilmPlanes&, RenderState&);
+    void addPlanes(ByteReader&, const Block&, const FilmPlanes&, bool ofLightPaths, PixelBounds);
 
     std::string path_;
     std::ifstream file_;

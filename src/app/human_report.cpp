@@ -91,6 +91,9 @@ void HumanReport::done(const RenderSummary& s) {
     console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
                               countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
                               countText(rate), r.samplesPerPixel, r.kernel));
+    if (r.lightPaths > 0)
+        console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
+                                  countText(static_cast<double>(r.splats))));
     if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
     console_.line(

@@ -79,6 +79,7 @@ class JsonReport final : public RenderReport {
                                    {"densities_above_bound", r.excess.above},
                                    {"bill", s.bill ? billJson(*s.bill) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
+        if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
         emit(event);

@@ -37,6 +37,7 @@ void RenderCheckpoint::check(const CheckpointHeader& theirs) const {
         list.push_back({"crop", pixels(h.bounds)});
         list.push_back({"samples", samples(h)});
         list.push_back({"layers", fmt::format("{}", fmt::join(h.planes, " "))});
+        list.push_back({"blocks of light paths", fmt::format("{}", h.lightBlocks)});
         return list;
     };
     const auto lines = differences(facts(theirs), facts(header_), "the checkpoint", "this render");
@@ -45,20 +46,25 @@ void RenderCheckpoint::check(const CheckpointHeader& theirs) const {
                           "undo the difference to continue it, or leave out `--resume` to begin anew");
 }
 
-RenderState RenderCheckpoint::resume(const FilmPlanes& planes) {
-    CheckpointReader reader(path_);
-    identify();
+// What is known of film and state alone.
+void RenderCheckpoint::describe(const FilmPlanes& planes, const RenderState& state) {
     header_.planes.clear();
     for (const auto& plane : planes) header_.planes.push_back(plane->name());
+    header_.lightBlocks = static_cast<std::uint32_t>(state.lightBlockCount());
+}
+
+void RenderCheckpoint::resume(const FilmPlanes& planes, RenderState& state) {
+    CheckpointReader reader(path_);
+    identify();
+    describe(planes, state);
     check(reader.header());
     ours_ = true;
-    return reader.addTo(planes);
+    state = reader.addTo(planes);
 }
 
 void RenderCheckpoint::start(FilmPlanes planes, RenderState& state, double interval) {
     planes_ = std::move(planes);
-    header_.planes.clear();
-    for (const auto& plane : planes_) header_.planes.push_back(plane->name());
+    describe(planes_, state);
     state_ = &state;
     watch_.lap();
     if (interval > 0) thread_ = std::thread([this, interval] { keep(interval); });

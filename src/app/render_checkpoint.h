@@ -27,8 +27,9 @@ class RenderCheckpoint {
     const std::string& path() const { return path_; }
     // Whether there is a file to go on from.
     bool exists() const;
-    // Adds what the file holds to an empty film, and says how far it had come. Throws CheckpointFault, IoError.
-    RenderState resume(const FilmPlanes&);
+    // Adds what the file holds to an empty film, and takes the state to where it had come, which is at nothing. Throws
+    // CheckpointFault, IoError.
+    void resume(const FilmPlanes&, RenderState&);
 
     // From now on writes every `interval` seconds, in a thread of its own (0: only when told to). Planes and state must
     // outlive this or stop().
@@ -53,6 +54,7 @@ class RenderCheckpoint {
   private:
     void check(const CheckpointHeader& theirs) const;
     void identify();
+    void describe(const FilmPlanes&, const RenderState&);
     void keep(double interval);
     void write();
 

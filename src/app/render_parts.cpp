@@ -40,6 +40,9 @@ void RenderParts::check(const std::vector<Fact>& identity) const {
         if (header.planes != first.planes)
             lines.push_back(fmt::format("layers: {} in the part, {} in `{}`", fmt::join(header.planes, " "),
                                         fmt::join(first.planes, " "), readers_[0].path()));
+        if (header.lightBlocks != first.lightBlocks)
+            lines.push_back(fmt::format("blocks of light paths: {} in the part, {} in `{}`", header.lightBlocks,
+                                        first.lightBlocks, readers_[0].path()));
         if (!lines.empty())
             throw CheckpointFault("E0663",
                                   fmt::format("`{}` is of another render: {}", reader.path(), fmt::join(lines, "; ")),
@@ -121,6 +124,8 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     statistics.paths = sum.paths;
     statistics.vertices = sum.vertices;
     statistics.shadowRays = sum.shadowRays;
+    statistics.lightPaths = sum.lightPaths;
+    statistics.splats = sum.splats;
     statistics.cappedPaths = sum.cappedPaths;
     statistics.dropped = sum.dropped;
     statistics.excess = sum.excess;

@@ -39,7 +39,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
     checkpoint_.emplace(path, checkpointHeader(), [this] { return identity(); });
     if (options.resume && checkpoint_->exists()) {
         try {
-            state = checkpoint_->resume(film.planes());
+            checkpoint_->resume(film.planes(), state);
             earlier_ = state.work;
         } catch (const CheckpointFault& fault) {
             return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);
