@@ -289,6 +289,9 @@ class ArmingFilm final : public Film {
     void add(int x, int y, int r, const ExactXyz& sum, std::uint32_t samples) noexcept override {
         film_.add(x, y, r, sum, samples);
     }
+    bool takesSplats() const override { return film_.takesSplats(); }
+    void splat(int x, int y, int r, const Splat& splat) noexcept override { film_.splat(x, y, r, splat); }
+    void countLightPaths(int r, std::uint64_t paths) noexcept override { film_.countLightPaths(r, paths); }
     Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
     double relativeNoise() const override { return film_.relativeNoise(); }
     std::unique_ptr<SampleRecorder> makeRecorder() override {

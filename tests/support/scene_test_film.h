@@ -24,6 +24,15 @@ class RecordingFilm final : public Film {
           sums_(static_cast<std::size_t>(s.crop.area() * replicates)), counts_(sums_.size()) {}
 
     const PixelFilm& pixelFilm() const { return film_; }
+    // Before the first sample.
+    void keepSplats() { film_.keepSplats(); }
+    bool takesSplats() const override { return film_.takesSplats(); }
+    void splat(int x, int y, int replicate, const Splat& splat) noexcept override {
+        film_.splat(x, y, replicate, splat);
+    }
+    void countLightPaths(int replicate, std::uint64_t paths) noexcept override {
+        film_.countLightPaths(replicate, paths);
+    }
     PixelBounds bounds() const override { return film_.bounds(); }
     int replicates() const override { return film_.replicates(); }
     FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
@@ -39,14 +48,14 @@ class RecordingFilm final : public Film {
     // From the spread of the replicates.
     Estimate pixel(int x, int y, Channel channel = Channel::y) const {
         Moments m;
-        for (int r = 0; r < replicates(); ++r) {
-            const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
-            if (counts_[i] > 0) m.add(value(sums_[i].value(), channel) / counts_[i]);
-        }
+        for (int r = 0; r < replicates(); ++r)
+            if (counts_[cell(x, y) + static_cast<std::size_t>(r)] > 0) m.add(replicateMean(x, y, r, channel));
         return {m.mean(), m.variance() / m.count(), m.count() - 1};
     }
-    // Mean over the pixels of a rectangle: their replicates are independent, so variances add.
+    // Mean over the pixels of a rectangle: their replicates are independent, so variances add. Where light paths add to
+    // several pixels they are not, and the replicates of the mean itself tell.
     Estimate tile(PixelBounds b, Channel channel = Channel::y) const {
+        if (takesSplats()) return tileOfReplicates(b, channel);
         Estimate sum{0, 0, 0};
         double squares = 0;
         for (int y = b.y0; y < b.y1; ++y)
@@ -61,7 +70,7 @@ class RecordingFilm final : public Film {
         return {sum.mean / n, sum.variance / (n * n), degrees};
     }
     Estimate image(Channel channel = Channel::y) const { return tile(bounds(), channel); }
-    // Sum of one replicate of a pixel and the samples in it, for tests of bits.
+    // Sum of one replicate of a pixel and the samples in it, for tests of bits; without splats.
     std::pair<Xyz, std::uint32_t> replicate(int x, int y, int r) const {
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
         return {sums_[i].value(), counts_[i]};
@@ -75,6 +84,21 @@ class RecordingFilm final : public Film {
     }
 
   private:
+    double replicateMean(int x, int y, int r, Channel channel) const {
+        const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
+        const double ofSamples = value(sums_[i].value(), channel) / counts_[i];
+        return takesSplats() ? ofSamples + value(film_.splatMean(x, y, r, r + 1), channel) : ofSamples;
+    }
+    Estimate tileOfReplicates(PixelBounds b, Channel channel) const {
+        Moments m;
+        for (int r = 0; r < replicates(); ++r) {
+            double sum = 0;
+            for (int y = b.y0; y < b.y1; ++y)
+                for (int x = b.x0; x < b.x1; ++x) sum += replicateMean(x, y, r, channel);
+            m.add(sum / static_cast<double>(b.area()));
+        }
+        return {m.mean(), m.variance() / m.count(), m.count() - 1};
+    }
     static double value(Xyz v, Channel c) { return c == Channel::x ? v.x : c == Channel::y ? v.y : v.z; }
     std::size_t cell(int x, int y) const {
         const PixelBounds b = bounds();

@@ -113,4 +113,29 @@ TEST_CASE("the file beside the image") {
     CHECK(json["samples"]["paths"] == 3'000'000'000);
     CHECK(json["samples"]["capped_paths"] == 7);
     CHECK(json["samples"]["dropped"]["infinite"] == 2);
+    CHECK_FALSE(json["samples"].contains("light_paths"));
+}
+
+TEST_CASE("light paths are told of where there are any") {
+    const auto valueOf = [](const std::vector<ImageAttribute>& list, const std::string& name) {
+        for (const ImageAttribute& a : list)
+            if (a.name == name) return std::get<std::string>(a.value);
+        return std::string("absent");
+    };
+    RenderSummary summary;
+    summary.image = "x.exr";
+    summary.certificate = stated();
+    summary.statistics = statistics();
+    CHECK(valueOf(certificateAttributes(stated(), summary.statistics), "abbe.lightPaths") == "absent");
+    summary.statistics.lightPaths = 5'000'000'000;
+    summary.statistics.splats = 9'000'000'000;
+    const auto list = certificateAttributes(stated(), summary.statistics);
+    CHECK(valueOf(list, "abbe.lightPaths") == "5000000000");
+    CHECK(valueOf(list, "abbe.splats") == "9000000000");
+    const auto path = (std::filesystem::temp_directory_path() / "abbe_light_paths_test.json").string();
+    writeCertificateFile(path, {&summary, 7, 1, "abc"});
+    const auto json = nlohmann::json::parse(std::ifstream(path));
+    std::filesystem::remove(path);
+    CHECK(json["samples"]["light_paths"] == 5'000'000'000);
+    CHECK(json["samples"]["splats"] == 9'000'000'000);
 }

@@ -31,6 +31,9 @@ class StoppingFilm final : public Film {
         film_.add(x, y, r, sum, n);
         if (++added_ >= last_) stop_ = true;
     }
+    bool takesSplats() const override { return film_.takesSplats(); }
+    void splat(int x, int y, int r, const Splat& splat) noexcept override { film_.splat(x, y, r, splat); }
+    void countLightPaths(int r, std::uint64_t paths) noexcept override { film_.countLightPaths(r, paths); }
     Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
     double relativeNoise() const override { return film_.relativeNoise(); }
 
