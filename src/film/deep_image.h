@@ -7,7 +7,7 @@ namespace abbe {
 
 // Premultiplied samples by rising distance, which do not overlap: a surface is at one, a medium fills the space from
 // one to another. Put over each other in this order they are the picture, but for light that comes from no distance,
-// that of the sky.
+// that of the sky and what light paths brought.
 struct DeepImage {
     PixelBounds bounds;
     std::vector<std::uint32_t> counts;          // of each pixel, row by row from the top
