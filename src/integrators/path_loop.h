@@ -99,7 +99,7 @@ template <EffectBits E> class PathLoop {
     // paths may subtract light, its radiance tells.
     const Spectrum& least() const requires(kMedia) { return path_.least; }
 
-  private:
+  protected: // what paths do in either direction (light_loop.h)
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
     static constexpr bool kAbsorption = hasEffect(E, Effect::absorption);
     // Towards the eye, in the shading frame and in render space.

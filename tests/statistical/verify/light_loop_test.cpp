@@ -1,0 +1,128 @@
+// Paths from the lights give the picture that paths from the camera give.
+#include "integrators/aimed_emission.h"
+#include "integrators/light_loop.h"
+#include "integrators/tile_kernel.h"
+#include "support/scene_test.h"
+#include "verify/agreement.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+constexpr int kReplicates = 32, kWidth = 32, kHeight = 24;
+constexpr EffectBits kBits = kFullKernel.bits();
+
+PixelFilter box() { return {FilterShape::box, 0.5}; }
+
+// The picture as one sample of each replicate: sums of all light paths over their number.
+TileSums traced(const TestScene& test, std::uint32_t paths, const EmissionPlan& plan) {
+    const Scene& scene = test.scene();
+    RenderSettings settings = test.settings();
+    settings.technique.strategy = Technique::Strategy::bsdfOnly; // nobody asks lights
+    const LightSampler lights(scene.lights, settings.technique.lightChoice);
+    const PathContext context{scene, lights, settings, true, 1};
+    const AimedEmission emission(scene.lights, scene.intersector->bounds(), plan);
+    std::vector<std::array<double, 3>> sums(static_cast<std::size_t>(kWidth * kHeight * kReplicates));
+    auto media = LightLoop<kBits>::makeMedia(scene);
+    PathCounters counters;
+    Sampler sampler;
+    Arena arena, eye;
+    for (int r = 0; r < kReplicates; ++r) {
+        sampler.startPixel(combine64(77, static_cast<std::uint64_t>(r)), Technique::Numbers::sobol, true);
+        for (std::uint32_t i = 0; i < paths; ++i) {
+            sampler.start(i);
+            const VertexSample n = sampler.vertex(0);
+            const Wavelengths lambda = scene.wavelengths.sample(sampler.wavelength());
+            const float time = scene.camera->rayTime(sampler.time());
+            const auto start = emission.sample(
+                {static_cast<double>(n.pick), static_cast<double>(sampler.film().x), n.lobe, n.light, n.bsdf}, lambda,
+                time);
+            if (!start) continue;
+            LightLoop<kBits> loop(context, sampler, arena, eye, counters, media);
+            loop.trace(*start, lambda, [&](const Splat& s) {
+                const int x = static_cast<int>(std::floor(s.film.x)), y = static_cast<int>(std::floor(s.film.y));
+                if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) return;
+                const Xyz v = scene.sensor(s.value, lambda);
+                auto& sum = sums[static_cast<std::size_t>((y * kWidth + x) * kReplicates + r)];
+                sum = {sum[0] + v.x, sum[1] + v.y, sum[2] + v.z};
+            });
+        }
+    }
+    PixelFilm film({0, 0, kWidth, kHeight}, box(), kReplicates);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int r = 0; r < kReplicates; ++r) {
+                const auto& s = sums[static_cast<std::size_t>((y * kWidth + x) * kReplicates + r)];
+                film.add(x, y, r, ExactXyz(Xyz{s[0] / paths, s[1] / paths, s[2] / paths}), 1);
+            }
+    return TileSums(film);
+}
+
+TileSums seen(const TestScene& test, std::uint32_t samples) {
+    PixelFilm film({0, 0, kWidth, kHeight}, box(), kReplicates);
+    RenderSettings settings = test.settings();
+    settings.samples = samples * kReplicates;
+    settings.seed = 5;
+    makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
+    return TileSums(film);
+}
+
+void compareBoth(const std::string& name, const std::string& text, std::uint32_t paths, std::uint32_t samples,
+                 const EmissionPlan& plan = {}) {
+    const TestScene scene =
+        TestScene::parse("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n" + text);
+    const Agreement a = compare(seen(scene, samples), traced(scene, paths, plan), 1e-3);
+    INFO(name);
+    MESSAGE(fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}", name, a.probability,
+                        100 * a.whole.difference, 100 * a.whole.error, a.unjudged, a.tiles));
+    CHECK(a.agrees());
+    CHECK(a.whole.judged);
+    CHECK(a.whole.error < 0.01);
+}
+
+// Finite: what has no end may lie before the place where light from far away starts.
+const char* const kFloor =
+    "shape quad { points { - -6 0 6; - 6 0 6; - 6 0 -6; - -6 0 -6 }; material diffuse { reflectance 0.5 } }\n";
+
+} // namespace
+
+TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
+    const std::string camera = "camera { from 0 2.2 4; look-at 0 0.2 0; fov 34 deg }\n";
+    const std::string things =
+        std::string(kFloor) +
+        "shape sphere { center -0.7 0.5 0; radius 0.5; material diffuse { reflectance rgb 0.7 0.3 0.2 } }\n"
+        "shape sphere { center 0.7 0.5 0; radius 0.5; material conductor { index metal Au; roughness 0.5 } }\n";
+    compareBoth("sphere lamp", camera + things + "light sphere { center -1 4 1; radius 0.4; radiance 10 }\n", 40000,
+                64);
+    compareBoth("point", camera + things + "light point { position 1 3 1; power 100 W }\n", 40000, 64);
+    compareBoth("sky", camera + things + "light sky { radiance 1 }\n", 40000, 64);
+}
+
+TEST_CASE("light paths: caustics of glass and of glass that disperses") {
+    const std::string camera = "camera { from 0 1.5 2.5; look-at 0.2 0 0; fov 24 deg }\n";
+    const std::string floor = kFloor;
+    const std::string lamp = "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n";
+    EmissionPlan plan;
+    plan.targets = {{{-0.35f, 1.8f - 1.5f, -0.3f - 2.5f}, 0.46f}}; // render space has its origin at the camera
+    for (const char* ior : {"1.5", "glass SF11"})
+        compareBoth(
+            ior,
+            camera + floor + lamp +
+                fmt::format("shape sphere {{ center -0.35 1.8 -0.3; radius 0.45; material dielectric {{ ior {} }} }}\n",
+                            ior),
+            20000, 256, plan);
+}
+
+TEST_CASE("light paths: fog") {
+    compareBoth("fog",
+                "camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+                    "light sphere { center -1 4 1; radius 0.4; radiance 20 }\n"
+                    "shape sphere { center 0 1 0; radius 0.9; material boundary\n"
+                    "    interior homogeneous { extinction table 400 2.2 700 0.8 per-m; albedo 0.9; phase "
+                    "henyey-greenstein 0.5 } }\n",
+                60000, 256);
+}
+
+} // namespace abbe::test
