@@ -4,30 +4,33 @@
 
 #include "integrators/emitted_ray.h"
 #include "integrators/path_loop.h"
-#include "render/light_vertex.h"
 
 namespace abbe {
 
 // What a vertex of a light path adds to the picture.
-struct Splat {
-    Vec2 film;      // as CameraSample::film
-    Spectrum value; // pixels · radiance at the wavelengths that the path started with: its mean over all light paths,
-                    // per unit of the filter's integral, is the picture
+struct LensSplat {
+    Vec2 film;            // as CameraSample::film
+    Spectrum value;       // pixels · radiance at the wavelengths that the path started with: its mean over all light
+                          // paths, per unit of the filter's integral, is the picture
+    bool caustic = false; // light was focused before anything spread it
+    std::uint32_t spread = 1; // vertices that spread it, this one included
 };
 
-// One path from a light through the scene. It is walked as paths from the camera are, through the same media and
-// boundaries; light that it brings to media that shine or to other lights is not its own. Requires kInterfaces.
+// One path from a light through the scene, weighed against camera paths as path_loop_traced.h states. It is walked as
+// paths from the camera are, through the same media and boundaries; light that it brings to media that shine or to
+// other lights is not its own.
 template <EffectBits E> class LightLoop : private PathLoop<E> {
     using Base = PathLoop<E>;
+    static_assert(Base::kTraced);
 
   public:
     using Media = typename Base::Media;
     using Base::makeMedia;
 
-    // Two arenas, as LightVertex asks for them. In the context asksLights is false.
-    LightLoop(const PathContext& context, Sampler& sampler, Arena& arena, Arena& eye, PathCounters& counters,
+    // Three arenas: of the path, of the view, which LightVertex asks for.
+    LightLoop(const PathContext& context, Sampler& sampler, Arena& arena, TracedView& view, PathCounters& counters,
               Media& media)
-        : Base(context, sampler, arena, counters, media), eye_(eye) {}
+        : Base(context, sampler, arena, counters, media), view_(view) {}
 
     void startIn(const Surroundings& around) { this->path_.nested.here = around; }
     // Vertex 0 of the sampler has started the path; vertex k + 1 is that of the path's vertex k.
@@ -36,16 +39,39 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
   private:
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
 
-    template <typename Tell> void show(const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
+    // Camera paths over light paths, up to the last vertex, as in path_loop_traced.h the other way round.
+    struct Rivals {
+        double met = 0;                                  // those that meet the light by scattering
+        double asked = 0;                                // those that ask the light for it, from the second vertex on
+        Spectrum ahead{1.f}, back{1.f}, askedAhead{1.f}; // densities over the hero's: of camera paths, light paths
+        double of(double scattering, const Spectrum& ratio, bool hero) const {
+            const auto over = [&](const Spectrum& camera) {
+                return hero ? 1 : static_cast<double>(mean(camera * ratio)) / static_cast<double>(mean(back));
+            };
+            return scattering * (met * over(ahead) + asked * over(askedAhead));
+        }
+    };
+
+    void arriveAt(const EmittedRay&, Vec3 p, double cosine);
+    // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
+    // started from, 1/sr.
+    double askedDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;
+    LightScattering weighed(const SurfaceHit&, const LightVertex&, Vec3 away, const LightVertexSample* sampled);
+    template <typename Tell>
+    void show(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
     template <typename Tell> void showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t depth, Tell&&);
-    template <typename Tell> void addSplat(const LensConnection&, const Spectrum& value, Tell&&);
+    template <typename Tell> void addSplat(const LensConnection&, const Spectrum& value, double rivals, Tell&&);
     std::optional<LensConnection> connect(Vec3 p, Vec2 lens) const;
     Spectrum passing(Vec3 origin, const LensConnection&, bool through, std::uint32_t depth);
-    bool scatter(const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
+    bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
     bool scatterInMedium(Ray&, const VertexSample&);
     bool survives(std::uint32_t depth);
 
-    Arena& eye_;
+    TracedView& view_;
+    Rivals rivals_;
+    bool first_ = true; // at the first vertex
+    bool focused_ = false;
+    std::uint32_t spread_ = 0;
     float startThroughput_ = 1;
 };
 
@@ -58,41 +84,74 @@ void LightLoop<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tel
     path.beta = start.beta;
     path.delta = false;
     startThroughput_ = std::max(mean(start.beta), std::numeric_limits<float>::min());
-    if constexpr (kDispersion) path.densities.film = lambda;
+    path.densities.film = lambda;
     const auto& settings = this->context_.settings;
     const std::uint32_t most = settings.maxDepth ? settings.maxDepth : Base::kMaxVertices;
     Ray ray = start.ray;
     SurfaceHit hit;
     for (std::uint32_t depth = 0; depth < most; ++depth) {
         this->countRay();
+        const Vec3 direction = ray.direction;
         const auto arrival = this->arrive(ray, hit, depth + 1);
         if (arrival == Base::Arrival::nowhere || !anyNonZero(path.beta)) return;
+        first_ = depth == 0;
         const VertexSample sample = this->sampler_.vertex(depth + 1);
         if (arrival == Base::Arrival::collision) {
-            showMedium(ray.origin, ray.direction, sample.light, depth, tell);
+            if (first_) return; // camera paths have it
+            showMedium(ray.origin, direction, sample.light, depth, tell);
             if (!scatterInMedium(ray, sample) || !survives(depth)) return;
             continue;
         }
         if (!hit.material->reversible()) return;
-        hit.arrival = ray.direction;
+        arriveAt(start, hit.p, static_cast<double>(std::abs(dot(direction, hit.ng))));
+        hit.arrival = direction;
         hit.footprint = 0;
         this->arena_.reset();
-        const LightVertex vertex(hit, path.lambda, this->arena_, eye_);
-        show(hit, vertex, sample.light, depth, tell);
-        if (!scatter(hit, vertex, sample, ray) || !survives(depth)) return;
+        const LightVertex vertex(hit, path.lambda, this->arena_, view_.eye);
+        show(start, hit, vertex, sample.light, depth, tell);
+        if (!scatter(start, hit, vertex, sample, ray) || !survives(depth)) return;
     }
+}
+
+template <EffectBits E> void LightLoop<E>::arriveAt(const EmittedRay& start, Vec3 p, double cosine) {
+    if (first_) {
+        double ends = 1;
+        if (start.deltaPosition)
+            ends = static_cast<double>(lengthSquared(p - start.ray.origin));
+        else if (!start.density.distant)
+            ends = static_cast<double>(std::abs(dot(start.n, start.ray.direction)));
+        rivals_.asked = ends / start.density.total();
+        rivals_.met = start.deltaPosition || start.deltaDirection ? 0 : rivals_.asked;
+    }
+    rivals_.met /= cosine;
+    rivals_.asked /= cosine;
+}
+
+template <EffectBits E>
+double LightLoop<E>::askedDensity(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex,
+                                  Vec3 away) const {
+    if (!this->context_.how.asksLights) return 0;
+    const auto view = vertex.seen(away);
+    const Bsdf& bsdf = *view.bsdf;
+    if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return 0;
+    const Vec3 wo = view.frame.toLocal(away), n = view.frame.z;
+    const Receiver from{hit.p, wo.z < 0 ? -n : n, bsdf.lobes().has(Lobe::transmission)};
+    ScatterView scatters;
+    if (this->context_.lights.asksForLobes() && bsdf.lobes().has(Lobe::glossy)) scatters = {away, bsdf.outline(wo)};
+    const auto picked = static_cast<double>(this->context_.lights.probability(start.light, start.part, from, scatters));
+    if (start.deltaPosition || start.deltaDirection) return picked;
+    const float time = this->path_.time;
+    const float pdf = start.density.distant
+                          ? start.light->pdfEscaped(from, -start.ray.direction, time)
+                          : start.light->pdfAtPoint(from, start.part, start.ray.origin, start.n, time);
+    return picked * static_cast<double>(pdf);
 }
 
 template <EffectBits E> std::optional<LensConnection> LightLoop<E>::connect(Vec3 p, Vec2 lens) const {
     const Scene& scene = this->context_.scene;
-    const auto& f = scene.frame;
-    constexpr float kMargin = 8; // pixels: as far as filters reach
-    const LensQuery query{p,
-                          lens,
-                          this->path_.time,
-                          this->path_.lambda.nm[0],
-                          {static_cast<float>(f.x0) - kMargin, static_cast<float>(f.y0) - kMargin},
-                          {static_cast<float>(f.x1) + kMargin, static_cast<float>(f.y1) + kMargin}};
+    LensQuery query = lensQuery(scene.frame, this->path_.time, this->path_.lambda.nm[0]);
+    query.p = p;
+    query.lens = lens;
     return scene.camera->connect(query);
 }
 
@@ -105,9 +164,22 @@ Spectrum LightLoop<E>::passing(Vec3 origin, const LensConnection& c, bool throug
                                this->sampler_.stream(2 * depth + 3));
 }
 
+// The densities at a vertex as both kinds of path tell them.
+template <EffectBits E>
+LightScattering LightLoop<E>::weighed(const SurfaceHit& hit, const LightVertex& vertex, Vec3 away,
+                                      const LightVertexSample* sampled) {
+    const auto ask = [&](const LightVertex& v) {
+        return sampled && sampled->lobe.has(Lobe::delta) ? v.deltaTowards(away, sampled->eta) : v.towards(away);
+    };
+    if (!this->path_.densities.heroOnly) return ask(vertex);
+    view_.own.reset();
+    return ask(LightVertex(hit, this->path_.densities.film, view_.own, view_.eye));
+}
+
 template <EffectBits E>
 template <typename Tell>
-void LightLoop<E>::show(const SurfaceHit& hit, const LightVertex& vertex, Vec2 lens, std::uint32_t depth, Tell&& tell) {
+void LightLoop<E>::show(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex, Vec2 lens,
+                        std::uint32_t depth, Tell&& tell) {
     if (!vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas meet no lens
     const auto c = connect(hit.p, lens);
     if (!c) return;
@@ -115,7 +187,16 @@ void LightLoop<E>::show(const SurfaceHit& hit, const LightVertex& vertex, Vec2 l
     if (!anyNonZero(s.fcos)) return;
     const bool through = dot(c->wi, hit.ng) * dot(hit.arrival, hit.ng) > 0;
     const Spectrum clear = passing(spawnOrigin(hit, c->wi), *c, through, depth);
-    if (anyNonZero(clear)) addSplat(*c, this->path_.beta * s.fcos * clear, tell);
+    if (!anyNonZero(clear)) return;
+    const LightScattering w = this->path_.densities.heroOnly ? weighed(hit, vertex, c->wi, nullptr) : s;
+    const bool hero = this->path_.densities.heroOnly || c->heroOnly;
+    const auto scattering = static_cast<double>(w.pdfReverse);
+    Rivals rivals = rivals_;
+    if (first_) rivals.asked = 0;
+    double density = rivals.of(scattering, w.reverseRatio, hero);
+    if (first_) density += rivals_.asked * askedDensity(start, hit, vertex, c->wi);
+    density *= static_cast<double>(std::abs(dot(c->wi, hit.ng)));
+    addSplat(*c, this->path_.beta * s.fcos * clear, density, tell);
 }
 
 template <EffectBits E>
@@ -129,37 +210,55 @@ void LightLoop<E>::showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t d
         if (value == 0) return;
         Spectrum clear = passing(p, *c, false, depth) * value;
         if (phase.spectral()) clear *= phase.ratio(cosine, this->path_.lambda);
-        if (anyNonZero(clear)) addSplat(*c, this->path_.beta * clear, tell);
+        if (!anyNonZero(clear)) return;
+        const bool hero = this->path_.densities.heroOnly || c->heroOnly;
+        addSplat(*c, this->path_.beta * clear, rivals_.of(static_cast<double>(value), Spectrum(1.f), hero), tell);
     }
 }
 
 // The balance of the wavelengths: means over all that could have been the hero [Wilkie2014].
 template <EffectBits E>
 template <typename Tell>
-void LightLoop<E>::addSplat(const LensConnection& c, const Spectrum& value, Tell&& tell) {
-    Spectrum seen = value * c.importance;
-    if constexpr (kDispersion) {
-        const Spectrum& densities = this->path_.densities.unidirectional;
-        if (c.heroOnly && !this->path_.densities.heroOnly)
-            seen = Spectrum(Float8{seen[0] * static_cast<float>(kLanes) / densities[0], 0, 0, 0, 0, 0, 0, 0});
-        else
-            seen *= 1 / mean(densities);
-    }
-    tell(Splat{c.film, seen});
+void LightLoop<E>::addSplat(const LensConnection& c, const Spectrum& value, double rivals, Tell&& tell) {
+    const LightPathPlan& plan = *this->context_.traced;
+    float weight = c.importance;
+    if (!plan.alone) weight *= static_cast<float>(1 / (1 + rivals * static_cast<double>(c.pdfFacingArea) / plan.paths));
+    Spectrum seen = value * weight;
+    const Spectrum& densities = this->path_.densities.unidirectional;
+    if (c.heroOnly && !this->path_.densities.heroOnly)
+        seen = Spectrum(Float8{seen[0] * static_cast<float>(kLanes) / densities[0], 0, 0, 0, 0, 0, 0, 0});
+    else
+        seen *= 1 / mean(densities);
+    tell(LensSplat{c.film, seen, focused_, spread_ + 1});
 }
 
 template <EffectBits E>
-bool LightLoop<E>::scatter(const SurfaceHit& hit, const LightVertex& vertex, const VertexSample& sample, Ray& ray) {
+bool LightLoop<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex,
+                           const VertexSample& sample, Ray& ray) {
     auto& path = this->path_;
     const auto next = vertex.sample(sample.lobe, sample.bsdf);
     if (!next) return false;
     const LightScattering& s = next->scattering;
+    const bool delta = next->lobe.has(Lobe::delta);
+    const LightScattering w = path.densities.heroOnly ? weighed(hit, vertex, next->away, &*next) : s;
     path.beta *= s.fcos * (1 / s.pdfSolidAngle);
-    if constexpr (kDispersion) {
-        const bool delta = next->lobe.has(Lobe::delta);
-        if (delta && next->lobe.has(Lobe::dispersive)) this->endSecondaryWavelengths();
-        if (!delta) path.densities.unidirectional *= Spectrum(s.pdfRatio);
+    if (delta && next->lobe.has(Lobe::dispersive)) this->endSecondaryWavelengths();
+    if (!delta) path.densities.unidirectional *= Spectrum(s.pdfRatio);
+    if (!(w.pdfSolidAngle > 0)) return false;
+    const double on = static_cast<double>(std::abs(dot(next->away, hit.ng))) / static_cast<double>(w.pdfSolidAngle);
+    const double camera = on * static_cast<double>(w.pdfReverse);
+    if (!delta) {
+        rivals_.ahead *= Spectrum(w.reverseRatio);
+        if (!first_) rivals_.askedAhead *= Spectrum(w.reverseRatio);
+        rivals_.back *= Spectrum(w.pdfRatio);
     }
+    rivals_.met *= camera;
+    if (!first_)
+        rivals_.asked *= camera;
+    else // deltas cannot be asked
+        rivals_.asked *= delta ? 0 : on * askedDensity(start, hit, vertex, next->away);
+    focused_ = first_ ? !next->lobe.has(Lobe::diffuse) : focused_;
+    spread_ += next->lobe.has(Lobe::diffuse);
     if (next->lobe.has(Lobe::transmission)) path.nested.here = path.nested.beyond;
     ray = {spawnOrigin(hit, next->away), next->away, kInfinity, path.time};
     return anyNonZero(path.beta);
@@ -172,13 +271,14 @@ template <EffectBits E> bool LightLoop<E>::scatterInMedium(Ray& ray, const Verte
     if (phase.spectral()) this->path_.beta *= phase.ratio(cosine, this->path_.lambda);
     const Frame frame = Frame::fromNormal(ray.direction);
     ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+    ++spread_;
     return anyNonZero(this->path_.beta);
 }
 
 template <EffectBits E> bool LightLoop<E>::survives(std::uint32_t depth) {
     if (depth < 3) return true;
     float throughput = mean(abs(this->path_.beta)) / startThroughput_;
-    if constexpr (kDispersion && Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);
+    if constexpr (Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);
     const float p = std::min(depth >= Base::kLongPath ? Base::longPathSurvival(depth) : 1.f,
                              std::clamp(throughput, RouletteReference::kFloor, 1.f));
     if (p >= 1) return true;

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/work.h"
 #include "integrators/defensive_bsdf.h"
+#include "integrators/light_path_plan.h"
 #include "integrators/light_sampler.h"
 #include "integrators/loop_technique.h"
 #include "integrators/medium_tracker.h"
@@ -15,6 +16,7 @@
 #include "math/equiangular.h"
 #include "render/effect_counts.h"
 #include "render/integrator.h"
+#include "render/light_vertex.h"
 #include "render/path_observer.h"
 #include "render/scene.h"
 
@@ -28,7 +30,10 @@ struct PathContext {
     bool choices = true;      // whether anything in the scene draws a light, a lobe or a place on a lens
     std::uint32_t strata = 1; // of stratified numbers
     LoopTechnique how = LoopTechnique(settings.technique);
+    const LightPathPlan* traced = nullptr; // paths of light beside them; needed by kernels with Effect::lightPaths
 };
+
+struct TracedView;
 
 // What the paths of one tile counted.
 struct PathCounters {
@@ -61,6 +66,9 @@ template <EffectBits E> class PathLoop {
     static constexpr bool kMedia = hasEffect(E, Effect::media);
     static constexpr bool kInterfaces = hasEffect(E, Effect::interfaces);
     static constexpr bool kTextures = hasEffect(E, Effect::textures);
+    static constexpr bool kTraced = hasEffect(E, Effect::lightPaths);
+    static_assert(!kTraced || (kInterfaces && kTextures && hasEffect(E, Effect::dispersion)),
+                  "light paths go through everything");
     static_assert(kInterfaces || !kMedia, "media are entered and left as dielectrics are");
     // No path is longer: with these probabilities of survival a path of this length has a probability below any
     // machine's patience only if everything reflects everything; such paths are counted, never silent. In a white
@@ -93,6 +101,8 @@ template <EffectBits E> class PathLoop {
     void startIn(const Surroundings& around) requires(kInterfaces) { path_.nested.here = around; }
     // The camera ray is a cone:
     void startWith(const path_detail::Cone& cone) requires(kTextures) { path_.cone = cone; }
+    // Light paths bring light, too: requires the camera's ray in the view, and its query without a point.
+    void weighAgainst(TracedView& view) requires(kTraced) { tracedView_ = &view; }
     // `rouletteScale` of the pixel, see RouletteReference. Lanes at fault are negative or not finite.
     Spectrum radiance(Ray ray, const Wavelengths& lambda, float rouletteScale);
     // Of the last path: the least that any of the light in it came to, per lane; 0 at most. Without media, in which
@@ -121,7 +131,7 @@ template <EffectBits E> class PathLoop {
     bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t depth, std::uint32_t crossings);
     bool hidden(SurfaceHit&, const Ray&, path_detail::Nested&) const;
     float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&);
-    void meetSurface(SurfaceHit&, Vec3 direction);
+    void meetSurface(SurfaceHit&, Vec3 direction, std::uint32_t depth);
     void turnCone(const SurfaceHit&, const BsdfSample&, float cosine);
     void scatterCone();
     bool scatterInMedium(Ray&, std::uint32_t depth);
@@ -201,6 +211,30 @@ template <EffectBits E> class PathLoop {
     float scatteringWeight(float lightPdf, const Spectrum& unidirectional) const;
     // The same for a contribution found on a light with density `lightPdf`, when the BSDF's is `eval`.
     float lightWeight(float lightPdf, const BsdfEval& eval, bool delta) const;
+    // Of what scattering found and what was asked for, against everything that would have found it, too. `ends` gives
+    // what metWeight() asks for.
+    template <typename Ends> float foundWeight(float lightPdf, [[maybe_unused]] Ends ends) const {
+        if constexpr (kTraced)
+            if (path_.traced.weighs) return metWeight(lightPdf, ends());
+        return path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
+    }
+    float askedWeight(const LightSample& light, const PickedLight& picked, const BsdfEval& eval,
+                      [[maybe_unused]] Vec3 woRender) {
+        if constexpr (kTraced)
+            if (path_.traced.odds > 0)
+                if (const auto weight = askedAgainstTraced(light, picked, woRender)) return *weight;
+        return lightWeight(picked.probability * light.pdfSolidAngle, eval, light.delta);
+    }
+
+    // path_loop_traced.h
+    void beginTraced(Vec3 p);
+    void arriveTraced(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
+    LightVertex tracedVertex(Vec3 wi);
+    void turnTraced(const BsdfSample&, const Directions&, Vec3 direction);
+    void turnTracedInMedium();
+    double tracedMean(const Spectrum&) const;
+    float metWeight(float lightPdf, double ends) const;
+    std::optional<float> askedAgainstTraced(const LightSample&, const PickedLight&, Vec3 woRender);
 
     const PathContext& context_;
     Sampler& sampler_;
@@ -208,6 +242,7 @@ template <EffectBits E> class PathLoop {
     PathCounters& counters_;
     Media& media_;
     PathState<E> path_;
+    [[no_unique_address]] std::conditional_t<kTraced, TracedView*, path_detail::Nothing> tracedView_{};
     PathObserver* observer_ = nullptr;
     bool startWithHero_ = false;
     const Medium* collided_ = nullptr; // after Arrival::collision
@@ -233,7 +268,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
             leaveScene(ray.direction);
             break;
         }
-        if (arrival == Arrival::surface) meetSurface(hit, ray.direction);
+        if (arrival == Arrival::surface) meetSurface(hit, ray.direction, depth);
         if (depth >= maxDepth) {
             counters_.capped += context_.settings.maxDepth == 0;
             break;
@@ -278,7 +313,8 @@ typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std
 }
 
 // What shading needs to know of the path, and what the surface gives off.
-template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 direction) {
+template <EffectBits E>
+void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 direction, [[maybe_unused]] std::uint32_t depth) {
     if constexpr (kTextures || kInterfaces) hit.arrival = direction;
     // Beside samples of the light, which are points, light is looked up at points: the two must see the same.
     if constexpr (kTextures) hit.footprint = path_.delta ? path_.cone.radius : 0;
@@ -289,6 +325,7 @@ template <EffectBits E> void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 dire
         meetLight(hit, direction);
     }
     if constexpr (kTextures) hit.footprint = path_.cone.radius;
+    if constexpr (kTraced) arriveTraced(hit, direction, depth);
     if constexpr (kTextures)
         if (hit.material->bends()) hit.material->bend(hit);
 }
@@ -317,6 +354,7 @@ inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
     if (!sidesAgree(hit, eye, next.wi, direction)) return checkDirection(direction), false;
+    if constexpr (kTraced) turnTraced(next, eye, direction);
     if (next.lobe.has(Lobe::transmission)) {
         if constexpr (kInterfaces)
             path_.nested.here = path_.nested.beyond;
@@ -401,3 +439,4 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 #include "integrators/path_loop_lights.h"
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_near_light.h"
+#include "integrators/path_loop_traced.h"

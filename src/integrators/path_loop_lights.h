@@ -49,7 +49,12 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
         lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     checkDensities(lightPdf, path_.bsdfPdf);
-    const float weight = path_.delta ? scatteringWeight(0) : scatteringWeight(lightPdf);
+    const float weight = foundWeight(lightPdf, [&] {
+        const double e =
+            context_.traced->emission.density(hit.light, hit.light->partOf(hit), hit.p, hit.ng, -direction, path_.time)
+                .total();
+        return e / static_cast<double>(std::abs(dot(direction, hit.ng)));
+    });
     gather(path_.beta * weight * emitted, hit.light, false, [&] { observer_->meets(hit.light, emitted, lightPdf); });
 }
 
@@ -64,8 +69,10 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
                        light->pdfEscaped(path_.from, direction, path_.time);
         checkDensities(lightPdf, path_.bsdfPdf);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
-        gather(path_.beta * scatteringWeight(lightPdf) * arriving, light, false,
-               [&] { observer_->meets(light, arriving, lightPdf); });
+        const float weight = foundWeight(lightPdf, [&] {
+            return context_.traced->emission.density(light, path_.from.p, -direction, path_.time).total();
+        });
+        gather(path_.beta * weight * arriving, light, false, [&] { observer_->meets(light, arriving, lightPdf); });
     }
 }
 
@@ -95,7 +102,8 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     const float pdf = picked.probability * light->pdfSolidAngle;
     checkDensities(pdf, eval.pdfSolidAngle);
     if constexpr (kDispersion) checkRatios(eval.pdfRatio);
-    Spectrum contribution = path_.beta * eval.fcos * light->radiance * (lightWeight(pdf, eval, light->delta) / pdf);
+    const float weight = askedWeight(*light, picked, eval, eye.woRender);
+    Spectrum contribution = path_.beta * eval.fcos * light->radiance * (weight / pdf);
     if constexpr (kInterfaces) {
         contribution *= passing;
     } else if constexpr (kAbsorption) {

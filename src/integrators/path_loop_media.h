@@ -69,6 +69,8 @@ bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
 // The vertex at the ray's origin. Phase functions are sampled exactly, so that their weight is 1 but for wavelengths.
 template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_t depth) {
     touch(*collided_);
+    if constexpr (kTraced)
+        if (depth == 0) beginTraced(ray.origin);
     const WorkScope work(volumeWork(collided_->number));
     if (!anyNonZero(path_.beta)) return false;
     const PhaseFunction& phase = collided_->phase();
@@ -103,6 +105,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
         path_.densities.before = path_.densities.unidirectional;
         path_.densities.direction = path_.densities.unidirectional;
     }
+    if constexpr (kTraced) turnTracedInMedium();
     if constexpr (kTextures) scatterCone();
     ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
     ++counters_.effects.volumes[volumeRow(collided_->number)].scattered;

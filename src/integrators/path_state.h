@@ -30,6 +30,16 @@ struct SpectralDensities {
     Spectrum direction{1.f};      // with the last scattering, but without the media on the way from it
     bool heroOnly = false;        // the secondary wavelengths have ended
 };
+// How likely a path of light makes this path, against the path from the camera [Veach1997, sec. 10.2]; the notation is
+// that of path_loop_traced.h.
+struct TracedDensities {
+    double odds = 0; // of light paths over camera paths, up to the last vertex; 0: no light path can make it
+    Spectrum ahead{1.f}, back{1.f}; // densities at each lane's wavelength over the hero's: of camera and light paths
+    Spectrum before{1.f};           // `ahead` without the last scattering
+    double scattering = 0;          // density of the last direction for camera paths, 1/sr
+    bool first = true;              // no more than one vertex yet
+    bool weighs = false;            // odds were not 0 where the path scattered last
+};
 // The curve of absorption of the medium around the present segment; null in air.
 struct Interior {
     const Curve* absorption = nullptr;
@@ -83,6 +93,9 @@ template <EffectBits E> struct PathState {
     [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::dispersion), path_detail::SpectralDensities,
                                              path_detail::Nothing>
         densities;
+    [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::lightPaths), path_detail::TracedDensities,
+                                             path_detail::Nothing>
+        traced;
     [[no_unique_address]] std::conditional_t<hasEffect(E, Effect::absorption), path_detail::Interior,
                                              path_detail::Nothing>
         interior;

@@ -127,6 +127,11 @@ template <EffectBits E> class TileKernel {
         if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(at, camera.ray));
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
+        if constexpr (PathLoop<E>::kTraced) {
+            view_.camera = camera;
+            view_.query = lensQuery(context_.scene.frame, camera.ray.time, lambda.nm[0]);
+            loop.weighAgainst(view_);
+        }
         [[maybe_unused]] const std::uint64_t before = signedWeights();
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
         setWork(Work::film);
@@ -204,6 +209,7 @@ template <EffectBits E> class TileKernel {
         Surroundings surroundings;
     };
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, Around, path_detail::Nothing> around_;
+    [[no_unique_address]] std::conditional_t<PathLoop<E>::kTraced, TracedView, path_detail::Nothing> view_;
     TileResult result_;
     Spectrum radiance_; // of the last sample
     std::uint64_t densityFaults_ = 0;
@@ -225,6 +231,9 @@ inline constexpr Effects kDispersionKernel = kAbsorptionKernel | Effect::dispers
 inline constexpr Effects kSpectralInterfacesKernel = kInterfacesKernel | Effect::dispersion;
 inline constexpr Effects kMediaKernel = kInterfacesKernel | Effect::media;
 inline constexpr Effects kFullKernel = kLoopEffects;
+// The same beside paths of light.
+inline constexpr Effects kTracedInterfacesKernel = kSpectralInterfacesKernel | Effect::lightPaths;
+inline constexpr Effects kTracedFullKernel = kFullKernel | Effect::lightPaths;
 extern template TileResult renderTile<kPlainKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kTexturesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kAbsorptionKernel.bits()>(const PathContext&, Film&, const TileJob&);
@@ -233,5 +242,7 @@ extern template TileResult renderTile<kDispersionKernel.bits()>(const PathContex
 extern template TileResult renderTile<kSpectralInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kMediaKernel.bits()>(const PathContext&, Film&, const TileJob&);
 extern template TileResult renderTile<kFullKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kTracedInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
+extern template TileResult renderTile<kTracedFullKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
 } // namespace abbe

@@ -80,6 +80,20 @@ float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, floa
     return pdf < kInfinity ? pdf : 0; // as in sample
 }
 
+float AreaLight::pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    std::optional<SurfaceHit> hit;
+    if (texture_) { // whose density needs its coordinates
+        hit = texture_->hitAt(p, n, part);
+        if (!hit) return 0;
+    } else {
+        hit.emplace();
+        hit->p = p;
+        hit->ng = n;
+    }
+    hit->primitive = part;
+    return AreaLight::pdfSolidAngle(from, *hit, time);
+}
+
 LightOrigin AreaLight::originOf(Vec3 p, Vec3 n, float pdf, float time) const noexcept {
     LightOrigin origin;
     origin.p = p;

@@ -28,6 +28,7 @@ class AreaLight : public Light {
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
+    float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
 
     LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,

@@ -45,10 +45,11 @@ class LightTexture {
     std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u, const Wavelengths&,
                                           Spectrum& factor) const noexcept;
     float pdfPoint(std::uint32_t part, Vec3 p, Vec3 ng) const noexcept;
+    // A point of a part with its parametrisation.
+    std::optional<SurfaceHit> hitAt(Vec3 p, Vec3 ng, std::uint32_t part) const noexcept;
 
   private:
     struct Survey;
-    std::optional<SurfaceHit> hitAt(Vec3 p, Vec3 ng, std::uint32_t part) const noexcept;
     bool surveyChart(Survey&);
     double cellArea(int column, int row) const;
     double surveyCell(Survey&, int column, int row) const;

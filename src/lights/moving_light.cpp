@@ -148,6 +148,13 @@ float MovingAreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit
     return pose ? AreaLight::pdfSolidAngle(pose->rest(from), pose->rest(hit), time) : 0;
 }
 
+float MovingAreaLight::pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return 0;
+    const Vec3 normal(normalize(pose->toRest.normal(Vec3d(n))));
+    return AreaLight::pdfAtPoint(pose->rest(from), part, pose->rest(p), normal, time);
+}
+
 std::optional<LightOrigin> MovingAreaLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
                                                          float time) const noexcept {
     const auto pose = motion_.at(time);

@@ -53,6 +53,7 @@ class MovingAreaLight final : public AreaLight {
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float time) const noexcept override;
+    float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,

@@ -85,6 +85,15 @@ class Light {
         return 0;
     }
 
+    // pdfSolidAngle() for a point of the part of which no more is known than its unit normal.
+    virtual float pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+        SurfaceHit hit;
+        hit.p = p;
+        hit.ng = n;
+        hit.primitive = part;
+        return pdfSolidAngle(from, hit, time);
+    }
+
     // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and the density
     // with which sample(from, 0, ·) makes that direction. Asked of no other light.
     virtual Spectrum escaped(Vec3 /*w*/, const Wavelengths&, float /*time*/) const noexcept { return Spectrum(0.f); }

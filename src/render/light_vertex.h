@@ -39,7 +39,19 @@ class LightVertex {
     LightVertex(const SurfaceHit& met, const Wavelengths& lambda, Arena& own, Arena& eye)
         : met_(met), lambda_(lambda), eye_(eye), own_(seenAlong(met.arrival, own)) {}
 
+    // What a path sees that arrives in a direction.
+    struct View {
+        Frame frame;
+        const Bsdf* bsdf;
+    };
+
     const Bsdf& bsdf() const { return *own_.bsdf; }
+    // What a camera path sees that comes from `away`: until the next question.
+    // Made anew although it is the same for most materials: some keep what they know of a direction (OpenPbrBsdf).
+    View seen(Vec3 away) const {
+        eye_.reset();
+        return seenAlong(-away, eye_);
+    }
 
     // `away`: unit, render space; what delta lobes scatter is left out.
     LightScattering towards(Vec3 away) const noexcept {
@@ -97,22 +109,11 @@ class LightVertex {
     }
 
   private:
-    // What a path sees that arrives in a direction.
-    struct View {
-        Frame frame;
-        const Bsdf* bsdf;
-    };
-
     View seenAlong(Vec3 arrival, Arena& arena) const {
         SurfaceHit hit = met_;
         hit.arrival = arrival;
         if (hit.material->bends()) hit.material->bend(hit);
         return {hit.shading, hit.material->bsdf(hit, lambda_, arena)};
-    }
-    // Made anew although it is the same for most materials: some keep what they know of a direction (OpenPbrBsdf).
-    View seen(Vec3 away) const {
-        eye_.reset();
-        return seenAlong(-away, eye_);
     }
     // As for camera paths: shading normals neither open a surface nor close it.
     bool sidesAgree(Vec3 a, Vec3 f, Vec3 away) const {

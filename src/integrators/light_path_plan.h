@@ -1,0 +1,17 @@
+// How paths of light take part in a render.
+#pragma once
+
+#include "integrators/aimed_emission.h"
+
+namespace abbe {
+
+// Frozen before light is gathered.
+struct LightPathPlan {
+    AimedEmission emission;
+    // Light paths for each sample of all pixels of the frame; > 0.
+    std::uint32_t paths = 0;
+    // What light paths can find is left to them alone; else the two ways are weighed by the balance heuristic.
+    bool alone = false;
+};
+
+} // namespace abbe
