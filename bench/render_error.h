@@ -21,7 +21,9 @@ inline MeasuredRender measuredRender(const BuiltScene& built, const RenderSettin
     const FilmSettings settings = filmSettings(built.film);
     PixelFilm film(settings.crop, PixelFilter(settings.filter, settings.filterRadius), replicates);
     MeasuredRender result;
-    result.statistics = makePathTracer(built.scene.effects)->render(built.scene, film, how, {});
+    const auto integrator = makePathTracer(built.scene.effects);
+    if (integrator->lightBlocks(built.scene, how) > 0) film.keepSplats();
+    result.statistics = integrator->render(built.scene, film, how, {});
     const PixelBounds b = film.bounds();
     for (int y = b.y0; y < b.y1; ++y)
         for (int x = b.x0; x < b.x1; ++x) {

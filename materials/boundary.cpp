@@ -20,6 +20,7 @@ class Boundary final : public Material {
         return arena.make<NothingBsdf>();
     }
     bool choosesLobe() const override { return false; }
+    bool focuses() const override { return false; }
     bool isBoundary() const override { return true; }
 };
 

@@ -55,6 +55,7 @@ class DiffuseTransmission final : public Material {
         const Spectrum scale = Spectrum(1.f) / max(r + t, Spectrum(1.f));
         return arena.make<DiffuseTransmissionBsdf>(r * scale, t * scale);
     }
+    bool focuses() const override { return false; }
     bool usesTextures() const override { return reflectance_.textured() || transmittance_.textured(); }
 
   private:

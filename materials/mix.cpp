@@ -34,6 +34,7 @@ class Mix final : public Material {
     const Medium* interior() const override { return inside_.interior(); }
     bool usesTextures() const override { return amount_.textured() || first_.usesTextures() || second_.usesTextures(); }
     bool reversible() const override { return first_.reversible() && second_.reversible(); }
+    bool focuses() const override { return first_.focuses() || second_.focuses(); }
     bool mayBeOpen() const override { return first_.mayBeOpen() || second_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {
         const Shares s = shares(hit);

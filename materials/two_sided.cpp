@@ -51,6 +51,7 @@ class TwoSided final : public Material {
     bool seesOutside() const override { return front_.seesOutside() || back_.seesOutside(); }
     bool reversible() const override { return front_.reversible() && back_.reversible(); }
     // Nothing for the whole: asks for hit.arrival.
+    bool focuses() const override { return front_.focuses() || back_.focuses(); }
     bool bends() const override { return true; }
     bool mayBeOpen() const override { return front_.mayBeOpen() || back_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {

@@ -38,7 +38,8 @@ class RenderRun {
         if (!options_.parts.empty()) return merge();
         InterruptGuard interrupt;
         PixelFilm film = makeFilm(film_.crop);
-        RenderState state(film.bounds(), settings_.range(film.replicates()).first);
+        RenderState state(film.bounds(), settings_.range(film.replicates()).first,
+                          integrator_->lightBlocks(built_.scene, settings_));
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
         render(film, state, interrupt);
         if (!options_.part) writeInMemory(film);
@@ -57,6 +58,7 @@ class RenderRun {
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
+        if (integrator_->lightBlocks(built_.scene, settings_) > 0) film.keepSplats();
         if (!alone())
             film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space),
                             {built_.scene.intersector.get(), built_.scene.camera.get()});

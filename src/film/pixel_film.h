@@ -41,6 +41,8 @@ class PixelFilm final : public Film {
     PixelBounds bounds() const override { return bounds_; }
     int replicates() const override { return replicates_; }
     FilterSample filter(Vec2 u) const noexcept override { return filter_.sample(u); }
+    float filterRadius() const noexcept override { return static_cast<float>(filter_.radius()); }
+    float filterWeight(float offset) const noexcept override { return filter_.weight(offset); }
     // Different pixels may be added to from different threads at once.
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override;
     bool takesSplats() const override { return splats_ != nullptr; }

@@ -113,7 +113,24 @@ float PixelFilter::Magnitude::sample(float u) const noexcept {
     return std::copysign(a + (b - a) * (position - static_cast<float>(cell)), side);
 }
 
-PixelFilter::PixelFilter(FilterShape shape, double radius) : shape_(shape), radius_(radius) {
+namespace {
+
+// By Simpson's rule: exact for box, triangle and mitchell's polynomials, whose pieces end at its steps.
+double integralOf(FilterShape shape, double radius) {
+    constexpr int kSteps = 1024;
+    const double step = radius / kSteps;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i)
+        sum += PixelFilter::evaluate(shape, radius, i * step) +
+               4 * PixelFilter::evaluate(shape, radius, (i + 0.5) * step) +
+               PixelFilter::evaluate(shape, radius, (i + 1) * step);
+    return sum * step / 3;
+}
+
+} // namespace
+
+PixelFilter::PixelFilter(FilterShape shape, double radius)
+    : shape_(shape), radius_(radius), integral_(integralOf(shape, radius)) {
     ABBE_CHECK(radius > 0);
     if (shape == FilterShape::box) return;
     if (shape != FilterShape::mitchell) {

@@ -30,6 +30,8 @@ class PixelFilter {
 
     // Requires u in [0, 1)².
     FilterSample sample(Vec2 u) const noexcept;
+    // f(x) over its integral; 0 beyond the radius.
+    float weight(float x) const noexcept { return static_cast<float>(evaluate(shape_, radius_, x) / integral_); }
     double radius() const { return radius_; }
     FilterShape shape() const { return shape_; }
     // f(x), not normalised; x in pixels from the centre.
@@ -57,6 +59,7 @@ class PixelFilter {
 
     FilterShape shape_;
     double radius_;
+    double integral_; // of f
     Magnitude positive_, negative_;
     float bothNegative_ = 0;                        // share of the positive part where f(x) and f(y) are both negative
     float positiveWeight_ = 1, negativeWeight_ = 0; // of mitchell's two parts

@@ -33,6 +33,7 @@ class AimedEmission {
 
     // Whether no light of the scene can start paths.
     bool empty() const { return !choice_; }
+    std::size_t targetCount() const { return plan_.targets.size(); }
     // Nothing where no light leaves. Requires !empty(); `time` is Ray::time.
     std::optional<EmittedRay> sample(const EmissionNumbers&, const Wavelengths&, float time) const noexcept;
 

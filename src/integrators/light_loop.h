@@ -4,16 +4,17 @@
 
 #include "integrators/emitted_ray.h"
 #include "integrators/path_loop.h"
+#include "render/path_component.h"
 
 namespace abbe {
 
 // What a vertex of a light path adds to the picture.
 struct LensSplat {
-    Vec2 film;            // as CameraSample::film
-    Spectrum value;       // pixels · radiance at the wavelengths that the path started with: its mean over all light
-                          // paths, per unit of the filter's integral, is the picture
-    bool caustic = false; // light was focused before anything spread it
-    std::uint32_t spread = 1; // vertices that spread it, this one included
+    Vec2 film;         // as CameraSample::film
+    Spectrum value;    // pixels · radiance at the wavelengths that the path started with: its mean over all light
+                       // paths, per unit of the filter's integral, is what light paths bring to the picture
+    double rivals = 0; // how many times as likely camera paths find the same; `value` is weighed by 1 / (1 + rivals)
+    PathComponent component = PathComponent::direct;
 };
 
 // One path from a light through the scene, weighed against camera paths as path_loop_traced.h states. It is walked as
@@ -60,7 +61,13 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     template <typename Tell>
     void show(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
     template <typename Tell> void showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t depth, Tell&&);
-    template <typename Tell> void addSplat(const LensConnection&, const Spectrum& value, double rivals, Tell&&);
+    template <typename Tell>
+    void addSplat(const LensConnection&, const Spectrum& value, double rivals, bool spreads, Tell&&);
+    PathComponent component(bool spreads) const {
+        const std::uint32_t spread = spread_ + spreads;
+        if (focused_ && spread > 0) return PathComponent::caustic;
+        return spread <= 1 ? PathComponent::direct : PathComponent::indirect;
+    }
     std::optional<LensConnection> connect(Vec3 p, Vec2 lens) const;
     Spectrum passing(Vec3 origin, const LensConnection&, bool through, std::uint32_t depth);
     bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
@@ -69,9 +76,9 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
 
     TracedView& view_;
     Rivals rivals_;
-    bool first_ = true; // at the first vertex
-    bool focused_ = false;
-    std::uint32_t spread_ = 0;
+    bool first_ = true;        // at the first vertex
+    bool focused_ = false;     // by the first vertex
+    std::uint32_t spread_ = 0; // how often so far
     float startThroughput_ = 1;
 };
 
@@ -196,7 +203,7 @@ void LightLoop<E>::show(const EmittedRay& start, const SurfaceHit& hit, const Li
     double density = rivals.of(scattering, w.reverseRatio, hero);
     if (first_) density += rivals_.asked * askedDensity(start, hit, vertex, c->wi);
     density *= static_cast<double>(std::abs(dot(c->wi, hit.ng)));
-    addSplat(*c, this->path_.beta * s.fcos * clear, density, tell);
+    addSplat(*c, this->path_.beta * s.fcos * clear, density, vertex.bsdf().lobes().has(Lobe::diffuse), tell);
 }
 
 template <EffectBits E>
@@ -212,24 +219,23 @@ void LightLoop<E>::showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t d
         if (phase.spectral()) clear *= phase.ratio(cosine, this->path_.lambda);
         if (!anyNonZero(clear)) return;
         const bool hero = this->path_.densities.heroOnly || c->heroOnly;
-        addSplat(*c, this->path_.beta * clear, rivals_.of(static_cast<double>(value), Spectrum(1.f), hero), tell);
+        addSplat(*c, this->path_.beta * clear, rivals_.of(static_cast<double>(value), Spectrum(1.f), hero), true, tell);
     }
 }
 
 // The balance of the wavelengths: means over all that could have been the hero [Wilkie2014].
 template <EffectBits E>
 template <typename Tell>
-void LightLoop<E>::addSplat(const LensConnection& c, const Spectrum& value, double rivals, Tell&& tell) {
+void LightLoop<E>::addSplat(const LensConnection& c, const Spectrum& value, double rivals, bool spreads, Tell&& tell) {
     const LightPathPlan& plan = *this->context_.traced;
-    float weight = c.importance;
-    if (!plan.alone) weight *= static_cast<float>(1 / (1 + rivals * static_cast<double>(c.pdfFacingArea) / plan.paths));
-    Spectrum seen = value * weight;
+    rivals *= plan.alone ? 0 : static_cast<double>(c.pdfFacingArea) / plan.paths;
+    Spectrum seen = value * (c.importance * static_cast<float>(1 / (1 + rivals)));
     const Spectrum& densities = this->path_.densities.unidirectional;
     if (c.heroOnly && !this->path_.densities.heroOnly)
         seen = Spectrum(Float8{seen[0] * static_cast<float>(kLanes) / densities[0], 0, 0, 0, 0, 0, 0, 0});
     else
         seen *= 1 / mean(densities);
-    tell(LensSplat{c.film, seen, focused_, spread_ + 1});
+    tell(LensSplat{c.film, seen, rivals, component(spreads)});
 }
 
 template <EffectBits E>

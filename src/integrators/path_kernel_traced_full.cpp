@@ -1,7 +1,10 @@
-#include "integrators/tile_kernel.h"
+#include "integrators/light_kernel.h"
 
 namespace abbe {
 
 template TileResult renderTile<kTracedFullKernel.bits()>(const PathContext&, Film&, const TileJob&);
+
+const TracedKernel kTracedFull = {renderTile<kTracedFullKernel.bits()>, traceLight<kTracedFullKernel.bits()>,
+                                  listenToLight<kTracedFullKernel.bits()>};
 
 } // namespace abbe

@@ -1,7 +1,11 @@
-#include "integrators/tile_kernel.h"
+#include "integrators/light_kernel.h"
 
 namespace abbe {
 
 template TileResult renderTile<kTracedInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
+
+const TracedKernel kTracedInterfaces = {renderTile<kTracedInterfacesKernel.bits()>,
+                                        traceLight<kTracedInterfacesKernel.bits()>,
+                                        listenToLight<kTracedInterfacesKernel.bits()>};
 
 } // namespace abbe

@@ -69,6 +69,7 @@ template <EffectBits E> LightVertex PathLoop<E>::tracedVertex(Vec3 wi) {
 
 template <EffectBits E> void PathLoop<E>::turnTraced(const BsdfSample& next, const Directions& eye, Vec3 direction) {
     auto& traced = path_.traced;
+    if (traced.first && path_.delta) traced.odds = 0; // a mirror cannot ask the lens
     traced.weighs = traced.odds > 0;
     if (!traced.weighs) return;
     const LightVertex vertex = tracedVertex(direction);

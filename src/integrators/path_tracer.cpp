@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/time_left.h"
@@ -25,6 +26,7 @@ struct Kernel {
     Effects effects;
     const char* name;
     TileFunction render;
+    const TracedKernel& traced() const { return effects.has(Effect::media) ? kTracedFull : kTracedInterfaces; }
 };
 template <EffectBits E> constexpr Kernel kernel(const char* name) {
     return {Effects::fromBits(E), name, renderTile<E>};
@@ -60,7 +62,8 @@ double threadSeconds() {
 
 PathTally tallyOf(const TileResult& r, double seconds) {
     const PathCounters& c = r.counters;
-    return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0};
+    return {c.paths,  c.vertices, c.shadowRays, c.capped,     r.dropped,
+            r.excess, c.effects,  seconds,      r.lightPaths, r.splats};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
@@ -78,17 +81,14 @@ class RenderJob {
           lights_(scene.lights, settings.technique.lightChoice),
           context_{scene, lights_, settings, drawsChoices(scene, lights_, settings.technique),
                    settings.samplesPerReplicate(film.replicates())},
-          range_(settings.range(film.replicates())), ownState_(ownState(film, range_, control)),
+          range_(settings.range(film.replicates())), ownState_(ownState(scene, film, settings, control)),
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
-        // Here samples of pixels alone are taken: a block of light paths would pass for done without any.
-        ABBE_CHECK(state_.lightBlockCount() == 0);
         statistics_.kernel = kernel.name;
         count(state_.tally());
     }
 
     RenderStatistics run() {
-        ahead_ = lookAhead(context_, kernel_.render, film_, state_, [this] { return stopRequested(); });
-        statistics_.pilotRays = ahead_.rays;
+        look(context_);
         beginTiming();
         if (pass_ > 0 && state_.even()) endPass();
         while (state_.reached() < range_.last && !ended()) {
@@ -107,17 +107,33 @@ class RenderJob {
     void repeat(std::span<const SampleId> samples) {
         PathContext even = context_; // a sample is named by its place in the sequence, whatever the plan
         even.settings.adaptive = false;
-        ahead_ = lookAhead(even, kernel_.render, film_, state_, [this] { return stopRequested(); });
+        look(even);
         for (const SampleId& s : samples)
-            kernel_.render(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &ahead_.roulette});
+            render_(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &ahead_.roulette});
     }
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    static std::optional<RenderState> ownState(const Film& film, SampleRange range, const RenderControl& control) {
+    void look(const PathContext& context) {
+        const auto stop = [this] { return stopRequested(); };
+        ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
+        if (film_.takesSplats() && state_.lightBlockCount() > 0)
+            light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
+        if (light_.plan) {
+            context_.traced = light_.plan.get();
+            render_ = kernel_.traced().render;
+        }
+        statistics_.lightPlan = light_.findings;
+        statistics_.pilotRays = ahead_.rays + light_.findings.rays;
+    }
+
+    static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
+                                               const RenderControl& control) {
         if (control.state) return std::nullopt;
-        return std::optional<RenderState>(std::in_place, film.bounds(), range.first);
+        const std::size_t blocks = film.takesSplats() ? lightBlocksOf(scene, settings.technique) : 0;
+        return std::optional<RenderState>(std::in_place, film.bounds(), settings.range(film.replicates()).first,
+                                          blocks);
     }
     // Passes of this range that end at or before a sample.
     std::uint32_t passesBefore(std::uint32_t sample) const {
@@ -168,8 +184,7 @@ class RenderJob {
                 const auto hold = state_.hold(i);
                 const std::uint32_t end = std::min(last, tile.reached + portion(tile));
                 const double before = threadSeconds();
-                const TileResult result =
-                    kernel_.render(context_, film_, {state_.pixels(i), first, end, &ahead_.roulette, plan()});
+                const TileResult result = work(i, first, end);
                 tally = tallyOf(result, threadSeconds() - before);
                 tile.tally.add(tally);
                 tile.reached = end;
@@ -182,6 +197,16 @@ class RenderJob {
             pixelSamples_ += state_.pixels(i).area() * (tile.reached - first);
             maybeReport();
         }
+    }
+
+    TileResult work(std::size_t i, std::uint32_t first, std::uint32_t end) {
+        if (!state_.isLightBlock(i))
+            return render_(context_, film_, {state_.pixels(i), first, end, &ahead_.roulette, plan()});
+        if (!light_.plan) return {};
+        const std::uint64_t paths = light_.plan->paths, block = state_.lightBlock(i), blocks = state_.lightBlockCount();
+        return kernel_.traced().trace(context_, film_,
+                                      {static_cast<std::uint32_t>(paths * block / blocks),
+                                       static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end});
     }
 
     const SamplingPlan* plan() const { return ahead_.plan.even() ? nullptr : &ahead_.plan; }
@@ -265,6 +290,8 @@ class RenderJob {
     LightSampler lights_;
     PathContext context_;
     LookAhead ahead_;
+    PlannedLightPaths light_;
+    TileFunction render_ = kernel_.render; // of pixels
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one
     RenderState& state_;
@@ -289,6 +316,9 @@ class PathTracer final : public Integrator {
     void repeat(const Scene& scene, Film& film, const RenderSettings& settings,
                 std::span<const SampleId> samples) const override {
         RenderJob(kernel_, scene, film, settings, {}).repeat(samples);
+    }
+    std::size_t lightBlocks(const Scene& scene, const RenderSettings& settings) const override {
+        return lightBlocksOf(scene, settings.technique);
     }
 
   private:

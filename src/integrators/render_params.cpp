@@ -97,6 +97,12 @@ std::vector<FieldInfo> techniqueFields() {
                 .synonyms({"rr", "russian-roulette"})
                 .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
                 .example("roulette throughput"),
+            field(FieldType::choice, "light-paths", &P::lightPaths)
+                .choices({"automatic", "off", "always", "alone"})
+                .byDefault("automatic")
+                .synonyms({"caustics", "light-tracing", "photons"})
+                .doc("Paths from the lights, for caustics: where they pay; never, always or alone, to compare.")
+                .example("light-paths off"),
             field(FieldType::integer, "wavelengths", &P::wavelengths)
                 .range(1, 8)
                 .byDefault("8")
@@ -132,6 +138,7 @@ Technique technique(const RenderParams& p) {
     t.directions = directionsOf(p.directions.word);
     t.lightChoice = lightChoiceOf(p.lightChoice.word);
     t.roulette = rouletteOf(p.roulette.word);
+    t.lightPaths = lightPathsOf(p.lightPaths.word);
     t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
     return t;
 }

@@ -49,6 +49,7 @@ RouletteReference::RouletteReference(const PilotFilm& pilot)
     const double total = std::accumulate(image.begin(), image.end(), 0.0);
     const auto average = static_cast<float>(total / static_cast<double>(image.size()));
     if (!(average > 0)) return; // nothing seen: keep every path as likely as its throughput
+    average_ = average;
     const auto width = static_cast<std::size_t>(columns_);
     boxFilter(image, columns_, rows_, 1, width);
     boxFilter(image, rows_, columns_, width, 1);

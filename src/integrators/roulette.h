@@ -29,6 +29,8 @@ class RouletteReference {
     }
     // L̄ / (t Î) of a pixel of the frame.
     float scale(int x, int y) const;
+    // L̄, W·m⁻²·sr⁻¹ weighed with ȳ as the film's Y; 0 if nothing was seen, or looked at.
+    float average() const { return average_; }
     static float survival(float meanThroughput, float scale) { return std::clamp(meanThroughput * scale, kFloor, 1.f); }
 
   private:
@@ -36,6 +38,7 @@ class RouletteReference {
     int cellSize_ = 1, columns_ = 0, rows_ = 0;
     std::vector<float> expected_; // t Î / L̄ of cells; empty: the same everywhere
     float scaleWithout_ = 1 / kThreshold;
+    float average_ = 0;
 };
 
 } // namespace abbe

@@ -17,6 +17,9 @@ template <> constexpr std::array<std::string_view, 5> kWords<Technique::Directio
 template <> constexpr std::array<std::string_view, 5> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
 template <> constexpr std::array<std::string_view, 5> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
 
+template <>
+constexpr std::array<std::string_view, 5> kWords<Technique::LightPaths>{"automatic", "off", "always", "alone"};
+
 template <typename E> E find(std::string_view word) {
     for (std::size_t i = 1; i < kWords<E>.size(); ++i)
         if (!word.empty() && kWords<E>[i] == word) return static_cast<E>(i);
@@ -33,22 +36,22 @@ Technique::Directions directionsOf(std::string_view word) { return find<Techniqu
 Technique::LightChoice lightChoiceOf(std::string_view word) { return find<Technique::LightChoice>(word); }
 Technique::Roulette rouletteOf(std::string_view word) { return find<Technique::Roulette>(word); }
 
+Technique::LightPaths lightPathsOf(std::string_view word) { return find<Technique::LightPaths>(word); }
+
 std::string_view word(Technique::Numbers e) { return wordOf(e); }
 std::string_view word(Technique::Strategy e) { return wordOf(e); }
 std::string_view word(Technique::Weights e) { return wordOf(e); }
 std::string_view word(Technique::Directions e) { return wordOf(e); }
 std::string_view word(Technique::LightChoice e) { return wordOf(e); }
 std::string_view word(Technique::Roulette e) { return wordOf(e); }
+std::string_view word(Technique::LightPaths e) { return wordOf(e); }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
-    return {{"sampler", text(t.numbers)},
-            {"strategy", text(t.strategy)},
-            {"mis-weights", text(t.weights)},
-            {"directions", text(t.directions)},
-            {"light-choice", text(t.lightChoice)},
-            {"roulette", text(t.roulette)},
-            {"wavelengths", std::to_string(t.wavelengths)}};
+    return {{"sampler", text(t.numbers)},          {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},      {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)}, {"roulette", text(t.roulette)},
+            {"light-paths", text(t.lightPaths)},   {"wavelengths", std::to_string(t.wavelengths)}};
 }
 
 } // namespace abbe

@@ -27,6 +27,7 @@ struct TileResult {
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // at most a few
     DensityExcess excess;
+    std::uint64_t lightPaths = 0, splats = 0; // as in PathTally
 };
 
 // Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite

@@ -35,6 +35,10 @@ class Film {
     virtual PixelBounds bounds() const = 0;
     virtual int replicates() const = 0;
     virtual FilterSample filter(Vec2 u) const noexcept = 0;
+    // The filter itself, which is separable: along each axis, per unit of its integral, `offset` pixels from a pixel's
+    // centre; 0 beyond the radius. The default is a box of a pixel.
+    virtual float filterRadius() const noexcept { return 0.5f; }
+    virtual float filterWeight(float /*offset*/) const noexcept { return 1; }
     // Adds the sum of `samples` samples to one replicate of a pixel within bounds().
     virtual void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept = 0;
     // Mean over all samples so far.

@@ -75,13 +75,26 @@ struct DensityExcess {
     }
 };
 
+// What decided on paths of light, before the first sample. All of it depends on the scene, the frame and the seed
+// alone.
+struct LightPathFindings {
+    bool asked = false; // whether there was anything to decide
+    // Of a sample of every pixel, in the mean over pixels: relative second moment of the light that light paths could
+    // bring, as camera paths alone find it and as both do, and relative variance of everything else.
+    double before = 0, after = 0, rest = 0;
+    double gain = 1;  // of efficiency, as far as these tell
+    double share = 0; // light paths for each camera path; 0: none
+    std::uint64_t rays = 0;
+};
+
 struct RenderStatistics {
     std::uint64_t paths = 0;
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
     std::uint64_t rays() const { return vertices + shadowRays; }
-    std::uint64_t lightPaths = 0;           // that started at lights, beside `paths`
-    std::uint64_t splats = 0;               // pixels that they were added to
+    std::uint64_t lightPaths = 0; // that started at lights, beside `paths`
+    std::uint64_t splats = 0;     // pixels that they were added to
+    LightPathFindings lightPlan;
     std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
     std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
@@ -126,6 +139,9 @@ class Integrator {
     // Takes samples again, one after the other, each to the bits that it has in a render with these settings and this
     // number of replicates; with each the samples of the same index in the pixel's other replicates.
     virtual void repeat(const Scene&, Film&, const RenderSettings&, std::span<const SampleId>) const = 0;
+    // Blocks of light paths that a RenderState for this must have; if any, the film is to take splats. Else there will
+    // be no paths of light.
+    virtual std::size_t lightBlocks(const Scene&, const RenderSettings&) const { return 0; }
 };
 
 } // namespace abbe

@@ -40,6 +40,10 @@ class Material {
     // through them. Light paths end there, and camera paths have all that it scatters.
     virtual bool reversible() const { return true; }
 
+    // False if light of a narrow beam is spread over all directions by whatever scatters it here: what cannot focus it
+    // is nothing to aim paths of light at.
+    virtual bool focuses() const { return reversible(); }
+
     // Whether bsdf(), opacity() or bend() look at the parametrisation of the hit (SurfaceHit::dpdu and after).
     virtual bool usesTextures() const { return false; }
     // Whether bend() changes anything. It is then called before bsdf(), to turn hit.shading; hit.shading.z stays in the

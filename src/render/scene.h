@@ -41,6 +41,7 @@ struct Scene {
     std::vector<MediumUse> mediumUses;    // like media
     std::vector<const Medium*> openMedia; // those that no shape bounds
     std::vector<Bounds3> filled;          // of the shapes that a medium or a dielectric fills
+    std::vector<Bounds3> focusing;        // of the shapes whose material focuses light, infinite where it is not known
     bool nested = false;                  // whether such dielectrics may overlap
     bool boundaries = false; // whether light goes straight through any surface: one that only bounds a medium, is
                              // partly open, or lies hidden in a dielectric

@@ -125,6 +125,7 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
 
 void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated) {
     if (material.interior() || material.seesOutside()) placedShapes_.push_back({box, &material, repeated});
+    if (material.focuses()) built_->scene.focusing.push_back(box);
 }
 
 // Whether any shape to which it matters may be in another's dielectric: those that are dielectrics themselves, or all

@@ -19,6 +19,7 @@ class ForwardingMaterial : public Material {
     const Medium* interior() const override { return inner_.interior(); }
     bool isBoundary() const override { return inner_.isBoundary(); }
     bool reversible() const override { return inner_.reversible(); }
+    bool focuses() const override { return inner_.focuses(); }
     bool usesTextures() const override { return inner_.usesTextures(); }
     bool bends() const override { return inner_.bends(); }
     void bend(SurfaceHit& hit) const noexcept override { inner_.bend(hit); }

@@ -116,10 +116,13 @@ class Study {
 
     Measured render(const BuiltScene& built, int pair) {
         PixelFilm film = filmOf(built);
+        const auto integrator = makePathTracer(built.scene.effects);
+        const RenderSettings settings = settingsOf(built, pair);
+        if (integrator->lightBlocks(built.scene, settings) > 0) film.keepSplats();
         const RenderControl control{in_.stop};
         WorkClock clock(threadCount()); // for both of a pair, since it costs
         const RenderStatistics statistics =
-            makePathTracer(built.scene.effects)->render(built.scene, film, settingsOf(built, pair), control);
+            integrator->render(built.scene, film, settings, control);
         if (&built == &with_) charge(clock.read(), statistics);
         const ResolvedImage resolved = film.resolve(rgb::rec709.fromXyz(), built.exposure);
         Measured m{statistics.coreSeconds, {}};

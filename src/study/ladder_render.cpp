@@ -61,7 +61,9 @@ void LadderRender::begin() {
     const FilmSettings& film = subject_.film;
     const Scene& scene = subject_.built->scene;
     film_.emplace(frameOf(film), PixelFilter(film.filter, film.filterRadius), subject_.replicates);
-    state_.emplace(film_->bounds(), 0);
+    const std::size_t blocks = integrator_->lightBlocks(scene, settings_);
+    if (blocks > 0) film_->keepSplats();
+    state_.emplace(film_->bounds(), 0, blocks);
     cost_ = {};
     LayerPlan plan;
     plan.halves = plan.albedo = plan.normal = plan.depth = variant_.denoised; // as `layers { denoise }`

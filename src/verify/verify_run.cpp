@@ -123,7 +123,9 @@ bool VerifyRun::render(std::size_t estimator, std::uint32_t samplesPerReplicate,
     RenderControl control{control_.stop, {}};
     if (control_.progress) control.progress = [&](const Progress& p) { control_.progress(done + share * p.fraction); };
     const Stopwatch clock;
-    picture.statistics = makePathTracer(built_.scene.effects)->render(built_.scene, image, settings, control);
+    const auto integrator = makePathTracer(built_.scene.effects);
+    if (integrator->lightBlocks(built_.scene, settings) > 0) image.keepSplats();
+    picture.statistics = integrator->render(built_.scene, image, settings, control);
     picture.seconds = clock.seconds();
     if (picture.statistics.stopped) return false;
     picture.sums.emplace(image);

@@ -140,11 +140,12 @@ TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
 }
 
 TEST_CASE("light paths: caustics of glass and of glass that disperses") {
-    const std::string camera = "camera { from 0 1.5 2.5; look-at 0.2 0 0; fov 24 deg }\n";
+    // The ball is seen, too, with the lamp in it.
+    const std::string camera = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n";
     const std::string floor = kFloor;
     const std::string lamp = "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n";
     EmissionPlan plan;
-    plan.targets = {{{-0.35f, 1.8f - 1.5f, -0.3f - 2.5f}, 0.46f}}; // render space has its origin at the camera
+    plan.targets = {{{-0.35f, 1.8f - 2.3f, -0.3f - 3.5f}, 0.46f}}; // render space has its origin at the camera
     for (const char* ior : {"1.5", "glass SF11"})
         compareBoth(
             ior,

@@ -86,7 +86,7 @@ TEST_CASE("technique: strata of a whole replicate in places, directions and choi
 
 TEST_CASE("technique: every word says what it says") {
     for (const auto& [name, value] : properties({})) CHECK_FALSE(value.empty());
-    CHECK(properties({}).size() == 7);
+    CHECK(properties({}).size() == 8);
     CHECK(numbersOf("stratified") == Technique::Numbers::stratified);
     CHECK(weightsOf("power") == Technique::Weights::power);
     CHECK(directionsOf("uniform") == Technique::Directions::uniform);
@@ -94,6 +94,7 @@ TEST_CASE("technique: every word says what it says") {
     CHECK(lightChoiceOf("none") == Technique::LightChoice::tree);
     for (const char* w : {"balance", "power", "equal", "lights", "scattering"}) CHECK(word(weightsOf(w)) == w);
     for (const char* w : {"pilot", "throughput", "off"}) CHECK(word(rouletteOf(w)) == w);
+    for (const char* w : {"automatic", "off", "always", "alone"}) CHECK(word(lightPathsOf(w)) == w);
     for (const char* w : {"mis", "lights", "bsdf"}) CHECK(word(strategyOf(w)) == w);
 }
 
