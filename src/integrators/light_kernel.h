@@ -1,0 +1,148 @@
+// One block of light paths: the unit of work beside tiles of pixels.
+#pragma once
+
+#include "integrators/light_loop.h"
+#include "integrators/tile_kernel.h"
+#include "render/splat.h"
+
+namespace abbe {
+
+// Of the light paths of each of the samples [first, last) of each replicate those of the numbers [begin, end).
+struct LightJob {
+    std::uint32_t begin = 0, end = 0;
+    std::uint32_t first = 0, last = 0;
+};
+
+// Where a light path starts and where its light is seen go to the pixels around through the film's filter. All paths of
+// a replicate are points of one sequence, so that they are spread evenly over lights and directions as well as any
+// pixel's samples are over its own.
+template <EffectBits E> class LightKernel {
+  public:
+    LightKernel(const PathContext& context, Film& film, const LightJob& job)
+        : context_(context), film_(film), job_(job), media_(LightLoop<E>::makeMedia(context.scene)) {}
+
+    // Tells of every path that starts, and of every splat with its luminance, whether it is within the film or not.
+    template <typename Listener> TileResult run(Listener& listener) {
+        for (int r = 0; r < film_.replicates(); ++r) {
+            startedAs_ = ~std::uint64_t{0};
+            for (std::uint32_t i = job_.first; i < job_.last; ++i)
+                for (std::uint32_t j = job_.begin; j < job_.end; ++j)
+                    trace(r, i, std::uint64_t{i} * context_.traced->paths + j, listener);
+            film_.countLightPaths(r, std::uint64_t{job_.last - job_.first} * (job_.end - job_.begin));
+        }
+        if constexpr (PathLoop<E>::kMedia) {
+            const MediumCounters& media = media_.tracker.counters;
+            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
+        }
+        return std::move(result_);
+    }
+
+  private:
+    static constexpr std::uint64_t kKey = 0x6c69676874; // "light"
+
+    template <typename Listener>
+    void trace(int replicate, std::uint32_t sample, std::uint64_t number, Listener& listener) {
+        if (number >> 32 != startedAs_) { // sequences have 2^32 points
+            startedAs_ = number >> 32;
+            const std::uint64_t key = combine64(combine64(context_.settings.seed, kKey), startedAs_);
+            sampler_.startPixel(combine64(key, static_cast<std::uint64_t>(replicate)), Technique::Numbers::sobol, true);
+        }
+        sampler_.start(static_cast<std::uint32_t>(number));
+        ++result_.lightPaths;
+        const Scene& scene = context_.scene;
+        const VertexSample n = sampler_.vertex(0);
+        const Wavelengths lambda = scene.wavelengths.sample(sampler_.wavelength());
+        const EmissionNumbers numbers{static_cast<double>(n.pick), static_cast<double>(sampler_.film().x), n.lobe,
+                                      n.light, n.bsdf};
+        const auto start = context_.traced->emission.sample(numbers, lambda, scene.camera->rayTime(sampler_.time()));
+        if (!start) return;
+        listener.starts(*start);
+        if (shaded(*start)) return;
+        LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
+        if (std::ranges::any_of(scene.filled, [&](const Bounds3& b) { return b.contains(start->ray.origin); }))
+            loop.startIn(surroundingsAt(scene, start->ray.origin, start->ray.time));
+        loop.trace(*start, lambda, [&](const LensSplat& splat) {
+            const Xyz value = scene.sensor(splat.value, lambda);
+            listener.sees(*start, splat, value.y);
+            add(replicate, sample, splat, value, lambda, *start);
+        });
+        removeWorkFlag(WorkFlag::heroOnly);
+    }
+
+    // What has no end may lie before the place where light from far away starts.
+    bool shaded(const EmittedRay& start) const {
+        if (!start.density.distant) return false;
+        return context_.scene.intersector->occluded(
+            {start.ray.origin, -start.ray.direction, kInfinity, start.ray.time});
+    }
+
+    void add(int replicate, std::uint32_t sample, const LensSplat& splat, const Xyz& value, const Wavelengths& lambda,
+             const EmittedRay& start) {
+        const PixelBounds bounds = film_.bounds();
+        const float radius = film_.filterRadius(), x = splat.film.x - 0.5f, y = splat.film.y - 0.5f;
+        const int x0 = std::max(bounds.x0, static_cast<int>(std::ceil(x - radius)));
+        const int x1 = std::min(bounds.x1 - 1, static_cast<int>(std::floor(x + radius)));
+        const int y0 = std::max(bounds.y0, static_cast<int>(std::ceil(y - radius)));
+        const int y1 = std::min(bounds.y1 - 1, static_cast<int>(std::floor(y + radius)));
+        if (x0 > x1 || y0 > y1) return;
+        if (!(std::abs(value.x) + std::abs(value.y) + std::abs(value.z) < ExactSum::kLargest)) [[unlikely]]
+            return drop({{x0, y0, replicate, sample},
+                         std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
+        for (int v = y0; v <= y1; ++v)
+            for (int u = x0; u <= x1; ++u) {
+                const auto weight = static_cast<double>(film_.filterWeight(x - static_cast<float>(u)) *
+                                                        film_.filterWeight(y - static_cast<float>(v)));
+                if (weight == 0) continue;
+                film_.splat(u, v, replicate,
+                            {value * weight, splat.value, lambda, weight, start.light, splat.component});
+                ++result_.splats;
+            }
+    }
+
+    void drop(DroppedSample sample) {
+        ++result_.dropped[static_cast<std::size_t>(sample.cause)];
+        if (result_.examples.size() < 4) result_.examples.push_back(sample);
+    }
+
+    const PathContext& context_;
+    Film& film_;
+    const LightJob& job_;
+    Sampler sampler_;
+    Arena arena_;
+    TracedView view_;
+    typename LightLoop<E>::Media media_;
+    std::uint64_t startedAs_ = 0;
+    TileResult result_;
+};
+
+// Hears what light paths bring.
+class LightListener {
+  public:
+    virtual ~LightListener() = default;
+    virtual void starts(const EmittedRay&) = 0;
+    virtual void sees(const EmittedRay&, const LensSplat&, double luminance) = 0;
+};
+
+// The functions of a kernel beside paths of light.
+struct TracedKernel {
+    TileResult (*render)(const PathContext&, Film&, const TileJob&);
+    TileResult (*trace)(const PathContext&, Film&, const LightJob&);
+    TileResult (*listen)(const PathContext&, Film&, const LightJob&, LightListener&);
+};
+
+template <EffectBits E> TileResult traceLight(const PathContext& context, Film& film, const LightJob& job) {
+    struct Nobody {
+        void starts(const EmittedRay&) {}
+        void sees(const EmittedRay&, const LensSplat&, double) {}
+    } nobody;
+    return LightKernel<E>(context, film, job).run(nobody);
+}
+template <EffectBits E>
+TileResult listenToLight(const PathContext& context, Film& film, const LightJob& job, LightListener& listener) {
+    return LightKernel<E>(context, film, job).run(listener);
+}
+
+// For scenes without media and for all.
+extern const TracedKernel kTracedInterfaces, kTracedFull;
+
+} // namespace abbe

@@ -1,0 +1,27 @@
+// Whether paths of light are worth their time in a scene, how many, and where they go.
+#pragma once
+
+#include "integrators/light_kernel.h"
+#include "integrators/light_path_plan.h"
+#include "render/integrator.h"
+
+#include <functional>
+#include <memory>
+
+namespace abbe {
+
+struct PlannedLightPaths {
+    std::unique_ptr<const LightPathPlan> plan; // null: none
+    LightPathFindings findings;
+};
+
+// Whether the scene and the technique leave anything to plan.
+bool mayTraceLight(const Scene&, const Technique&);
+// Blocks of light paths in a RenderState: 0 where none will be planned.
+std::size_t lightBlocksOf(const Scene&, const Technique&);
+
+// A context without a plan; the reference is that of the frame. `stop` cuts it short, without a plan.
+PlannedLightPaths planLightPaths(const PathContext&, const TracedKernel&, const RouletteReference&,
+                                 const std::function<bool()>& stop);
+
+} // namespace abbe
