@@ -13,9 +13,8 @@ struct LightJob {
     std::uint32_t first = 0, last = 0;
 };
 
-// Where a light path starts and where its light is seen go to the pixels around through the film's filter. All paths of
-// a replicate are points of one sequence, so that they are spread evenly over lights and directions as well as any
-// pixel's samples are over its own.
+// All paths of a replicate are points of one sequence, so that they are spread evenly over lights and directions as
+// well as any pixel's samples are over its own.
 template <EffectBits E> class LightKernel {
   public:
     LightKernel(const PathContext& context, Film& film, const LightJob& job)
@@ -38,7 +37,8 @@ template <EffectBits E> class LightKernel {
     }
 
   private:
-    static constexpr std::uint64_t kKey = 0x6c69676874; // "light"
+    static constexpr std::uint64_t kKey = 0x6c69676874;        // "light"
+    static constexpr std::uint32_t kPixelNumbers = 0x40000000; // beyond those of vertices
 
     template <typename Listener>
     void trace(int replicate, std::uint32_t sample, std::uint64_t number, Listener& listener) {
@@ -57,6 +57,7 @@ template <EffectBits E> class LightKernel {
         const auto start = context_.traced->emission.sample(numbers, lambda, scene.camera->rayTime(sampler_.time()));
         if (!start) return;
         listener.starts(*start);
+        splats_ = 0;
         if (shaded(*start)) return;
         LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
         if (std::ranges::any_of(scene.filled, [&](const Bounds3& b) { return b.contains(start->ray.origin); }))
@@ -76,6 +77,8 @@ template <EffectBits E> class LightKernel {
             {start.ray.origin, -start.ray.direction, kInfinity, start.ray.time});
     }
 
+    // To one of the pixels whose filter reaches the place, drawn in proportion to the filter: so no two pixels share a
+    // splat, and their errors stay independent, as those of samples are.
     void add(int replicate, std::uint32_t sample, const LensSplat& splat, const Xyz& value, const Wavelengths& lambda,
              const EmittedRay& start) {
         const PixelBounds bounds = film_.bounds();
@@ -88,14 +91,23 @@ template <EffectBits E> class LightKernel {
         if (!(std::abs(value.x) + std::abs(value.y) + std::abs(value.z) < ExactSum::kLargest)) [[unlikely]]
             return drop({{x0, y0, replicate, sample},
                          std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
+        const auto weightOf = [&](int u, int v) {
+            return film_.filterWeight(x - static_cast<float>(u)) * film_.filterWeight(y - static_cast<float>(v));
+        };
+        float sum = 0;
+        for (int v = y0; v <= y1; ++v)
+            for (int u = x0; u <= x1; ++u) sum += std::abs(weightOf(u, v));
+        float left = sampler_.stream(kPixelNumbers + splats_++).uniform() * sum;
         for (int v = y0; v <= y1; ++v)
             for (int u = x0; u <= x1; ++u) {
-                const auto weight = static_cast<double>(film_.filterWeight(x - static_cast<float>(u)) *
-                                                        film_.filterWeight(y - static_cast<float>(v)));
-                if (weight == 0) continue;
+                const float weight = weightOf(u, v);
+                left -= std::abs(weight);
+                if (left >= 0 || weight == 0) continue;
+                const auto factor = static_cast<double>(std::copysign(sum, weight));
                 film_.splat(u, v, replicate,
-                            {value * weight, splat.value, lambda, weight, start.light, splat.component});
+                            {value * factor, splat.value, lambda, factor, start.light, splat.component});
                 ++result_.splats;
+                return;
             }
     }
 
@@ -112,6 +124,7 @@ template <EffectBits E> class LightKernel {
     TracedView view_;
     typename LightLoop<E>::Media media_;
     std::uint64_t startedAs_ = 0;
+    std::uint32_t splats_ = 0; // of this path
     TileResult result_;
 };
 

@@ -25,11 +25,11 @@ struct Technique {
     // Which paths go on: by what the pixel is expected to show, by their throughput, or all but those that carry next
     // to nothing. Paths beyond PathLoop::kLongPath vertices are never certain to go on.
     enum class Roulette : std::uint8_t { pilot, throughput, off } roulette = Roulette::pilot;
+    // How many different ones a path has: 1, 2, 4 or 8. Fewer are repeated in the lanes.
+    std::uint8_t wavelengths = 8;
     // Paths of light beside those from the camera: where a plan finds them worth their time; never; always, as many as
     // the plan finds best; or always, with all light that they can bring left to them.
     enum class LightPaths : std::uint8_t { automatic, off, always, alone } lightPaths = LightPaths::automatic;
-    // How many different ones a path has: 1, 2, 4 or 8. Fewer are repeated in the lanes.
-    std::uint8_t wavelengths = 8;
 
     friend bool operator==(const Technique&, const Technique&) = default;
 };

@@ -70,11 +70,12 @@ TEST_CASE("settings: the command line overrides, and a new size takes the crop a
 
 TEST_CASE("settings: every choice of a technique has its word") {
     const auto scene = build("render { sampler stratified; strategy bsdf; mis-weights power; directions uniform;"
-                             " light-choice power; roulette throughput; wavelengths 2 }");
+                             " light-choice power; roulette throughput; light-paths alone; wavelengths 2 }");
     REQUIRE(scene.report() == "");
     CHECK(scene.settings().technique == Technique{Technique::Numbers::stratified, Technique::Strategy::bsdfOnly,
                                                   Technique::Weights::power, Technique::Directions::uniform,
-                                                  Technique::LightChoice::power, Technique::Roulette::throughput, 2});
+                                                  Technique::LightChoice::power, Technique::Roulette::throughput, 2,
+                                                  Technique::LightPaths::alone});
     CHECK(build("").settings().technique == Technique{});
     for (const char* odd : {"3", "5", "6", "7"})
         CHECK(codes(build("render { wavelengths " + std::string(odd) + " }")) == "E0711");
