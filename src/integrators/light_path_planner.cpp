@@ -14,13 +14,15 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kMaxLearned = 4096; // pairs of a light and a target that learn their shares one by one
-constexpr std::uint32_t kBlock = 1024, kBlocks = 32;
+// Of pilot paths: half as many as the frame has pixels, whatever the number of samples, but within these.
+constexpr std::uint32_t kBlock = 1024, kLeastBlocks = 2, kMostBlocks = 32;
 constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn", "judge"
 // Per camera ray: what asking for the densities of light paths costs, in rays.
 constexpr double kTracedCost = 1.4;
 // Less than that is not worth the risk of a rough forecast.
 constexpr double kLeastGain = 1.15;
 constexpr double kLeastSecondMoment = 0.02;
+constexpr int kCellRow = 16;
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
 
 // A place for light that is only counted.
@@ -41,8 +43,10 @@ class Darkroom final : public Film {
 // One splat as the plan sees it.
 struct Deposit {
     std::uint32_t light = 0, target = 0;
-    double u2 = 0;  // squared relative luminance that one light path of a share of 1 brings without weight
-    double rho = 0; // camera paths over light paths of a share of 1
+    std::uint32_t cell = 0; // of the frame
+    double u = 0;           // relative luminance that one light path of a share of 1 brings to a pixel, without weight
+    double u2 = 0;          // its square, times how many such paths this one stands for
+    double rho = 0;         // camera paths over light paths of a share of 1
 };
 
 // ∫ f² / (p + s q) of camera paths of density p and light paths of density q, by samples of q: with both, weighed by
@@ -50,6 +54,23 @@ struct Deposit {
 double secondMoment(const std::vector<Deposit>& deposits, double share) {
     double sum = 0;
     for (const Deposit& d : deposits) sum += d.u2 / std::max(d.rho + share, 1e-12);
+    return sum;
+}
+
+// The square of the mean of what camera paths bring of it: their variance is what lies above. Light paths are many for
+// a pixel and bring little each; their second moment is their variance. In cells of the frame, each without bias: the
+// square of a sum of independent terms less their squares.
+double squaredMean(const std::vector<Deposit>& deposits, double share, double pixels) {
+    constexpr double kCells = kCellRow * kCellRow;
+    std::vector<double> sums(static_cast<std::size_t>(kCells)), squares(sums.size());
+    for (const Deposit& d : deposits) {
+        const double camera = d.u * (share > 0 ? d.rho / (d.rho + share) : 1);
+        sums[d.cell] += camera;
+        squares[d.cell] += square(camera);
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        sum += std::max(0.0, square(sums[i]) - squares[i]) * square(kCells / pixels) / kCells;
     return sum;
 }
 
@@ -86,7 +107,7 @@ class Planner {
     void decide(const EmissionPlan& even, const LightPathPlan& first, PlannedLightPaths& result) {
         const bool forced = context_.settings.technique.lightPaths != Technique::LightPaths::automatic;
         const Listened heard = listen(first, kLearn);
-        findings_.before = secondMoment(heard.deposits, 0) / pixels_;
+        findings_.before = variance(heard, 0);
         if (stop_() || (!forced && known_ && findings_.before < kLeastSecondMoment)) return;
         LightPathPlan learned{
             AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(), learn(even, heard)), first.paths,
@@ -94,6 +115,8 @@ class Planner {
         const Listened judged = listen(learned, kJudge);
         if (stop_()) return;
         judge(learned, judged);
+            fprintf(stderr, "before %g after %g rest %g gain %g share %g\n", findings_.before, findings_.after,
+                    findings_.rest, findings_.gain, findings_.share);
         if (!forced && findings_.gain < kLeastGain) {
             findings_.share = 0;
             return;
@@ -113,7 +136,8 @@ class Planner {
     Listened listen(const LightPathPlan& plan, std::uint64_t key) {
         targets_ = plan.emission.targetCount() + 1;
         const PathContext context = withPlan(plan, key);
-        std::vector<Listened> parts(kBlocks);
+        std::vector<Listened> parts(
+            std::clamp(static_cast<std::uint32_t>(frame_.area() / (2 * kBlock)), kLeastBlocks, kMostBlocks));
         parallelFor(parts.size(), [&](std::size_t i) {
             Listened& part = parts[i];
             part.starts.resize(lights_ * targets_);
@@ -136,7 +160,10 @@ class Planner {
         }
         // As many paths as a share of 1 has.
         const double scale = static_cast<double>(plan.paths) / static_cast<double>(all.paths);
-        for (Deposit& d : all.deposits) d.u2 *= scale;
+        for (Deposit& d : all.deposits) {
+            d.u *= scale;
+            d.u2 *= scale;
+        }
         findings_.rays += all.rays;
         return all;
     }
@@ -152,8 +179,10 @@ class Planner {
             const double u = y * (1 + splat.rivals) / paths_ * planner_.relative(px, py);
             if (!(u > 0) || !std::isfinite(u)) return;
             const std::size_t at = place(start);
+            const int column = kCellRow * (px - f.x0) / f.width(), row = kCellRow * (py - f.y0) / f.height();
             to_.deposits.push_back({static_cast<std::uint32_t>(at / planner_.targets_),
-                                    static_cast<std::uint32_t>(at % planner_.targets_), u * u, splat.rivals});
+                                    static_cast<std::uint32_t>(at % planner_.targets_),
+                                    static_cast<std::uint32_t>(row * kCellRow + column), u, u * u, splat.rivals});
         }
 
       private:
@@ -258,17 +287,22 @@ class Planner {
         return sum;
     }
 
+    double variance(const Listened& heard, double share) const {
+        return std::max(0.0,
+                        secondMoment(heard.deposits, share) / pixels_ - squaredMean(heard.deposits, share, pixels_));
+    }
+
     void judge(const LightPathPlan& plan, const Listened& heard) {
         const Camera camera = lookWith(plan);
         double own = 0; // of the camera's variance, what it brings of the light that light paths bring too
         for (const Deposit& d : heard.deposits) own += d.u2 * d.rho / square(1 + d.rho);
         findings_.rest = std::max(camera.variance - own / pixels_, 0.1 * camera.variance);
-        findings_.before = secondMoment(heard.deposits, 0) / pixels_;
+        findings_.before = variance(heard, 0);
         const double light = static_cast<double>(heard.rays) / static_cast<double>(heard.paths);
         const double plain = (findings_.rest + findings_.before) * camera.rays;
         findings_.gain = 0;
         for (const double share : kShares) {
-            const double after = secondMoment(heard.deposits, share) / pixels_;
+            const double after = variance(heard, share);
             const double gain = plain / ((findings_.rest + after) * (kTracedCost * camera.rays + share * light));
             if (gain <= findings_.gain) continue;
             findings_.gain = gain;

@@ -79,8 +79,8 @@ struct DensityExcess {
 // alone.
 struct LightPathFindings {
     bool asked = false; // whether there was anything to decide
-    // Of a sample of every pixel, in the mean over pixels: relative second moment of the light that light paths could
-    // bring, as camera paths alone find it and as both do, and relative variance of everything else.
+    // Of a sample of every pixel, in the mean over pixels: relative variance of the light that light paths could bring,
+    // as camera paths alone find it and as both do, and of everything else.
     double before = 0, after = 0, rest = 0;
     double gain = 1;  // of efficiency, as far as these tell
     double share = 0; // light paths for each camera path; 0: none
