@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace abbe::test {
 
@@ -34,14 +35,19 @@ class TestScene {
         scene.build(file, ABBE_SOURCE_DIR, options);
         return scene;
     }
-    // A file relative to the source tree, with the library of materials.
-    static TestScene load(const std::filesystem::path& path, const BuildOptions& options = {}) {
+    // A file relative to the source tree, with the library of materials; `definitions` as `-D` of the command line
+    // takes them, "name=value".
+    static TestScene load(const std::filesystem::path& path, const BuildOptions& options = {},
+                          const std::vector<std::string>& definitions = {}) {
         TestScene scene;
         const auto full = std::filesystem::path(ABBE_SOURCE_DIR) / path;
         Parts& p = *scene.parts_;
         addPresets(p.types, p.sources, p.diagnostics);
+        ParseOptions parsing;
+        for (const std::string& text : definitions)
+            if (const auto found = readOverride(p.sources, text, p.diagnostics)) parsing.overrides.push_back(*found);
         if (const auto file = readSceneFile(p.sources, full, p.diagnostics))
-            scene.build(*file, full.parent_path(), options);
+            scene.build(*file, full.parent_path(), options, parsing);
         return scene;
     }
 
@@ -78,9 +84,10 @@ class TestScene {
         BuiltScene built;
     };
 
-    void build(FileId file, const std::filesystem::path& folder, const BuildOptions& options) {
+    void build(FileId file, const std::filesystem::path& folder, const BuildOptions& options,
+               const ParseOptions& parsing = {}) {
         Parts& p = *parts_;
-        const auto document = abbe::parse(p.sources, file, {}, p.diagnostics);
+        const auto document = abbe::parse(p.sources, file, parsing, p.diagnostics);
         p.tree = schema::resolve(document, p.types, folder, p.diagnostics);
         p.built = buildScene(p.tree, p.types, options, p.diagnostics);
     }
