@@ -106,8 +106,8 @@ void makeWineGlass(const std::string& folder) {
     glass.insert(glass.end(), inside.begin(), inside.end());
     Obj glassObj(folder + "/wine-glass/glass.obj");
     turnCage(glassObj, glass, false, 16);
-    const Profile wine = {{0.05, 8.87}, {0.8, 8.92},   {1.84, 9.32}, {3.1, 10.29}, {3.96, 11.84}, {4.13, 12.4},
-                          {4.16, 12.6}, {4.16, 12.61}, {4.0, 12.61}, {2.0, 12.61}, {0.05, 12.61}};
+    const Profile wine = {{0.05, 8.87}, {0.8, 8.92},   {1.84, 9.32}, {3.1, 10.29}, {3.92, 11.84}, {3.99, 12.4},
+                          {4.02, 12.6}, {4.02, 12.61}, {3.9, 12.61}, {2.0, 12.61}, {0.05, 12.61}};
     Obj wineObj(folder + "/wine-glass/wine.obj");
     turnCage(wineObj, wine, false, 16, 7);
 }
