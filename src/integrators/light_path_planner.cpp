@@ -115,8 +115,6 @@ class Planner {
         const Listened judged = listen(learned, kJudge);
         if (stop_()) return;
         judge(learned, judged);
-            fprintf(stderr, "before %g after %g rest %g gain %g share %g\n", findings_.before, findings_.after,
-                    findings_.rest, findings_.gain, findings_.share);
         if (!forced && findings_.gain < kLeastGain) {
             findings_.share = 0;
             return;
