@@ -99,4 +99,8 @@ float Disk::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     return areaToSolidAngle(static_cast<float>(1 / area()), hit.p - from.p, hit.ng);
 }
 
+std::optional<SurfacePatch> Disk::patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept {
+    return planarPatch(centre_, z_, origin, direction);
+}
+
 } // namespace abbe

@@ -24,6 +24,8 @@ class Disk final : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return Relief::smooth; }
     EmitterPart emitterPart(std::uint32_t) const override {
         return {.box = bounds(), .area = area(), .axis = Vec3(z_), .cosNormals = 1};
     }

@@ -36,6 +36,8 @@ class Mesh final : public Shape {
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     bool hasTextureCoordinates() const override { return !data_.uvs.empty(); }
     float meanCurvature(const SurfaceHit&) const override; // of its triangle; 0 without vertex normals
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return data_.normals.empty() ? Relief::facets : Relief::smooth; }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;
     double area() const override { return area_; }

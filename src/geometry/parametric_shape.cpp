@@ -71,9 +71,7 @@ void ParametricShape::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit&
 // Density per area in render space. A⁻ᵀ takes normals there, so that an area with the unit normal n there has grown by
 // |det A| / |Aᵀ n|.
 double ParametricShape::pdfArea(Vec3d n) const {
-    const auto& a = map_.a;
-    const Vec3d back(a[0][0] * n.x + a[1][0] * n.y + a[2][0] * n.z, a[0][1] * n.x + a[1][1] * n.y + a[2][1] * n.z,
-                     a[0][2] * n.x + a[1][2] * n.y + a[2][2] * n.z);
+    const Vec3d back = transposed(map_, n);
     return length(back) / (determinant_ * localArea_);
 }
 
@@ -98,6 +96,38 @@ std::optional<ShapeSample> ParametricShape::sample(const Receiver& from, std::ui
 
 float ParametricShape::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     return areaToSolidAngle(static_cast<float>(pdfArea(Vec3d(hit.ng))), hit.p - from.p, hit.ng);
+}
+
+std::optional<SurfacePatch> ParametricShape::patch(const SurfaceHit& hit, Vec3d origin,
+                                                   Vec3d direction) const noexcept {
+    constexpr int kSteps = 3; // of Newton's method, from an error of single precision
+    const int part = static_cast<int>(hit.primitive);
+    const Vec3d o = inverse_.point(origin), d = inverse_.vector(direction);
+    const double size = std::sqrt(localArea_);
+    LocalPoint at = project(inverse_.point(Vec3d(hit.p)), part);
+    Vec3d onLine;
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = dot(at.p - o, at.n) / dot(d, at.n);
+        if (!std::isfinite(t)) return std::nullopt;
+        onLine = o + d * t;
+        if (!(lengthSquared(onLine - at.p) < square(1e-2 * size))) return std::nullopt; // the line passes by
+        at = project(onLine, part);
+    }
+    if (!(lengthSquared(onLine - at.p) < square(1e-9 * size))) return std::nullopt;
+    const auto normal = [&](const LocalPoint& point) { return normalize(map_.normal(point.n)); };
+    SurfacePatch patch;
+    patch.p = map_.point(at.p);
+    patch.ng = patch.n = normal(at);
+    // project() is exact, so that differences of its normals are good to 1e-8.
+    const double h = 1e-5 * size;
+    const auto [x, y] = tangentsOf(at.n);
+    const std::array<Vec3d, 2> steps{x, y};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d change = normal(project(at.p + steps[i] * h, part)) - normal(project(at.p - steps[i] * h, part));
+        patch.change[i] = (change - patch.n * dot(change, patch.n)) * (0.5 / h);
+        patch.along[i] = transposed(inverse_, steps[i]); // steps[i] · A⁻¹ dp
+    }
+    return patch;
 }
 
 } // namespace abbe

@@ -16,6 +16,8 @@ class ParametricShape : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return Relief::smooth; }
     double area() const override { return area_; }
     // Uniform per area of the shape in its own space.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

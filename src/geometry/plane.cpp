@@ -60,4 +60,8 @@ void Plane::parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) cons
 
 double Plane::area() const { return std::numeric_limits<double>::infinity(); }
 
+std::optional<SurfacePatch> Plane::patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept {
+    return planarPatch(point_, z_, origin, direction);
+}
+
 } // namespace abbe

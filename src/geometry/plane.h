@@ -20,6 +20,8 @@ class Plane final : public Shape {
     std::optional<RawHit> intersect(const Ray&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return Relief::smooth; }
     double area() const override;
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }

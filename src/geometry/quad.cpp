@@ -215,4 +215,12 @@ float Quad::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     return areaToSolidAngle(pdfArea_, hit.p - from.p, hit.ng);
 }
 
+std::optional<SurfacePatch> Quad::patch(const SurfaceHit& hit, Vec3d origin, Vec3d direction) const noexcept {
+    // The half whose normal the hit has.
+    const Vec3d shown(hit.ng), first(halves_[0].frame.z), second(halves_[1].frame.z);
+    const Half& half = halves_[dot(shown, second) > dot(shown, first)];
+    const Vec3d n = normalize(cross(Vec3d(half.edgeS), Vec3d(half.edgeT)));
+    return planarPatch(Vec3d(half.corner), n, origin, direction);
+}
+
 } // namespace abbe

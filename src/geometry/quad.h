@@ -18,6 +18,8 @@ class Quad final : public Shape {
     void commit(GeometrySink&) const override;
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return Relief::facets; }
     double area() const override { return area_; }
     EmitterPart emitterPart(std::uint32_t) const override;
     // Rectangles seen large: uniform per solid angle, or, for receivers lit from one side, about in proportion to the

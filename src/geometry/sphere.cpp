@@ -144,4 +144,17 @@ float Sphere::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
     return std::isfinite(pdf) ? pdf : 0;
 }
 
+std::optional<SurfacePatch> Sphere::patch(const SurfaceHit& hit, Vec3d origin, Vec3d direction) const noexcept {
+    const Vec3d o = origin - centre_;
+    const double a = dot(direction, direction), b = -dot(o, direction);
+    const Vec3d nearest = o + direction * (b / a);
+    const double discriminant = square(radius_) - dot(nearest, nearest);
+    if (!(discriminant >= 0)) return std::nullopt;
+    const double half = std::sqrt(discriminant / a);
+    const bool beyond = dot(Vec3d(hit.p) - centre_ - nearest, direction) > 0;
+    const Vec3d n = normalize(nearest + direction * (beyond ? half : -half));
+    const auto [x, y] = tangentsOf(n);
+    return SurfacePatch{centre_ + n * radius_, n, n, {x, y}, {x / radius_, y / radius_}};
+}
+
 } // namespace abbe

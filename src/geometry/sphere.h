@@ -24,6 +24,8 @@ class Sphere final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     float meanCurvature(const SurfaceHit&) const override { return static_cast<float>(1 / radius_); }
+    std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
+    Relief relief() const override { return Relief::smooth; }
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

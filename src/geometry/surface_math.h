@@ -1,7 +1,11 @@
 // Small formulas shared by the shapes: rounding bounds, triangle normals, the change from area to solid angle.
 #pragma once
 
+#include "math/transform.h"
 #include "math/vec.h"
+#include "render/surface_patch.h"
+
+#include <optional>
 
 namespace abbe {
 
@@ -60,6 +64,20 @@ inline float areaToSolidAngle(float pdfArea, Vec3 d, Vec3 ng) {
     if (!(d2 > 0) || !(projected > 0)) return 0;
     const float pdf = pdfArea * d2 * std::sqrt(d2) / projected;
     return std::isfinite(pdf) ? pdf : 0;
+}
+
+// Aᵀ v, for v · A w = (Aᵀ v) · w.
+inline Vec3d transposed(const Transform& m, Vec3d v) {
+    const auto& a = m.a;
+    return {a[0][0] * v.x + a[1][0] * v.y + a[2][0] * v.z, a[0][1] * v.x + a[1][1] * v.y + a[2][1] * v.z,
+            a[0][2] * v.x + a[1][2] * v.y + a[2][2] * v.z};
+}
+
+// A flat patch where a line meets the plane through `point` with the unit normal `normal`; nothing along the plane.
+inline std::optional<SurfacePatch> planarPatch(Vec3d point, Vec3d normal, Vec3d origin, Vec3d direction) {
+    const double t = dot(point - origin, normal) / dot(direction, normal);
+    if (!std::isfinite(t)) return std::nullopt;
+    return SurfacePatch{origin + direction * t, normal, normal, {}, {}};
 }
 
 } // namespace abbe

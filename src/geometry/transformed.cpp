@@ -1,5 +1,7 @@
 #include "geometry/transformed.h"
 
+#include "geometry/surface_math.h"
+
 namespace abbe {
 
 namespace {
@@ -128,6 +130,25 @@ std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {
     const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     const double stretch = length(map_.map().normal(Vec3d(inner->ng))); // cofactors: render area per own area
     return UvPoint{hit.p, hit.pError, hit.ng, static_cast<float>(static_cast<double>(inner->area) * stretch)};
+}
+
+std::optional<SurfacePatch> Transformed::patch(const SurfaceHit& hit, Vec3d origin, Vec3d direction) const noexcept {
+    const Transform& m = map_.map();
+    SurfaceHit own;
+    own.p = Vec3(inverse_.point(Vec3d(hit.p)));
+    const auto inner = shape_->patch(own, inverse_.point(origin), inverse_.vector(direction));
+    if (!inner) return inner;
+    SurfacePatch patch;
+    patch.p = m.point(inner->p);
+    const Vec3d across = m.normal(inner->n);
+    const double scale = 1 / length(across);
+    patch.ng = patch.n = across * scale;
+    for (std::size_t i = 0; i < 2; ++i) {
+        patch.along[i] = transposed(inverse_, inner->along[i]);  // along · A⁻¹ dp
+        const Vec3d turned = m.normal(inner->change[i]) * scale; // and made unit again
+        patch.change[i] = turned - patch.n * dot(turned, patch.n);
+    }
+    return patch;
 }
 
 } // namespace abbe

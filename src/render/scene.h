@@ -31,11 +31,19 @@ struct MediumUse {
     Place place = Place::nowhere;
 };
 
+// What a shape is made of. Infinite planes and what stands inside of objects are among them.
+struct SurfaceUse {
+    const Shape* shape = nullptr;
+    const Material* material = nullptr;
+    bool insideObject = false; // seen through instances alone, in a space of its own
+};
+
 struct Scene {
     std::vector<std::unique_ptr<const Curve>> curves;
     std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
     std::vector<std::unique_ptr<const Material>> materials;
     std::vector<std::unique_ptr<const Shape>> shapes;
+    std::vector<SurfaceUse> surfaces;                 // of all shapes but those with materials by face
     std::vector<std::unique_ptr<const Light>> lights; // committed
     std::vector<std::unique_ptr<const Medium>> media;
     std::vector<MediumUse> mediumUses;    // like media

@@ -5,6 +5,7 @@
 #include "render/ray.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
+#include "render/surface_patch.h"
 
 #include <array>
 #include <cstdint>
@@ -74,6 +75,13 @@ enum CurveNeighbour : std::uint8_t { kPreviousSegment = 1, kNextSegment = 2 };
 // Disks turn to the ray; oriented ones to their normal.
 enum class PointForm : std::uint8_t { sphere, disk, orientedDisk };
 
+// What Shape::patch() knows of a shape.
+enum class Relief : std::uint8_t {
+    unknown, // nothing: there are no patches
+    smooth,  // normals turn steadily, but for some edges
+    facets,  // flat pieces with edges between them; emitterParts() tells how many
+};
+
 class Shape;
 
 // Data of the same primitives at equally spaced times, the first when the shutter opens (Ray::time 0), the last when it
@@ -133,6 +141,13 @@ class Shape {
     // The mean of the two curvatures of the shading normals at a hit of this shape, 1/m; positive where it bulges
     // outwards, 0 where it is not known. For the width of paths beyond mirrors and lenses.
     virtual float meanCurvature(const SurfaceHit&) const { return 0; }
+    // The surface at a hit of this shape, where the line meets it that runs through `origin` in the direction
+    // `direction` and has led to the hit up to rounding; nothing if it passes by, or always for Relief::unknown. In the
+    // shape's coordinates.
+    virtual std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d /*origin*/, Vec3d /*direction*/) const noexcept {
+        return std::nullopt;
+    }
+    virtual Relief relief() const { return Relief::unknown; }
     // Whether some of its faces have a material of their own that looks at textures.
     virtual bool usesTextures() const { return false; }
 
