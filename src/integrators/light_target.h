@@ -1,0 +1,50 @@
+// A point of a light, or a direction to one far away, that chains of delta interfaces are to lead to.
+#pragma once
+
+#include "render/light.h"
+
+#include <cmath>
+#include <optional>
+
+namespace abbe {
+
+// Render space.
+struct LightTarget {
+    const Light* light = nullptr;
+    LightOrigin origin;     // of a light at a place
+    bool distant = false;   // otherwise what follows:
+    Vec3 direction;         // unit, towards the light
+    Spectrum radiance{0.f}; // from there; irradiance if the light is a single direction
+    // 1/m² of origin.p, or 1/sr of the direction, with the probability of the light and its part; deltas count as 1.
+    float pdf = 0;
+
+    // Of a part of a light, drawn by `u` in [0, 1)², which was chosen with probability `pick`; nothing where no light
+    // leaves.
+    static std::optional<LightTarget> sample(const Light& light, std::uint32_t part, float pick, Vec2 u,
+                                             const Wavelengths& lambda, float time) noexcept {
+        LightTarget target;
+        target.light = &light;
+        if (light.paths() == LightPaths::distant) {
+            const auto s = light.sampleDistant(u, lambda, time);
+            if (!s) return std::nullopt;
+            target.distant = true;
+            target.direction = s->wi;
+            target.radiance = s->radiance;
+            target.pdf = pick * s->pdfSolidAngle;
+        } else {
+            const auto origin = light.sampleOrigin(part, u, lambda, time);
+            if (!origin) return std::nullopt;
+            target.origin = *origin;
+            target.pdf = pick * origin->pdf;
+        }
+        if (!(target.pdf > 0) || !std::isfinite(target.pdf)) return std::nullopt;
+        return target;
+    }
+    // Of light that leaves in the unit direction w: radiance times the cosine at the light, intensity of a point, or
+    // what arrives from far away.
+    Spectrum leaving(Vec3 w, const Wavelengths& lambda) const noexcept {
+        return distant ? radiance : light->leaving(origin, w, lambda) * origin.cosine(w);
+    }
+};
+
+} // namespace abbe

@@ -1,0 +1,37 @@
+// Which caustics are found by specular manifold sampling.
+#pragma once
+
+#include "integrators/chain_signature.h"
+#include "render/light.h"
+#include "render/shape.h"
+
+#include <array>
+#include <vector>
+
+namespace abbe {
+
+// A shape that chains may start at, seen from the receiver. Render space, m.
+struct SpecularCaster {
+    const Shape* shape = nullptr;
+    Vec3 centre; // of a ball around the shape: first directions are drawn towards it
+    float radius = 0;
+    // How often each kind of chain is tried, relative to the others, by ChainSignature::index(). 0: never, and such
+    // chains are not covered: the path tracer keeps them.
+    std::array<float, ChainSignature::kCount> weights{};
+};
+
+// Frozen before light is gathered: it says which light the path tracer leaves out.
+struct ManifoldPlan {
+    struct LightWeight {
+        const Light* light = nullptr;
+        float weight = 1; // > 0: how often it is asked, relative to the others
+    };
+
+    std::vector<SpecularCaster> casters; // those of casterCandidates() that are wanted
+    std::vector<LightWeight> lights;     // with Light::paths() other than none
+    // Solutions of which a trial in this many would find one are given up. Trials cost as much as there are solutions,
+    // in the mean, however rare they are; the cap only keeps a single one from taking seconds.
+    std::uint32_t maxTrials = 100'000;
+};
+
+} // namespace abbe

@@ -1,0 +1,138 @@
+// Manifold sampling against quadrature of a ball's images of a lamp, and against paths that find the lamp by chance.
+#include "support/manifold_cases.h"
+#include "support/manifold_walk.h"
+#include "support/sphere_images.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+int times(int n) { return nightly() ? 8 * n : n; }
+
+// Means agree within 3.5 standard errors, and the error tells something.
+void checkSame(const Moments& a, double b, double errorB, double resolution) {
+    const double error = std::hypot(a.standardError(), errorB);
+    CHECK(std::abs(a.mean() - b) < 3.5 * error + 2e-4 * std::abs(b));
+    CHECK(error < resolution * std::abs(b));
+}
+
+} // namespace
+
+TEST_CASE("the images of a small lamp in a glass ball: refracted, reflected, reflected inside") {
+    const SphereImages ball{.centre = {0, 1.6, 0}, .radius = 1, .index = 1.5, .lamp = {1.5, 7, 0}, .lampRadius = 0.1};
+    const ManifoldCase test("shape sphere { center 0 1.6 0; radius 1; material dielectric { ior 1.5 } }\n"
+                            "light disk { center 1.5 7 0; normal 0 -1 0; radius 0.1; radiance 1 }\n");
+    struct Point {
+        Vec3 p;
+        const char* signature;
+        double resolution;
+    };
+    // The middle of the caustic lies near x = -0.45; it is over where x is beyond about -1.
+    const Point points[] = {
+        {{-0.45f, 0, 0}, "TT", 0.03},      {{-0.43f, 0, 0.05f}, "TT", 0.03},  {{-0.5f, 0, 0.1f}, "TT", 0.05},
+        {{-0.3f, 0, 0.2f}, "TT", 0.05},    {{-0.6f, 0, 0.3f}, "TT", 0.05},    {{-0.45f, 0.3f, 0}, "TT", 0.05},
+        {{-0.2f, 0.2f, 0.3f}, "TT", 0.05}, {{3, 0, 0.5f}, "R", 0.03},         {{0.5f, 4, 1}, "R", 0.03},
+        {{-3, 0, 0.3f}, "R", 0.03},        {{1.6f, 3.5f, 0.3f}, "TRT", 0.06}, {{2.5f, 4, 0}, "TRT", 0.06},
+        {{1.2f, 5, 0.4f}, "TRT", 0.06},
+    };
+    for (const Point& c : points) {
+        INFO(fmt::format("{} at {} {} {}", c.signature, c.p.x, c.p.y, c.p.z));
+        const double expected = ball.integral(Vec3d(c.p), c.signature);
+        const ManifoldMean m = test.mean(c.p, c.signature, times(60000));
+        MESSAGE(fmt::format(
+            "{} at {} {} {}: {:.5g}, sampled {:.5g} +- {:.2g}; {:.2f} trials, {:.2f} iterations, {:.1f} rays each",
+            c.signature, c.p.x, c.p.y, c.p.z, expected, m.value.mean(), m.value.standardError(),
+            static_cast<double>(m.counts.trials) / m.value.count(),
+            static_cast<double>(m.counts.iterations) / m.value.count(),
+            static_cast<double>(m.counts.rays) / m.value.count()));
+        CHECK(expected > 0);
+        CHECK(m.counts.capped == 0);
+        checkSame(m.value, expected, 0, c.resolution);
+    }
+    const ManifoldMean dark = test.mean({2, 0, 2}, "TT", 2000);
+    CHECK(dark.value.mean() == 0);
+    CHECK(ball.integral({2, 0, 2}, "TT") == 0);
+}
+
+TEST_CASE("a lamp all around a ball of glass: each kind of chain carries what Fresnel gives it") {
+    const ManifoldCase test("shape sphere { center 0 0 4; radius 1; material dielectric { ior 1.5 } }\n"
+                            "light sphere { center 0 0 2; radius 40; two-sided on; radiance 1 }\n");
+    constexpr double sine2 = 1.0 / 16; // of the cone that the ball fills
+    const std::pair<const char*, int> chains[] = {{"R", 0}, {"TT", 0}, {"TRT", 1}};
+    for (const auto& [signature, inside] : chains) {
+        // Over s² = sin²θ of the cone: dω = π d(s²) / cos θ. The ray meets the ball at the angle asin(s / sin of cone).
+        double expected = 0;
+        constexpr int steps = 20000;
+        for (int i = 0; i < steps; ++i) {
+            const double x = (i + 0.5) / steps, cosine = std::sqrt(1 - x);
+            const double f = dielectricReflectance(cosine, 1.5);
+            const double share = *signature == 'R' ? f : square(1 - f) * (inside ? f : 1);
+            expected += share * kPiD * sine2 / std::sqrt(1 - sine2 * x) / steps;
+        }
+        const ManifoldMean m = test.mean({0, 0, 0}, signature, times(150000));
+        CAPTURE(signature);
+        checkSame(m.value, expected, 0, 0.08);
+    }
+}
+
+TEST_CASE("all that is covered, and nothing else: two casters, every chain of up to three interfaces") {
+    const char* const scenes[] = {
+        // ball and mirror
+        "shape sphere { center 0 1.5 0; radius 1; material dielectric { ior 1.5; absorption 0.3 } }\n"
+        "shape quad { size 4 4; transform { rotate y 90 deg; translate -2 1.5 0 }; material conductor { index metal Ag "
+        "} }\n"
+        "light sphere { center 2 4 0.5; radius 0.5; radiance 1 }\n",
+        // a pane before a polished ball
+        "shape sphere { center 0 1.5 0; radius 0.8; material conductor { index metal Au } }\n"
+        "shape box { size 3 3 0.2; center 0 1.5 -1.4; material dielectric { ior 1.5 } }\n"
+        "light sphere { center 2 3 -3; radius 0.5; radiance 1 }\n",
+    };
+    const Vec3 points[] = {{0.2f, 0, 0.3f}, {0.3f, 0.2f, -3}};
+    for (int i = 0; i < 2; ++i) {
+        CAPTURE(i);
+        const ManifoldCase test(scenes[i]);
+        REQUIRE(test.scene.report() == "");
+        REQUIRE(test.sampler->plan().casters.size() == 2);
+        const Moments walked = walkTo(test, points[i], times(2'000'000));
+        const ManifoldMean m = test.all(points[i], times(400'000));
+        MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds", walked.mean(),
+                            walked.standardError(), m.value.mean(), m.value.standardError()));
+        checkSame(m.value, walked.mean(), walked.standardError(), 0.05);
+    }
+}
+
+TEST_CASE("dispersion: the hero's own chains, over all wavelengths") {
+    const ManifoldCase test("shape sphere { center 0 1.6 0; radius 1; material dielectric { ior glass SF11 } }\n"
+                            "light sphere { center 1.5 5 0; radius 0.4; radiance blackbody 5000 K }\n");
+    REQUIRE(test.scene.report() == "");
+    const Moments walked = walkTo(test, {-0.5f, 0, 0.1f}, times(2'000'000), true);
+    const ManifoldMean m = test.all({-0.5f, 0, 0.1f}, times(400'000), true);
+    MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds", walked.mean(),
+                        walked.standardError(), m.value.mean(), m.value.standardError()));
+    checkSame(m.value, walked.mean(), walked.standardError(), 0.05);
+}
+
+TEST_CASE("case 72: caustics of a ball and of a ring of glass lose less than a thousandth to the cap, and are finite") {
+    const ManifoldCase test("shape sphere { center 0 2 0; radius 0.5; material dielectric { ior 1.5 } }\n"
+                            "shape torus { major-radius 1; minor-radius 0.3; transform { translate 0 0.6 0 }; material "
+                            "dielectric { ior 1.5 } }\n"
+                            "light sphere { center 1 6 0; radius 0.3; radiance 1 }\n");
+    REQUIRE(test.scene.report() == "");
+    const Vec3 points[] = {{0.1f, 0, 0}, {-0.6f, 0, 0.2f}, {-1.2f, 0, 0.1f}, {0.4f, 0, 1.6f}};
+    for (const Vec3 p : points) {
+        INFO(fmt::format("{} {} {}", p.x, p.y, p.z));
+        const Moments walked = walkTo(test, p, times(2'000'000));
+        const ManifoldMean m = test.all(p, times(300'000));
+        MESSAGE(fmt::format(
+            "{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds; {} capped, share {:.2g}; {:.1f} trials",
+            walked.mean(), walked.standardError(), m.value.mean(), m.value.standardError(), m.counts.capped,
+            m.cappedShare(), static_cast<double>(m.counts.trials) / m.value.count()));
+        CHECK(std::isfinite(m.value.mean()));
+        CHECK(m.cappedShare() < 1e-3);
+        checkSame(m.value, walked.mean(), walked.standardError(), 0.15);
+    }
+}
+
+} // namespace abbe::test
