@@ -14,7 +14,6 @@ bool isSingular(const SpecularChain& chain) {
 
 // One step that comes closer; false if there is none.
 bool ChainSolver::step(ChainSignature signature, const Shape* first) {
-    constexpr double kLongest = 0.5; // rad
     const SpecularChain& here = chains_[current_];
     const auto& j = here.jacobian;
     const double scale = -1 / here.determinant();
@@ -22,7 +21,7 @@ bool ChainSolver::step(ChainSignature signature, const Shape* first) {
             (j[0][0] * here.miss.y - j[1][0] * here.miss.x) * scale};
     const double size = std::hypot(s.x, s.y);
     if (!std::isfinite(size)) return false;
-    if (size > kLongest) s = s * (kLongest / size);
+    if (size > reach_) s = s * (reach_ / size);
     const auto [x, y] = tangentsOf(here.direction);
     const std::size_t other = 1 - current_;
     for (int halvings = 0; halvings < kMaxHalvings; ++halvings, s = s * 0.5) {

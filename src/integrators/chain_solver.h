@@ -18,7 +18,8 @@ class ChainSolver {
     // Determinants below this share of the squared entries count as 0: no step, and no solution.
     static constexpr double kSingular = 1e-12;
 
-    explicit ChainSolver(ChainTracer& tracer) : tracer_(tracer) {}
+    // `reach`: half the angle (rad) that the first interface fills, at least about: no step is longer.
+    ChainSolver(ChainTracer& tracer, double reach) : tracer_(tracer), reach_(reach) {}
 
     // Null if none was found. What is returned belongs to the solver, until the next call.
     const SpecularChain* solve(Vec3d direction, ChainSignature, const Shape* first);
@@ -30,6 +31,7 @@ class ChainSolver {
     bool step(ChainSignature, const Shape* first);
 
     ChainTracer& tracer_;
+    double reach_;
     SpecularChain chains_[2]; // the present one, and the one that is tried
     std::size_t current_ = 0;
     std::uint64_t iterations_ = 0;

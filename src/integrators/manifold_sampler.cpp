@@ -9,6 +9,8 @@ namespace abbe {
 
 namespace {
 
+constexpr double kLongestStep = 1; // of Newton's method, over the sine of half the cone of first directions
+
 // First directions of trials: even over the cone of the caster's ball. From within the ball one half is even over all
 // that the receiver can see, the other leads to points of the shape.
 class Seeds {
@@ -29,6 +31,7 @@ class Seeds {
         const Vec3d w = normalize(Vec3d(squareToSphere(u)));
         return receiver_.oneSided() && dot(w, Vec3d(receiver_.n)) < 0 ? -w : w;
     }
+    double size() const { return size_; } // sine of half the cone; 1 from within the ball
     // Solutions nearer to each other count as one. Newton's method leaves errors of less, but next to caustics, where
     // two solutions meet: those that are told apart no more hold about as much of the light as this is of the cone.
     bool same(Vec3d a, Vec3d b) const { return lengthSquared(a - b) < square(1e-4 * size_); }
@@ -45,12 +48,23 @@ class Seeds {
     const Receiver& receiver_;
     const Shape& shape_;
     std::optional<AimCone> cone_;
-    double size_ = 1; // sine of half the cone
+    double size_ = 1;
 };
 
 float preference(const SpecularCaster& caster, Vec3 p) {
     constexpr float kLeast = 0.02f; // small ones are drawn, too
     return std::min(1.f, square(caster.radius) / lengthSquared(caster.centre - p)) + kLeast;
+}
+
+// dω at the receiver per area across the light's last ray, or per solid angle of a light far away.
+double directionsPerTarget(const SpecularChain& chain) { return 1 / (std::abs(chain.determinant()) * chain.spread2); }
+
+// sr that the lamp would fill if it were everywhere as here; 0 for a lamp that is a point.
+double imageSize(const SpecularChain& chain, const LightTarget& target) {
+    if (target.delta) return 0;
+    const Vec3 w = -Vec3(chain.last().out);
+    const float cosine = target.distant ? 1 : target.origin.cosine(w);
+    return directionsPerTarget(chain) * static_cast<double>(cosine / target.pdf);
 }
 
 // A finished chain's light, of which the choice of light and chain was made with these densities.
@@ -72,9 +86,8 @@ std::optional<ManifoldSample> weigh(const SpecularChain& chain, const LightTarge
         }
     }
     light *= target.leaving(normalize(-Vec3(chain.last().out)), lambda);
-    // dω at the receiver per area across the light's last ray, or per solid angle of the light.
-    const double geometry = 1 / (std::abs(chain.determinant()) * chain.spread2);
-    light *= static_cast<float>(geometry / (static_cast<double>(target.pdf) * choice.probability));
+    const double densities = static_cast<double>(target.pdf) * target.pick * choice.probability;
+    light *= static_cast<float>(directionsPerTarget(chain) / densities);
     if (sample.heroOnly) light = Spectrum(Float8{light[0] * static_cast<float>(kLanes), 0, 0, 0, 0, 0, 0, 0});
     if (!anyNonZero(light) || !allFinite(light)) return std::nullopt;
     sample.irradiance = light;
@@ -112,7 +125,7 @@ std::optional<LightTarget> ManifoldSampler::drawTarget(const Wavelengths& lambda
     const std::uint32_t parts = light.parts();
     const auto part = static_cast<std::uint32_t>((random.bits() >> 32) * parts >> 32);
     const Vec2 u{random.uniform(), random.uniform()};
-    return LightTarget::sample(light, part, static_cast<float>(bin.probability / parts), u, lambda, time);
+    return LightTarget::sample(light, part, static_cast<float>(bin.probability), u, lambda, time);
 }
 
 ManifoldChoice ManifoldSampler::choose(Vec3 p, RandomStream& random) const noexcept {
@@ -136,15 +149,17 @@ std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start,
                                                         RandomStream& random, ManifoldCounts& counts) const noexcept {
     const SpecularCaster& caster = plan_.casters[choice.caster];
     ChainTracer tracer(scene_, followed_, start, target, lambda);
-    ChainSolver solver(tracer);
     const Seeds seeds(start, caster);
+    ChainSolver solver(tracer, kLongestStep * seeds.size());
     const auto trial = [&] {
         ++counts.trials;
         return solver.solve(seeds.draw(random), choice.signature, caster.shape);
     };
     std::optional<ManifoldSample> sample;
     ++counts.estimates;
-    if (const SpecularChain* const chain = trial(); chain && tracer.reachesLight(solver.solution())) {
+    const SpecularChain* const chain = trial();
+    const bool small = chain && imageSize(*chain, target) < static_cast<double>(plan_.largestImage);
+    if (small && tracer.reachesLight(solver.solution())) {
         const Vec3d found = chain->direction;
         const bool behind = start.receiver.oneSided() && !(dot(found, Vec3d(start.receiver.n)) > 0);
         if (!behind) sample = weigh(*chain, target, choice, lambda);
@@ -187,9 +202,15 @@ void ManifoldSampler::follow(CoveredChain& chain, const SurfaceHit& hit, Lobes l
     chain.signature.add(lobe.has(Lobe::transmission) ? ChainEvent::transmission : ChainEvent::reflection);
 }
 
-bool ManifoldSampler::covers(const CoveredChain& chain, const Light* light) const noexcept {
-    if (!chain.following || chain.signature.length() == 0) return false;
-    return plan_.casters[chain.caster].weights[chain.signature.index()] > 0 && lights_.contains(light);
+bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
+                             const Wavelengths& lambda) const noexcept {
+    if (!chain.following || chain.signature.length() == 0 || !lights_.contains(met.light)) return false;
+    const SpecularCaster& caster = plan_.casters[chain.caster];
+    if (!(caster.weights[chain.signature.index()] > 0) || !(met.pdf > 0)) return false;
+    ChainTracer tracer(scene_, followed_, start, met, lambda);
+    SpecularChain again;
+    return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) &&
+           imageSize(again, met) < static_cast<double>(plan_.largestImage);
 }
 
 } // namespace abbe

@@ -28,6 +28,7 @@ struct ManifoldChoice {
 // solution or none. A solution that was found with probability p counts 1/p, for which the number of further trials
 // until it comes back is an estimate without bias [Zeltner2020]. There is no density of these paths, so that
 // the path tracer leaves out exactly those that follow() and covers() know, instead of a weight for each technique.
+// That is decided by the path alone: by its events and shapes, and by how large the lamp appears by way of it.
 //
 // Immutable, thread-safe; the scene must outlive it.
 class ManifoldSampler {
@@ -55,7 +56,9 @@ class ManifoldSampler {
     // A camera path went on from a hit, as the intersector made it, by this lobe.
     void follow(CoveredChain& chain, const SurfaceHit& hit, Lobes lobe) const noexcept;
     // Whether light that the path meets next is covered: whoever asked at the start of the chain has it already.
-    bool covers(const CoveredChain& chain, const Light* light) const noexcept;
+    // `start` and `direction` as there; `met`: LightTarget::met(). Cheap where no such light can be covered.
+    bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
+                const Wavelengths&) const noexcept;
 
   private:
     const Scene& scene_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrators/caster_candidates.h"
-#include "integrators/manifold_sampler.h"
+#include "integrators/manifold_pilot.h"
 #include "support/scene_test.h"
 #include "support/statistics.h"
 
@@ -31,18 +31,26 @@ struct ManifoldMean {
     double cappedShare() const { return total > 0 ? capped / total : 0; }
 };
 
-// Every shape with delta lobes is a caster, every light is asked.
+// Every shape with delta lobes is a caster, every light is asked. `largestImage`: as in ManifoldPlan.
 class ManifoldCase {
   public:
-    explicit ManifoldCase(const std::string& shapes, std::uint32_t maxTrials = 100'000)
+    explicit ManifoldCase(const std::string& shapes, float largestImage = kInfinity)
         : scene(TestScene::parse("scene 1\ncamera { from 0 0 -20; look-at 0 0 0 }\n" + shapes + "\n")) {
         if (!ok()) return;
         ManifoldPlan plan;
-        plan.maxTrials = maxTrials;
+        plan.largestImage = largestImage;
         for (const CasterCandidate& c : casterCandidates(scene.scene()))
             if (c.obstacle.empty()) plan.casters.push_back(c.caster());
         for (const auto& light : scene.scene().lights) plan.lights.push_back({light.get(), 1});
         sampler = std::make_unique<ManifoldSampler>(scene.scene(), plan);
+    }
+
+    // Lets a pilot choose how often each kind of chain is tried, by what is seen from this point.
+    void learn(Vec3 world, int looks) {
+        ManifoldPilot pilot(scene.scene(), sampler->plan());
+        RandomStream random(5);
+        for (int i = 0; i < looks; ++i) pilot.look(start(world), 1, Wavelengths::sample(0.3f), random);
+        sampler = std::make_unique<ManifoldSampler>(scene.scene(), pilot.learned());
     }
 
     bool ok() const { return !scene.diagnostics().hasErrors(); }

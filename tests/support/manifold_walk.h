@@ -1,26 +1,40 @@
 // Paths that find lamps by chance, as the path tracer does, as far as manifold sampling says that it has them already.
 #pragma once
 
+#include "integrators/aim_cone.h"
 #include "math/warp.h"
 #include "support/manifold_cases.h"
 
 namespace abbe::test {
 
-// Mean of the light that arrives at a point in the world by covered chains, per unit of cosine: rays in all directions
+// Which of the light that paths find is meant.
+enum class Found { covered, others };
+
+inline AimTarget ballOfCasters(const ManifoldSampler& sampler) {
+    Bounds3 box;
+    for (const SpecularCaster& c : sampler.plan().casters) box.add(c.shape->bounds());
+    return {box.centre(), box.radius()};
+}
+
+// Mean of the light that arrives at a point in the world by chains, per unit of cosine: rays towards all casters
 // are followed by the materials' own sampling. `spectral`: integrated over wavelengths, each path at one of them.
-inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spectral = false) {
+inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spectral = false,
+                      Found wanted = Found::covered) {
     const Scene& scene = test.scene.scene();
     const ChainStart start = test.start(world);
     Moments result;
     Random random(91);
     Arena arena;
+    const auto cone = AimCone::seen(ballOfCasters(*test.sampler), start.receiver.p);
     for (int i = 0; i < paths; ++i) {
         Wavelengths lambda = Wavelengths::sample(spectral ? random.uniform() : 0.3f);
         if (spectral) lambda.keepHero();
         CoveredChain chain;
         chain.start();
-        Ray ray{start.receiver.p, squareToSphere({random.uniform(), random.uniform()})};
-        Spectrum beta(4 * kPi);
+        const Vec2 u{random.uniform(), random.uniform()};
+        Ray ray{start.receiver.p, cone ? cone->sample(u) : squareToSphere(u)};
+        const Vec3 direction = ray.direction;
+        Spectrum beta(cone ? static_cast<float>(1 / cone->pdf()) : 4 * kPi);
         double light = 0;
         for (int length = 0; length <= ChainSignature::kMaxLength; ++length) {
             SurfaceHit hit;
@@ -29,7 +43,8 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
             if (inside) beta *= exp(inside->at(lambda) * -hit.distance);
             if (hit.light) {
                 const Spectrum arriving = hit.light->emitted(hit, -ray.direction, lambda) * beta;
-                if (test.sampler->covers(chain, hit.light))
+                const bool covered = test.sampler->covers(chain, start, direction, LightTarget::met(hit, 0), lambda);
+                if (length > 0 && covered == (wanted == Found::covered))
                     light = static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
                 break;
             }

@@ -157,7 +157,7 @@ TEST_CASE("the Jacobian of a chain agrees with differences") {
             // A target that this very chain leads to.
             target.origin.p = Vec3(chain.last().p + chain.last().out * 2.5);
             target.direction = Vec3(chain.last().out);
-            ChainSolver solver(tracer);
+            ChainSolver solver(tracer, 0.5);
             const SpecularChain* const solved = solver.solve(d, signature, shape);
             REQUIRE(solved);
             const SpecularChain solution = *solved;
