@@ -10,11 +10,13 @@ constexpr int kMaxCrossings = 64; // of boundaries and openings on the way to on
 
 } // namespace
 
-Spectrum ChainTracer::clearness(const Surroundings& here, const SurfaceHit& hit, const Ray& ray, float distance) const {
+Spectrum ChainTracer::clearness(const Surroundings& here, const SurfaceHit* end, const Ray& ray, float distance) const {
+    Spectrum clear(1.f);
     const Curve* absorption = here.absorption();
     // What is left without having been entered was there from the start (PathLoop::absorb).
-    if (!here.filling() && dot(ray.direction, hit.ng) > 0) absorption = hit.material->absorption();
-    return absorption ? exp(absorption->at(lambda_) * -distance) : Spectrum(1.f);
+    if (end && !here.filling() && dot(ray.direction, end->ng) > 0) absorption = end->material->absorption();
+    if (absorption && distance < kInfinity) clear = exp(absorption->at(lambda_) * -distance);
+    return media_ ? clear * media_->transmittance(ray, distance, here.media(), lambda_, *random_) : clear;
 }
 
 // The share of the light that goes straight on, which has then crossed the surface.
@@ -45,7 +47,7 @@ bool ChainTracer::meet(Vec3 spawn, Vec3d direction, Surroundings& here, Surround
         v.hit.arrival = ray.direction;
         v.hit.footprint = 0;
         v.hit.outside = nullptr;
-        v.clearness *= clearness(here, v.hit, ray, v.hit.distance);
+        v.clearness *= clearness(here, &v.hit, ray, v.hit.distance);
         const float share = straightOn(v.hit, ray, here, beyond);
         if (!(share > 0)) {
             v.in = direction;
@@ -175,13 +177,12 @@ bool ChainTracer::reachesLight(SpecularChain& chain) {
             if (target_.distant ? world.occluded(ray) : world.occluded(ray.origin, end, start_.time)) return false;
         }
         if (!scene_.boundaries || !world.intersect(ray, hit) || !(hit.distance < ray.tMax)) {
-            const Curve* const absorption = here.absorption();
-            if (absorption && ray.tMax < kInfinity) chain.clearness *= exp(absorption->at(lambda_) * -ray.tMax);
+            chain.clearness *= clearness(here, nullptr, ray, ray.tMax);
             return true;
         }
         hit.arrival = ray.direction;
         hit.footprint = 0;
-        chain.clearness *= clearness(here, hit, ray, hit.distance);
+        chain.clearness *= clearness(here, &hit, ray, hit.distance);
         const float share = straightOn(hit, ray, here, beyond);
         if (!(share > 0)) return false;
         chain.clearness *= share;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrators/light_target.h"
+#include "integrators/medium_tracker.h"
 #include "integrators/specular_chain.h"
 #include "integrators/surroundings.h"
 #include "render/scene.h"
@@ -34,6 +35,8 @@ class ChainTracer {
     bool trace(Vec3d direction, ChainSignature signature, const Shape* first, SpecularChain& chain);
     // Whether anything lies between the end of a solution and the light; sets chain.clearness.
     bool reachesLight(SpecularChain& chain);
+    // From now on clearness is also that of media along the way, estimated without bias; or no more (null).
+    void lookAtMedia(MediumTracker* media, RandomStream& random) { media_ = media, random_ = &random; }
 
     std::uint64_t rays() const { return rays_; }
 
@@ -45,7 +48,8 @@ class ChainTracer {
 
     bool meet(Vec3 spawn, Vec3d direction, Surroundings& here, Surroundings& beyond, ChainVertex&);
     float straightOn(SurfaceHit&, const Ray&, Surroundings& here, Surroundings& beyond) const;
-    Spectrum clearness(const Surroundings& here, const SurfaceHit&, const Ray&, float distance) const;
+    // `end`: the surface there, if any.
+    Spectrum clearness(const Surroundings& here, const SurfaceHit* end, const Ray&, float distance) const;
     bool turn(ChainEvent, const SurfacePatch&, ChainVertex&, Beam&) const;
     void aim(const Beam&, SpecularChain&) const;
 
@@ -54,6 +58,8 @@ class ChainTracer {
     const ChainStart& start_;
     const LightTarget& target_;
     const Wavelengths& lambda_;
+    MediumTracker* media_ = nullptr; // null: not looked at
+    RandomStream* random_ = nullptr;
     Surroundings behind_; // after the last vertex of the last trace
     std::uint64_t rays_ = 0;
 };

@@ -32,7 +32,7 @@ struct ManifoldPlan {
     // sr: where a lamp's image is larger than this, it is left to the path tracer, whose rays find it soon enough. The
     // image of the whole lamp is meant, magnified as at the point of it that a chain leads to. Next to caustics it has
     // no bound, and estimates of it would have none either.
-    float largestImage = 0.2f;
+    float largestImage = 0.5f;
     // Solutions of which a trial in this many would find one are given up. Trials cost as much as there are solutions,
     // in the mean, however rare they are; the cap only keeps a single one from taking seconds.
     std::uint32_t maxTrials = 100'000;

@@ -146,7 +146,8 @@ ManifoldChoice ManifoldSampler::choose(Vec3 p, RandomStream& random) const noexc
 
 std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start, const LightTarget& target,
                                                         const ManifoldChoice& choice, const Wavelengths& lambda,
-                                                        RandomStream& random, ManifoldCounts& counts) const noexcept {
+                                                        RandomStream& random, ManifoldCounts& counts,
+                                                        MediumTracker* media) const noexcept {
     const SpecularCaster& caster = plan_.casters[choice.caster];
     ChainTracer tracer(scene_, followed_, start, target, lambda);
     const Seeds seeds(start, caster);
@@ -159,17 +160,21 @@ std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start,
     ++counts.estimates;
     const SpecularChain* const chain = trial();
     const bool small = chain && imageSize(*chain, target) < static_cast<double>(plan_.largestImage);
-    if (small && tracer.reachesLight(solver.solution())) {
+    const bool seen = small && !(start.receiver.oneSided() && dot(chain->direction, Vec3d(start.receiver.n)) < 0);
+    if (seen && tracer.reachesLight(solver.solution())) {
         const Vec3d found = chain->direction;
-        const bool behind = start.receiver.oneSided() && !(dot(found, Vec3d(start.receiver.n)) > 0);
-        if (!behind) sample = weigh(*chain, target, choice, lambda);
+        bool whole = true;
+        if (media) {
+            tracer.lookAtMedia(media, random);
+            whole = tracer.trace(found, choice.signature, caster.shape, solver.solution()) &&
+                    tracer.reachesLight(solver.solution());
+            tracer.lookAtMedia(nullptr, random);
+        }
+        if (whole) sample = weigh(*chain, target, choice, lambda);
         if (sample) {
+            const auto back = [&](const SpecularChain* again) { return again && seeds.same(again->direction, found); };
             std::uint32_t until = 1; // it comes back
-            for (const SpecularChain* again = trial(); !again || !seeds.same(again->direction, found);
-                 again = trial()) {
-                sample->capped = ++until == plan_.maxTrials;
-                if (sample->capped) break;
-            }
+            while (!back(trial()) && !sample->capped) sample->capped = ++until >= plan_.maxTrials;
             sample->irradiance *= static_cast<float>(until);
             ++counts.found;
             counts.capped += sample->capped;
@@ -181,10 +186,12 @@ std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start,
 }
 
 std::optional<ManifoldSample> ManifoldSampler::sample(const ChainStart& start, const Wavelengths& lambda,
-                                                      RandomStream& random, ManifoldCounts& counts) const noexcept {
+                                                      RandomStream& random, ManifoldCounts& counts,
+                                                      MediumTracker* media) const noexcept {
     const auto target = drawTarget(lambda, start.time, random);
     if (!target) return std::nullopt;
-    return estimate(start, *target, choose(start.receiver.p, random), lambda, random, counts);
+    const ManifoldChoice choice = choose(start.receiver.p, random);
+    return estimate(start, *target, choice, lambda, random, counts, media);
 }
 
 void ManifoldSampler::follow(CoveredChain& chain, const SurfaceHit& hit, Lobes lobe) const noexcept {

@@ -40,9 +40,10 @@ class ManifoldSampler {
     bool empty() const { return plan_.casters.empty() || plan_.lights.empty(); }
     const ManifoldPlan& plan() const { return plan_; }
 
-    // An estimate of all that is covered; nothing for no light. Requires !empty().
-    std::optional<ManifoldSample> sample(const ChainStart&, const Wavelengths&, RandomStream&,
-                                         ManifoldCounts&) const noexcept;
+    // An estimate of all that is covered; nothing for no light. Requires !empty(). `media`: null where the scene has
+    // none.
+    std::optional<ManifoldSample> sample(const ChainStart&, const Wavelengths&, RandomStream&, ManifoldCounts&,
+                                         MediumTracker* media = nullptr) const noexcept;
     // Its two steps. Of a light, its part and a point of it, or a direction; may be nothing:
     std::optional<LightTarget> drawTarget(const Wavelengths&, float time, RandomStream&) const noexcept;
     // Of a caster and a signature, for a receiver at p:
@@ -51,7 +52,8 @@ class ManifoldSampler {
     const std::unordered_set<const Shape*>& followed() const { return followed_; }
     // An estimate of the sum over all solutions with this target and signature, by one of them.
     std::optional<ManifoldSample> estimate(const ChainStart&, const LightTarget&, const ManifoldChoice&,
-                                           const Wavelengths&, RandomStream&, ManifoldCounts&) const noexcept;
+                                           const Wavelengths&, RandomStream&, ManifoldCounts&,
+                                           MediumTracker* media = nullptr) const noexcept;
 
     // A camera path went on from a hit, as the intersector made it, by this lobe.
     void follow(CoveredChain& chain, const SurfaceHit& hit, Lobes lobe) const noexcept;

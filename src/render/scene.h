@@ -31,7 +31,8 @@ struct MediumUse {
     Place place = Place::nowhere;
 };
 
-// What a shape is made of. Infinite planes and what stands inside of objects are among them.
+// What a shape is made of. Infinite planes and what stands inside of objects are among them; of a shape with materials
+// by face it is that of the faces without one.
 struct SurfaceUse {
     const Shape* shape = nullptr;
     const Material* material = nullptr;
@@ -43,7 +44,7 @@ struct Scene {
     std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
     std::vector<std::unique_ptr<const Material>> materials;
     std::vector<std::unique_ptr<const Shape>> shapes;
-    std::vector<SurfaceUse> surfaces;                 // of all shapes but those with materials by face
+    std::vector<SurfaceUse> surfaces;                 // one for each place of a shape
     std::vector<std::unique_ptr<const Light>> lights; // committed
     std::vector<std::unique_ptr<const Medium>> media;
     std::vector<MediumUse> mediumUses;    // like media

@@ -35,17 +35,27 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
         Ray ray{start.receiver.p, cone ? cone->sample(u) : squareToSphere(u)};
         const Vec3 direction = ray.direction;
         Spectrum beta(cone ? static_cast<float>(1 / cone->pdf()) : 4 * kPi);
-        double light = 0;
+        double sum = 0;
         for (int length = 0; length <= ChainSignature::kMaxLength; ++length) {
             SurfaceHit hit;
-            if (!scene.intersector->intersect(ray, hit)) break;
+            if (!scene.intersector->intersect(ray, hit)) {
+                for (const auto& light : scene.lights) {
+                    if (!light->infinite()) continue;
+                    const LightTarget met = LightTarget::met(*light, ray.direction, 0);
+                    const bool covered = test.sampler->covers(chain, start, direction, met, lambda);
+                    const Spectrum arriving = light->escaped(ray.direction, lambda, 0) * beta;
+                    if (length > 0 && covered == (wanted == Found::covered))
+                        sum += static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
+                }
+                break;
+            }
             const Curve* inside = dot(ray.direction, hit.ng) > 0 ? hit.material->absorption() : nullptr;
             if (inside) beta *= exp(inside->at(lambda) * -hit.distance);
             if (hit.light) {
                 const Spectrum arriving = hit.light->emitted(hit, -ray.direction, lambda) * beta;
                 const bool covered = test.sampler->covers(chain, start, direction, LightTarget::met(hit, 0), lambda);
                 if (length > 0 && covered == (wanted == Found::covered))
-                    light = static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
+                    sum = static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
                 break;
             }
             arena.reset();
@@ -59,7 +69,7 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
             const Vec3 w = normalize(hit.shading.toWorld(s->wi));
             ray = {spawnOrigin(hit, w), w};
         }
-        result.add(light);
+        result.add(sum);
     }
     return result;
 }

@@ -87,7 +87,7 @@ struct SphereImages {
 
     // Over a cell of half the side h about (u, v); cells near an edge of an image are cut.
     double refined(const Square& s, double u, double v, double h, int level) const {
-        constexpr int kLevels = 7, kAlways = 1;
+        constexpr int kLevels = 9, kAlways = 1;
         double cosine = 1, other = 1;
         const Image middle = at(s, u, v, cosine);
         int valid = 0, lit = 0;

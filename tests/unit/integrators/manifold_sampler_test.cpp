@@ -178,6 +178,38 @@ TEST_CASE("the Jacobian of a chain agrees with differences") {
     }
 }
 
+TEST_CASE("fog along the way dims every leg of a chain") {
+    const ManifoldCase test("shape sphere { center 0 3 0; radius 1; material dielectric { ior 1.5 } }\n"
+                            "light point { position 0.3 9 0; power 12.566 W }\n"
+                            "volume atmosphere { extinction 0.2 per-m; albedo 0.5 }\n");
+    REQUIRE(test.scene.report() == "");
+    const Scene& scene = test.scene.scene();
+    const ChainStart start = test.start({0.1f, 0, 0});
+    const Wavelengths lambda = Wavelengths::sample(0.3f);
+    const auto target = LightTarget::sample(*scene.lights.at(0), 0, 1, {0.5f, 0.5f}, lambda, 0);
+    MediumTracker media(scene.openMedia);
+    ManifoldCounts counts;
+    RandomStream clear(5), foggy(5);
+    const ManifoldChoice choice{0, ChainSignature::of("TT"), 1};
+    int found = 0;
+    for (int i = 0; i < 50; ++i) {
+        foggy = clear; // a constant density takes no random numbers
+        const auto a = test.sampler->estimate(start, *target, choice, lambda, clear, counts);
+        const auto b = test.sampler->estimate(start, *target, choice, lambda, foggy, counts, &media);
+        CHECK(a.has_value() == b.has_value());
+        if (!a || !b) continue;
+        ChainTracer tracer(scene, test.sampler->followed(), start, *target, lambda);
+        SpecularChain chain;
+        REQUIRE(tracer.trace(Vec3d(a->wi), choice.signature, test.sampler->plan().casters[0].shape, chain));
+        const double way = length(chain.vertices[0].p - Vec3d(start.receiver.p)) +
+                           length(chain.vertices[1].p - chain.vertices[0].p) +
+                           length(Vec3d(target->origin.p) - chain.vertices[1].p);
+        CHECK(b->irradiance[0] == doctest::Approx(a->irradiance[0] * std::exp(-0.2 * way)).epsilon(1e-4));
+        ++found;
+    }
+    CHECK(found > 10);
+}
+
 TEST_CASE("the same numbers give the same bits") {
     const ManifoldCase test("shape sphere { center 0 3 0; radius 1; material dielectric { ior glass BK7 } }\n"
                             "light sphere { center 0 9 0; radius 0.1; power 100 W }\n");
