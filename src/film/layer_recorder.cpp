@@ -97,6 +97,7 @@ void LayerRecorder::gathers(const Spectrum& radiance, const void* source, bool p
     }
     if (plan_.deep && litDepth_ && !end_) along_.push_back({*litDepth_, 0, radiance});
     litDepth_.reset();
+    chained_ = false;
 }
 
 void LayerRecorder::scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum& beta,

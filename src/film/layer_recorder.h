@@ -16,6 +16,7 @@ class LayerRecorder final : public SampleRecorder {
     void start(const Ray& fromEye, const Wavelengths&) noexcept override;
     void arrives(const SurfaceHit&, const Spectrum& beta) noexcept override;
     void gathers(const Spectrum& radiance, const void* source, bool passing) noexcept override;
+    void chains(const Light*, Vec3) noexcept override { chained_ = true; }
     void lightsUp(Vec3 p) noexcept override;
     void absorbs(Vec3 p, float share) noexcept override;
     void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept override;
@@ -27,7 +28,7 @@ class LayerRecorder final : public SampleRecorder {
   private:
     PathComponent component(bool passing) const {
         const int diffuse = diffuse_ + passing;
-        if (!passing && specularSince_ && diffuse > 0) return PathComponent::caustic;
+        if (chained_ || (!passing && specularSince_ && diffuse > 0)) return PathComponent::caustic;
         return diffuse <= 1 ? PathComponent::direct : PathComponent::indirect;
     }
     struct FirstSurface {
@@ -71,6 +72,7 @@ class LayerRecorder final : public SampleRecorder {
     Spectrum albedo_;
     int diffuse_ = 0;            // scatterings so far
     bool specularSince_ = false; // a mirror since the last of them
+    bool chained_ = false;       // what is gathered next has met mirrors
     struct Part {
         Spectrum radiance{0.f};
         bool lit = false;

@@ -14,10 +14,10 @@ namespace abbe {
 
 // Where light is asked for, and what surrounds that point on the side of the light.
 struct ChainStart {
-    Receiver receiver;
-    Vec3 pError, ng; // of a surface; ng is unit. 0 in a medium
-    float time = 0;  // Ray::time
-    Surroundings around;
+    Receiver receiver{Vec3()};
+    Vec3 pError{}, ng{}; // of a surface; ng is unit. 0 in a medium
+    float time = 0;      // Ray::time
+    Surroundings around{};
 };
 
 // Geometry is exact to double next to each hit (Shape::patch), so that what lenses magnify is not the rounding of

@@ -85,7 +85,10 @@ std::optional<ManifoldSample> weigh(const SpecularChain& chain, const LightTarge
             lambda.keepHero();
         }
     }
-    light *= target.leaving(normalize(-Vec3(chain.last().out)), lambda);
+    const Vec3 leaves = normalize(-Vec3(chain.last().out));
+    light *= target.leaving(leaves, lambda);
+    sample.light = target.light;
+    if (!target.delta) sample.radiance = light * (1 / (target.distant ? 1 : target.origin.cosine(leaves)));
     const double densities = static_cast<double>(target.pdf) * target.pick * choice.probability;
     light *= static_cast<float>(directionsPerTarget(chain) / densities);
     if (sample.heroOnly) light = Spectrum(Float8{light[0] * static_cast<float>(kLanes), 0, 0, 0, 0, 0, 0, 0});

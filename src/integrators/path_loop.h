@@ -8,6 +8,7 @@
 #include "integrators/light_path_plan.h"
 #include "integrators/light_sampler.h"
 #include "integrators/loop_technique.h"
+#include "integrators/manifold_listener.h"
 #include "integrators/medium_tracker.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
@@ -30,7 +31,11 @@ struct PathContext {
     bool choices = true;      // whether anything in the scene draws a light, a lobe or a place on a lens
     std::uint32_t strata = 1; // of stratified numbers
     LoopTechnique how = LoopTechnique(settings.technique);
-    const LightPathPlan* traced = nullptr; // paths of light beside them; needed by kernels with Effect::lightPaths
+    // For kernels with Effect::lightPaths: paths of light beside them; chains of delta interfaces, and who hears of
+    // them.
+    const LightPathPlan* traced = nullptr;
+    const ManifoldSampler* manifold = nullptr;
+    ManifoldListener* hears = nullptr;
 };
 
 struct TracedView;
@@ -39,6 +44,7 @@ struct TracedView;
 struct PathCounters {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, capped = 0;
     EffectCounts effects;
+    ManifoldCounts manifold;
 };
 
 // What paths through media need and keep from one to the next.
@@ -226,6 +232,10 @@ template <EffectBits E> class PathLoop {
         return lightWeight(picked.probability * light.pdfSolidAngle, eval, light.delta);
     }
 
+    // path_loop_manifold.h
+    void askManifold(const SurfaceHit&, const Bsdf&, const Directions&, std::uint32_t depth);
+    void followChain(const SurfaceHit&, const BsdfSample&, Vec3 direction);
+    template <typename Met> bool covered(Met met) const; // met() makes the LightTarget
     // path_loop_traced.h
     void beginTraced(Vec3 p);
     void arriveTraced(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
@@ -295,6 +305,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
             observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
         setWork(Work::lights);
         sampleLight(hit, bsdf, eye, sample, depth);
+        if constexpr (kTraced) askManifold(hit, bsdf, eye, depth);
         setWork(Work::surface);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
@@ -354,7 +365,10 @@ inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
     if (!sidesAgree(hit, eye, next.wi, direction)) return checkDirection(direction), false;
-    if constexpr (kTraced) turnTraced(next, eye, direction);
+    if constexpr (kTraced) {
+        turnTraced(next, eye, direction);
+        followChain(hit, next, direction);
+    }
     if (next.lobe.has(Lobe::transmission)) {
         if constexpr (kInterfaces)
             path_.nested.here = path_.nested.beyond;
@@ -437,6 +451,7 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 #include "integrators/path_loop_faults.h"
 #include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_lights.h"
+#include "integrators/path_loop_manifold.h"
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_near_light.h"
 #include "integrators/path_loop_traced.h"

@@ -49,6 +49,8 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
         lightPdf = context_.lights.probability(hit.light, hit.light->partOf(hit), path_.from, path_.scatters) *
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     checkDensities(lightPdf, path_.bsdfPdf);
+    if constexpr (kTraced)
+        if (covered([&] { return LightTarget::met(hit, path_.time); })) return;
     const float weight = foundWeight(lightPdf, [&] {
         const double e =
             context_.traced->emission.density(hit.light, hit.light->partOf(hit), hit.p, hit.ng, -direction, path_.time)
@@ -69,6 +71,8 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
                        light->pdfEscaped(path_.from, direction, path_.time);
         checkDensities(lightPdf, path_.bsdfPdf);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
+        if constexpr (kTraced)
+            if (covered([&] { return LightTarget::met(*light, direction, path_.time); })) continue;
         const float weight = foundWeight(lightPdf, [&] {
             return context_.traced->emission.density(light, path_.from.p, -direction, path_.time).total();
         });

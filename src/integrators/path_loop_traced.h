@@ -26,7 +26,8 @@ struct TracedView {
     CameraRay camera;
     LensQuery query; // its point is filled in here
     Arena own, eye;
-    SurfaceHit met; // as the intersector made it
+    SurfaceHit met;   // as the intersector made it
+    ChainStart start; // where chains of deltas were asked for
 };
 
 // Frame and what filters reach beyond it.
@@ -42,6 +43,7 @@ inline LensQuery lensQuery(const PixelBounds& frame, float time, float heroNm) {
 
 // At the first vertex.
 template <EffectBits E> void PathLoop<E>::beginTraced(Vec3 p) {
+    if (!context_.traced) return;
     TracedView& view = *tracedView_;
     view.query.p = p;
     const auto m = static_cast<double>(context_.scene.camera->pdfFacingArea(view.query, view.camera));
@@ -92,7 +94,8 @@ template <EffectBits E> void PathLoop<E>::turnTraced(const BsdfSample& next, con
 // Light scattered in a medium: its phase functions look alike from both sides. The next light is not weighed.
 template <EffectBits E> void PathLoop<E>::turnTracedInMedium() {
     auto& traced = path_.traced;
-    traced.weighs = false;
+    traced.weighs = traced.mirrored = false;
+    traced.chain.stop();
     if (traced.first) traced.odds /= static_cast<double>(path_.bsdfPdf);
     traced.first = false;
 }

@@ -1,6 +1,7 @@
 // What a path carries from vertex to vertex. Members of effects that a scene lacks do not exist.
 #pragma once
 
+#include "integrators/covered_chain.h"
 #include "integrators/surroundings.h"
 #include "render/effects.h"
 #include "render/receiver.h"
@@ -39,6 +40,11 @@ struct TracedDensities {
     double scattering = 0;          // density of the last direction for camera paths, 1/sr
     bool first = true;              // no more than one vertex yet
     bool weighs = false;            // odds were not 0 where the path scattered last
+    // path_loop_manifold.h
+    bool mirrored = true; // nothing but deltas so far
+    bool asks = false;    // at a vertex that asked for chains
+    CoveredChain chain;   // since then
+    Vec3 chainDirection;  // its first direction
 };
 // The curve of absorption of the medium around the present segment; null in air.
 struct Interior {

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
+#include "integrators/manifold_planner.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/time_left.h"
 #include "render/render_state.h"
@@ -118,14 +119,16 @@ class RenderJob {
     void look(const PathContext& context) {
         const auto stop = [this] { return stopRequested(); };
         ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
-        if (film_.takesSplats() && state_.lightBlockCount() > 0)
-            light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
-        if (light_.plan) {
-            context_.traced = light_.plan.get();
-            render_ = kernel_.traced().render;
-        }
+        statistics_.pilotRays = ahead_.rays;
+        if (!film_.takesSplats() || state_.lightBlockCount() == 0) return;
+        light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
+        context_.traced = light_.plan.get();
+        manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
+        context_.manifold = manifold_.sampler.get();
+        if (context_.traced || context_.manifold) render_ = kernel_.traced().render;
         statistics_.lightPlan = light_.findings;
-        statistics_.pilotRays = ahead_.rays + light_.findings.rays;
+        statistics_.manifoldPlan = manifold_.findings;
+        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays;
     }
 
     static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
@@ -179,6 +182,7 @@ class RenderJob {
         TileState& tile = state_.tile(i);
         while (tile.reached < last && !stopRequested() && !snapshotRequested()) {
             PathTally tally;
+            ManifoldCounts chains;
             const std::uint32_t first = tile.reached;
             {
                 const auto hold = state_.hold(i);
@@ -186,6 +190,7 @@ class RenderJob {
                 const double before = threadSeconds();
                 const TileResult result = work(i, first, end);
                 tally = tallyOf(result, threadSeconds() - before);
+                chains = result.counters.manifold;
                 tile.tally.add(tally);
                 tile.reached = end;
                 for (const DroppedSample& s : result.examples)
@@ -193,6 +198,9 @@ class RenderJob {
             }
             const std::lock_guard lock(mutex_);
             count(tally);
+            statistics_.manifoldEstimates += chains.estimates;
+            statistics_.manifoldTrials += chains.trials;
+            statistics_.manifoldCapped += chains.capped;
             timeLeft_->advanced(i, tile.reached - first, tally.coreSeconds);
             pixelSamples_ += state_.pixels(i).area() * (tile.reached - first);
             maybeReport();
@@ -291,6 +299,7 @@ class RenderJob {
     PathContext context_;
     LookAhead ahead_;
     PlannedLightPaths light_;
+    PlannedManifold manifold_;
     TileFunction render_ = kernel_.render; // of pixels
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one

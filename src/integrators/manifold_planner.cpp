@@ -1,0 +1,208 @@
+#include "integrators/manifold_planner.h"
+
+#include "base/parallel.h"
+#include "base/work.h"
+#include "integrators/caster_candidates.h"
+#include "integrators/light_path_planner.h"
+#include "integrators/manifold_pilot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::uint64_t kLearn = 0x6368616973, kJudge = 0x636861696e; // "chais", "chain"
+constexpr int kCells = 40;                                            // of a row of the pilot
+constexpr int kReplicates = 4;                                        // of a cell
+constexpr std::size_t kLooks = 256;                                   // of ManifoldPilot, each at all kinds of chains
+constexpr double kLeastGain = 1.15;
+// A lamp that fills more than this everywhere has no small images.
+constexpr double kLargeLight = 0.5; // sr
+
+// Solid angle of a light far away, in the harmonic mean over what it samples; 0 for a single direction.
+double extentOf(const Light& light) {
+    double sum = 0;
+    constexpr int kSamples = 16;
+    for (int i = 0; i < kSamples; ++i) {
+        const Vec2 u{(static_cast<float>(i) + 0.5f) / kSamples,
+                     static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
+        const auto s = light.sampleDistant(u, Wavelengths::sample(0.5f), 0);
+        if (s && s->delta) return 0;
+        if (s) sum += static_cast<double>(s->pdfSolidAngle) / kSamples;
+    }
+    return sum > 0 ? 1 / sum : 4 * kPiD;
+}
+
+// One pixel of the pilot: what its samples came to, and what manifold sampling told them.
+struct Cell {
+    std::array<double, kReplicates> y{};
+    double second = 0, chance = 0; // Σ of squares of what was found, and of what chance would have in place of that
+    double rays = 0;
+    std::uint64_t asked = 0;
+    ManifoldCounts counts;
+    struct Look {
+        ChainStart start;
+        float importance = 0;
+        Wavelengths lambda;
+    };
+    std::vector<Look> looks;
+};
+
+class CellFilm final : public Film {
+  public:
+    CellFilm(PixelBounds pixel, Cell& cell) : pixel_(pixel), cell_(cell) {}
+    PixelBounds bounds() const override { return pixel_; }
+    int replicates() const override { return kReplicates; }
+    FilterSample filter(Vec2 u) const noexcept override { return {{u.x - 0.5f, u.y - 0.5f}, 1}; }
+    void add(int, int, int r, const ExactXyz& sum, std::uint32_t) noexcept override {
+        cell_.y[static_cast<std::size_t>(r)] = sum.y.value();
+    }
+    Xyz mean(int, int) const noexcept override { return {}; }
+    double relativeNoise() const override { return 0; }
+
+  private:
+    PixelBounds pixel_;
+    Cell& cell_;
+};
+
+class CellListener final : public ManifoldListener {
+  public:
+    CellListener(const Scene& scene, Cell& cell) : scene_(scene), cell_(cell) {}
+    void asked(const ChainStart& start, const Spectrum& beta, const Wavelengths& lambda, const Spectrum& light,
+               const Spectrum& chance) override {
+        ++cell_.asked;
+        if (cell_.looks.empty()) cell_.looks.push_back({start, mean(beta), lambda});
+        const double found = scene_.sensor(light, lambda).y;
+        if (!(found > 0)) return;
+        cell_.second += found * found;
+        cell_.chance += found * scene_.sensor(chance, lambda).y;
+    }
+
+  private:
+    const Scene& scene_;
+    Cell& cell_;
+};
+
+class Planner {
+  public:
+    Planner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+            const std::function<bool()>& stop)
+        : context_(context), kernel_(kernel), roulette_(roulette), stop_(stop), frame_(context.scene.frame) {}
+
+    PlannedManifold run() {
+        PlannedManifold result;
+        ManifoldPlan plan = possible();
+        if (plan.casters.empty() || plan.lights.empty()) return result;
+        findings_.asked = true;
+        const ManifoldSampler first(context_.scene, plan);
+        const std::vector<Cell> seen = look(first, kLearn);
+        if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.asked > 0; })) {
+            auto sampler = std::make_unique<const ManifoldSampler>(context_.scene, learn(plan, seen));
+            judge(look(*sampler, kJudge));
+            const bool forced = context_.settings.technique.lightPaths == Technique::LightPaths::always;
+            if (!stop_() && (findings_.gain >= kLeastGain || (forced && findings_.before > 0)))
+                result.sampler = std::move(sampler);
+        }
+        findings_.used = result.sampler != nullptr;
+        result.findings = findings_;
+        return result;
+    }
+
+  private:
+    ManifoldPlan possible() {
+        ManifoldPlan plan;
+        for (const CasterCandidate& c : casterCandidates(context_.scene))
+            if (c.obstacle.empty())
+                plan.casters.push_back(c.caster());
+            else
+                ++findings_.obstacles;
+        for (const auto& light : context_.scene.lights) {
+            if (light->paths() == LightPaths::none || !(light->visiblePower() > 0)) continue;
+            if (light->paths() == LightPaths::distant && extentOf(*light) > kLargeLight) continue;
+            plan.lights.push_back({light.get(), static_cast<float>(light->visiblePower())});
+        }
+        return plan;
+    }
+
+    std::vector<Cell> look(const ManifoldSampler& sampler, std::uint64_t key) {
+        PathContext base = context_;
+        base.settings.seed = combine64(context_.settings.seed, key);
+        base.manifold = &sampler;
+        const int columns = std::min(kCells, frame_.width()), rows = std::min(kCells, frame_.height());
+        std::vector<Cell> cells(static_cast<std::size_t>(columns * rows));
+        parallelFor(cells.size(), [&](std::size_t i) {
+            if (stop_()) return;
+            const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+            const int x = frame_.x0 + (2 * column + 1) * frame_.width() / (2 * columns);
+            const int y = frame_.y0 + (2 * row + 1) * frame_.height() / (2 * rows);
+            Cell& cell = cells[i];
+            CellFilm film({x, y, x + 1, y + 1}, cell);
+            CellListener listener(context_.scene, cell);
+            PathContext context = base;
+            context.hears = &listener;
+            addWorkFlag(WorkFlag::pilot);
+            const TileResult r = kernel_.render(context, film, {film.bounds(), 0, 1, &roulette_});
+            removeWorkFlag(WorkFlag::pilot);
+            cell.counts = r.counters.manifold;
+            cell.rays = static_cast<double>(r.counters.vertices + r.counters.shadowRays);
+            const double relative = static_cast<double>(roulette_.scale(x, y));
+            for (double& v : cell.y) v *= relative;
+            cell.second *= square(relative);
+            cell.chance *= square(relative);
+            for (auto& l : cell.looks) l.importance *= static_cast<float>(relative);
+        });
+        for (const Cell& c : cells) findings_.rays += static_cast<std::uint64_t>(c.rays) + c.counts.rays;
+        return cells;
+    }
+
+    ManifoldPlan learn(const ManifoldPlan& plan, const std::vector<Cell>& cells) {
+        ManifoldPilot pilot(context_.scene, plan);
+        RandomStream random(combine64(context_.settings.seed, kLearn));
+        std::vector<const Cell::Look*> looks;
+        for (const Cell& c : cells)
+            if (!c.looks.empty()) looks.push_back(&c.looks.front());
+        const std::size_t step = looks.size() / kLooks + 1;
+        for (std::size_t i = 0; i < looks.size() && !stop_(); i += step)
+            pilot.look(looks[i]->start, looks[i]->importance, looks[i]->lambda, random);
+        findings_.rays += pilot.counts().rays;
+        return pilot.learned();
+    }
+
+    void judge(const std::vector<Cell>& cells) {
+        double variance = 0, rays = 0, own = 0;
+        const auto n = static_cast<double>(cells.size()), samples = n * kReplicates;
+        for (const Cell& c : cells) {
+            double mean = 0;
+            for (const double v : c.y) mean += v / kReplicates;
+            for (const double v : c.y) variance += square(v - mean) / (kReplicates - 1) / n;
+            findings_.after += c.second / samples;
+            findings_.before += c.chance / samples;
+            rays += c.rays / samples;
+            own += static_cast<double>(c.counts.rays) / samples;
+        }
+        findings_.rest = std::max(variance - findings_.after, 0.1 * variance);
+        const double plain = (findings_.rest + findings_.before) * rays;
+        const double cost = (findings_.rest + findings_.after) * (rays + own);
+        findings_.gain = cost > 0 ? plain / cost : 0;
+    }
+
+    const PathContext& context_;
+    const TracedKernel& kernel_;
+    const RouletteReference& roulette_;
+    const std::function<bool()>& stop_;
+    PixelBounds frame_;
+    ManifoldFindings findings_;
+};
+
+} // namespace
+
+PlannedManifold planManifold(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+                             const std::function<bool()>& stop) {
+    if (!mayTraceLight(context.scene, context.settings.technique)) return {};
+    return Planner(context, kernel, roulette, stop).run();
+}
+
+} // namespace abbe

@@ -1,0 +1,22 @@
+// Whether caustics behind glass and in mirrors are worth manifold sampling in a scene.
+#pragma once
+
+#include "integrators/light_kernel.h"
+#include "render/integrator.h"
+
+#include <functional>
+#include <memory>
+
+namespace abbe {
+
+struct PlannedManifold {
+    std::unique_ptr<const ManifoldSampler> sampler; // null: none
+    ManifoldFindings findings;
+};
+
+// A context with the plan of light paths, if any; the reference is that of the frame. `stop` cuts it short, without a
+// plan. Depends on the scene, the frame and the seed alone.
+PlannedManifold planManifold(const PathContext&, const TracedKernel&, const RouletteReference&,
+                             const std::function<bool()>& stop);
+
+} // namespace abbe
