@@ -1,5 +1,6 @@
 #include "app/certificate_file.h"
 
+#include "app/light_path_text.h"
 #include "app/version.h"
 #include "io/atomic_file.h"
 
@@ -156,17 +157,19 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
     const RenderSummary& s = *facts.summary;
     double seconds = 0;
     for (const auto& phase : s.phases) seconds += phase.second;
-    const Json file = Json::object({{"format", kVersion},
-                                    {"image", std::filesystem::path(s.image).filename().string()},
-                                    {"partial", s.statistics.stopped || s.partial},
-                                    {"parts", facts.parts},
-                                    {"error", certificateJson(*s.certificate)},
-                                    {"samples", samplesJson(*s.certificate, s.statistics)},
-                                    {"seconds", seconds},
-                                    {"core_seconds", s.statistics.coreSeconds},
-                                    {"scene_hash", facts.sceneHash},
-                                    {"seed", facts.seed},
-                                    {"program", versionNumber()}});
+    Json file = Json::object({{"format", kVersion},
+                              {"image", std::filesystem::path(s.image).filename().string()},
+                              {"partial", s.statistics.stopped || s.partial},
+                              {"parts", facts.parts},
+                              {"error", certificateJson(*s.certificate)},
+                              {"samples", samplesJson(*s.certificate, s.statistics)},
+                              {"seconds", seconds},
+                              {"core_seconds", s.statistics.coreSeconds},
+                              {"scene_hash", facts.sceneHash},
+                              {"seed", facts.seed},
+                              {"program", versionNumber()}});
+    if (s.statistics.lightPlan.verdict != LightPathVerdict::undecided)
+        file.set("light_path_plan", lightPathJson(s.statistics.lightPlan));
     const std::string text = file.text(true) + "\n";
     AtomicFile out(path);
     out.write(text);

@@ -145,7 +145,7 @@ void writeTile(const TileState& tile, ByteWriter& out) {
     const PathTally& t = tile.tally;
     out.number(tile.reached);
     for (const std::uint64_t v : {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1],
-                                  t.dropped[2], t.excess.lookups, t.excess.above, t.lightPaths, t.splats})
+                                  t.dropped[2], t.excess.lookups, t.excess.above, t.lightPaths, t.lightRays, t.splats})
         out.number(v);
     out.number(t.excess.most);
     out.number(t.coreSeconds);
@@ -188,7 +188,7 @@ bool readTile(ByteReader& in, TileState& tile) {
     PathTally& t = tile.tally;
     tile.reached = in.number<std::uint32_t>();
     for (std::uint64_t* v : {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1],
-                             &t.dropped[2], &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.splats})
+                             &t.dropped[2], &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.lightRays, &t.splats})
         *v = in.number<std::uint64_t>();
     t.excess.most = in.number<float>();
     t.coreSeconds = in.number<double>();

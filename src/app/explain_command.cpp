@@ -1,6 +1,10 @@
 #include "app/explain_effects.h"
+#include "app/light_path_text.h"
 #include "app/options.h"
 #include "base/diagnostic_catalogue.h"
+#include "integrators/light_path_planner.h"
+#include "integrators/path_tracer.h"
+#include "integrators/render_params.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
@@ -18,6 +22,18 @@ bool looksLikeFile(const std::string& topic) {
            std::filesystem::is_regular_file(topic, error);
 }
 
+// Decided by a look at the scene if need be, which takes its geometry. Undecided if that is at fault.
+LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& described) {
+    const RenderSettings settings = renderSettings(described.render);
+    LightPathFindings found;
+    found.verdict = lightPathVerdict(described.scene, settings.technique);
+    if (found.verdict != LightPathVerdict::undecided) return found;
+    Diagnostics faults; // those of the scene's text have been told
+    const BuiltScene built = buildScene(loaded.tree, loaded.types, {}, faults);
+    if (faults.hasErrors()) return found;
+    return makePathTracer(built.scene.effects)->findLightPaths(built.scene, settings);
+}
+
 ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common) {
     const auto loaded = loadScene({options.topic, options.defines});
     BuildOptions build;
@@ -26,7 +42,10 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
     if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
     common.console.report(loaded->diagnostics, loaded->sources);
     if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
-    common.console.data(common.json ? effectsJson(*loaded, built).text(true) + "\n" : effectsText(*loaded, built));
+    const LightPathFindings found = lightPathsOf(*loaded, built);
+    common.console.data(common.json
+                            ? effectsJson(*loaded, built).set("light_paths", lightPathJson(found)).text(true) + "\n"
+                            : effectsText(*loaded, built) + lightPathText(found));
     return ExitCode::done;
 }
 

@@ -1,4 +1,5 @@
 #include "app/certificate_file.h"
+#include "app/light_path_text.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -94,6 +95,7 @@ void HumanReport::done(const RenderSummary& s) {
     if (r.lightPaths > 0)
         console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
                                   countText(static_cast<double>(r.splats))));
+    if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
     if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
     console_.line(

@@ -1,6 +1,7 @@
 #include "app/bill_text.h"
 #include "app/certificate_file.h"
 #include "app/fault_json.h"
+#include "app/light_path_text.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -80,6 +81,8 @@ class JsonReport final : public RenderReport {
                                    {"bill", s.bill ? billJson(*s.bill) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
+        if (r.lightPlan.verdict != LightPathVerdict::undecided)
+            event.set("light_path_plan", lightPathJson(r.lightPlan));
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
         emit(event);

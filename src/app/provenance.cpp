@@ -1,6 +1,7 @@
 #include "app/provenance.h"
 
 #include "app/hash128.h"
+#include "app/light_path_text.h"
 #include "app/version.h"
 #include "integrators/technique_words.h"
 
@@ -53,6 +54,13 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.directions", std::string(word(technique.directions)));
     text("abbe.lightChoice", std::string(word(technique.lightChoice)));
     text("abbe.roulette", std::string(word(technique.roulette)));
+    text("abbe.lightPathTechnique", std::string(word(technique.lightPaths)));
+    const LightPathFindings& found = statistics.lightPlan;
+    if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
+    if (found.measured) {
+        real("abbe.lightPathShare", found.share);
+        real("abbe.lightPathGain", found.gain);
+    }
     whole("abbe.wavelengthsPerPath", technique.wavelengths);
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
     text("abbe.effects", effectNames(p.built->scene.effects));

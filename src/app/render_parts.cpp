@@ -125,6 +125,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     statistics.vertices = sum.vertices;
     statistics.shadowRays = sum.shadowRays;
     statistics.lightPaths = sum.lightPaths;
+    statistics.lightRays = sum.lightRays;
     statistics.splats = sum.splats;
     statistics.cappedPaths = sum.cappedPaths;
     statistics.dropped = sum.dropped;

@@ -43,8 +43,9 @@ constexpr Work volumeWork(std::size_t medium) {
 enum class WorkFlag : std::uint8_t {
     pilot = 1,    // looking ahead: no sample of the image
     heroOnly = 2, // the path has one wavelength left
+    light = 4,    // the path started at a light
 };
-inline constexpr std::size_t kWorkFlags = 4; // sets of them
+inline constexpr std::size_t kWorkFlags = 8; // sets of them
 
 // Written by its thread alone, read by all.
 struct WorkState {

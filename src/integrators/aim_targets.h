@@ -3,11 +3,19 @@
 
 #include "integrators/emission_plan.h"
 #include "math/bounds.h"
+#include "render/focusing_shape.h"
+
+#include <string>
+#include <vector>
 
 namespace abbe {
 
 // Balls around boxes, as far as they are in the scene's; those near one another are put together, so that few are left
 // to look at for every density.
-std::vector<AimTarget> aimTargets(const std::vector<Bounds3>& focusing, const Bounds3& scene);
+struct AimTargets {
+    std::vector<AimTarget> balls;
+    std::vector<std::string> names; // as many: of what each is around, "ball, lens, ring and others"
+};
+AimTargets aimTargets(const std::vector<FocusingShape>& focusing, const Bounds3& scene);
 
 } // namespace abbe

@@ -22,6 +22,8 @@ template <EffectBits E> class LightKernel {
 
     // Tells of every path that starts, and of every splat with its luminance, whether it is within the film or not.
     template <typename Listener> TileResult run(Listener& listener) {
+        const WorkScope work(Work::lights);
+        addWorkFlag(WorkFlag::light);
         for (int r = 0; r < film_.replicates(); ++r) {
             startedAs_ = ~std::uint64_t{0};
             for (std::uint32_t i = job_.first; i < job_.last; ++i)
@@ -29,6 +31,7 @@ template <EffectBits E> class LightKernel {
                     trace(r, i, std::uint64_t{i} * context_.traced->paths + j, listener);
             film_.countLightPaths(r, std::uint64_t{job_.last - job_.first} * (job_.end - job_.begin));
         }
+        removeWorkFlag(WorkFlag::light);
         if constexpr (PathLoop<E>::kMedia) {
             const MediumCounters& media = media_.tracker.counters;
             result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
@@ -68,6 +71,8 @@ template <EffectBits E> class LightKernel {
             add(replicate, sample, splat, value, lambda, *start);
         });
         removeWorkFlag(WorkFlag::heroOnly);
+        setWork(Work::lights);
+        if constexpr (PathLoop<E>::kMedia) setWorkCause(0);
     }
 
     // What has no end may lie before the place where light from far away starts.
@@ -78,18 +83,18 @@ template <EffectBits E> class LightKernel {
     }
 
     // To one of the pixels whose filter reaches the place, drawn in proportion to the filter: so no two pixels share a
-    // splat, and their errors stay independent, as those of samples are.
+    // splat, and their errors stay independent, as those of samples are. Pixels beyond the film are drawn like all
+    // others, or a crop would have other splats than the whole.
     void add(int replicate, std::uint32_t sample, const LensSplat& splat, const Xyz& value, const Wavelengths& lambda,
              const EmittedRay& start) {
+        const std::uint32_t number = splats_++;
         const PixelBounds bounds = film_.bounds();
         const float radius = film_.filterRadius(), x = splat.film.x - 0.5f, y = splat.film.y - 0.5f;
-        const int x0 = std::max(bounds.x0, static_cast<int>(std::ceil(x - radius)));
-        const int x1 = std::min(bounds.x1 - 1, static_cast<int>(std::floor(x + radius)));
-        const int y0 = std::max(bounds.y0, static_cast<int>(std::ceil(y - radius)));
-        const int y1 = std::min(bounds.y1 - 1, static_cast<int>(std::floor(y + radius)));
-        if (x0 > x1 || y0 > y1) return;
+        const int x0 = static_cast<int>(std::ceil(x - radius)), x1 = static_cast<int>(std::floor(x + radius));
+        const int y0 = static_cast<int>(std::ceil(y - radius)), y1 = static_cast<int>(std::floor(y + radius));
+        if (x1 < bounds.x0 || y1 < bounds.y0 || x0 >= bounds.x1 || y0 >= bounds.y1) return;
         if (!(std::abs(value.x) + std::abs(value.y) + std::abs(value.z) < ExactSum::kLargest)) [[unlikely]]
-            return drop({{x0, y0, replicate, sample},
+            return drop({{std::max(x0, bounds.x0), std::max(y0, bounds.y0), replicate, sample},
                          std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
         const auto weightOf = [&](int u, int v) {
             return film_.filterWeight(x - static_cast<float>(u)) * film_.filterWeight(y - static_cast<float>(v));
@@ -97,12 +102,13 @@ template <EffectBits E> class LightKernel {
         float sum = 0;
         for (int v = y0; v <= y1; ++v)
             for (int u = x0; u <= x1; ++u) sum += std::abs(weightOf(u, v));
-        float left = sampler_.stream(kPixelNumbers + splats_++).uniform() * sum;
+        float left = sampler_.stream(kPixelNumbers + number).uniform() * sum;
         for (int v = y0; v <= y1; ++v)
             for (int u = x0; u <= x1; ++u) {
                 const float weight = weightOf(u, v);
                 left -= std::abs(weight);
                 if (left >= 0 || weight == 0) continue;
+                if (u < bounds.x0 || v < bounds.y0 || u >= bounds.x1 || v >= bounds.y1) return;
                 const auto factor = static_cast<double>(std::copysign(sum, weight));
                 film_.splat(u, v, replicate,
                             {value * factor, splat.value, lambda, factor, start.light, splat.component});

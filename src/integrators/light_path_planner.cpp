@@ -3,11 +3,15 @@
 #include "base/parallel.h"
 #include "base/work.h"
 #include "integrators/aim_targets.h"
+#include "integrators/darkroom.h"
+#include "integrators/light_path_shares.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <utility>
 
 namespace abbe {
 
@@ -25,21 +29,6 @@ constexpr double kLeastSecondMoment = 0.02;
 constexpr int kCellRow = 16;
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
 
-// A place for light that is only counted.
-class Darkroom final : public Film {
-  public:
-    explicit Darkroom(PixelBounds frame) : frame_(frame) {}
-    PixelBounds bounds() const override { return frame_; }
-    int replicates() const override { return 1; }
-    FilterSample filter(Vec2 u) const noexcept override { return {{u.x - 0.5f, u.y - 0.5f}, 1}; }
-    void add(int, int, int, const ExactXyz&, std::uint32_t) noexcept override {}
-    Xyz mean(int, int) const noexcept override { return {}; }
-    double relativeNoise() const override { return 0; }
-
-  private:
-    PixelBounds frame_;
-};
-
 // One splat as the plan sees it.
 struct Deposit {
     std::uint32_t light = 0, target = 0;
@@ -51,7 +40,7 @@ struct Deposit {
 
 // ∫ f² / (p + s q) of camera paths of density p and light paths of density q, by samples of q: with both, weighed by
 // the balance heuristic, that is the second moment of a sample of all pixels [Veach1997, sec. 9.2].
-double secondMoment(const std::vector<Deposit>& deposits, double share) {
+double secondMoment(std::span<const Deposit> deposits, double share) {
     double sum = 0;
     for (const Deposit& d : deposits) sum += d.u2 / std::max(d.rho + share, 1e-12);
     return sum;
@@ -86,14 +75,18 @@ class Planner {
 
     PlannedLightPaths run() {
         PlannedLightPaths result;
-        findings_.asked = true;
         const Bounds3 bounds = context_.scene.intersector->bounds();
         EmissionPlan emission;
-        emission.targets = aimTargets(context_.scene.focusing, bounds);
+        AimTargets aims = aimTargets(context_.scene.focusing, bounds);
+        emission.targets = std::move(aims.balls);
+        names_ = std::move(aims.names);
         LightPathPlan first{AimedEmission(context_.scene.lights, bounds, emission),
                             static_cast<std::uint32_t>(frame_.area()), false};
-        if (!first.emission.empty()) decide(emission, first, result);
-        result.findings = findings_;
+        findings_.lights = static_cast<std::uint32_t>(lights_);
+        findings_.targets = static_cast<std::uint32_t>(names_.size());
+        findings_.verdict = LightPathVerdict::noLights;
+        if (!first.emission.empty()) findings_.verdict = decide(emission, first, result.plan);
+        result.findings = std::move(findings_);
         return result;
     }
 
@@ -104,24 +97,49 @@ class Planner {
         std::uint64_t paths = 0, rays = 0;
     };
 
-    void decide(const EmissionPlan& even, const LightPathPlan& first, PlannedLightPaths& result) {
-        const bool forced = context_.settings.technique.lightPaths != Technique::LightPaths::automatic;
+    LightPathVerdict decide(const EmissionPlan& even, const LightPathPlan& first,
+                            std::unique_ptr<const LightPathPlan>& plan) {
+        using enum LightPathVerdict;
+        const Technique::LightPaths choice = context_.settings.technique.lightPaths;
+        const bool forced = choice != Technique::LightPaths::automatic;
         const Listened heard = listen(first, kLearn);
-        findings_.before = variance(heard, 0);
-        if (stop_() || (!forced && known_ && findings_.before < kLeastSecondMoment)) return;
+        if (stop_()) return undecided;
+        findings_.before = findings_.after = variance(heard, 0);
+        if (!forced && known_ && findings_.before < kLeastSecondMoment) {
+            describe(heard, 0);
+            return nothingFound;
+        }
         LightPathPlan learned{
             AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(), learn(even, heard)), first.paths,
             false};
         const Listened judged = listen(learned, kJudge);
-        if (stop_()) return;
+        if (stop_()) return undecided;
         judge(learned, judged);
-        if (!forced && findings_.gain < kLeastGain) {
-            findings_.share = 0;
-            return;
-        }
+        describe(judged, findings_.bestShare);
+        if (!forced && findings_.gain < kLeastGain) return noGain;
+        findings_.share = findings_.bestShare;
         learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
-        learned.alone = context_.settings.technique.lightPaths == Technique::LightPaths::alone;
-        result.plan = std::make_unique<const LightPathPlan>(std::move(learned));
+        learned.alone = choice == Technique::LightPaths::alone;
+        plan = std::make_unique<const LightPathPlan>(std::move(learned));
+        return forced ? asked : used;
+    }
+
+    // By names, what was heard, if there were `paths` light paths for each camera path.
+    void describe(const Listened& heard, double paths) {
+        findings_.measured = true;
+        std::vector<LightPathShare> shares(lights_ * targets_);
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            const auto name = context_.scene.names.find(context_.scene.lights[i / targets_].get());
+            shares[i].light = name == context_.scene.names.end() ? "a light" : name->second;
+            if (i % targets_ > 0) shares[i].target = names_[i % targets_ - 1];
+            shares[i].share = static_cast<double>(heard.starts[i]) / static_cast<double>(heard.paths);
+        }
+        for (const Deposit& d : heard.deposits) {
+            LightPathShare& s = shares[d.light * targets_ + d.target];
+            s.before += secondMoment({&d, 1}, 0) / pixels_;
+            s.after += secondMoment({&d, 1}, paths) / pixels_;
+        }
+        findings_.shares = largestShares(std::move(shares));
     }
 
     PathContext withPlan(const LightPathPlan& plan, std::uint64_t key) const {
@@ -302,9 +320,9 @@ class Planner {
         for (const double share : kShares) {
             const double after = variance(heard, share);
             const double gain = plain / ((findings_.rest + after) * (kTracedCost * camera.rays + share * light));
-            if (gain <= findings_.gain) continue;
+            if (!(gain > findings_.gain)) continue; // nor where all is dark
             findings_.gain = gain;
-            findings_.share = share;
+            findings_.bestShare = share;
             findings_.after = after;
         }
     }
@@ -315,33 +333,36 @@ class Planner {
     const std::function<bool()>& stop_;
     PixelBounds frame_;
     double pixels_;
-    bool known_;     // whether camera paths saw any light
-    double average_; // luminance of the frame
-    std::size_t lights_ = 0, targets_ = 1;
+    bool known_;                           // whether camera paths saw any light
+    double average_;                       // luminance of the frame
+    std::size_t lights_ = 0, targets_ = 1; // with what is not aimed
+    std::vector<std::string> names_;       // of the targets
     std::unordered_map<const Light*, std::uint32_t> numbers_;
     LightPathFindings findings_;
 };
 
 } // namespace
 
-bool mayTraceLight(const Scene& scene, const Technique& t) {
+LightPathVerdict lightPathVerdict(const Scene& scene, const Technique& t) {
+    using enum LightPathVerdict;
     const Technique plain;
-    if (t.lightPaths == Technique::LightPaths::off || t.strategy != plain.strategy || t.weights != plain.weights ||
-        t.directions != plain.directions || t.numbers != plain.numbers || t.wavelengths != plain.wavelengths)
-        return false;
-    if (scene.frame.area() == 0) return false;
-    if (std::ranges::none_of(scene.lights, [](const auto& l) { return l->paths() != LightPaths::none; })) return false;
-    return !scene.focusing.empty() || t.lightPaths != Technique::LightPaths::automatic;
+    if (t.lightPaths == Technique::LightPaths::off) return off;
+    if (t.strategy != plain.strategy || t.weights != plain.weights || t.directions != plain.directions ||
+        t.numbers != plain.numbers || t.wavelengths != plain.wavelengths)
+        return otherTechnique;
+    if (std::ranges::none_of(scene.lights, [](const auto& l) { return l->paths() != LightPaths::none; }))
+        return noLights;
+    if (scene.focusing.empty() && t.lightPaths == Technique::LightPaths::automatic) return nothingFocuses;
+    return undecided;
 }
 
 std::size_t lightBlocksOf(const Scene& scene, const Technique& technique) {
-    if (!mayTraceLight(scene, technique)) return 0;
+    if (scene.frame.area() == 0 || lightPathVerdict(scene, technique) != LightPathVerdict::undecided) return 0;
     return std::clamp<std::size_t>(static_cast<std::size_t>(scene.frame.area()) / 4096, 4, 256);
 }
 
 PlannedLightPaths planLightPaths(const PathContext& context, const TracedKernel& kernel,
                                  const RouletteReference& roulette, const std::function<bool()>& stop) {
-    if (!mayTraceLight(context.scene, context.settings.technique)) return {};
     return Planner(context, kernel, roulette, stop).run();
 }
 

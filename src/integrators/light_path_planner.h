@@ -15,12 +15,13 @@ struct PlannedLightPaths {
     LightPathFindings findings;
 };
 
-// Whether the scene and the technique leave anything to plan.
-bool mayTraceLight(const Scene&, const Technique&);
+// What scene and technique decide without a look: `undecided` leaves it to planLightPaths().
+LightPathVerdict lightPathVerdict(const Scene&, const Technique&);
 // Blocks of light paths in a RenderState: 0 where none will be planned.
 std::size_t lightBlocksOf(const Scene&, const Technique&);
 
-// A context without a plan; the reference is that of the frame. `stop` cuts it short, without a plan.
+// Requires lightBlocksOf() > 0 and a context without a plan; the reference is that of the frame. `stop` cuts it short,
+// without a plan.
 PlannedLightPaths planLightPaths(const PathContext&, const TracedKernel&, const RouletteReference&,
                                  const std::function<bool()>& stop);
 

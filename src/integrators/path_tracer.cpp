@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "integrators/darkroom.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
 #include "integrators/manifold_planner.h"
@@ -63,8 +64,10 @@ double threadSeconds() {
 
 PathTally tallyOf(const TileResult& r, double seconds) {
     const PathCounters& c = r.counters;
-    return {c.paths,  c.vertices, c.shadowRays, c.capped,     r.dropped,
-            r.excess, c.effects,  seconds,      r.lightPaths, r.splats};
+    if (r.lightPaths == 0)
+        return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0, 0};
+    const std::uint64_t rays = c.vertices + c.shadowRays + c.effects.crossings + c.effects.shadowCrossings;
+    return {0, 0, 0, c.capped, r.dropped, r.excess, {}, seconds, r.lightPaths, rays, r.splats};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
@@ -105,6 +108,11 @@ class RenderJob {
         return std::move(statistics_);
     }
 
+    LightPathFindings lightPaths() {
+        look(context_);
+        return light_.findings;
+    }
+
     void repeat(std::span<const SampleId> samples) {
         PathContext even = context_; // a sample is named by its place in the sequence, whatever the plan
         even.settings.adaptive = false;
@@ -116,16 +124,21 @@ class RenderJob {
   private:
     using Clock = std::chrono::steady_clock;
 
-    void look(const PathContext& context) {
-        const auto stop = [this] { return stopRequested(); };
-        ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
-        statistics_.pilotRays = ahead_.rays;
-        if (!film_.takesSplats() || state_.lightBlockCount() == 0) return;
+    void plan(const std::function<bool()>& stop) {
         light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.traced = light_.plan.get();
         manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.manifold = manifold_.sampler.get();
         if (context_.traced || context_.manifold) render_ = kernel_.traced().render;
+    }
+
+    void look(const PathContext& context) {
+        const auto stop = [this] { return stopRequested(); };
+        ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
+        if (film_.takesSplats() && state_.lightBlockCount() > 0)
+            plan(stop);
+        else
+            light_.findings.verdict = lightPathVerdict(context_.scene, settings_.technique);
         statistics_.lightPlan = light_.findings;
         statistics_.manifoldPlan = manifold_.findings;
         statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays;
@@ -262,6 +275,7 @@ class RenderJob {
         statistics_.effects.add(t.effects);
         statistics_.coreSeconds += t.coreSeconds;
         statistics_.lightPaths += t.lightPaths;
+        statistics_.lightRays += t.lightRays;
         statistics_.splats += t.splats;
         for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
     }
@@ -328,6 +342,15 @@ class PathTracer final : public Integrator {
     }
     std::size_t lightBlocks(const Scene& scene, const RenderSettings& settings) const override {
         return lightBlocksOf(scene, settings.technique);
+    }
+    LightPathFindings findLightPaths(const Scene& scene, const RenderSettings& settings) const override {
+        LightPathFindings known;
+        known.verdict = lightPathVerdict(scene, settings.technique);
+        if (lightBlocks(scene, settings) == 0) return known;
+        RenderSettings even = settings; // a plan of the samples changes nothing
+        even.adaptive = false;
+        Darkroom film(scene.frame);
+        return RenderJob(kernel_, scene, film, even, {}).lightPaths();
     }
 
   private:

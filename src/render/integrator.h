@@ -3,6 +3,7 @@
 
 #include "render/effect_counts.h"
 #include "render/film.h"
+#include "render/light_path_findings.h"
 #include "render/technique.h"
 
 #include <algorithm>
@@ -75,19 +76,7 @@ struct DensityExcess {
     }
 };
 
-// What decided on paths of light, before the first sample. All of it depends on the scene, the frame and the seed
-// alone.
-struct LightPathFindings {
-    bool asked = false; // whether there was anything to decide
-    // Of a sample of every pixel, in the mean over pixels: relative variance of the light that light paths could bring,
-    // as camera paths alone find it and as both do, and of everything else.
-    double before = 0, after = 0, rest = 0;
-    double gain = 1;  // of efficiency, as far as these tell
-    double share = 0; // light paths for each camera path; 0: none
-    std::uint64_t rays = 0;
-};
-
-// The same of manifold sampling, for caustics that are seen through glass or in mirrors.
+// As LightPathFindings, of manifold sampling, for caustics that are seen through glass or in mirrors.
 struct ManifoldFindings {
     bool asked = false, used = false;
     std::uint64_t obstacles = 0;                      // polished shapes that chains cannot be followed over
@@ -99,9 +88,10 @@ struct RenderStatistics {
     std::uint64_t paths = 0;
     std::uint64_t vertices = 0;
     std::uint64_t shadowRays = 0;
-    std::uint64_t rays() const { return vertices + shadowRays; }
     std::uint64_t lightPaths = 0; // that started at lights, beside `paths`
+    std::uint64_t lightRays = 0;  // of theirs; all other counts of rays are of camera paths
     std::uint64_t splats = 0;     // pixels that they were added to
+    std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
     LightPathFindings lightPlan;
     ManifoldFindings manifoldPlan;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
@@ -152,6 +142,9 @@ class Integrator {
     // Blocks of light paths that a RenderState for this must have; if any, the film is to take splats. Else there will
     // be no paths of light.
     virtual std::size_t lightBlocks(const Scene&, const RenderSettings&) const { return 0; }
+    // What render() decides on light paths of the scene's whole frame, without rendering. Takes a fraction of a second
+    // where it has to look.
+    virtual LightPathFindings findLightPaths(const Scene&, const RenderSettings&) const = 0;
 };
 
 } // namespace abbe

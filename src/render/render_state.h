@@ -20,7 +20,8 @@ struct PathTally {
     DensityExcess excess;
     EffectCounts effects;
     double coreSeconds = 0;
-    std::uint64_t lightPaths = 0, splats = 0; // paths that started at lights; pixels that they were added to
+    // Paths that started at lights, their rays, and pixels that they were added to. The rest is of camera paths.
+    std::uint64_t lightPaths = 0, lightRays = 0, splats = 0;
 
     void add(const PathTally& t) {
         paths += t.paths;
@@ -32,6 +33,7 @@ struct PathTally {
         effects.add(t.effects);
         coreSeconds += t.coreSeconds;
         lightPaths += t.lightPaths;
+        lightRays += t.lightRays;
         splats += t.splats;
     }
 };

@@ -4,6 +4,7 @@
 #include "render/camera.h"
 #include "render/effects.h"
 #include "render/film.h"
+#include "render/focusing_shape.h"
 #include "render/intersector.h"
 #include "render/light.h"
 #include "render/material.h"
@@ -50,8 +51,8 @@ struct Scene {
     std::vector<MediumUse> mediumUses;    // like media
     std::vector<const Medium*> openMedia; // those that no shape bounds
     std::vector<Bounds3> filled;          // of the shapes that a medium or a dielectric fills
-    std::vector<Bounds3> focusing;        // of the shapes whose material focuses light, infinite where it is not known
-    bool nested = false;                  // whether such dielectrics may overlap
+    std::vector<FocusingShape> focusing;
+    bool nested = false;     // whether such dielectrics may overlap
     bool boundaries = false; // whether light goes straight through any surface: one that only bounds a medium, is
                              // partly open, or lies hidden in a dielectric
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights

@@ -123,9 +123,9 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
     return materials_[*index].get();
 }
 
-void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated) {
+void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated, const std::string& name) {
     if (material.interior() || material.seesOutside()) placedShapes_.push_back({box, &material, repeated});
-    if (material.focuses()) built_->scene.focusing.push_back(box);
+    if (material.focuses()) built_->scene.focusing.push_back({box, name});
 }
 
 // Whether any shape to which it matters may be in another's dielectric: those that are dielectrics themselves, or all

@@ -231,7 +231,7 @@ class SceneBuilder final : public schema::Resolver {
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteInterior(const Medium&);
     bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
-    void notePlaced(const Material&, const Bounds3&, bool repeated);
+    void notePlaced(const Material&, const Bounds3&, bool repeated, const std::string& name);
     bool mayLieInDielectric(bool dielectrics) const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);

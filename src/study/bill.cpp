@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace abbe {
 
@@ -11,6 +12,11 @@ namespace {
 
 constexpr std::size_t kPilot = static_cast<std::size_t>(WorkFlag::pilot);
 constexpr std::size_t kHero = static_cast<std::size_t>(WorkFlag::heroOnly);
+constexpr std::size_t kLight = static_cast<std::size_t>(WorkFlag::light);
+
+// Of the image, by paths from the camera.
+constexpr bool ofCamera(std::size_t flags) { return !(flags & (kPilot | kLight)); }
+constexpr bool ofLight(std::size_t flags) { return (flags & kLight) && !(flags & kPilot); }
 
 class BillMaker {
   public:
@@ -26,6 +32,7 @@ class BillMaker {
         addProgram();
         const std::size_t firstOfRendering = bill_.rows.size();
         addPaths();
+        addLightPaths();
         addVolumes();
         addOverlapping();
         add("film", "film, layers and the sums", charged(Work::film)).count = statistics_.paths;
@@ -41,9 +48,9 @@ class BillMaker {
     }
 
   private:
-    // Of the image, not of looking ahead.
+    // Not by looking ahead or light paths, which have rows of their own.
     WorkCharge charged(Work work) const {
-        return work_.sum([=](Work w, std::size_t flags, std::size_t) { return w == work && !(flags & kPilot); });
+        return work_.sum([=](Work w, std::size_t flags, std::size_t) { return w == work && ofCamera(flags); });
     }
 
     // Looks are independent of each other: the variance of their sum is that of a Bernoulli trial for each.
@@ -76,7 +83,7 @@ class BillMaker {
         add("camera", "camera", charged(Work::camera)).rays = camera;
         BillRow& embree = add("embree", "Embree", charged(Work::tracing));
         embree.rays = statistics_.vertices + effects_.crossings + shadow;
-        embree.note = "all rays of the rows below and above";
+        embree.note = "all rays of camera paths, which other rows tell by what they were cast for";
         add("surface", "surfaces", charged(Work::surface)).rays =
             statistics_.vertices + effects_.crossings - std::min(statistics_.vertices, camera + scattered);
         add("lights", "light sampling", charged(Work::lights)).rays = shadow;
@@ -85,13 +92,27 @@ class BillMaker {
         textures.counted = "lookups";
     }
 
+    // All that was done for them, whatever it was.
+    void addLightPaths() {
+        const auto any = [](Work w, std::size_t flags, std::size_t) { return w != Work::none && ofLight(flags); };
+        const auto embree = [](Work w, std::size_t flags, std::size_t) { return w == Work::tracing && ofLight(flags); };
+        BillRow& row = add("light-paths", "light paths", work_.sum(any));
+        row.rays = statistics_.lightRays;
+        row.count = statistics_.splats;
+        row.counted = "splats";
+        if (row.rays > 0)
+            row.note = fmt::format("everything done for {} paths from lights, of it {:.3f} s in Embree; their rays are "
+                                   "in no other row",
+                                   statistics_.lightPaths, work_.sum(embree).seconds);
+    }
+
     void addVolume(std::size_t place, std::string id, std::string label) {
         const VolumeCounts& counts = effects_.volumes[place];
         const Work own = volumeWork(place);
         BillRow& row = add(std::move(id), std::move(label), charged(own));
         row.elsewhere = work_
                             .sum([=](Work w, std::size_t flags, std::size_t cause) {
-                                return w != own && cause == place + 1 && !(flags & kPilot);
+                                return w != own && cause == place + 1 && ofCamera(flags);
                             })
                             .seconds;
         row.rays = counts.scattered;
@@ -127,7 +148,7 @@ class BillMaker {
         BillRow& dispersion = add("dispersion", "dispersion", {});
         dispersion.elsewhere = work_
                                    .sum([](Work w, std::size_t flags, std::size_t) {
-                                       return w != Work::none && (flags & kHero) && !(flags & kPilot);
+                                       return w != Work::none && (flags & kHero) && ofCamera(flags);
                                    })
                                    .seconds;
         dispersion.rays = effects_.heroRays;

@@ -18,7 +18,9 @@ std::optional<double> withoutMedium(const Bill& bill, const BillRow& medium) {
     const auto scattered = static_cast<double>(medium.first);
     if (!(paths - scattered >= kLeastUnscattered * paths && rays > scattered)) return std::nullopt;
     const double raysWithout = paths * (rays - scattered) / (paths - scattered);
-    const double perPath = bill.find("camera")->seconds + bill.find("film")->seconds;
+    // Light paths are as many without it.
+    double perPath = bill.find("camera")->seconds + bill.find("film")->seconds;
+    if (const BillRow* const light = bill.find("light-paths")) perPath += light->seconds;
     const double others = bill.rendering - perPath - medium.seconds - medium.elsewhere;
     return perPath + others * raysWithout / rays;
 }

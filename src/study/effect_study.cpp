@@ -121,8 +121,7 @@ class Study {
         if (integrator->lightBlocks(built.scene, settings) > 0) film.keepSplats();
         const RenderControl control{in_.stop};
         WorkClock clock(threadCount()); // for both of a pair, since it costs
-        const RenderStatistics statistics =
-            integrator->render(built.scene, film, settings, control);
+        const RenderStatistics statistics = integrator->render(built.scene, film, settings, control);
         if (&built == &with_) charge(clock.read(), statistics);
         const ResolvedImage resolved = film.resolve(rgb::rec709.fromXyz(), built.exposure);
         Measured m{statistics.coreSeconds, {}};
@@ -140,6 +139,7 @@ class Study {
         spent_.vertices += s.vertices;
         spent_.shadowRays += s.shadowRays;
         spent_.lightPaths += s.lightPaths;
+        spent_.lightRays += s.lightRays;
         spent_.splats += s.splats;
         spent_.pilotRays += s.pilotRays;
         spent_.effects.add(s.effects);

@@ -1,6 +1,7 @@
 #include "study/study_variant.h"
 
 #include "integrators/light_sampler.h"
+#include "integrators/path_tracer.h"
 
 #include <algorithm>
 #include <array>
@@ -48,6 +49,44 @@ Reason needsManyLights(const StudySubject& s) {
 
 Reason needsHalves(const StudySubject& s) {
     if (s.replicates < 2) return "the denoiser needs two replicates or more to tell noise from detail";
+    return std::nullopt;
+}
+
+// What is done about light paths where the scene leaves it to the program.
+LightPathVerdict automaticLightPaths(const StudySubject& s) {
+    RenderSettings settings = s.settings;
+    settings.technique.lightPaths = Technique::LightPaths::automatic;
+    const Scene& scene = s.built->scene;
+    return makePathTracer(scene.effects)->findLightPaths(scene, settings).verdict;
+}
+
+Reason needsLightPaths(const StudySubject& s) {
+    using enum LightPathVerdict;
+    switch (automaticLightPaths(s)) {
+    case noLights:
+        return "no light can start light paths";
+    case nothingFocuses:
+        return "nothing focuses light";
+    case otherTechnique:
+        return "light paths do not go with another technique of `render`";
+    default:
+        return std::nullopt;
+    }
+}
+
+Reason needsUsedLightPaths(const StudySubject& s) {
+    if (const Reason reason = needsLightPaths(s)) return reason;
+    if (s.settings.technique.lightPaths == Technique::LightPaths::automatic &&
+        automaticLightPaths(s) != LightPathVerdict::used)
+        return "the scene is rendered without light paths as it is";
+    return std::nullopt;
+}
+
+Reason needsUnusedLightPaths(const StudySubject& s) {
+    if (const Reason reason = needsLightPaths(s)) return reason;
+    if (s.settings.technique.lightPaths == Technique::LightPaths::automatic &&
+        automaticLightPaths(s) == LightPathVerdict::used)
+        return "the scene is rendered with light paths as it is";
     return std::nullopt;
 }
 
@@ -146,6 +185,18 @@ std::vector<StudyVariant> lightChoice() {
     };
 }
 
+std::vector<StudyVariant> lightPaths() {
+    constexpr const char* kGroup = "light paths";
+    return {
+        {"light-paths-off", "no light paths", kGroup, "caustics are found by camera paths alone", exact,
+         "what camera paths hardly ever find is missing from most of the images, and from the estimates of their "
+         "errors",
+         [](S& s) { s.technique.lightPaths = T::LightPaths::off; }, false, needsUsedLightPaths},
+        {"light-paths-always", "light paths", kGroup, "light paths, whether they are forecast to pay or not", exact, "",
+         [](S& s) { s.technique.lightPaths = T::LightPaths::always; }, false, needsUnusedLightPaths},
+    };
+}
+
 } // namespace
 
 std::string_view name(BiasClass b) {
@@ -156,7 +207,8 @@ std::string_view name(BiasClass b) {
 const std::vector<StudyVariant>& studyVariants() {
     static const std::vector<StudyVariant> variants = [] {
         std::vector<StudyVariant> all{{"abbe", "as rendered", "main", "nothing changed", exact, ""}};
-        for (const auto& group : {lightSampling(), directions(), numbers(), wavelengths(), roulette(), lightChoice()})
+        for (const auto& group :
+             {lightSampling(), directions(), numbers(), wavelengths(), roulette(), lightChoice(), lightPaths()})
             all.insert(all.end(), group.begin(), group.end());
         all.push_back({"denoised", "denoised", "post", "each image goes through the denoiser", biased,
                        "the time of its layers and of the denoiser counts", nullptr, true, needsHalves});

@@ -178,6 +178,15 @@ TEST_CASE("variants that make no difference are left out") {
     const ChosenVariants more = chooseVariants(subjectOf(lit), all);
     CHECK(leftOut(more, "no-nee"));
     CHECK_FALSE(leftOut(more, "light-power"));
+    // Where nothing focuses light there is nothing to compare; else what the scene does not do anyway.
+    CHECK(leftOut(chosen, "light-paths-off"));
+    CHECK(leftOut(chosen, "light-paths-always"));
+    const auto glass = TestScene::parse(
+        std::string(kSmooth) + "shape ball sphere { center 0 0.5 0; radius 0.2; material dielectric { ior 1.5 } }\n"
+                               "light spark sphere { center 0.5 3 0; radius 1 mm; power 2000 lm }\n");
+    const ChosenVariants caustic = chooseVariants(subjectOf(glass), all);
+    CHECK_FALSE(leftOut(caustic, "light-paths-off"));
+    CHECK(leftOut(caustic, "light-paths-always"));
     const auto single = TestScene::parse(std::string(kSmooth).replace(std::string(kSmooth).find("samples 16"), 10,
                                                                       "samples 16; replicates 1; sampler random"));
     const ChosenVariants other = chooseVariants(subjectOf(single), all);

@@ -55,6 +55,35 @@ TEST_CASE("bill: rows have every charge once") {
     CHECK(bill.find("dispersion")->elsewhere > 0);
 }
 
+TEST_CASE("bill: light paths have a row with all of their time, and no other row has any") {
+    constexpr auto kLight = static_cast<std::size_t>(WorkFlag::light),
+                   kPilot = static_cast<std::size_t>(WorkFlag::pilot);
+    WorkReading work;
+    for (const Work w : {Work::tracing, Work::surface, Work::textures, volumeWork(0)})
+        work.charges[WorkReading::index(static_cast<std::size_t>(w), kLight, w == Work::surface)] = {1, 1e-3, 9};
+    work.charges[WorkReading::index(static_cast<std::size_t>(Work::tracing), kLight | kPilot, 0)] = {0.5, 1e-3, 9};
+    work.charges[WorkReading::index(static_cast<std::size_t>(Work::tracing), 0, 0)] = {3, 1e-3, 9};
+    work.seconds = 7.5;
+    RenderStatistics s;
+    s.paths = 10;
+    s.vertices = 50;
+    s.lightPaths = 70;
+    s.lightRays = 900;
+    s.splats = 33;
+    const Scene scene = sceneWith({{"fog", MediumUse::Place::space}});
+    const Bill bill = makeBill({&work, &s, &scene, 7.5, 1});
+    CHECK(bill.find("light-paths")->seconds == doctest::Approx(4));
+    CHECK(bill.find("light-paths")->rays == 900);
+    CHECK(bill.find("light-paths")->count == 33);
+    CHECK(bill.find("look-ahead")->seconds == doctest::Approx(0.5));
+    CHECK(bill.find("embree")->seconds == doctest::Approx(3));
+    CHECK(bill.find("embree")->rays == 50);
+    CHECK(bill.find("volume fog")->elsewhere == 0);
+    CHECK(bill.accounted == doctest::Approx(1));
+    CHECK(bill.rendering == doctest::Approx(7));
+    CHECK(s.rays() == 950);
+}
+
 TEST_CASE("bill: rays of the rows are those of the counters") {
     RenderStatistics s;
     s.paths = 1000;

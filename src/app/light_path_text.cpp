@@ -1,0 +1,145 @@
+#include "app/light_path_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+using enum LightPathVerdict;
+
+// In a line; more are told where there is room.
+constexpr std::size_t kInLine = 3;
+
+constexpr std::string_view wordOf(LightPathVerdict v) {
+    switch (v) {
+    case used:
+        return "used";
+    case asked:
+        return "asked";
+    case off:
+        return "off";
+    case otherTechnique:
+        return "other-technique";
+    case noLights:
+        return "no-lights";
+    case nothingFocuses:
+        return "nothing-focuses";
+    case nothingFound:
+        return "nothing-found";
+    case noGain:
+        return "no-gain";
+    case undecided:
+        break;
+    }
+    return "undecided";
+}
+
+// Where camera paths cannot find what light paths bring there is no bound.
+std::string times(double gain) {
+    if (gain > 1e6) return "over a million ×";
+    if (gain < 10) return fmt::format("{:.2g} ×", gain);
+    const double digit = std::pow(10, std::floor(std::log10(gain)) - 1);
+    return fmt::format("{:.0f} ×", std::round(gain / digit) * digit); // two digits
+}
+
+std::string forecast(const LightPathFindings& f) { return fmt::format("forecast {} as efficient", times(f.gain)); }
+
+std::string pairName(const LightPathShare& s) {
+    if (s.light.empty()) return "all others";
+    return fmt::format("{} → {}", s.light, s.target.empty() ? "elsewhere" : s.target);
+}
+
+std::string sharesInLine(const LightPathFindings& f) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kInLine, f.shares.size()); ++i)
+        text += fmt::format("{}{} {:.0f} %", i > 0 ? ", " : "", pairName(f.shares[i]), 100 * f.shares[i].share);
+    return text.empty() ? text : fmt::format(" ({}{})", text, f.shares.size() > kInLine ? ", …" : "");
+}
+
+std::string reason(const LightPathFindings& f) {
+    switch (f.verdict) {
+    case off:
+        return "`light-paths off`";
+    case otherTechnique:
+        return "`sampler`, `strategy`, `mis-weights`, `directions` and `wavelengths` must be their defaults";
+    case noLights:
+        return "no light can start them";
+    case nothingFocuses:
+        return "nothing focuses light";
+    case nothingFound:
+        return fmt::format("what they could bring has hardly any noise, relative variance {:.2g} of a sample",
+                           f.before);
+    case noGain:
+        return fmt::format("{}, with {:.3g} per camera path", forecast(f), f.bestShare);
+    default:
+        return "nobody looked";
+    }
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+    const auto columns =
+        static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+    return text + std::string(width > columns ? width - columns : 0, ' ');
+}
+
+std::string moment(double v) { return v > 1e6 ? "unbounded" : fmt::format("{:.3g}", v); }
+
+// A line for each light and target.
+std::string shareTable(const LightPathFindings& f) {
+    constexpr std::size_t kName = 44;
+    const bool judged = f.bestShare > 0;
+    std::string text = fmt::format("  {} {:>10} {:>14}{}\n", padded("from → to", kName), "of them", "camera alone",
+                                   judged ? fmt::format(" {:>10}", "with both") : "");
+    for (const LightPathShare& s : f.shares)
+        text += fmt::format("  {} {:>8.1f} % {:>14}{}\n", padded(pairName(s), kName), 100 * s.share, moment(s.before),
+                            judged ? fmt::format(" {:>10}", moment(s.after)) : "");
+    return text;
+}
+
+} // namespace
+
+std::string lightPathLine(const LightPathFindings& f) {
+    if (f.verdict == undecided) return {};
+    if (!f.used()) return "no light paths: " + reason(f);
+    return fmt::format("light paths {:.3g} per camera path{}: {}{}", f.share, f.verdict == asked ? ", as asked" : "",
+                       forecast(f), sharesInLine(f));
+}
+
+std::string lightPathText(const LightPathFindings& f) {
+    if (f.verdict == undecided) return {};
+    if (!f.measured) return fmt::format("Light paths: none, {}\n", reason(f));
+    std::string text = f.used() ? fmt::format("Light paths: {:.3g} per camera path{}\n", f.share,
+                                              f.verdict == asked ? ", as `light-paths` of `render` asks" : "")
+                                : fmt::format("Light paths: none, {}\n", reason(f));
+    text += fmt::format("  {} light{}, {} target{}; a pilot took {} rays\n", f.lights, f.lights == 1 ? "" : "s",
+                        f.targets, f.targets == 1 ? "" : "s", f.rays);
+    if (f.bestShare > 0)
+        text += fmt::format("  {} as camera paths alone with {:.3g} light paths for each of them\n", forecast(f),
+                            f.bestShare);
+    text += fmt::format("  relative variance of a sample by what light paths can bring: {} by camera paths alone",
+                        moment(f.before));
+    if (f.bestShare > 0) text += fmt::format(", {} by both; by everything else {}", moment(f.after), moment(f.rest));
+    return text + "\n" + shareTable(f);
+}
+
+Json lightPathJson(const LightPathFindings& f) {
+    Json json = Json::object({{"verdict", std::string(wordOf(f.verdict))}, {"text", lightPathLine(f)}});
+    if (!f.measured) return json;
+    json.set("per_camera_path", f.share);
+    json.set("judged_per_camera_path", f.bestShare).set("gain", f.gain);
+    json.set("before", f.before).set("after", f.after).set("rest", f.rest);
+    json.set("pilot_rays", f.rays).set("lights", f.lights).set("targets", f.targets);
+    Json shares = Json::list();
+    for (const LightPathShare& s : f.shares)
+        shares.push(Json::object({{"light", s.light.empty() ? Json() : Json(s.light)},
+                                  {"target", s.target.empty() ? Json() : Json(s.target)},
+                                  {"share", s.share},
+                                  {"before", s.before},
+                                  {"after", s.after}}));
+    return json.set("shares", std::move(shares));
+}
+
+} // namespace abbe

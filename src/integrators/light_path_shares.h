@@ -1,0 +1,14 @@
+// Where light paths go, for people to read.
+#pragma once
+
+#include "render/light_path_findings.h"
+
+#include <vector>
+
+namespace abbe {
+
+// The largest shares first, LightPathFindings::kShares at most: the last one stands for all that are left. Pairs that
+// nothing is sent to are left out.
+std::vector<LightPathShare> largestShares(std::vector<LightPathShare>);
+
+} // namespace abbe

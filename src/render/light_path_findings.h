@@ -1,0 +1,55 @@
+// What was found out about paths of light before a render, for people to read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// What has been decided on light paths, and why. All but `used` and `asked` mean that there are none.
+enum class LightPathVerdict : std::uint8_t {
+    undecided,      // nobody looked, or the look was cut short
+    used,           // forecast to pay
+    asked,          // whatever is forecast: `light-paths always` or `alone`
+    off,            // `light-paths off`
+    otherTechnique, // another choice of `render` is at odds with them
+    noLights,       // no light can start paths
+    nothingFocuses, // no shape focuses light
+    nothingFound,   // what light paths could bring has next to no noise in camera paths
+    noGain,         // forecast to cost more than they bring
+};
+
+// Light paths of one light towards one target.
+struct LightPathShare {
+    std::string light;  // as in Scene::names; empty: all others together
+    std::string target; // what focuses; empty: elsewhere, where the light itself shines
+    double share = 0;   // of all light paths
+    // Relative second moments of what these paths find, as LightPathFindings::before and ::after, which are variances
+    // and so less than their sums.
+    double before = 0, after = 0;
+};
+
+// All of it depends on the scene, the frame and the seed alone.
+struct LightPathFindings {
+    static constexpr std::size_t kShares = 8;
+
+    LightPathVerdict verdict = LightPathVerdict::undecided;
+    // A pilot has run: whether what follows has been measured.
+    bool measured = false;
+    // Of a sample of every pixel, in the mean over pixels: relative variance of the light that light paths could bring,
+    // as camera paths alone find it and as both do, and of everything else.
+    double before = 0, after = 0, rest = 0;
+    double gain = 1;           // of efficiency, as far as these tell, with the best share
+    double share = 0;          // light paths for each camera path; 0: none
+    double bestShare = 0;      // what was judged, whether it is taken or not
+    std::uint64_t rays = 0;    // that it took to find out
+    std::uint32_t lights = 0;  // of the scene
+    std::uint32_t targets = 0; // what light paths are aimed at, shapes near one another put together
+    // As judged, the largest first; at most kShares, the last of them stands for all further ones.
+    std::vector<LightPathShare> shares;
+
+    bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
+};
+
+} // namespace abbe

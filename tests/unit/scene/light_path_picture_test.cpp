@@ -1,0 +1,154 @@
+// Pictures that light paths are part of: their layers, their single samples, and what is said of them.
+#include "film/layer_planes.h"
+#include "integrators/path_tracer.h"
+#include "support/scene_test.h"
+
+#include <doctest/doctest.h>
+#include <initializer_list>
+
+namespace abbe::test {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 16;
+
+std::string sceneText(const std::string& render, const std::string& more = "") {
+    return "scene 1\nfilm { size 24 16; output \"x.exr\" space=acescg; "
+           "layers { components; light-group lamp; light-group fill } }\nrender { samples 64; " +
+           render + R"( }
+camera { from 0 2 4; look-at 0 0.3 0; fov 45 deg }
+shape floor quad { points -3 0 -3  -3 0 3  3 0 3  3 0 -3; material diffuse { reflectance 0.7 } }
+shape ball sphere { center 0 0.7 0; radius 0.6; material dielectric { ior glass BK7 } }
+light lamp sphere { center 1 3 0.5; radius 3 cm; power 800 lm }
+light fill sky { luminance 2 nits }
+)" + more;
+}
+
+struct Picture {
+    TestScene scene;
+    PixelFilm film;
+    RenderStatistics statistics;
+    ResolvedImage picture;
+    LayerPlanes layers;
+
+    explicit Picture(const std::string& text) : scene(TestScene::parse(text)), film(makeFilm(scene)) {
+        const RenderSettings settings = scene.settings();
+        const auto tracer = makePathTracer(scene.scene().effects);
+        if (tracer->lightBlocks(scene.scene(), settings) > 0) film.keepSplats();
+        statistics = tracer->render(scene.scene(), film, settings, {});
+        const double exposure = scene.built().exposure;
+        picture = film.resolve(rgb::ap1.fromXyz(), exposure);
+        layers = layerPlanes(film, picture, {&rgb::ap1, rgb::ap1.fromXyz(), exposure, scene.scene().origin});
+    }
+    static PixelFilm makeFilm(const TestScene& scene) {
+        const FilmSettings s = filmSettings(scene.built().film);
+        PixelFilm film(s.crop, PixelFilter(s.filter, s.filterRadius), 2);
+        film.keepLayers(scene.built().layers, scene.scene().names, rgb::ap1);
+        return film;
+    }
+    const std::vector<float>& plane(const std::string& name) const {
+        for (const NamedPlane& p : layers.planes)
+            if (p.name == name) return p.values;
+        FAIL(name);
+        return layers.planes[0].values;
+    }
+    double mean(const std::string& name) const {
+        double sum = 0;
+        for (const float x : plane(name)) sum += static_cast<double>(x);
+        return sum / (kWidth * kHeight);
+    }
+};
+
+LightPathFindings findingsOf(const std::string& text) {
+    const TestScene scene = TestScene::parse(text);
+    return makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), scene.settings());
+}
+
+} // namespace
+
+TEST_CASE("light paths: components and light groups add up to the picture with all light of the splats") {
+    for (const char* choice : {"always", "alone"}) {
+        const Picture image(sceneText(std::string("light-paths ") + choice));
+        REQUIRE(image.statistics.splats > 1000);
+        const auto sum = [&](std::initializer_list<const char*> names, std::size_t i) {
+            float total = 0;
+            for (const char* name : names) total += image.plane(std::string(name) + ".G")[i];
+            return total;
+        };
+        std::size_t splatted = 0;
+        for (std::size_t i = 0; i < image.picture.g.size(); ++i) {
+            CHECK(sum({"direct", "indirect", "caustic"}, i) == image.picture.g[i]);
+            CHECK(sum({"group_lamp", "group_fill"}, i) == image.picture.g[i]);
+            const int x = static_cast<int>(i) % kWidth, y = static_cast<int>(i) / kWidth;
+            splatted += image.film.splatMean(x, y, 0, 2).y > 0;
+        }
+        CHECK(splatted > image.picture.g.size() / 2);
+        CHECK(image.mean("caustic.G") > 0.01 * image.mean("group_lamp.G"));
+    }
+}
+
+TEST_CASE("light paths: a sample taken again is what camera paths bring, and together they are the picture's") {
+    const Picture image(sceneText("light-paths always"));
+    const auto tracer = makePathTracer(image.scene.scene().effects);
+    for (const Vec2i at : {Vec2i{12, 8}, Vec2i{3, 12}}) {
+        PixelFilm film = Picture::makeFilm(image.scene);
+        film.keepSplats();
+        std::vector<SampleId> samples;
+        for (std::uint32_t i = 0; i < 32; ++i) samples.push_back({at.x, at.y, 0, i});
+        tracer->repeat(image.scene.scene(), film, image.scene.settings(), samples);
+        CHECK(film.lightPaths() == 0);
+        for (int r = 0; r < 2; ++r) {
+            CHECK(film.samples(at.x, at.y, r, r + 1) == 32);
+            CHECK(film.mean(at.x, at.y, r, r + 1).y == image.film.sampleMean(at.x, at.y, r, r + 1).y);
+        }
+    }
+}
+
+TEST_CASE("light paths: findings name lights and targets, are those of the render, and say why there are none") {
+    using enum LightPathVerdict;
+    const std::string text = sceneText("");
+    const Picture image(text);
+    const LightPathFindings& found = image.statistics.lightPlan;
+    CHECK(found.verdict == used);
+    CHECK(found.gain > 1.15);
+    CHECK(found.lights == 2);
+    CHECK(found.targets == 1);
+    REQUIRE(found.shares.size() >= 2);
+    double all = 0, before = 0, after = 0;
+    bool aimed = false;
+    for (const LightPathShare& s : found.shares) {
+        all += s.share;
+        before += s.before;
+        after += s.after;
+        aimed |= s.light == "lamp" && s.target == "ball" && s.share > 0.3;
+    }
+    CHECK(all == doctest::Approx(1).epsilon(0.01)); // a few start nowhere
+    CHECK(before == doctest::Approx(found.before));
+    CHECK(after == doctest::Approx(found.after));
+    CHECK(after < before);
+    CHECK(aimed);
+    const LightPathFindings alone = findingsOf(text);
+    CHECK(alone.verdict == found.verdict);
+    CHECK(alone.gain == found.gain);
+    CHECK(alone.rays == found.rays);
+    REQUIRE(alone.shares.size() == found.shares.size());
+    for (std::size_t i = 0; i < alone.shares.size(); ++i) CHECK(alone.shares[i].share == found.shares[i].share);
+
+    CHECK(findingsOf(sceneText("light-paths off")).verdict == off);
+    CHECK(findingsOf(sceneText("light-paths always")).verdict == asked);
+    CHECK(findingsOf(sceneText("strategy lights")).verdict == otherTechnique);
+    std::string plain = text;
+    plain.replace(plain.find("dielectric { ior glass BK7 }"), 28, "diffuse { reflectance 0.5 }");
+    CHECK(findingsOf(plain).verdict == nothingFocuses);
+    std::string wide = text;
+    wide.replace(wide.find("radius 3 cm"), 11, "radius 80 cm");
+    const LightPathFindings needless = findingsOf(wide);
+    CHECK(needless.share == 0);
+    CHECK(needless.measured);
+    CHECK((needless.verdict == noGain || needless.verdict == nothingFound));
+    std::string dark = text;
+    dark.replace(dark.find("light lamp sphere { center 1 3 0.5; radius 3 cm; power 800 lm }"), 64, "");
+    dark.replace(dark.find("light fill sky { luminance 2 nits }"), 35, "");
+    CHECK(findingsOf(dark).verdict == noLights);
+}
+
+} // namespace abbe::test
