@@ -127,12 +127,13 @@ class Planner {
     // By names, what was heard, if there were `paths` light paths for each camera path.
     void describe(const Listened& heard, double paths) {
         findings_.measured = true;
+        const double started = std::accumulate(heard.starts.begin(), heard.starts.end(), 0.0);
         std::vector<LightPathShare> shares(lights_ * targets_);
         for (std::size_t i = 0; i < shares.size(); ++i) {
             const auto name = context_.scene.names.find(context_.scene.lights[i / targets_].get());
             shares[i].light = name == context_.scene.names.end() ? "a light" : name->second;
             if (i % targets_ > 0) shares[i].target = names_[i % targets_ - 1];
-            shares[i].share = static_cast<double>(heard.starts[i]) / static_cast<double>(heard.paths);
+            shares[i].share = started > 0 ? heard.starts[i] / started : 0;
         }
         for (const Deposit& d : heard.deposits) {
             LightPathShare& s = shares[d.light * targets_ + d.target];
