@@ -140,7 +140,7 @@ class Planner {
             s.before += secondMoment({&d, 1}, 0) / pixels_;
             s.after += secondMoment({&d, 1}, paths) / pixels_;
         }
-        findings_.shares = largestShares(std::move(shares));
+        findings_.shares = largestShares(shares);
     }
 
     PathContext withPlan(const LightPathPlan& plan, std::uint64_t key) const {

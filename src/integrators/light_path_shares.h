@@ -7,8 +7,8 @@
 
 namespace abbe {
 
-// The largest shares first, LightPathFindings::kShares at most: the last one stands for all that are left. Pairs that
-// nothing is sent to are left out.
-std::vector<LightPathShare> largestShares(std::vector<LightPathShare>);
+// Those of the same light and target by name added up, the largest shares first, LightPathFindings::kShares at most:
+// the last one stands for all that are left. Pairs that nothing is sent to are left out.
+std::vector<LightPathShare> largestShares(const std::vector<LightPathShare>&);
 
 } // namespace abbe

@@ -192,7 +192,8 @@ std::vector<StudyVariant> lightPaths() {
          "what camera paths hardly ever find is missing from most of the images, and from the estimates of their "
          "errors",
          [](S& s) { s.technique.lightPaths = T::LightPaths::off; }, false, needsUsedLightPaths},
-        {"light-paths-always", "light paths", kGroup, "light paths, whether they are forecast to pay or not", exact, "",
+        {"light-paths-always", "light paths in any case", kGroup,
+         "light paths, whether they are forecast to pay or not", exact, "",
          [](S& s) { s.technique.lightPaths = T::LightPaths::always; }, false, needsUnusedLightPaths},
     };
 }

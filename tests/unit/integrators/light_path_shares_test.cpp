@@ -27,6 +27,12 @@ TEST_CASE("light path shares: the largest, and all others in one") {
     }
     CHECK(kept == doctest::Approx(all));
     CHECK(keptBefore == doctest::Approx(before));
+    const auto twice =
+        largestShares({{"lamp", "ball", 0.1, 1, 2}, {"lamp", "", 0.5, 0, 0}, {"lamp", "ball", 0.3, 3, 4}});
+    REQUIRE(twice.size() == 2); // a lamp that is placed twice
+    CHECK(twice[1].share == doctest::Approx(0.4));
+    CHECK(twice[1].before == 4);
+    CHECK(twice[1].after == 6);
     shares.resize(4);
     CHECK(largestShares(shares).size() == 3); // one of them has nothing
 }
