@@ -91,8 +91,8 @@ std::string moment(double v) { return v > 1e6 ? "unbounded" : fmt::format("{:.3g
 std::string shareTable(const LightPathFindings& f) {
     constexpr std::size_t kName = 44;
     const bool judged = f.bestShare > 0;
-    std::string text = fmt::format("  {} {:>10} {:>14}{}\n", padded("from → to", kName), "of them", "camera alone",
-                                   judged ? fmt::format(" {:>10}", "with both") : "");
+    std::string text = fmt::format("  {} {:>10} {:>14}{}\n", padded("from → to, and second moment found", kName),
+                                   "of them", "camera alone", judged ? fmt::format(" {:>10}", "with both") : "");
     for (const LightPathShare& s : f.shares)
         text += fmt::format("  {} {:>8.1f} % {:>14}{}\n", padded(pairName(s), kName), 100 * s.share, moment(s.before),
                             judged ? fmt::format(" {:>10}", moment(s.after)) : "");

@@ -134,7 +134,7 @@ counts() { row | grep -o -e '"rays":[0-9]*' -e '"count":[0-9]*'; }
 expect 0 "$scene" --json --samples 1024 -o bill.exr -t 1
 grep '"event":"done"' out | grep -o '"accounted":[0-9.]*' | awk -F: '{ exit !($2 > 0.95 && $2 < 1.05) }' ||
     fault "the rows do not add up"
-row | grep -o '"share":[0-9.e-]*' | awk -F: '{ exit !($2 > 0.1 && $2 < 0.95) }' || fault "light paths have $(row)"
+row | grep -o '"share":[0-9.e-]*' | awk -F: '{ exit !($2 > 0.02 && $2 < 0.95) }' || fault "light paths have $(row)"
 grep '"event":"done"' out | grep -o '{"id":"waiting"[^}]*}' | grep -o '"share":[0-9.e-]*' |
     awk -F: '{ exit !($2 < 0.1) }' || fault "time of light paths counts as waiting"
 counts >one
