@@ -96,6 +96,10 @@ void HumanReport::done(const RenderSummary& s) {
         console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
                                   countText(static_cast<double>(r.splats))));
     if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
+    if (const std::string line = manifoldLine(r.lightPlan.manifold); !line.empty()) console_.line("  " + line);
+    if (r.manifoldCapped > 0)
+        console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
+                                  r.manifoldCapped, r.manifoldEstimates));
     if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
     console_.line(

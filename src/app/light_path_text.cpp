@@ -99,6 +99,18 @@ std::string shareTable(const LightPathFindings& f) {
     return text;
 }
 
+// Empty where nothing was looked for.
+std::string manifoldText(const ManifoldFindings& f) {
+    std::string text;
+    if (f.measured)
+        text = fmt::format("Caustics behind glass and in mirrors: {}, forecast {} as efficient\n",
+                           f.used ? "manifold sampling" : "left to camera paths", times(f.gain));
+    for (const std::string& obstacle : f.obstacles) text += fmt::format("  not followed: {}\n", obstacle);
+    if (f.obstacleCount > f.obstacles.size())
+        text += fmt::format("  and {} more\n", f.obstacleCount - f.obstacles.size());
+    return text;
+}
+
 } // namespace
 
 std::string lightPathLine(const LightPathFindings& f) {
@@ -106,6 +118,17 @@ std::string lightPathLine(const LightPathFindings& f) {
     if (!f.used()) return "no light paths: " + reason(f);
     return fmt::format("light paths {:.3g} per camera path{}: {}{}", f.share, f.verdict == asked ? ", as asked" : "",
                        forecast(f), sharesInLine(f));
+}
+
+std::string manifoldLine(const ManifoldFindings& f) {
+    std::string text;
+    if (f.used)
+        text = fmt::format("manifold sampling behind glass and in mirrors: forecast {} as efficient", times(f.gain));
+    if (f.used && f.obstacleCount > 0)
+        text += fmt::format("; {} polished shape{} cannot be followed: what {} focus{} is found by chance there",
+                            f.obstacleCount, f.obstacleCount == 1 ? "" : "s", f.obstacleCount == 1 ? "it" : "they",
+                            f.obstacleCount == 1 ? "es" : "");
+    return text;
 }
 
 std::string lightPathText(const LightPathFindings& f) {
@@ -122,7 +145,7 @@ std::string lightPathText(const LightPathFindings& f) {
     text += fmt::format("  relative variance of a sample by what light paths can bring: {} by camera paths alone",
                         moment(f.before));
     if (f.bestShare > 0) text += fmt::format(", {} by both; by everything else {}", moment(f.after), moment(f.rest));
-    return text + "\n" + shareTable(f);
+    return text + "\n" + shareTable(f) + manifoldText(f.manifold);
 }
 
 Json lightPathJson(const LightPathFindings& f) {
@@ -139,6 +162,17 @@ Json lightPathJson(const LightPathFindings& f) {
                                   {"share", s.share},
                                   {"before", s.before},
                                   {"after", s.after}}));
+    const ManifoldFindings& m = f.manifold;
+    Json obstacles = Json::list();
+    for (const std::string& obstacle : m.obstacles) obstacles.push(Json(obstacle));
+    json.set("manifold", Json::object({{"measured", m.measured},
+                                       {"used", m.used},
+                                       {"gain", m.gain},
+                                       {"before", m.before},
+                                       {"after", m.after},
+                                       {"rest", m.rest},
+                                       {"pilot_rays", m.rays},
+                                       {"not_followed", std::move(obstacles)}}));
     return json.set("shares", std::move(shares));
 }
 

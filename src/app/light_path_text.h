@@ -13,6 +13,8 @@ namespace abbe {
 std::string lightPathLine(const LightPathFindings&);
 // The same with all that was measured, line by line.
 std::string lightPathText(const LightPathFindings&);
+// What light paths cannot show to the lens; empty where manifold sampling is not used.
+std::string manifoldLine(const ManifoldFindings&);
 // docs/output.md lists the members.
 Json lightPathJson(const LightPathFindings&);
 

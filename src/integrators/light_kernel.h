@@ -96,25 +96,34 @@ template <EffectBits E> class LightKernel {
         if (!(std::abs(value.x) + std::abs(value.y) + std::abs(value.z) < ExactSum::kLargest)) [[unlikely]]
             return drop({{std::max(x0, bounds.x0), std::max(y0, bounds.y0), replicate, sample},
                          std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
-        const auto weightOf = [&](int u, int v) {
-            return film_.filterWeight(x - static_cast<float>(u)) * film_.filterWeight(y - static_cast<float>(v));
-        };
+        RandomStream random = sampler_.stream(kPixelNumbers + number);
+        const Drawn u = drawPixel(x, x0, x1, random.uniform()), v = drawPixel(y, y0, y1, random.uniform());
+        if (u.pixel < bounds.x0 || v.pixel < bounds.y0 || u.pixel >= bounds.x1 || v.pixel >= bounds.y1) return;
+        const auto factor = static_cast<double>(u.factor * v.factor);
+        if (factor == 0) return;
+        film_.splat(u.pixel, v.pixel, replicate,
+                    {value * factor, splat.value, lambda, factor, start.light, splat.component});
+        ++result_.splats;
+    }
+
+    // Along one axis, of the pixels [first, last] in reach of a place; the factor makes up for the choice.
+    struct Drawn {
+        int pixel;
+        float factor;
+    };
+    Drawn drawPixel(float place, int first, int last, float u) const {
         float sum = 0;
-        for (int v = y0; v <= y1; ++v)
-            for (int u = x0; u <= x1; ++u) sum += std::abs(weightOf(u, v));
-        float left = sampler_.stream(kPixelNumbers + number).uniform() * sum;
-        for (int v = y0; v <= y1; ++v)
-            for (int u = x0; u <= x1; ++u) {
-                const float weight = weightOf(u, v);
-                left -= std::abs(weight);
-                if (left >= 0 || weight == 0) continue;
-                if (u < bounds.x0 || v < bounds.y0 || u >= bounds.x1 || v >= bounds.y1) return;
-                const auto factor = static_cast<double>(std::copysign(sum, weight));
-                film_.splat(u, v, replicate,
-                            {value * factor, splat.value, lambda, factor, start.light, splat.component});
-                ++result_.splats;
-                return;
-            }
+        for (int i = first; i <= last; ++i) sum += std::abs(film_.filterWeight(place - static_cast<float>(i)));
+        float left = u * sum;
+        Drawn drawn{first, 0};
+        for (int i = first; i <= last; ++i) {
+            const float weight = film_.filterWeight(place - static_cast<float>(i));
+            if (weight == 0) continue;
+            drawn = {i, std::copysign(sum, weight)};
+            left -= std::abs(weight);
+            if (left < 0) break;
+        }
+        return drawn;
     }
 
     void drop(DroppedSample sample) {

@@ -95,8 +95,9 @@ class Planner {
     PlannedManifold run() {
         PlannedManifold result;
         ManifoldPlan plan = possible();
+        result.findings = findings_;
         if (plan.casters.empty() || plan.lights.empty()) return result;
-        findings_.asked = true;
+        findings_.measured = true;
         const ManifoldSampler first(context_.scene, plan);
         const std::vector<Cell> seen = look(first, kLearn);
         if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.asked > 0; })) {
@@ -118,13 +119,21 @@ class Planner {
             if (c.obstacle.empty())
                 plan.casters.push_back(c.caster());
             else
-                ++findings_.obstacles;
+                note(c);
         for (const auto& light : context_.scene.lights) {
             if (light->paths() == LightPaths::none || !(light->visiblePower() > 0)) continue;
             if (light->paths() == LightPaths::distant && extentOf(*light) > kLargeLight) continue;
             plan.lights.push_back({light.get(), static_cast<float>(light->visiblePower())});
         }
         return plan;
+    }
+
+    void note(const CasterCandidate& c) {
+        ++findings_.obstacleCount;
+        if (findings_.obstacles.size() == ManifoldFindings::kObstacles) return;
+        const auto name = context_.scene.names.find(c.shape);
+        findings_.obstacles.push_back((name == context_.scene.names.end() ? "a shape" : name->second) + ": " +
+                                      c.obstacle);
     }
 
     std::vector<Cell> look(const ManifoldSampler& sampler, std::uint64_t key) {
@@ -201,7 +210,7 @@ class Planner {
 
 PlannedManifold planManifold(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
                              const std::function<bool()>& stop) {
-    if (!mayTraceLight(context.scene, context.settings.technique)) return {};
+    if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
     return Planner(context, kernel, roulette, stop).run();
 }
 

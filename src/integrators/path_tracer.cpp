@@ -124,11 +124,12 @@ class RenderJob {
   private:
     using Clock = std::chrono::steady_clock;
 
-    void plan(const std::function<bool()>& stop) {
+    void planCaustics(const std::function<bool()>& stop) {
         light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.traced = light_.plan.get();
         manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.manifold = manifold_.sampler.get();
+        light_.findings.manifold = manifold_.findings;
         if (context_.traced || context_.manifold) render_ = kernel_.traced().render;
     }
 
@@ -136,11 +137,10 @@ class RenderJob {
         const auto stop = [this] { return stopRequested(); };
         ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
         if (film_.takesSplats() && state_.lightBlockCount() > 0)
-            plan(stop);
+            planCaustics(stop);
         else
             light_.findings.verdict = lightPathVerdict(context_.scene, settings_.technique);
         statistics_.lightPlan = light_.findings;
-        statistics_.manifoldPlan = manifold_.findings;
         statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays;
     }
 

@@ -76,14 +76,6 @@ struct DensityExcess {
     }
 };
 
-// As LightPathFindings, of manifold sampling, for caustics that are seen through glass or in mirrors.
-struct ManifoldFindings {
-    bool asked = false, used = false;
-    std::uint64_t obstacles = 0;                      // polished shapes that chains cannot be followed over
-    double before = 0, after = 0, rest = 0, gain = 1; // as in LightPathFindings, second moments for variances
-    std::uint64_t rays = 0;
-};
-
 struct RenderStatistics {
     std::uint64_t paths = 0;
     std::uint64_t vertices = 0;
@@ -93,7 +85,6 @@ struct RenderStatistics {
     std::uint64_t splats = 0;     // pixels that they were added to
     std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
     LightPathFindings lightPlan;
-    ManifoldFindings manifoldPlan;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
     std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even

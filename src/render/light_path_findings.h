@@ -1,6 +1,8 @@
 // What was found out about paths of light before a render, for people to read.
 #pragma once
 
+#include "render/manifold_findings.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -48,6 +50,9 @@ struct LightPathFindings {
     std::uint32_t targets = 0; // what light paths are aimed at, shapes near one another put together
     // As judged, the largest first; at most kShares, the last of them stands for all further ones.
     std::vector<LightPathShare> shares;
+
+    // What light paths cannot show to the lens.
+    ManifoldFindings manifold;
 
     bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
 };

@@ -85,9 +85,12 @@ class TwoWays {
     PathContext context_;
 };
 
-TileSums seen(const TestScene& test, std::uint32_t samples) {
+TileSums seen(const TestScene& test, std::uint32_t samples,
+              Technique::LightPaths lightPaths = Technique::LightPaths::off) {
     PixelFilm film({0, 0, kWidth, kHeight}, box(), kReplicates);
     RenderSettings settings = test.settings();
+    settings.technique.lightPaths = lightPaths;
+    if (lightPaths != Technique::LightPaths::off) film.keepSplats();
     settings.samples = samples * kReplicates;
     settings.seed = 5;
     makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
@@ -163,6 +166,22 @@ TEST_CASE("light paths: fog") {
                     "    interior homogeneous { extinction table 400 2.2 700 0.8 per-m; albedo 0.9; phase "
                     "henyey-greenstein 0.5 } }\n",
                 64, 256);
+}
+
+// A caustic in a mirror, and one seen through the ball that makes it: manifold sampling and what it leaves to chance.
+TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampling") {
+    for (const char* ior : {"1.5", "glass SF11"}) {
+        const TestScene scene = TestScene::parse(
+            std::string("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n"
+                        "camera { from 0 2.3 3.5; look-at 0 0.6 0; fov 40 deg }\n") +
+            kFloor + "shape ball sphere { center -0.35 0.9 -0.3; radius 0.45; material dielectric { ior " + ior +
+            " } }\n"
+            "shape mirror quad { points { - -2 0 -1.5; - 2 0 -1.5; - 2 2 -1.5; - -2 2 -1.5 };"
+            " material conductor { index metal Ag } }\n"
+            "light sphere { center -1.5 5 -1; radius 0.5; radiance 10 }\n");
+        check(std::string(ior) + ", manifolds", seen(scene, 600), seen(scene, 128, Technique::LightPaths::always),
+              0.02);
+    }
 }
 
 } // namespace abbe::test
