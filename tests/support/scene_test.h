@@ -101,11 +101,12 @@ struct TestImage {
     RenderStatistics statistics;
 };
 
-// The kernel is the one that the scene asks for, or a larger one.
+// The kernel is the one that the scene asks for, or a larger one. With light paths where the program would have them.
 inline TestImage render(const TestScene& scene, const RenderSettings& settings, Effects atLeast = {},
                         int replicates = 8) {
     TestImage image{RecordingFilm(scene.built().film, replicates), {}};
     const auto tracer = makePathTracer(scene.scene().effects | atLeast);
+    if (tracer->lightBlocks(scene.scene(), settings) > 0) image.film.keepSplats();
     image.statistics = tracer->render(scene.scene(), image.film, settings, {});
     return image;
 }

@@ -36,6 +36,8 @@ class RecordingFilm final : public Film {
     PixelBounds bounds() const override { return film_.bounds(); }
     int replicates() const override { return film_.replicates(); }
     FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
+    float filterRadius() const noexcept override { return film_.filterRadius(); }
+    float filterWeight(float offset) const noexcept override { return film_.filterWeight(offset); }
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
         film_.add(x, y, replicate, sum, samples);
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(replicate);
@@ -75,6 +77,12 @@ class RecordingFilm final : public Film {
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
         return {sums_[i].value(), counts_[i]};
     }
+    // What one replicate of a pixel shows, with splats; it must have samples.
+    double replicateMean(int x, int y, int r, Channel channel = Channel::y) const {
+        const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
+        const double ofSamples = value(sums_[i].value(), channel) / counts_[i];
+        return takesSplats() ? ofSamples + value(film_.splatMean(x, y, r, r + 1), channel) : ofSamples;
+    }
     // Mean over all pixels of the variance of one replicate's mean: the MSE of a render with its number of samples.
     double replicateVariance() const {
         double sum = 0;
@@ -84,11 +92,6 @@ class RecordingFilm final : public Film {
     }
 
   private:
-    double replicateMean(int x, int y, int r, Channel channel) const {
-        const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
-        const double ofSamples = value(sums_[i].value(), channel) / counts_[i];
-        return takesSplats() ? ofSamples + value(film_.splatMean(x, y, r, r + 1), channel) : ofSamples;
-    }
     Estimate tileOfReplicates(PixelBounds b, Channel channel) const {
         Moments m;
         for (int r = 0; r < replicates(); ++r) {

@@ -1,0 +1,144 @@
+// As a user has them: paths from the camera alone, paths from the lights beside them, and paths from the lights for all
+// that they can bring come to one picture. Lamps are large enough for camera paths to meet them by glass and metal.
+#include "support/scene_test.h"
+#include "verify/agreement.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+using Ways = Technique::LightPaths;
+constexpr int kReplicates = 32;
+
+struct Picture {
+    TileSums sums;
+    RenderStatistics statistics;
+};
+
+// `samples`: of each replicate.
+Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
+    RenderSettings settings = test.settings();
+    settings.samples = samples * kReplicates;
+    settings.technique.lightPaths = ways;
+    settings.seed = 3 + static_cast<std::uint64_t>(ways);
+    const FilmSettings film = filmSettings(test.built().film);
+    PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), kReplicates);
+    const auto tracer = makePathTracer(test.scene().effects);
+    if (tracer->lightBlocks(test.scene(), settings) > 0) pixels.keepSplats();
+    RenderStatistics statistics = tracer->render(test.scene(), pixels, settings, {});
+    return {TileSums(pixels), std::move(statistics)};
+}
+
+// `error`: what the standard error of the whole picture's difference must be less than, so that the test means
+// something.
+void agree(const std::string& name, const Picture& expected, const Picture& found, double error) {
+    const Agreement a = compare(expected.sums, found.sums, 1e-3);
+    const std::string text =
+        fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}; {:.3g} light paths for a camera path", name,
+                    a.probability, 100 * a.whole.difference, 100 * a.whole.error, a.unjudged, a.tiles,
+                    static_cast<double>(found.statistics.lightPaths) / static_cast<double>(found.statistics.paths));
+    MESSAGE(text);
+    std::string where;
+    for (const BlockTest& b : a.culprits(4))
+        where += fmt::format(" [{}, {}) × [{}, {}) {}: {:+.3g} ± {:.2g} %", b.bounds.x0, b.bounds.x1, b.bounds.y0,
+                             b.bounds.y1, "XYZ"[b.channel], 100 * b.difference, 100 * b.error);
+    INFO(text << where);
+    CHECK(a.agrees());
+    CHECK(a.whole.judged);
+    CHECK(a.whole.error < error);
+    CHECK(3 * a.unjudged <= a.tiles);
+    CHECK(found.statistics.splats > 0);
+    CHECK(found.statistics.cappedPaths == 0);
+}
+
+void compareWays(const std::string& name, const TestScene& test, std::uint32_t samples, double error) {
+    const std::uint32_t n = nightly() ? 8 * samples : samples;
+    if (nightly()) error /= 2;
+    const Picture off = render(test, Ways::off, 2 * n), both = render(test, Ways::always, n),
+                  alone = render(test, Ways::alone, n);
+    CHECK(off.statistics.lightPaths == 0);
+    agree(name + ", both for camera paths", off, both, error);
+    agree(name + ", light paths for camera paths", off, alone, 4 * error);
+    agree(name + ", light paths for both", both, alone, 4 * error);
+}
+
+TestScene inlineScene(const std::string& text) {
+    return TestScene::parse("scene 1\nfilm { size 32 24 }\nrender { max-depth 12 }\n" + text);
+}
+
+const char* const kFloor =
+    "shape quad { points -5 0 5  5 0 5  5 0 -5  -5 0 -5; material diffuse { reflectance 0.5 } }\n";
+
+} // namespace
+
+TEST_CASE("light paths: a glass ball through a thin lens") {
+    compareWays("ball",
+                inlineScene("camera { from 0 2.3 3.5; look-at 0 0.4 0; fov 34 deg; aperture 250 mm; focus 3.2 }\n" +
+                            std::string(kFloor) +
+                            "shape sphere { center -0.2 1.1 -0.3; radius 0.5; material dielectric { ior 1.5 } }\n"
+                            "light sphere { center -1.5 5 -1; radius 0.7; radiance 10 }\n"),
+                32, 0.004);
+}
+
+TEST_CASE("light paths: a gold ring") {
+    compareWays("ring",
+                inlineScene("camera { from 0 2.6 2.4; look-at 0 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
+                            "shape subdivision \"scenes/gold-ring/ring.obj\" { dicing 2\n"
+                            "    material conductor { index metal Au; roughness 0.3 }; transform { scale 0.08 } }\n"
+                            "light sphere { center -2 3 -3; radius 0.8; radiance 10 }\n"),
+                32, 0.004);
+}
+
+TEST_CASE("light paths: a prism that disperses") {
+    compareWays("prism",
+                inlineScene("camera { from 0.4 1.6 2.6; look-at 0.2 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
+                            "shape mesh { material dielectric { ior glass SF11 }\n"
+                            "    points { - -0.5 -0.2887 -0.7; - 0.5 -0.2887 -0.7; - 0 0.5774 -0.7\n"
+                            "             - -0.5 -0.2887 0.7; - 0.5 -0.2887 0.7; - 0 0.5774 0.7 }\n"
+                            "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 }\n"
+                            "    transform { rotate z -3.17 deg; translate -0.5 0.6 0 } }\n"
+                            "light sphere { center -4 1.2 0; radius 0.8; radiance 10 }\n"),
+                32, 0.012);
+}
+
+TEST_CASE("light paths: a glass ball in fog") {
+    compareWays(
+        "fog",
+        inlineScene("camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+                    "light sphere { center -1 3.4 0.6; radius 0.5; radiance 20 }\n"
+                    "shape sphere { center -0.1 1.1 0; radius 0.35; material dielectric { ior 1.5; priority 2 } }\n"
+                    "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
+                    "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
+                    "henyey-greenstein 0.4 } }\n"),
+        32, 0.004);
+}
+
+TEST_CASE("light paths: rough glass and rough metal all around the camera") {
+    compareWays(
+        "rough",
+        inlineScene(
+            "camera spherical { from 0 0.8 0; look-at 0 0.3 -1; width 240 deg; height 120 deg }\n" +
+            std::string(kFloor) +
+            "shape sphere { center -0.9 0.9 -0.9; radius 0.45; material dielectric { ior 1.5; roughness 0.3 } }\n"
+            "shape sphere { center 0.9 0.5 -0.9; radius 0.4; material conductor { index metal Au; roughness 0.3 } }\n"
+            "shape sphere { center 0.9 0.4 0.9; radius 0.35; material dielectric { ior glass SF11; roughness 0.3 } }\n"
+            "light sphere { center -0.8 2.6 0.2; radius 0.5; radiance 10 }\n"),
+        32, 0.004);
+}
+
+// The lenses of the shipped scene under a lamp, as wide as a sun of 20 degrees.
+TEST_CASE("light paths: an array of lenses") {
+    std::string lenses = "object lens { shape mesh \"scenes/lens-array/lens.obj\" {\n"
+                         "    material dielectric { ior glass N-BK7 }; transform { scale 0.01 } } }\n";
+    for (const double x : {-0.3, 0.0, 0.3})
+        for (const double z : {-0.3, 0.0, 0.3})
+            lenses += fmt::format("instance lens {{ transform {{ translate {} 0.5 {} }} }}\n", x, z);
+    compareWays("lenses",
+                inlineScene("camera { from 0.4 1.8 1.8; look-at 0 0.2 0; fov 40 deg }\n" + std::string(kFloor) +
+                            lenses + "light sphere { center -0.8 3.5 -0.4; radius 0.6; radiance 10 }\n"),
+                12, 0.03);
+}
+
+} // namespace abbe::test
