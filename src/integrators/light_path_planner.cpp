@@ -118,8 +118,9 @@ class Planner {
         describe(judged, findings_.bestShare);
         if (!forced && findings_.gain < kLeastGain) return noGain;
         findings_.share = findings_.bestShare;
+        if (alone()) findings_.share = std::max(findings_.share, 1.0); // the gain is that of both together
         learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
-        learned.alone = choice == Technique::LightPaths::alone;
+        learned.alone = alone();
         plan = std::make_unique<const LightPathPlan>(std::move(learned));
         return forced ? asked : used;
     }
@@ -143,6 +144,7 @@ class Planner {
         findings_.shares = largestShares(shares);
     }
 
+    bool alone() const { return context_.settings.technique.lightPaths == Technique::LightPaths::alone; }
     PathContext withPlan(const LightPathPlan& plan, std::uint64_t key) const {
         PathContext context = context_;
         context.settings.seed = combine64(context_.settings.seed, key);
@@ -225,7 +227,8 @@ class Planner {
         const std::size_t lights = lights_, columns = targets_;
         if (lights * columns > kMaxLearned) return plan;
         std::vector<double> moment(lights * columns);
-        for (const Deposit& d : heard.deposits) moment[d.light * columns + d.target] += d.u2 / square(1 + d.rho);
+        for (const Deposit& d : heard.deposits)
+            moment[d.light * columns + d.target] += alone() ? d.u2 : d.u2 / square(1 + d.rho);
         std::vector<double> ideal(lights * columns), lit(lights);
         double all = 0, own = 0;
         const auto paths = static_cast<double>(heard.paths);
@@ -317,6 +320,11 @@ class Planner {
         findings_.before = variance(heard, 0);
         const double light = static_cast<double>(heard.rays) / static_cast<double>(heard.paths);
         const double plain = (findings_.rest + findings_.before) * camera.rays;
+        if (!(plain > 0)) { // nobody saw any light: a guess
+            findings_.gain = kLeastGain;
+            findings_.share = 1;
+            return;
+        }
         findings_.gain = 0;
         for (const double share : kShares) {
             const double after = variance(heard, share);
