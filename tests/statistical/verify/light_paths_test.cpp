@@ -125,7 +125,7 @@ TEST_CASE("light paths: rough glass and rough metal all around the camera") {
             "shape sphere { center 0.9 0.5 -0.9; radius 0.4; material conductor { index metal Au; roughness 0.3 } }\n"
             "shape sphere { center 0.9 0.4 0.9; radius 0.35; material dielectric { ior glass SF11; roughness 0.3 } }\n"
             "light sphere { center -0.8 2.6 0.2; radius 0.5; radiance 10 }\n"),
-        32, 0.004);
+        64, 0.003);
 }
 
 // The lenses of the shipped scene under a lamp, as wide as a sun of 20 degrees.
