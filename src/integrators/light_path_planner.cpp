@@ -23,6 +23,8 @@ constexpr std::uint32_t kBlock = 1024, kLeastBlocks = 2, kMostBlocks = 32;
 constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn", "judge"
 // Per camera ray: what asking for the densities of light paths costs, in rays.
 constexpr double kTracedCost = 1.4;
+// What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
+constexpr double kLightCost = 2;
 // Less than that is not worth the risk of a rough forecast.
 constexpr double kLeastGain = 1.15;
 constexpr double kLeastSecondMoment = 0.02;
@@ -328,7 +330,8 @@ class Planner {
         findings_.gain = 0;
         for (const double share : kShares) {
             const double after = variance(heard, share);
-            const double gain = plain / ((findings_.rest + after) * (kTracedCost * camera.rays + share * light));
+            const double gain =
+                plain / ((findings_.rest + after) * (kTracedCost * camera.rays + share * kLightCost * light));
             if (!(gain > findings_.gain)) continue; // nor where all is dark
             findings_.gain = gain;
             findings_.bestShare = share;
