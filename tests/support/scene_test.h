@@ -101,11 +101,20 @@ struct TestImage {
     RenderStatistics statistics;
 };
 
-// The kernel is the one that the scene asks for, or a larger one. With light paths where the program would have them.
+// The kernel is the one that the scene asks for, or a larger one. By camera paths alone: what is compared here are ways
+// to look for lights, all of which miss the same caustics.
 inline TestImage render(const TestScene& scene, const RenderSettings& settings, Effects atLeast = {},
                         int replicates = 8) {
     TestImage image{RecordingFilm(scene.built().film, replicates), {}};
-    const auto tracer = makePathTracer(scene.scene().effects | atLeast);
+    image.statistics =
+        makePathTracer(scene.scene().effects | atLeast)->render(scene.scene(), image.film, settings, {});
+    return image;
+}
+
+// With light paths and manifold sampling where the program would have them.
+inline TestImage renderAsProgram(const TestScene& scene, const RenderSettings& settings, int replicates = 8) {
+    TestImage image{RecordingFilm(scene.built().film, replicates), {}};
+    const auto tracer = makePathTracer(scene.scene().effects);
     if (tracer->lightBlocks(scene.scene(), settings) > 0) image.film.keepSplats();
     image.statistics = tracer->render(scene.scene(), image.film, settings, {});
     return image;

@@ -95,7 +95,7 @@ double compare(const std::string& name, const std::vector<Estimate>& found, cons
 TestImage rendered(const TestScene& scene, std::uint32_t samples) {
     RenderSettings settings = scene.settings();
     settings.samples = samples;
-    TestImage image = render(scene, settings, {}, 32); // replicates: t of 7 degrees sees little at this level
+    TestImage image = renderAsProgram(scene, settings, 32); // replicates: t of 7 degrees sees little at this level
     CHECK(image.statistics.cappedPaths == 0);
     return image;
 }

@@ -48,7 +48,7 @@ void compare(double diameter, std::uint32_t samples, double resolution) {
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     const int replicates = 32;
-    const TestImage image = render(scene, settings, {}, replicates);
+    const TestImage image = renderAsProgram(scene, settings, replicates);
     const auto exact = expected(diameter);
     std::string text;
     std::array<Moments, 3> sums, places;

@@ -100,7 +100,7 @@ TEST_CASE("light paths: a prism that disperses") {
                             "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 }\n"
                             "    transform { rotate z -3.17 deg; translate -0.5 0.6 0 } }\n"
                             "light sphere { center -4 1.2 0; radius 0.8; radiance 10 }\n"),
-                32, 0.012);
+                128, 0.012);
 }
 
 TEST_CASE("light paths: a glass ball in fog") {
