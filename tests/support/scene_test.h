@@ -106,8 +106,7 @@ struct TestImage {
 inline TestImage render(const TestScene& scene, const RenderSettings& settings, Effects atLeast = {},
                         int replicates = 8) {
     TestImage image{RecordingFilm(scene.built().film, replicates), {}};
-    image.statistics =
-        makePathTracer(scene.scene().effects | atLeast)->render(scene.scene(), image.film, settings, {});
+    image.statistics = makePathTracer(scene.scene().effects | atLeast)->render(scene.scene(), image.film, settings, {});
     return image;
 }
 
