@@ -19,6 +19,7 @@ struct ManifoldSample {
     // chance would have in place of this. 0 for lights that nobody meets by chance.
     Spectrum radiance{0.f};
     const Light* light = nullptr;
+    int length = 0; // interfaces on the way
     // The chain refracts where indices vary with wavelength: it is that of the hero alone. Lane 0 then counts for all
     // of them, eightfold, and the others are 0 (as PathLoop::endSecondaryWavelengths; divide by the hero's own ratio of
     // densities there).

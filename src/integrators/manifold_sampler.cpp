@@ -88,6 +88,7 @@ std::optional<ManifoldSample> weigh(const SpecularChain& chain, const LightTarge
     const Vec3 leaves = normalize(-Vec3(chain.last().out));
     light *= target.leaving(leaves, lambda);
     sample.light = target.light;
+    sample.length = chain.length;
     if (!target.delta) sample.radiance = light * (1 / (target.distant ? 1 : target.origin.cosine(leaves)));
     const double densities = static_cast<double>(target.pdf) * target.pick * choice.probability;
     light *= static_cast<float>(directionsPerTarget(chain) / densities);

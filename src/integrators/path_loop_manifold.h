@@ -25,7 +25,8 @@ void PathLoop<E>::askManifold(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if constexpr (kMedia) media = &media_.tracker;
     const auto found = context_.manifold->sample(start, path_.lambda, random, counters_.manifold, media);
     Spectrum light(0.f), chance(0.f);
-    if (found) {
+    const std::uint32_t most = context_.settings.maxDepth; // camera paths see no light beyond it
+    if (found && (most == 0 || depth + static_cast<std::uint32_t>(found->length) < most)) {
         const Vec3 wi = hit.shading.toLocal(found->wi);
         const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
         if (sidesAgree(hit, eye, wi, found->wi) && dot(found->wi, start.receiver.n) > 0) {
