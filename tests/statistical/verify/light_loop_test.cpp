@@ -137,9 +137,9 @@ TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
         std::string(kFloor) +
         "shape sphere { center -0.7 0.5 0; radius 0.5; material diffuse { reflectance rgb 0.7 0.3 0.2 } }\n"
         "shape sphere { center 0.7 0.5 0; radius 0.5; material conductor { index metal Au; roughness 0.5 } }\n";
-    compareBoth("sphere lamp", camera + things + "light sphere { center -1 4 1; radius 0.4; radiance 10 }\n", 48, 64);
-    compareBoth("point", camera + things + "light point { position 1 3 1; power 100 W }\n", 48, 64);
-    compareBoth("sky", camera + things + "light sky { radiance 1 }\n", 48, 64);
+    compareBoth("sphere lamp", camera + things + "light sphere { center -1 4 1; radius 0.4; radiance 10 }\n", 24, 48);
+    compareBoth("point", camera + things + "light point { position 1 3 1; power 100 W }\n", 24, 48);
+    compareBoth("sky", camera + things + "light sky { radiance 1 }\n", 24, 48);
 }
 
 TEST_CASE("light paths: caustics of glass and of glass that disperses") {
@@ -155,7 +155,7 @@ TEST_CASE("light paths: caustics of glass and of glass that disperses") {
             camera + floor + lamp +
                 fmt::format("shape sphere {{ center -0.35 1.8 -0.3; radius 0.45; material dielectric {{ ior {} }} }}\n",
                             ior),
-            48, 400, plan);
+            24, 200, plan);
 }
 
 TEST_CASE("light paths: fog") {
@@ -165,7 +165,7 @@ TEST_CASE("light paths: fog") {
                     "shape sphere { center 0 1 0; radius 0.9; material boundary\n"
                     "    interior homogeneous { extinction table 400 2.2 700 0.8 per-m; albedo 0.9; phase "
                     "henyey-greenstein 0.5 } }\n",
-                64, 256);
+                24, 96);
 }
 
 // A caustic in a mirror, and one seen through the ball that makes it: manifold sampling and what it leaves to chance.
@@ -179,8 +179,7 @@ TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampl
             "shape mirror quad { points { - -2 0 -1.5; - 2 0 -1.5; - 2 2 -1.5; - -2 2 -1.5 };"
             " material conductor { index metal Ag } }\n"
             "light sphere { center -1.5 5 -1; radius 0.5; radiance 10 }\n");
-        check(std::string(ior) + ", manifolds", seen(scene, 600), seen(scene, 128, Technique::LightPaths::always),
-              0.02);
+        check(std::string(ior) + ", manifolds", seen(scene, 300), seen(scene, 64, Technique::LightPaths::always), 0.02);
     }
 }
 
