@@ -324,7 +324,7 @@ class Planner {
         const double plain = (findings_.rest + findings_.before) * camera.rays;
         if (!(plain > 0)) { // nobody saw any light: a guess
             findings_.gain = kLeastGain;
-            findings_.share = 1;
+            findings_.bestShare = 1;
             return;
         }
         findings_.gain = 0;

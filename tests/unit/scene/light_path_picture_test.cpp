@@ -103,6 +103,19 @@ TEST_CASE("light paths: a sample taken again is what camera paths bring, and tog
     }
 }
 
+TEST_CASE("light paths: where nobody sees any light one for each camera path is the guess") {
+    // The lamp and its glass are behind the camera, which looks into the dark.
+    const LightPathFindings found = findingsOf(R"(scene 1
+camera { from 0 0 0; look-at 0 0 -1 }
+film { size 16 12 }
+shape wall quad { points { - -1 -1 -3; - 1 -1 -3; - 1 1 -3; - -1 1 -3 }; material diffuse { reflectance 0 } }
+shape ball sphere { center 0 0 5; radius 0.5; material dielectric { ior 1.5 } }
+light lamp sphere { center 0 3 8; radius 0.1; radiance 1 }
+)");
+    CHECK(found.verdict == LightPathVerdict::used);
+    CHECK(found.share == 1);
+}
+
 TEST_CASE("light paths: findings name lights and targets, are those of the render, and say why there are none") {
     using enum LightPathVerdict;
     const std::string text = sceneText("");
