@@ -22,7 +22,7 @@ inline MeasuredRender measuredRender(const BuiltScene& built, const RenderSettin
     PixelFilm film(settings.crop, PixelFilter(settings.filter, settings.filterRadius), replicates);
     MeasuredRender result;
     const auto integrator = makePathTracer(built.scene.effects);
-    if (integrator->lightBlocks(built.scene, how) > 0) film.keepSplats();
+    film.keepSplatsOf(*integrator, built.scene, how);
     result.statistics = integrator->render(built.scene, film, how, {});
     const PixelBounds b = film.bounds();
     for (int y = b.y0; y < b.y1; ++y)

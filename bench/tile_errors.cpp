@@ -59,7 +59,7 @@ void measure(const std::string& file, bool lightPaths, const Options& o) {
     const FilmSettings film = filmSettings(scene.built().film);
     PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), 32);
     const auto tracer = makePathTracer(scene.scene().effects);
-    if (tracer->lightBlocks(scene.scene(), settings) > 0) pixels.keepSplats();
+    pixels.keepSplatsOf(*tracer, scene.scene(), settings);
     const RenderStatistics s = tracer->render(scene.scene(), pixels, settings, {});
     const TileErrors e = errorsOf(TileSums(pixels));
     std::printf("%-44s  %3s  %4dx%-4d %5u  %8.1f  %7.4g  %6.2f %%  %6.2f %%  %7.2f %%  %10.4g\n", file.c_str(),

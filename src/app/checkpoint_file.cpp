@@ -18,7 +18,7 @@ namespace abbe {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
@@ -144,8 +144,9 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
 void writeTile(const TileState& tile, ByteWriter& out) {
     const PathTally& t = tile.tally;
     out.number(tile.reached);
-    for (const std::uint64_t v : {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1],
-                                  t.dropped[2], t.excess.lookups, t.excess.above, t.lightPaths, t.lightRays, t.splats})
+    for (const std::uint64_t v :
+         {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1], t.dropped[2], t.excess.lookups,
+          t.excess.above, t.lightPaths, t.lightRays, t.splats, t.rounds})
         out.number(v);
     out.number(t.excess.most);
     out.number(t.coreSeconds);
@@ -187,8 +188,9 @@ void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes,
 bool readTile(ByteReader& in, TileState& tile) {
     PathTally& t = tile.tally;
     tile.reached = in.number<std::uint32_t>();
-    for (std::uint64_t* v : {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1],
-                             &t.dropped[2], &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.lightRays, &t.splats})
+    for (std::uint64_t* v :
+         {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1], &t.dropped[2],
+          &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.lightRays, &t.splats, &t.rounds})
         *v = in.number<std::uint64_t>();
     t.excess.most = in.number<float>();
     t.coreSeconds = in.number<double>();

@@ -127,6 +127,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     statistics.lightPaths = sum.lightPaths;
     statistics.lightRays = sum.lightRays;
     statistics.splats = sum.splats;
+    statistics.rounds = sum.rounds;
     statistics.cappedPaths = sum.cappedPaths;
     statistics.dropped = sum.dropped;
     statistics.excess = sum.excess;

@@ -58,7 +58,7 @@ class RenderRun {
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
-        if (integrator_->lightBlocks(built_.scene, settings_) > 0) film.keepSplats();
+        film.keepSplatsOf(*integrator_, built_.scene, settings_);
         if (!alone())
             film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space),
                             {built_.scene.intersector.get(), built_.scene.camera.get()});

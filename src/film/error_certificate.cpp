@@ -106,18 +106,20 @@ double Certifier::meanLuminance() const {
 // the difference is that of the mean times (a + b)²/(a b).
 double shareOfDifference(double a, double b) { return std::sqrt(a * b) / (a + b); }
 
-// Samples and light paths are divided into halves each by itself.
+// Samples, light paths and merged light are divided into halves each by itself.
 std::optional<Halves> Certifier::halves(int x, int y) const {
     const int half = film_.replicates() / 2, all = film_.replicates();
     const auto a = static_cast<double>(film_.samples(x, y, 0, half));
     const auto b = static_cast<double>(film_.samples(x, y, half, all));
     if (a == 0 || b == 0) return std::nullopt;
     Xyz d = balanced(film_.sampleMean(x, y, 0, half) - film_.sampleMean(x, y, half, all)) * shareOfDifference(a, b);
-    if (film_.lightPaths() > 0) {
-        const auto p = static_cast<double>(film_.lightPaths(0, half));
-        const auto q = static_cast<double>(film_.lightPaths(half, all));
+    for (const SplatKind kind : {SplatKind::lightPath, SplatKind::merged}) {
+        if (film_.splatCount(kind, 0, all) == 0) continue;
+        const auto p = static_cast<double>(film_.splatCount(kind, 0, half));
+        const auto q = static_cast<double>(film_.splatCount(kind, half, all));
         if (p == 0 || q == 0) return std::nullopt;
-        d += balanced(film_.splatMean(x, y, 0, half) - film_.splatMean(x, y, half, all)) * shareOfDifference(p, q);
+        d += balanced(film_.splatMean(kind, x, y, 0, half) - film_.splatMean(kind, x, y, half, all)) *
+             shareOfDifference(p, q);
     }
     return Halves{balanced(film_.mean(x, y)), d.y > 0 ? d * -1 : d};
 }

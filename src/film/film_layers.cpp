@@ -35,22 +35,24 @@ FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const
     if (plan_.coversMaterials()) mattes(Matte::materials).resize(pixels);
 }
 
-std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan, bool splats) {
+std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan, int splatKinds) {
     const auto pixels = static_cast<std::uint64_t>(bounds.area());
     const LayerPlan::Offsets at = plan.offsets();
-    const auto sums = static_cast<std::uint64_t>(at.total * (plan.halves ? 2 : 1) + (splats ? at.light() : 0));
+    const auto sums = static_cast<std::uint64_t>(at.total * (plan.halves ? 2 : 1) + splatKinds * at.light());
     return pixels * (sums * sizeof(ExactSum) + (plan.deep ? 2 * sizeof(DeepSums::Bins) : 0) +
                      plan.seconds * sizeof(double) + plan.invalid * sizeof(std::uint32_t));
 }
 
-void FilmLayers::keepSplats() {
-    splats_.resize(static_cast<std::size_t>(bounds_.area()) * static_cast<std::size_t>(at_.light()));
+void FilmLayers::keepSplats(SplatKind kind) {
+    splats_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(bounds_.area()) *
+                                                   static_cast<std::size_t>(at_.light()));
 }
 
 void FilmLayers::splat(std::size_t pixel, const Splat& splat) noexcept {
-    if (splats_.empty()) return;
-    const auto sums = std::span(splats_).subspan(pixel * static_cast<std::size_t>(at_.light()),
-                                                 static_cast<std::size_t>(at_.light()));
+    std::vector<SharedSum>& all = splats_[static_cast<std::size_t>(splat.kind)];
+    if (all.empty()) return;
+    const auto sums =
+        std::span(all).subspan(pixel * static_cast<std::size_t>(at_.light()), static_cast<std::size_t>(at_.light()));
     const auto at = [&](int offset, std::size_t i) -> SharedSum& {
         return sums[static_cast<std::size_t>(offset - at_.groups) + i];
     };
@@ -67,10 +69,10 @@ void FilmLayers::splat(std::size_t pixel, const Splat& splat) noexcept {
     });
 }
 
-double FilmLayers::splatted(std::size_t pixel, int offset) const noexcept {
-    if (splats_.empty()) return 0;
-    return splats_[pixel * static_cast<std::size_t>(at_.light()) + static_cast<std::size_t>(offset - at_.groups)]
-        .value();
+double FilmLayers::splatted(SplatKind kind, std::size_t pixel, int offset) const noexcept {
+    const std::vector<SharedSum>& all = splats_[static_cast<std::size_t>(kind)];
+    if (all.empty()) return 0;
+    return all[pixel * static_cast<std::size_t>(at_.light()) + static_cast<std::size_t>(offset - at_.groups)].value();
 }
 
 std::unique_ptr<SampleRecorder> FilmLayers::makeRecorder() { return std::make_unique<LayerRecorder>(*this); }
@@ -172,10 +174,12 @@ void FilmLayers::appendPlanes(FilmPlanes& planes) {
     if (stride_ > 0)
         planes.push_back(std::make_unique<DensePlane<ExactSum>>(
             "layers", bounds_, stride_ * static_cast<std::size_t>(halves()), std::span<ExactSum>(sums_)));
-    if (!splats_.empty())
-        planes.push_back(std::make_unique<DensePlane<SharedSum>>("layer-splats", bounds_,
-                                                                 static_cast<std::size_t>(at_.light()),
-                                                                 std::span(splats_), PlaneChanges::byLightPaths));
+    constexpr const char* kNames[kSplatKinds] = {"layer-splats", "layer-merged"};
+    for (std::size_t k = 0; k < kSplatKinds; ++k)
+        if (!splats_[k].empty())
+            planes.push_back(
+                std::make_unique<DensePlane<SharedSum>>(kNames[k], bounds_, static_cast<std::size_t>(at_.light()),
+                                                        std::span(splats_[k]), PlaneChanges::byLightPaths));
     if (!invalid_.empty())
         planes.push_back(
             std::make_unique<DensePlane<std::uint32_t>>("invalid", bounds_, 1, std::span<std::uint32_t>(invalid_)));

@@ -47,15 +47,15 @@ class FilmLayers {
     // Albedos are seen by the white of `space`. Requires a space of the project, and for motion both of the sight.
     FilmLayers(PixelBounds, LayerPlan, int replicates, const SceneNames&, const RgbSpace& space, LayerSight = {});
     // What layers of this size take, without Cryptomatte and what a deep image has seen.
-    static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&, bool splats = false);
+    static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&, int splatKinds = 0);
 
     // Before the first sample: a place for light from light paths. Throws std::bad_alloc.
-    void keepSplats();
+    void keepSplats(SplatKind);
     // Light groups, components and bins get it; from several threads at once. Nothing without keepSplats().
     void splat(std::size_t pixel, const Splat&) noexcept;
     // What was splatted at a sum of LayerPlan::offsets(), groups or later; 0 without keepSplats(). It counts over light
-    // paths and not over samples, and over all of them: no layer shows it for one half alone.
-    double splatted(std::size_t pixel, int offset) const noexcept;
+    // paths, or rounds, and not over samples, and over all of them: no layer shows it for one half alone.
+    double splatted(SplatKind, std::size_t pixel, int offset) const noexcept;
 
     const LayerPlan& plan() const { return plan_; }
     PixelBounds bounds() const { return bounds_; }
@@ -114,7 +114,7 @@ class FilmLayers {
     std::size_t stride_; // sums per pixel and half
     std::vector<ExactSum> sums_;
     LayerPlan::Offsets at_;
-    std::vector<SharedSum> splats_; // of a pixel those that are light; empty: none are kept
+    std::array<std::vector<SharedSum>, kSplatKinds> splats_; // of a pixel those that are light; empty: none are kept
     std::unordered_map<const void*, int> groups_;
     std::vector<std::string> names_;
     std::unordered_map<const void*, std::uint32_t> things_;

@@ -74,7 +74,10 @@ class PlaneMaker {
     }
     // What light paths add to the mean of a part of the picture, of both halves.
     double splats(std::size_t pixel, int offset) const {
-        return lightPaths_ > 0 ? layers_.splatted(pixel, offset) / lightPaths_ * view_.scale : 0;
+        double sum = 0;
+        for (std::size_t k = 0; k < kSplatKinds; ++k)
+            if (splats_[k] > 0) sum += layers_.splatted(static_cast<SplatKind>(k), pixel, offset) / splats_[k];
+        return sum * view_.scale;
     }
     static void store(const Vec3d& v, float* const* out) {
         *out[0] = static_cast<float>(v.x);
@@ -229,7 +232,9 @@ class PlaneMaker {
     ResolvedImage& picture_;
     const LayerView& view_;
     std::vector<float> total_, inHalf_; // samples of pixels
-    const double lightPaths_ = static_cast<double>(film_.lightPaths());
+    const std::array<double, kSplatKinds> splats_{
+        static_cast<double>(film_.splatCount(SplatKind::lightPath, 0, film_.replicates())),
+        static_cast<double>(film_.splatCount(SplatKind::merged, 0, film_.replicates()))};
     LayerPlanes result_;
 };
 

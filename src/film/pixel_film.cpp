@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "render/integrator.h"
 
 #include <algorithm>
 #include <array>
@@ -19,10 +20,10 @@ PixelFilm::PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicat
     samples_.resize(cells);
 }
 
-std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates, bool splats) {
+std::uint64_t PixelFilm::memoryBytes(PixelBounds bounds, int replicates, bool splats, bool merged) {
     return static_cast<std::uint64_t>(bounds.area()) * static_cast<std::uint64_t>(replicates) *
-               (sizeof(ExactXyz) + sizeof(std::uint32_t)) +
-           (splats ? SplatSums::memoryBytes(bounds, replicates) : 0);
+               (sizeof(ExactXyz) + sizeof(std::uint32_t) + merged * sizeof(SharedSum)) +
+           SplatSums::memoryBytes(bounds, replicates) * (splats + merged);
 }
 
 std::size_t PixelFilm::cell(int x, int y, int replicate) const noexcept {
@@ -43,28 +44,49 @@ void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint3
 void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space, LayerSight sight) {
     if (plan.empty()) return;
     layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space, sight);
-    if (splats_) layers_->keepSplats();
+    for (std::size_t k = 0; k < kSplatKinds; ++k)
+        if (splats_[k]) layers_->keepSplats(static_cast<SplatKind>(k));
 }
 
 void PixelFilm::keepSplats() {
-    splats_ = std::make_unique<SplatSums>(bounds_, replicates_);
-    if (layers_) layers_->keepSplats();
+    splats_[0] = std::make_unique<SplatSums>(SplatKind::lightPath, bounds_, replicates_);
+    if (layers_) layers_->keepSplats(SplatKind::lightPath);
+}
+
+void PixelFilm::keepMerged() {
+    splats_[1] = std::make_unique<SplatSums>(SplatKind::merged, bounds_, replicates_);
+    closer_.resize(sums_.size());
+    if (layers_) layers_->keepSplats(SplatKind::merged);
+}
+
+void PixelFilm::keepSplatsOf(const Integrator& integrator, const Scene& scene, const RenderSettings& settings) {
+    if (integrator.lightBlocks(scene, settings) == 0) return;
+    keepSplats();
+    if (integrator.merges(scene, settings)) keepMerged();
 }
 
 void PixelFilm::splat(int x, int y, int replicate, const Splat& splat) noexcept {
     ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
-    if (!splats_) return;
-    splats_->add(cell(x, y, replicate), splat.value);
+    SplatSums* const sums = splats(splat.kind);
+    if (!sums) return;
+    sums->add(cell(x, y, replicate), splat.value);
+    if (splat.kind == SplatKind::merged) closer_[cell(x, y, replicate)].add(ExactSum(splat.closer));
     if (layers_) layers_->splat(layers_->pixelIndex(x, y), splat);
 }
 
 void PixelFilm::countLightPaths(int replicate, std::uint64_t paths) noexcept {
     ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
-    if (splats_) splats_->count(replicate, paths);
+    if (SplatSums* const sums = splats(SplatKind::lightPath)) sums->count(replicate, paths);
 }
 
-std::uint64_t PixelFilm::lightPaths(int first, int last) const noexcept {
-    return splats_ ? splats_->paths(first, last) : 0;
+void PixelFilm::countRounds(int replicate, std::uint64_t rounds) noexcept {
+    ABBE_DCHECK(replicate >= 0 && replicate < replicates_);
+    if (SplatSums* const sums = splats(SplatKind::merged)) sums->count(replicate, rounds);
+}
+
+std::uint64_t PixelFilm::splatCount(SplatKind kind, int first, int last) const noexcept {
+    const SplatSums* const sums = splats(kind);
+    return sums ? sums->paths(first, last) : 0;
 }
 
 Xyz PixelFilm::sampleMean(int x, int y, int first, int last) const noexcept {
@@ -78,15 +100,25 @@ Xyz PixelFilm::sampleMean(int x, int y, int first, int last) const noexcept {
     return count == 0 ? Xyz{} : sum.value() * (1 / static_cast<double>(count));
 }
 
-Xyz PixelFilm::splatMean(int x, int y, int first, int last) const noexcept {
-    const std::uint64_t count = lightPaths(first, last);
+Xyz PixelFilm::splatMean(SplatKind kind, int x, int y, int first, int last) const noexcept {
+    const std::uint64_t count = splatCount(kind, first, last);
     if (count == 0) return {};
-    return splats_->sum(cell(x, y, first), cell(x, y, last)) * (1 / static_cast<double>(count));
+    return splats(kind)->sum(cell(x, y, first), cell(x, y, last)) * (1 / static_cast<double>(count));
+}
+
+double PixelFilm::closerMean(int x, int y, int first, int last) const noexcept {
+    const std::uint64_t count = splatCount(SplatKind::merged, first, last);
+    if (count == 0) return 0;
+    ExactSum sum;
+    for (std::size_t i = cell(x, y, first); i < cell(x, y, last); ++i) sum += closer_[i].sum();
+    return sum.value() / static_cast<double>(count);
 }
 
 Xyz PixelFilm::mean(int x, int y, int first, int last) const noexcept {
-    const Xyz mean = sampleMean(x, y, first, last);
-    return splats_ ? mean + splatMean(x, y, first, last) : mean;
+    Xyz mean = sampleMean(x, y, first, last);
+    for (const auto& sums : splats_)
+        if (sums) mean += splatMean(sums->kind(), x, y, first, last);
+    return mean;
 }
 
 std::uint64_t PixelFilm::samples(int x, int y, int first, int last) const noexcept {
@@ -104,23 +136,33 @@ std::uint64_t PixelFilm::samples(int x, int y, int first, int last) const noexce
 PixelFilm::Luminance PixelFilm::luminance(int x, int y) const noexcept {
     const std::size_t first = cell(x, y, 0);
     const auto replicates = static_cast<std::size_t>(replicates_);
-    const std::uint64_t lightPaths = this->lightPaths();
-    double total = 0, sum = 0;
+    struct Kind {
+        const SplatSums* sums;
+        double count, mean;
+    };
+    std::array<Kind, kSplatKinds> kinds{};
+    std::size_t kindCount = 0;
+    for (const auto& sums : splats_)
+        if (const std::uint64_t count = sums ? sums->paths(0, replicates_) : 0)
+            kinds[kindCount++] = {sums.get(), static_cast<double>(count),
+                                  splatMean(sums->kind(), x, y, 0, replicates_).y};
+    const std::span all(kinds.data(), kindCount);
+    double total = 0, sum = 0, splats = 0;
     int used = 0;
     for (std::size_t r = 0; r < replicates; ++r) {
         sum += sums_[first + r].y.value();
         total += samples_[first + r];
-        used += samples_[first + r] > 0 && (lightPaths == 0 || splats_->paths(r) > 0);
+        used +=
+            samples_[first + r] > 0 && std::ranges::all_of(all, [&](const Kind& k) { return k.sums->paths(r) > 0; });
     }
-    const double splats = splatMean(x, y, 0, replicates_).y;
+    for (const Kind& k : all) splats += k.mean;
     Luminance result{(total > 0 ? sum / total : 0) + splats, 0, used > 1};
     if (!result.known) return result;
     const double mean = sum / total;
     for (std::size_t r = 0; r < replicates; ++r) { // w (m − mean) = (sum − count · mean) / total
         double deviation = (sums_[first + r].y.value() - samples_[first + r] * mean) / total;
-        if (lightPaths > 0)
-            deviation += (splats_->luminance(first + r) - static_cast<double>(splats_->paths(r)) * splats) /
-                         static_cast<double>(lightPaths);
+        for (const Kind& k : all)
+            deviation += (k.sums->luminance(first + r) - static_cast<double>(k.sums->paths(r)) * k.mean) / k.count;
         result.variance += square(deviation);
     }
     result.variance *= static_cast<double>(used) / (used - 1);
@@ -185,7 +227,11 @@ FilmPlanes PixelFilm::planes() {
     planes.push_back(std::make_unique<DensePlane<ExactXyz>>("xyz", bounds_, replicates, std::span<ExactXyz>(sums_)));
     planes.push_back(std::make_unique<DensePlane<std::uint32_t>>("samples", bounds_, replicates,
                                                                  std::span<std::uint32_t>(samples_)));
-    if (splats_) splats_->appendPlanes(planes);
+    for (const auto& sums : splats_)
+        if (sums) sums->appendPlanes(planes);
+    if (!closer_.empty())
+        planes.push_back(std::make_unique<DensePlane<SharedSum>>("merged-closer", bounds_, replicates,
+                                                                 std::span(closer_), PlaneChanges::byLightPaths));
     if (layers_) layers_->appendPlanes(planes);
     return planes;
 }

@@ -1,5 +1,5 @@
-// The film of the renderer: 52 bytes per pixel and replicate, 100 where light paths add to it, and no other plane of
-// the image's size.
+// The film of the renderer: 52 bytes per pixel and replicate, 48 more where light paths add to it and 64 where merged
+// light does, and no other plane of the image's size.
 #pragma once
 
 #include "film/film_layers.h"
@@ -9,6 +9,7 @@
 #include "render/film.h"
 #include "spectrum/matrix3.h"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -23,6 +24,10 @@ struct ResolvedImage {
     std::vector<float> variance;
 };
 
+class Integrator;
+struct RenderSettings;
+struct Scene;
+
 class PixelFilm final : public Film {
   public:
     // `bounds` is the part of the image that is made (the crop). Requires a non-empty one and replicates >= 1.
@@ -32,11 +37,14 @@ class PixelFilm final : public Film {
     void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&, LayerSight = {});
     // Before the first sample: a place for light from light paths, in the layers too. Throws std::bad_alloc.
     void keepSplats();
+    void keepMerged();
+    // Both as a render by an integrator needs it.
+    void keepSplatsOf(const Integrator&, const Scene&, const RenderSettings&);
     // Null if nothing else is kept.
     const FilmLayers* layers() const { return layers_.get(); }
     std::unique_ptr<SampleRecorder> makeRecorder() override { return layers_ ? layers_->makeRecorder() : nullptr; }
     // What a film of this size takes, without layers.
-    static std::uint64_t memoryBytes(PixelBounds, int replicates, bool splats = false);
+    static std::uint64_t memoryBytes(PixelBounds, int replicates, bool splats = false, bool merged = false);
 
     PixelBounds bounds() const override { return bounds_; }
     int replicates() const override { return replicates_; }
@@ -45,21 +53,26 @@ class PixelFilm final : public Film {
     float filterWeight(float offset) const noexcept override { return filter_.weight(offset); }
     // Different pixels may be added to from different threads at once.
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override;
-    bool takesSplats() const override { return splats_ != nullptr; }
+    bool takesSplats() const override { return splats(SplatKind::lightPath) != nullptr; }
+    bool takesMerged() const override { return splats(SplatKind::merged) != nullptr; }
     void splat(int x, int y, int replicate, const Splat&) noexcept override;
     void countLightPaths(int replicate, std::uint64_t paths) noexcept override;
+    void countRounds(int replicate, std::uint64_t rounds) noexcept override;
 
     // Of what samples found and of what light paths brought, added up. No thread may be splatting, here and below.
     Xyz mean(int x, int y) const noexcept override { return mean(x, y, 0, replicates_); }
     std::uint64_t samples(int x, int y) const noexcept { return samples(x, y, 0, replicates_); }
-    std::uint64_t lightPaths() const noexcept { return lightPaths(0, replicates_); }
+    std::uint64_t lightPaths() const noexcept { return splatCount(SplatKind::lightPath, 0, replicates_); }
     // The same of the replicates [first, last) alone.
     Xyz mean(int x, int y, int first, int last) const noexcept;
     std::uint64_t samples(int x, int y, int first, int last) const noexcept;
-    std::uint64_t lightPaths(int first, int last) const noexcept;
-    // The two parts of that mean: over the samples of the pixel, and over the light paths of the frame.
+    // Light paths of the frame, or rounds.
+    std::uint64_t splatCount(SplatKind, int first, int last) const noexcept;
+    // The parts of that mean: over the samples of the pixel, and over those.
     Xyz sampleMean(int x, int y, int first, int last) const noexcept;
-    Xyz splatMean(int x, int y, int first, int last) const noexcept;
+    Xyz splatMean(SplatKind, int x, int y, int first, int last) const noexcept;
+    // Y of merged light as Splat::closer.
+    double closerMean(int x, int y, int first, int last) const noexcept;
 
     // Variance of mean(x, y).y, unbiased for replicates of equal size: s²/R of the R replicate means, hence R − 1
     // degrees of freedom: a 95 % interval is ± studentFactor95(R − 1) standard errors. Nothing unless two replicates
@@ -83,6 +96,9 @@ class PixelFilm final : public Film {
 
   private:
     std::size_t cell(int x, int y, int replicate) const noexcept;
+    // Null: there is no place for it.
+    const SplatSums* splats(SplatKind k) const { return splats_[static_cast<std::size_t>(k)].get(); }
+    SplatSums* splats(SplatKind k) { return splats_[static_cast<std::size_t>(k)].get(); }
     // Mean Y of a pixel and the variance of that mean.
     struct Luminance {
         double mean = 0, variance = 0;
@@ -96,7 +112,8 @@ class PixelFilm final : public Film {
     PixelFilter filter_;
     std::vector<ExactXyz> sums_;         // [pixel][replicate]
     std::vector<std::uint32_t> samples_; // [pixel][replicate]
-    std::unique_ptr<SplatSums> splats_;  // null: none
+    std::array<std::unique_ptr<SplatSums>, kSplatKinds> splats_;
+    std::vector<SharedSum> closer_; // [pixel][replicate]
     std::unique_ptr<FilmLayers> layers_;
 };
 

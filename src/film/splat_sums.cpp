@@ -4,8 +4,9 @@
 
 namespace abbe {
 
-SplatSums::SplatSums(PixelBounds bounds, int replicates)
-    : bounds_(bounds), cells_(static_cast<std::size_t>(bounds.area()) * static_cast<std::size_t>(replicates)),
+SplatSums::SplatSums(SplatKind kind, PixelBounds bounds, int replicates)
+    : kind_(kind), bounds_(bounds),
+      cells_(static_cast<std::size_t>(bounds.area()) * static_cast<std::size_t>(replicates)),
       paths_(static_cast<std::size_t>(replicates)) {}
 
 std::uint64_t SplatSums::memoryBytes(PixelBounds bounds, int replicates) {
@@ -39,7 +40,10 @@ class SplatSums::PathsPlane final : public FilmPlane {
   public:
     explicit PathsPlane(SplatSums& sums) : sums_(sums) {}
 
-    std::string name() const override { return "light-paths/" + std::to_string(sums_.paths_.size()) + "x64"; }
+    std::string name() const override {
+        const std::string what = sums_.kind_ == SplatKind::merged ? "rounds/" : "light-paths/";
+        return what + std::to_string(sums_.paths_.size()) + "x64";
+    }
     bool ofLightPaths() const override { return true; }
 
     void store(PixelBounds b, std::vector<std::byte>& out) const override {
@@ -70,8 +74,8 @@ class SplatSums::PathsPlane final : public FilmPlane {
 };
 
 void SplatSums::appendPlanes(FilmPlanes& planes) {
-    planes.push_back(std::make_unique<DensePlane<Cell>>("splats", bounds_, paths_.size(), std::span(cells_),
-                                                        PlaneChanges::byLightPaths));
+    planes.push_back(std::make_unique<DensePlane<Cell>>(kind_ == SplatKind::merged ? "merged" : "splats", bounds_,
+                                                        paths_.size(), std::span(cells_), PlaneChanges::byLightPaths));
     planes.push_back(std::make_unique<PathsPlane>(*this));
 }
 

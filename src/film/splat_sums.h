@@ -1,8 +1,9 @@
-// What light paths brought to a film.
+// What light paths brought to a film, or rounds of merging.
 #pragma once
 
 #include "film/film_planes.h"
 #include "math/shared_sum.h"
+#include "render/splat.h"
 #include "spectrum/xyz.h"
 
 #include <cstdint>
@@ -11,12 +12,12 @@
 
 namespace abbe {
 
-// XYZ of every pixel and replicate, and how many light paths there were: 48 bytes per pixel and replicate. Any thread
-// adds to any pixel at any time; to read is for when nobody does.
+// XYZ of every pixel and replicate, and how many light paths (rounds) there were: 48 bytes per pixel and replicate. Any
+// thread adds to any pixel at any time; to read is for when nobody does.
 class SplatSums {
   public:
     // Throws std::bad_alloc.
-    SplatSums(PixelBounds, int replicates);
+    SplatSums(SplatKind, PixelBounds, int replicates);
     static std::uint64_t memoryBytes(PixelBounds, int replicates);
 
     // `cell`: the pixel, row by row, times the replicates, plus the replicate.
@@ -27,6 +28,7 @@ class SplatSums {
         c.z.add(ExactSum(value.z));
     }
     void count(int replicate, std::uint64_t paths) noexcept;
+    SplatKind kind() const { return kind_; }
 
     // Over the cells [first, last).
     Xyz sum(std::size_t first, std::size_t last) const noexcept;
@@ -50,6 +52,7 @@ class SplatSums {
     };
     class PathsPlane;
 
+    SplatKind kind_;
     PixelBounds bounds_;
     std::vector<Cell> cells_;          // [pixel][replicate]
     std::vector<std::uint64_t> paths_; // [replicate]

@@ -16,6 +16,7 @@ class Darkroom final : public Film {
     Xyz mean(int, int) const noexcept override { return {}; }
     double relativeNoise() const override { return 0; }
     bool takesSplats() const override { return true; }
+    bool takesMerged() const override { return true; }
 
   private:
     PixelBounds frame_;

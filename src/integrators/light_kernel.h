@@ -2,6 +2,8 @@
 #pragma once
 
 #include "integrators/light_loop.h"
+#include "integrators/light_start.h"
+#include "integrators/merge_kernel.h"
 #include "integrators/tile_kernel.h"
 #include "render/splat.h"
 
@@ -53,18 +55,15 @@ template <EffectBits E> class LightKernel {
         sampler_.start(static_cast<std::uint32_t>(number));
         ++result_.lightPaths;
         const Scene& scene = context_.scene;
-        const VertexSample n = sampler_.vertex(0);
         const Wavelengths lambda = scene.wavelengths.sample(sampler_.wavelength());
-        const EmissionNumbers numbers{static_cast<double>(n.pick), static_cast<double>(sampler_.film().x), n.lobe,
-                                      n.light, n.bsdf};
-        const auto start = context_.traced->emission.sample(numbers, lambda, scene.camera->rayTime(sampler_.time()));
+        const float time = scene.camera->rayTime(sampler_.time());
+        const auto start = startOfLightPath(context_.traced->emission, sampler_, lambda, time);
         if (!start) return;
         listener.starts(*start);
         splats_ = 0;
-        if (shaded(*start)) return;
+        if (isShaded(scene, *start)) return;
         LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
-        if (std::ranges::any_of(scene.filled, [&](const Bounds3& b) { return b.contains(start->ray.origin); }))
-            loop.startIn(surroundingsAt(scene, start->ray.origin, start->ray.time));
+        loop.startIn(surroundingsOf(scene, *start));
         loop.trace(*start, lambda, [&](const LensSplat& splat) {
             const Xyz value = scene.sensor(splat.value, lambda);
             listener.sees(*start, splat, value.y);
@@ -73,13 +72,6 @@ template <EffectBits E> class LightKernel {
         removeWorkFlag(WorkFlag::heroOnly);
         setWork(Work::lights);
         if constexpr (PathLoop<E>::kMedia) setWorkCause(0);
-    }
-
-    // What has no end may lie before the place where light from far away starts.
-    bool shaded(const EmittedRay& start) const {
-        if (!start.density.distant) return false;
-        return context_.scene.intersector->occluded(
-            {start.ray.origin, -start.ray.direction, kInfinity, start.ray.time});
     }
 
     // To one of the pixels whose filter reaches the place, drawn in proportion to the filter: so no two pixels share a
@@ -94,8 +86,8 @@ template <EffectBits E> class LightKernel {
         const int y0 = static_cast<int>(std::ceil(y - radius)), y1 = static_cast<int>(std::floor(y + radius));
         if (x1 < bounds.x0 || y1 < bounds.y0 || x0 >= bounds.x1 || y0 >= bounds.y1) return;
         if (!(std::abs(value.x) + std::abs(value.y) + std::abs(value.z) < ExactSum::kLargest)) [[unlikely]]
-            return drop({{std::max(x0, bounds.x0), std::max(y0, bounds.y0), replicate, sample},
-                         std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
+            return result_.drop({{std::max(x0, bounds.x0), std::max(y0, bounds.y0), replicate, sample},
+                                 std::isnan(value.x + value.y + value.z) ? DropCause::nan : DropCause::infinite});
         RandomStream random = sampler_.stream(kPixelNumbers + number);
         const Drawn u = drawPixel(x, x0, x1, random.uniform()), v = drawPixel(y, y0, y1, random.uniform());
         if (u.pixel < bounds.x0 || v.pixel < bounds.y0 || u.pixel >= bounds.x1 || v.pixel >= bounds.y1) return;
@@ -126,11 +118,6 @@ template <EffectBits E> class LightKernel {
         return drawn;
     }
 
-    void drop(DroppedSample sample) {
-        ++result_.dropped[static_cast<std::size_t>(sample.cause)];
-        if (result_.examples.size() < 4) result_.examples.push_back(sample);
-    }
-
     const PathContext& context_;
     Film& film_;
     const LightJob& job_;
@@ -156,6 +143,7 @@ struct TracedKernel {
     TileResult (*render)(const PathContext&, Film&, const TileJob&);
     TileResult (*trace)(const PathContext&, Film&, const LightJob&);
     TileResult (*listen)(const PathContext&, Film&, const LightJob&, LightListener&);
+    TileResult (*merge)(const PathContext&, Film&, const MergeJob&, MergeListener*); // null: nobody listens
 };
 
 template <EffectBits E> TileResult traceLight(const PathContext& context, Film& film, const LightJob& job) {
@@ -168,6 +156,11 @@ template <EffectBits E> TileResult traceLight(const PathContext& context, Film& 
 template <EffectBits E>
 TileResult listenToLight(const PathContext& context, Film& film, const LightJob& job, LightListener& listener) {
     return LightKernel<E>(context, film, job).run(listener);
+}
+
+template <EffectBits E>
+TileResult merge(const PathContext& context, Film& film, const MergeJob& job, MergeListener* listener) {
+    return MergeKernel<E>(context, film, job, listener).run();
 }
 
 // For scenes without media and for all.

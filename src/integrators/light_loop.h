@@ -4,6 +4,7 @@
 
 #include "integrators/emitted_ray.h"
 #include "integrators/path_loop.h"
+#include "integrators/photon.h"
 #include "render/path_component.h"
 
 namespace abbe {
@@ -36,6 +37,8 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     void startIn(const Surroundings& around) { this->path_.nested.here = around; }
     // Vertex 0 of the sampler has started the path; vertex k + 1 is that of the path's vertex k.
     template <typename Tell> void trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
+    // Instead of what the lens sees: tells of the photons that the path leaves for merging.
+    template <typename Tell> void leavePhotons(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
 
   private:
     static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
@@ -53,7 +56,12 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
         }
     };
 
+    // Calls onSurface(hit, vertex, sample, depth) and onCollision(place, direction, sample, depth), and goes on.
+    template <typename Surface, typename Collision>
+    void walk(const EmittedRay&, const Wavelengths&, Surface onSurface, Collision onCollision);
     void arriveAt(const EmittedRay&, Vec3 p, double cosine);
+    Photon photonAt(const SurfaceHit&, const EmittedRay&, std::uint32_t depth) const;
+    bool followedFrom(const Light*) const;
     // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
     // started from, 1/sr.
     double askedDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;
@@ -76,15 +84,78 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
 
     TracedView& view_;
     Rivals rivals_;
-    bool first_ = true;        // at the first vertex
-    bool focused_ = false;     // by the first vertex
-    std::uint32_t spread_ = 0; // how often so far
+    bool first_ = true;                            // at the first vertex
+    bool focused_ = false;                         // by the first vertex
+    std::uint32_t spread_ = 0;                     // how often so far
+    bool mirroredFirst_ = false, photons_ = false; // by the first vertex; whether that is all that counts
+    struct Link {
+        const Shape* shape = nullptr;
+        Lobes lobe;
+    };
+    static constexpr std::size_t kMostLinks = ChainSignature::kMaxLength;
+    std::array<Link, kMostLinks> links_{}; // of the chain of deltas that the path has been so far,
+    std::size_t linkCount_ = 0;            // kMostLinks + 1 where it is none or too long
     float startThroughput_ = 1;
 };
 
 template <EffectBits E>
 template <typename Tell>
 void LightLoop<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell) {
+    walk(
+        start, lambda,
+        [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample& sample, std::uint32_t depth) {
+            show(start, hit, vertex, sample.light, depth, tell);
+        },
+        [&](Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
+            showMedium(p, direction, sample.light, depth, tell);
+        });
+}
+
+template <EffectBits E>
+template <typename Tell>
+void LightLoop<E>::leavePhotons(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell) {
+    photons_ = true;
+    walk(
+        start, lambda,
+        [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample&, std::uint32_t depth) {
+            if (depth > 0 && vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy))
+                tell(photonAt(hit, start, depth));
+        },
+        [](Vec3, Vec3, const VertexSample&, std::uint32_t) {});
+}
+
+template <EffectBits E>
+Photon LightLoop<E>::photonAt(const SurfaceHit& hit, const EmittedRay& start, std::uint32_t depth) const {
+    const auto& path = this->path_;
+    Photon photon;
+    photon.p = hit.p;
+    photon.wi = -hit.arrival;
+    photon.ng = hit.ng;
+    photon.flux = path.beta;
+    photon.densities = path.densities.unidirectional;
+    photon.light = start.light;
+    Rivals meeting = rivals_;
+    meeting.asked = 0;
+    photon.cameraOdds = static_cast<float>(meeting.of(1, Spectrum(1.f), path.densities.heroOnly));
+    photon.vertices = depth;
+    photon.heroOnly = path.densities.heroOnly;
+    photon.followed = followedFrom(start.light);
+    return photon;
+}
+
+// Camera paths would meet the links the other way round.
+template <EffectBits E> bool LightLoop<E>::followedFrom(const Light* light) const {
+    const ManifoldSampler* const sampler = this->context_.manifold;
+    if (!sampler || linkCount_ > kMostLinks) return false;
+    CoveredChain chain;
+    chain.start();
+    for (std::size_t i = linkCount_; i-- > 0;) sampler->follow(chain, links_[i].shape, links_[i].lobe);
+    return sampler->coversKind(chain, light);
+}
+
+template <EffectBits E>
+template <typename Surface, typename Collision>
+void LightLoop<E>::walk(const EmittedRay& start, const Wavelengths& lambda, Surface onSurface, Collision onCollision) {
     auto& path = this->path_;
     path.lambda = lambda;
     path.time = start.ray.time;
@@ -105,7 +176,7 @@ void LightLoop<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tel
         const VertexSample sample = this->sampler_.vertex(depth + 1);
         if (arrival == Base::Arrival::collision) {
             if (first_) return; // camera paths have it
-            showMedium(ray.origin, direction, sample.light, depth, tell);
+            onCollision(ray.origin, direction, sample, depth);
             if (!scatterInMedium(ray, sample) || !survives(depth)) return;
             continue;
         }
@@ -115,8 +186,9 @@ void LightLoop<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tel
         hit.footprint = 0;
         this->arena_.reset();
         const LightVertex vertex(hit, path.lambda, this->arena_, view_.eye);
-        show(start, hit, vertex, sample.light, depth, tell);
+        onSurface(hit, vertex, sample, depth);
         if (!scatter(start, hit, vertex, sample, ray) || !survives(depth)) return;
+        if (photons_ && !mirroredFirst_) return;
     }
 }
 
@@ -264,6 +336,11 @@ bool LightLoop<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const
     else // deltas cannot be asked
         rivals_.asked *= delta ? 0 : on * askedDensity(start, hit, vertex, next->away);
     focused_ = first_ ? !next->lobe.has(Lobe::diffuse) : focused_;
+    mirroredFirst_ = first_ ? delta : mirroredFirst_;
+    if (delta && linkCount_ < kMostLinks)
+        links_[linkCount_++] = {hit.shape, next->lobe};
+    else
+        linkCount_ = kMostLinks + 1;
     spread_ += next->lobe.has(Lobe::diffuse);
     if (next->lobe.has(Lobe::transmission)) path.nested.here = path.nested.beyond;
     ray = {spawnOrigin(hit, next->away), next->away, kInfinity, path.time};
@@ -278,6 +355,7 @@ template <EffectBits E> bool LightLoop<E>::scatterInMedium(Ray& ray, const Verte
     const Frame frame = Frame::fromNormal(ray.direction);
     ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
     ++spread_;
+    linkCount_ = kMostLinks + 1;
     return anyNonZero(this->path_.beta);
 }
 

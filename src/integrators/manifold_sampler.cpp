@@ -198,14 +198,14 @@ std::optional<ManifoldSample> ManifoldSampler::sample(const ChainStart& start, c
     return estimate(start, *target, choice, lambda, random, counts, media);
 }
 
-void ManifoldSampler::follow(CoveredChain& chain, const SurfaceHit& hit, Lobes lobe) const noexcept {
+void ManifoldSampler::follow(CoveredChain& chain, const Shape* shape, Lobes lobe) const noexcept {
     if (!chain.following) return;
     const bool first = chain.signature.length() == 0;
     const bool longer = chain.signature.length() == ChainSignature::kMaxLength;
-    chain.following = !longer && lobe.has(Lobe::delta) && followed_.contains(hit.shape);
+    chain.following = !longer && lobe.has(Lobe::delta) && followed_.contains(shape);
     if (!chain.following) return;
     if (first) {
-        const auto found = casters_.find(hit.shape);
+        const auto found = casters_.find(shape);
         chain.following = found != casters_.end();
         if (!chain.following) return;
         chain.caster = found->second;
@@ -213,11 +213,15 @@ void ManifoldSampler::follow(CoveredChain& chain, const SurfaceHit& hit, Lobes l
     chain.signature.add(lobe.has(Lobe::transmission) ? ChainEvent::transmission : ChainEvent::reflection);
 }
 
+bool ManifoldSampler::coversKind(const CoveredChain& chain, const Light* light) const noexcept {
+    return chain.following && chain.signature.length() > 0 && lights_.contains(light) &&
+           plan_.casters[chain.caster].weights[chain.signature.index()] > 0;
+}
+
 bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
                              const Wavelengths& lambda) const noexcept {
-    if (!chain.following || chain.signature.length() == 0 || !lights_.contains(met.light)) return false;
+    if (!coversKind(chain, met.light) || !(met.pdf > 0)) return false;
     const SpecularCaster& caster = plan_.casters[chain.caster];
-    if (!(caster.weights[chain.signature.index()] > 0) || !(met.pdf > 0)) return false;
     ChainTracer tracer(scene_, followed_, start, met, lambda);
     SpecularChain again;
     return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) &&

@@ -55,8 +55,10 @@ class ManifoldSampler {
                                            const Wavelengths&, RandomStream&, ManifoldCounts&,
                                            MediumTracker* media = nullptr) const noexcept;
 
-    // A camera path went on from a hit, as the intersector made it, by this lobe.
-    void follow(CoveredChain& chain, const SurfaceHit& hit, Lobes lobe) const noexcept;
+    // A camera path went on from a place of the shape by this lobe.
+    void follow(CoveredChain& chain, const Shape*, Lobes lobe) const noexcept;
+    // Whether some light of this lamp by such a chain is covered, as far as its shapes and events tell.
+    bool coversKind(const CoveredChain& chain, const Light*) const noexcept;
     // Whether light that the path meets next is covered: whoever asked at the start of the chain has it already.
     // `start` and `direction` as there; `met`: LightTarget::met(). Cheap where no such light can be covered.
     bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,

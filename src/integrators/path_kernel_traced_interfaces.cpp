@@ -4,8 +4,8 @@ namespace abbe {
 
 template TileResult renderTile<kTracedInterfacesKernel.bits()>(const PathContext&, Film&, const TileJob&);
 
-const TracedKernel kTracedInterfaces = {renderTile<kTracedInterfacesKernel.bits()>,
-                                        traceLight<kTracedInterfacesKernel.bits()>,
-                                        listenToLight<kTracedInterfacesKernel.bits()>};
+const TracedKernel kTracedInterfaces = {
+    renderTile<kTracedInterfacesKernel.bits()>, traceLight<kTracedInterfacesKernel.bits()>,
+    listenToLight<kTracedInterfacesKernel.bits()>, merge<kTracedInterfacesKernel.bits()>};
 
 } // namespace abbe

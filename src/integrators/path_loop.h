@@ -10,6 +10,7 @@
 #include "integrators/loop_technique.h"
 #include "integrators/manifold_listener.h"
 #include "integrators/medium_tracker.h"
+#include "integrators/merge_plan.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
@@ -36,6 +37,7 @@ struct PathContext {
     const LightPathPlan* traced = nullptr;
     const ManifoldSampler* manifold = nullptr;
     ManifoldListener* hears = nullptr;
+    const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
 };
 
 struct TracedView;
@@ -45,6 +47,15 @@ struct PathCounters {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, capped = 0;
     EffectCounts effects;
     ManifoldCounts manifold;
+
+    void add(const PathCounters& c) {
+        paths += c.paths;
+        vertices += c.vertices;
+        shadowRays += c.shadowRays;
+        capped += c.capped;
+        effects.add(c.effects);
+        manifold.add(c.manifold);
+    }
 };
 
 // What paths through media need and keep from one to the next.
@@ -236,6 +247,9 @@ template <EffectBits E> class PathLoop {
     void askManifold(const SurfaceHit&, const Bsdf&, const Directions&, std::uint32_t depth);
     void followChain(const SurfaceHit&, const BsdfSample&, Vec3 direction);
     template <typename Met> bool covered(Met met) const; // met() makes the LightTarget
+    // path_loop_merge.h
+    void meetGathering(const SurfaceHit&, const Bsdf&, std::uint32_t depth);
+    bool merged(const Light*) const; // of a light that is met
     // path_loop_traced.h
     void beginTraced(Vec3 p);
     void arriveTraced(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
@@ -305,7 +319,10 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
             observer_->scatters(hit, bsdf.lobes(), path_.beta, next ? &*next : nullptr);
         setWork(Work::lights);
         sampleLight(hit, bsdf, eye, sample, depth);
-        if constexpr (kTraced) askManifold(hit, bsdf, eye, depth);
+        if constexpr (kTraced) {
+            askManifold(hit, bsdf, eye, depth);
+            meetGathering(hit, bsdf, depth);
+        }
         setWork(Work::surface);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
     }
@@ -453,5 +470,6 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 #include "integrators/path_loop_lights.h"
 #include "integrators/path_loop_manifold.h"
 #include "integrators/path_loop_media.h"
+#include "integrators/path_loop_merge.h"
 #include "integrators/path_loop_near_light.h"
 #include "integrators/path_loop_traced.h"

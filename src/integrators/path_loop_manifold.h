@@ -51,8 +51,9 @@ template <EffectBits E> void PathLoop<E>::followChain(const SurfaceHit& hit, con
     } else if (traced.asks || !path_.delta) {
         traced.chain.stop();
     } else if (context_.manifold) {
-        context_.manifold->follow(traced.chain, hit, next.lobe);
+        context_.manifold->follow(traced.chain, hit.shape, next.lobe);
     }
+    traced.gathered |= traced.gathers && !path_.delta;
     traced.mirrored &= path_.delta;
 }
 

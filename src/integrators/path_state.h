@@ -45,6 +45,9 @@ struct TracedDensities {
     bool asks = false;    // at a vertex that asked for chains
     CoveredChain chain;   // since then
     Vec3 chainDirection;  // its first direction
+    // path_loop_merge.h
+    bool gathers = false;  // at a vertex at which merging gathers light
+    bool gathered = false; // behind one
 };
 // The curve of absorption of the medium around the present segment; null in air.
 struct Interior {

@@ -6,6 +6,7 @@
 #include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
 #include "integrators/manifold_planner.h"
+#include "integrators/merge_planner.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/time_left.h"
 #include "render/render_state.h"
@@ -65,9 +66,9 @@ double threadSeconds() {
 PathTally tallyOf(const TileResult& r, double seconds) {
     const PathCounters& c = r.counters;
     if (r.lightPaths == 0)
-        return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0, 0};
+        return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0, 0, 0};
     const std::uint64_t rays = c.vertices + c.shadowRays + c.effects.crossings + c.effects.shadowCrossings;
-    return {0, 0, 0, c.capped, r.dropped, r.excess, {}, seconds, r.lightPaths, rays, r.splats};
+    return {0, 0, 0, c.capped, r.dropped, r.excess, {}, seconds, r.lightPaths, rays, r.splats, r.rounds};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
@@ -130,7 +131,12 @@ class RenderJob {
         manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.manifold = manifold_.sampler.get();
         light_.findings.manifold = manifold_.findings;
-        if (context_.traced || context_.manifold) render_ = kernel_.traced().render;
+        if (film_.takesMerged()) {
+            merging_ = planMerging(context_, kernel_.traced(), ahead_.roulette, light_.findings, stop);
+            context_.merging = merging_.plan.get();
+            light_.findings.merging = merging_.findings;
+        }
+        if (context_.traced || context_.manifold || context_.merging) render_ = kernel_.traced().render;
     }
 
     void look(const PathContext& context) {
@@ -141,7 +147,7 @@ class RenderJob {
         else
             light_.findings.verdict = lightPathVerdict(context_.scene, settings_.technique);
         statistics_.lightPlan = light_.findings;
-        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays;
+        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays + merging_.findings.rays;
     }
 
     static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
@@ -223,11 +229,21 @@ class RenderJob {
     TileResult work(std::size_t i, std::uint32_t first, std::uint32_t end) {
         if (!state_.isLightBlock(i))
             return render_(context_, film_, {state_.pixels(i), first, end, &ahead_.roulette, plan()});
-        if (!light_.plan) return {};
-        const std::uint64_t paths = light_.plan->paths, block = state_.lightBlock(i), blocks = state_.lightBlockCount();
-        return kernel_.traced().trace(context_, film_,
-                                      {static_cast<std::uint32_t>(paths * block / blocks),
-                                       static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end});
+        return workOnBlock(static_cast<std::uint32_t>(state_.lightBlock(i)), first, end);
+    }
+
+    // A share of the light paths, and some of the rounds of merging.
+    TileResult workOnBlock(std::uint32_t block, std::uint32_t first, std::uint32_t end) {
+        const auto blocks = static_cast<std::uint32_t>(state_.lightBlockCount());
+        TileResult result;
+        if (light_.plan) {
+            const std::uint64_t paths = light_.plan->paths;
+            result = kernel_.traced().trace(context_, film_,
+                                            {static_cast<std::uint32_t>(paths * block / blocks),
+                                             static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end});
+        }
+        if (merging_.plan) result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks}, nullptr));
+        return result;
     }
 
     const SamplingPlan* plan() const { return ahead_.plan.even() ? nullptr : &ahead_.plan; }
@@ -277,6 +293,7 @@ class RenderJob {
         statistics_.lightPaths += t.lightPaths;
         statistics_.lightRays += t.lightRays;
         statistics_.splats += t.splats;
+        statistics_.rounds += t.rounds;
         for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
     }
 
@@ -314,6 +331,7 @@ class RenderJob {
     LookAhead ahead_;
     PlannedLightPaths light_;
     PlannedManifold manifold_;
+    PlannedMerging merging_;
     TileFunction render_ = kernel_.render; // of pixels
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one
@@ -342,6 +360,9 @@ class PathTracer final : public Integrator {
     }
     std::size_t lightBlocks(const Scene& scene, const RenderSettings& settings) const override {
         return lightBlocksOf(scene, settings.technique);
+    }
+    bool merges(const Scene&, const RenderSettings& settings) const override {
+        return settings.technique.merging != Technique::Merging::off;
     }
     LightPathFindings findLightPaths(const Scene& scene, const RenderSettings& settings) const override {
         LightPathFindings known;

@@ -103,6 +103,12 @@ std::vector<FieldInfo> techniqueFields() {
                 .synonyms({"caustics", "light-tracing", "photons"})
                 .doc("Paths from the lights, for caustics: where they pay; never, always or alone, to compare.")
                 .example("light-paths off"),
+            field(FieldType::choice, "merging", &P::merging)
+                .choices({"automatic", "off", "always"})
+                .byDefault("automatic")
+                .synonyms({"photon-map", "sppm", "vertex-merging"})
+                .doc("Caustics behind glass and in mirrors that nothing else finds, by merging of paths: biased.")
+                .example("merging off"),
             field(FieldType::integer, "wavelengths", &P::wavelengths)
                 .range(1, 8)
                 .byDefault("8")
@@ -139,6 +145,7 @@ Technique technique(const RenderParams& p) {
     t.lightChoice = lightChoiceOf(p.lightChoice.word);
     t.roulette = rouletteOf(p.roulette.word);
     t.lightPaths = lightPathsOf(p.lightPaths.word);
+    t.merging = mergingOf(p.merging.word);
     t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
     return t;
 }

@@ -23,6 +23,7 @@ struct RenderParams {
     schema::Choice directions{"importance", {}};
     schema::Choice roulette{"pilot", {}};
     schema::Choice lightPaths{"automatic", {}};
+    schema::Choice merging{"automatic", {}};
     std::int64_t wavelengths = 8; // 1, 2, 4 or 8
     schema::Choice lightChoice{"tree", {}};
 };

@@ -19,6 +19,7 @@ template <> constexpr std::array<std::string_view, 5> kWords<Technique::Roulette
 
 template <>
 constexpr std::array<std::string_view, 5> kWords<Technique::LightPaths>{"automatic", "off", "always", "alone"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Merging>{"automatic", "off", "always"};
 
 template <typename E> E find(std::string_view word) {
     for (std::size_t i = 1; i < kWords<E>.size(); ++i)
@@ -37,6 +38,7 @@ Technique::LightChoice lightChoiceOf(std::string_view word) { return find<Techni
 Technique::Roulette rouletteOf(std::string_view word) { return find<Technique::Roulette>(word); }
 
 Technique::LightPaths lightPathsOf(std::string_view word) { return find<Technique::LightPaths>(word); }
+Technique::Merging mergingOf(std::string_view word) { return find<Technique::Merging>(word); }
 
 std::string_view word(Technique::Numbers e) { return wordOf(e); }
 std::string_view word(Technique::Strategy e) { return wordOf(e); }
@@ -45,13 +47,19 @@ std::string_view word(Technique::Directions e) { return wordOf(e); }
 std::string_view word(Technique::LightChoice e) { return wordOf(e); }
 std::string_view word(Technique::Roulette e) { return wordOf(e); }
 std::string_view word(Technique::LightPaths e) { return wordOf(e); }
+std::string_view word(Technique::Merging e) { return wordOf(e); }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
-    return {{"sampler", text(t.numbers)},          {"strategy", text(t.strategy)},
-            {"mis-weights", text(t.weights)},      {"directions", text(t.directions)},
-            {"light-choice", text(t.lightChoice)}, {"roulette", text(t.roulette)},
-            {"light-paths", text(t.lightPaths)},   {"wavelengths", std::to_string(t.wavelengths)}};
+    return {{"sampler", text(t.numbers)},
+            {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},
+            {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)},
+            {"roulette", text(t.roulette)},
+            {"light-paths", text(t.lightPaths)},
+            {"merging", text(t.merging)},
+            {"wavelengths", std::to_string(t.wavelengths)}};
 }
 
 } // namespace abbe

@@ -18,6 +18,7 @@ Technique::Directions directionsOf(std::string_view word);
 Technique::LightChoice lightChoiceOf(std::string_view word);
 Technique::Roulette rouletteOf(std::string_view word);
 Technique::LightPaths lightPathsOf(std::string_view word);
+Technique::Merging mergingOf(std::string_view word);
 
 std::string_view word(Technique::Numbers);
 std::string_view word(Technique::Strategy);
@@ -26,6 +27,7 @@ std::string_view word(Technique::Directions);
 std::string_view word(Technique::LightChoice);
 std::string_view word(Technique::Roulette);
 std::string_view word(Technique::LightPaths);
+std::string_view word(Technique::Merging);
 
 // All of it, as properties of `render` with their values.
 std::vector<std::pair<std::string, std::string>> properties(const Technique&);

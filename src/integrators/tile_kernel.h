@@ -1,6 +1,7 @@
 // One tile of one pass: the unit of work, and the only function that exists once per set of effects.
 #pragma once
 
+#include "integrators/camera_start.h"
 #include "integrators/path_loop.h"
 
 #include <algorithm>
@@ -27,7 +28,24 @@ struct TileResult {
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // at most a few
     DensityExcess excess;
-    std::uint64_t lightPaths = 0, splats = 0; // as in PathTally
+    std::uint64_t lightPaths = 0, splats = 0, rounds = 0; // as in PathTally
+    std::uint64_t photonRays = 0;                         // of those rays, of light paths for merging
+
+    void drop(const DroppedSample& sample) {
+        ++dropped[static_cast<std::size_t>(sample.cause)];
+        if (examples.size() < 4) examples.push_back(sample);
+    }
+    void add(const TileResult& r) {
+        counters.add(r.counters);
+        for (std::size_t i = 0; i < dropped.size(); ++i) dropped[i] += r.dropped[i];
+        for (const DroppedSample& s : r.examples)
+            if (examples.size() < 4) examples.push_back(s);
+        excess.add(r.excess);
+        lightPaths += r.lightPaths;
+        splats += r.splats;
+        rounds += r.rounds;
+        photonRays += r.photonRays;
+    }
 };
 
 // Paths from the film: where, which wavelengths, what came back. Every sample passes one gate: one that is not finite
@@ -58,27 +76,6 @@ template <EffectBits E> class TileKernel {
   private:
     using Media = typename PathLoop<E>::Media;
     using Clock = std::chrono::steady_clock;
-    // Rays of a pinhole share their origin, and what is around it.
-    const Surroundings& around(const Ray& ray) {
-        const auto contains = [&](const Bounds3& filled) { return filled.contains(ray.origin); };
-        if (ray.origin == around_.origin) return around_.surroundings;
-        around_ = {};
-        around_.origin = ray.origin;
-        if (std::ranges::any_of(context_.scene.filled, contains))
-            around_.surroundings = surroundingsAt(context_.scene, ray.origin, ray.time);
-        return around_.surroundings;
-    }
-
-    // Half of what lies between the rays of two neighbouring pixels, and half of that again: textures are averaged over
-    // less than the filter covers, which averages the rest.
-    path_detail::Cone coneOf(const CameraSample& at, const Ray& ray) const {
-        CameraSample next = at;
-        next.film.x += 1;
-        const CameraRay other = context_.scene.camera->ray(next);
-        if (!(other.weight > 0)) return {};
-        return {0.25f * length(other.ray.origin - ray.origin), 0.25f * length(other.ray.direction - ray.direction)};
-    }
-
     void replicate(int x, int y, int r) {
         const SampleRange range = plannedRange(job_.plan, x, y, {job_.first, job_.last});
         if (range.first == range.last) return;
@@ -95,7 +92,7 @@ template <EffectBits E> class TileKernel {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
-                drop({{x, y, r, i}, static_cast<DropCause>(cause)});
+                result_.drop({{x, y, r, i}, static_cast<DropCause>(cause)});
                 if (recorder_) tellDrop();
                 continue;
             }
@@ -124,8 +121,8 @@ template <EffectBits E> class TileKernel {
         if (!(camera.weight > 0)) return withoutRay(camera);
         PathLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
         loop.watch(recorder_.get());
-        if constexpr (PathLoop<E>::kInterfaces) loop.startIn(around(camera.ray));
-        if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(at, camera.ray));
+        if constexpr (PathLoop<E>::kInterfaces) loop.startIn(around_.at(context_.scene, camera.ray));
+        if constexpr (PathLoop<E>::kTextures) loop.startWith(coneOf(*context_.scene.camera, at, camera.ray));
         if constexpr (hasEffect(E, Effect::dispersion))
             if (camera.heroOnly) loop.startWithHero();
         if constexpr (PathLoop<E>::kTraced) {
@@ -193,11 +190,6 @@ template <EffectBits E> class TileKernel {
         recorder_->drop();
     }
 
-    void drop(DroppedSample sample) {
-        ++result_.dropped[static_cast<std::size_t>(sample.cause)];
-        if (result_.examples.size() < 4) result_.examples.push_back(sample);
-    }
-
     const PathContext& context_;
     Film& film_;
     const TileJob& job_;
@@ -205,11 +197,8 @@ template <EffectBits E> class TileKernel {
     Arena arena_;
     [[no_unique_address]] Media media_;
     const std::unique_ptr<SampleRecorder> recorder_; // null: nobody wants to know more
-    struct Around {
-        Vec3 origin{kInfinity, kInfinity, kInfinity};
-        Surroundings surroundings;
-    };
-    [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, Around, path_detail::Nothing> around_;
+    [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, CameraSurroundings, path_detail::Nothing>
+        around_;
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kTraced, TracedView, path_detail::Nothing> view_;
     TileResult result_;
     Spectrum radiance_; // of the last sample

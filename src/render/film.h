@@ -54,6 +54,9 @@ class Film {
     // picture is what its samples came to, over their number, and what was splatted, over this one. Of the whole frame,
     // also where the film is a crop.
     virtual void countLightPaths(int /*replicate*/, std::uint64_t /*paths*/) noexcept {}
+    // The same of merged light, whose number is that of rounds: splats of that kind have no place elsewhere.
+    virtual bool takesMerged() const { return false; }
+    virtual void countRounds(int /*replicate*/, std::uint64_t /*rounds*/) noexcept {}
 
     // What else is to be kept of samples, for one thread; null: nothing. The film outlives it.
     virtual std::unique_ptr<SampleRecorder> makeRecorder() { return nullptr; }

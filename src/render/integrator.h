@@ -83,6 +83,7 @@ struct RenderStatistics {
     std::uint64_t lightPaths = 0; // that started at lights, beside `paths`
     std::uint64_t lightRays = 0;  // of theirs; all other counts of rays are of camera paths
     std::uint64_t splats = 0;     // pixels that they were added to
+    std::uint64_t rounds = 0;     // of merging, whose paths count as light paths
     std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
     LightPathFindings lightPlan;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
@@ -133,6 +134,8 @@ class Integrator {
     // Blocks of light paths that a RenderState for this must have; if any, the film is to take splats. Else there will
     // be no paths of light.
     virtual std::size_t lightBlocks(const Scene&, const RenderSettings&) const { return 0; }
+    // Whether the film is to take merged light, too; only if there are such blocks.
+    virtual bool merges(const Scene&, const RenderSettings&) const { return false; }
     // What render() decides on light paths of the scene's whole frame, without rendering. Takes a fraction of a second
     // where it has to look.
     virtual LightPathFindings findLightPaths(const Scene&, const RenderSettings&) const = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/manifold_findings.h"
+#include "render/merge_findings.h"
 
 #include <cstdint>
 #include <string>
@@ -53,6 +54,7 @@ struct LightPathFindings {
 
     // What light paths cannot show to the lens.
     ManifoldFindings manifold;
+    MergeFindings merging;
 
     bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
 };

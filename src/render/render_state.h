@@ -22,6 +22,7 @@ struct PathTally {
     double coreSeconds = 0;
     // Paths that started at lights, their rays, and pixels that they were added to. The rest is of camera paths.
     std::uint64_t lightPaths = 0, lightRays = 0, splats = 0;
+    std::uint64_t rounds = 0; // of merging
 
     void add(const PathTally& t) {
         paths += t.paths;
@@ -35,6 +36,7 @@ struct PathTally {
         lightPaths += t.lightPaths;
         lightRays += t.lightRays;
         splats += t.splats;
+        rounds += t.rounds;
     }
 };
 

@@ -1,4 +1,5 @@
-// How light is estimated. Every choice estimates the same image; they differ in noise and in time alone. All but the
+// How light is estimated. Every choice estimates the same image, but for the blur of merged light, which goes to 0 as
+// samples are added (`merging`); they differ in noise and in time alone. All but the
 // defaults exist for comparisons: `abbe study` shows what each choice is worth, `abbe verify` plays them off against
 // each other.
 #pragma once
@@ -30,6 +31,9 @@ struct Technique {
     // Paths of light beside those from the camera: where a plan finds them worth their time; never; always, as many as
     // the plan finds best; or always, with all light that they can bring left to them.
     enum class LightPaths : std::uint8_t { automatic, off, always, alone } lightPaths = LightPaths::automatic;
+    // Merging of light paths with camera paths behind mirrors and glass, for caustics that nothing else finds: where a
+    // plan finds it worth its time, never, or always. The only choice here that is biased; none without light paths.
+    enum class Merging : std::uint8_t { automatic, off, always } merging = Merging::automatic;
 
     friend bool operator==(const Technique&, const Technique&) = default;
 };

@@ -118,7 +118,7 @@ class Study {
         PixelFilm film = filmOf(built);
         const auto integrator = makePathTracer(built.scene.effects);
         const RenderSettings settings = settingsOf(built, pair);
-        if (integrator->lightBlocks(built.scene, settings) > 0) film.keepSplats();
+        film.keepSplatsOf(*integrator, built.scene, settings);
         const RenderControl control{in_.stop};
         WorkClock clock(threadCount()); // for both of a pair, since it costs
         const RenderStatistics statistics = integrator->render(built.scene, film, settings, control);

@@ -62,7 +62,7 @@ void LadderRender::begin() {
     const Scene& scene = subject_.built->scene;
     film_.emplace(frameOf(film), PixelFilter(film.filter, film.filterRadius), subject_.replicates);
     const std::size_t blocks = integrator_->lightBlocks(scene, settings_);
-    if (blocks > 0) film_->keepSplats();
+    film_->keepSplatsOf(*integrator_, scene, settings_);
     state_.emplace(film_->bounds(), 0, blocks);
     cost_ = {};
     LayerPlan plan;

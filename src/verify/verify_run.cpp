@@ -124,7 +124,7 @@ bool VerifyRun::render(std::size_t estimator, std::uint32_t samplesPerReplicate,
     if (control_.progress) control.progress = [&](const Progress& p) { control_.progress(done + share * p.fraction); };
     const Stopwatch clock;
     const auto integrator = makePathTracer(built_.scene.effects);
-    if (integrator->lightBlocks(built_.scene, settings) > 0) image.keepSplats();
+    image.keepSplatsOf(*integrator, built_.scene, settings);
     picture.statistics = integrator->render(built_.scene, image, settings, control);
     picture.seconds = clock.seconds();
     if (picture.statistics.stopped) return false;

@@ -114,7 +114,7 @@ inline TestImage render(const TestScene& scene, const RenderSettings& settings, 
 inline TestImage renderAsProgram(const TestScene& scene, const RenderSettings& settings, int replicates = 8) {
     TestImage image{RecordingFilm(scene.built().film, replicates), {}};
     const auto tracer = makePathTracer(scene.scene().effects);
-    if (tracer->lightBlocks(scene.scene(), settings) > 0) image.film.keepSplats();
+    image.film.keepSplatsOf(*tracer, scene.scene(), settings);
     image.statistics = tracer->render(scene.scene(), image.film, settings, {});
     return image;
 }

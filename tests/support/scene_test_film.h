@@ -26,13 +26,18 @@ class RecordingFilm final : public Film {
     const PixelFilm& pixelFilm() const { return film_; }
     // Before the first sample.
     void keepSplats() { film_.keepSplats(); }
+    void keepSplatsOf(const Integrator& integrator, const Scene& scene, const RenderSettings& settings) {
+        film_.keepSplatsOf(integrator, scene, settings);
+    }
     bool takesSplats() const override { return film_.takesSplats(); }
+    bool takesMerged() const override { return film_.takesMerged(); }
     void splat(int x, int y, int replicate, const Splat& splat) noexcept override {
         film_.splat(x, y, replicate, splat);
     }
     void countLightPaths(int replicate, std::uint64_t paths) noexcept override {
         film_.countLightPaths(replicate, paths);
     }
+    void countRounds(int replicate, std::uint64_t rounds) noexcept override { film_.countRounds(replicate, rounds); }
     PixelBounds bounds() const override { return film_.bounds(); }
     int replicates() const override { return film_.replicates(); }
     FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
@@ -80,8 +85,10 @@ class RecordingFilm final : public Film {
     // What one replicate of a pixel shows, with splats; it must have samples.
     double replicateMean(int x, int y, int r, Channel channel = Channel::y) const {
         const std::size_t i = cell(x, y) + static_cast<std::size_t>(r);
-        const double ofSamples = value(sums_[i].value(), channel) / counts_[i];
-        return takesSplats() ? ofSamples + value(film_.splatMean(x, y, r, r + 1), channel) : ofSamples;
+        double sum = value(sums_[i].value(), channel) / counts_[i];
+        for (const SplatKind kind : {SplatKind::lightPath, SplatKind::merged})
+            sum += value(film_.splatMean(kind, x, y, r, r + 1), channel);
+        return sum;
     }
     // Mean over all pixels of the variance of one replicate's mean: the MSE of a render with its number of samples.
     double replicateVariance() const {

@@ -26,7 +26,7 @@ Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
     const FilmSettings film = filmSettings(test.built().film);
     PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), kReplicates);
     const auto tracer = makePathTracer(test.scene().effects);
-    if (tracer->lightBlocks(test.scene(), settings) > 0) pixels.keepSplats();
+    pixels.keepSplatsOf(*tracer, test.scene(), settings);
     RenderStatistics statistics = tracer->render(test.scene(), pixels, settings, {});
     return {TileSums(pixels), std::move(statistics)};
 }

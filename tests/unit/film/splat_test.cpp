@@ -57,12 +57,12 @@ TEST_CASE("a mean is that of the samples and that over the light paths, added up
     film.countLightPaths(1, 15);
     film.countLightPaths(1, 15);
     CHECK(film.lightPaths() == 40);
-    CHECK(film.lightPaths(0, 1) == 10);
+    CHECK(film.splatCount(SplatKind::lightPath, 0, 1) == 10);
     CHECK(film.mean(5, 6).y == doctest::Approx(16.0 / 8 + 180.0 / 40));
     CHECK(film.mean(5, 6, 0, 1).x == doctest::Approx(1 + 3));
     CHECK(film.mean(5, 6, 1, 2).z == doctest::Approx(3 + 6));
     CHECK(film.sampleMean(5, 6, 1, 2).y == doctest::Approx(2));
-    CHECK(film.splatMean(5, 6, 1, 2).y == doctest::Approx(4));
+    CHECK(film.splatMean(SplatKind::lightPath, 5, 6, 1, 2).y == doctest::Approx(4));
     CHECK(film.mean(4, 6).y == 0);
     CHECK(film.resolve(rgb::xyz.fromXyz(), 2).g.back() == doctest::Approx(2 * (2 + 4.5)));
     // By hand: deviations of the two replicates are those of samples and of light paths together.

@@ -114,7 +114,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     const auto covered = [&](std::initializer_list<std::pair<const Shape*, Lobes>> vertices) {
         CoveredChain chain;
         chain.start();
-        for (const auto& [shape, lobe] : vertices) sampler.follow(chain, hitOf(*shape), lobe);
+        for (const auto& [shape, lobe] : vertices) sampler.follow(chain, shape, lobe);
         return sampler.covers(chain, start, sample->wi, target, lambda);
     };
     CHECK(covered({{&ball, kThrough}, {&ball, kThrough}}));
@@ -128,7 +128,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     other.light = scene.lights.at(1).get();
     CoveredChain chain;
     chain.start();
-    sampler.follow(chain, hitOf(ball), kThrough);
+    sampler.follow(chain, &ball, kThrough);
     sampler.follow(chain, hitOf(ball), kThrough);
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, other, lambda));
     chain.stop();

@@ -33,7 +33,7 @@ struct Picture {
     explicit Picture(const std::string& text) : scene(TestScene::parse(text)), film(makeFilm(scene)) {
         const RenderSettings settings = scene.settings();
         const auto tracer = makePathTracer(scene.scene().effects);
-        if (tracer->lightBlocks(scene.scene(), settings) > 0) film.keepSplats();
+        film.keepSplatsOf(*tracer, scene.scene(), settings);
         statistics = tracer->render(scene.scene(), film, settings, {});
         const double exposure = scene.built().exposure;
         picture = film.resolve(rgb::ap1.fromXyz(), exposure);
@@ -79,7 +79,7 @@ TEST_CASE("light paths: components and light groups add up to the picture with a
             CHECK(sum({"direct", "indirect", "caustic"}, i) == image.picture.g[i]);
             CHECK(sum({"group_lamp", "group_fill"}, i) == image.picture.g[i]);
             const int x = static_cast<int>(i) % kWidth, y = static_cast<int>(i) / kWidth;
-            splatted += image.film.splatMean(x, y, 0, 2).y > 0;
+            splatted += image.film.splatMean(SplatKind::lightPath, x, y, 0, 2).y > 0;
         }
         CHECK(splatted > image.picture.g.size() / 2);
         CHECK(image.mean("caustic.G") > 0.01 * image.mean("group_lamp.G"));

@@ -1,0 +1,40 @@
+// Where camera paths start, beside the ray itself.
+#pragma once
+
+#include "integrators/path_state.h"
+#include "integrators/surroundings_at.h"
+#include "render/scene.h"
+
+#include <algorithm>
+
+namespace abbe {
+
+// Half of what lies between the rays of two neighbouring pixels, and half of that again: textures are averaged over
+// less than the filter covers, which averages the rest. `ray`: the camera's of `at`.
+inline path_detail::Cone coneOf(const Camera& camera, const CameraSample& at, const Ray& ray) {
+    CameraSample next = at;
+    next.film.x += 1;
+    const CameraRay other = camera.ray(next);
+    if (!(other.weight > 0)) return {};
+    return {0.25f * length(other.ray.origin - ray.origin), 0.25f * length(other.ray.direction - ray.direction)};
+}
+
+// What is around the origins of camera rays. Those of a pinhole share their origin, and what is around it.
+class CameraSurroundings {
+  public:
+    // Until the next question.
+    const Surroundings& at(const Scene& scene, const Ray& ray) {
+        const auto contains = [&](const Bounds3& filled) { return filled.contains(ray.origin); };
+        if (ray.origin == origin_) return surroundings_;
+        surroundings_ = {};
+        origin_ = ray.origin;
+        if (std::ranges::any_of(scene.filled, contains)) surroundings_ = surroundingsAt(scene, ray.origin, ray.time);
+        return surroundings_;
+    }
+
+  private:
+    Vec3 origin_{kInfinity, kInfinity, kInfinity};
+    Surroundings surroundings_;
+};
+
+} // namespace abbe

@@ -1,0 +1,180 @@
+// Rounds of merging: light paths leave photons, and camera paths through all pixels gather them [Jensen1996;
+// Hachisuka2008; Knaus2011].
+#pragma once
+
+#include "integrators/gather_loop.h"
+#include "integrators/light_loop.h"
+#include "integrators/light_start.h"
+#include "integrators/tile_kernel.h"
+#include "render/splat.h"
+
+namespace abbe {
+
+// Of the samples [first, last) of each replicate those that begin a round whose number is `block` modulo `blocks`.
+struct MergeJob {
+    std::uint32_t first = 0, last = 0;
+    std::uint32_t block = 0, blocks = 1;
+    int step = 1; // of pixels, along each axis: pilots look at some of them alone
+};
+
+// Hears what photons bring, pixel by pixel.
+class MergeListener {
+  public:
+    virtual ~MergeListener() = default;
+    virtual void begins(int x, int y) = 0;
+    // `luminance` and, 0 if there is none, that of the sample of a camera path which finds the same light by itself.
+    virtual void gathers(const Light*, double luminance, double camera) = 0;
+};
+
+// A round is a picture of its own: light paths and camera paths are those of its number alone, whoever makes it.
+template <EffectBits E> class MergeKernel {
+  public:
+    MergeKernel(const PathContext& context, Film& film, const MergeJob& job, MergeListener* listener)
+        : context_(context), plan_(*context.merging), film_(film), job_(job), listener_(listener),
+          media_(LightLoop<E>::makeMedia(context.scene)) {}
+
+    TileResult run() {
+        const WorkScope work(Work::lights);
+        addWorkFlag(WorkFlag::light);
+        for (int r = 0; r < film_.replicates(); ++r)
+            for (std::uint32_t i = job_.first; i < job_.last; ++i)
+                if (i % plan_.every == 0 && i / plan_.every % job_.blocks == job_.block) round(r, i / plan_.every);
+        removeWorkFlag(WorkFlag::light);
+        if constexpr (PathLoop<E>::kMedia) {
+            const MediumCounters& media = media_.tracker.counters;
+            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
+        }
+        return std::move(result_);
+    }
+
+  private:
+    static constexpr std::uint64_t kRound = 0x726f756e64, kPhoton = 0x70686f746f6e, kGather = 0x676174686572;
+
+    std::uint64_t key(std::uint64_t purpose, int replicate) const {
+        return combine64(combine64(context_.settings.seed, purpose), static_cast<std::uint64_t>(replicate));
+    }
+
+    void round(int replicate, std::uint32_t number) {
+        sampler_.startPixel(key(kRound, replicate), Technique::Numbers::sobol, true);
+        sampler_.start(number);
+        lambda_ = context_.scene.wavelengths.sample(sampler_.wavelength());
+        time_ = sampler_.time();
+        const PathCounters& counters = result_.counters;
+        const std::uint64_t before = counters.vertices + counters.shadowRays;
+        const PhotonMap photons(trace(replicate, number));
+        result_.photonRays += counters.vertices + counters.shadowRays - before;
+        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
+        for (int y = pixels.y0; y < pixels.y1; ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x)
+                if ((x - frame.x0) % job_.step == job_.step / 2 && (y - frame.y0) % job_.step == job_.step / 2)
+                    gather(x, y, replicate, number, photons);
+        film_.countRounds(replicate, 1);
+        ++result_.rounds;
+    }
+
+    std::vector<Photon> trace(int replicate, std::uint32_t number) {
+        std::vector<Photon> photons;
+        std::uint64_t startedAs = ~std::uint64_t{0};
+        for (std::uint32_t j = 0; j < plan_.photons; ++j) {
+            const std::uint64_t path = std::uint64_t{number} * plan_.photons + j;
+            if (path >> 32 != startedAs) { // sequences have 2^32 points
+                startedAs = path >> 32;
+                sampler_.startPixel(combine64(key(kPhoton, replicate), startedAs), Technique::Numbers::sobol, true);
+            }
+            sampler_.start(static_cast<std::uint32_t>(path));
+            traceOne(photons);
+        }
+        result_.lightPaths += plan_.photons;
+        return photons;
+    }
+
+    void traceOne(std::vector<Photon>& photons) {
+        const Scene& scene = context_.scene;
+        const auto start = startOfLightPath(plan_.emission, sampler_, lambda_, scene.camera->rayTime(time_));
+        if (!start || !plan_.lights.contains(start->light) || isShaded(scene, *start)) return;
+        LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
+        loop.startIn(surroundingsOf(scene, *start));
+        loop.leavePhotons(*start, lambda_, [&](Photon photon) {
+            photon.flux *= 1 / static_cast<float>(plan_.photons);
+            photons.push_back(photon);
+        });
+        removeWorkFlag(WorkFlag::heroOnly);
+    }
+
+    void gather(int x, int y, int replicate, std::uint32_t number, const PhotonMap& photons) {
+        const auto place =
+            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
+        sampler_.startPixel(combine64(key(kGather, replicate), place), Technique::Numbers::sobol, true);
+        sampler_.start(number);
+        const FilterSample filter = film_.filter(sampler_.film());
+        const CameraSample at{
+            {static_cast<float>(x) + 0.5f + filter.offset.x, static_cast<float>(y) + 0.5f + filter.offset.y},
+            sampler_.lens(),
+            time_,
+            lambda_.nm[0]};
+        const CameraRay camera = context_.scene.camera->ray(at);
+        if (listener_) listener_->begins(x, y);
+        if (!(camera.weight > 0)) return;
+        GatherLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
+        loop.startIn(around_.at(context_.scene, camera.ray));
+        loop.startWith(coneOf(*context_.scene.camera, at, camera.ray));
+        if (camera.heroOnly) loop.startWithHero();
+        const auto factor = static_cast<double>(camera.weight * filter.weight);
+        sums_.clear();
+        loop.gather(camera.ray, lambda_, photons, MergePlan::radius(number), [&](const GatheredLight& light) {
+            if (listener_) tell(light, factor);
+            Sum& sum = sumOf(light.photon.light);
+            sum.radiance += light.value;
+            sum.closer += light.value * light.closer;
+        });
+        removeWorkFlag(WorkFlag::heroOnly);
+        for (const Sum& sum : sums_) add({x, y, replicate, number * plan_.every}, sum, factor);
+    }
+
+    // Of one lamp, for light groups.
+    struct Sum {
+        const Light* light = nullptr;
+        Spectrum radiance{0.f}, closer{0.f};
+    };
+    Sum& sumOf(const Light* light) {
+        for (Sum& sum : sums_)
+            if (sum.light == light) return sum;
+        return sums_.emplace_back(Sum{light});
+    }
+
+    void tell(const GatheredLight& light, double factor) const {
+        const double found = context_.scene.sensor(light.value, lambda_).y * factor;
+        const double odds = static_cast<double>(light.photon.cameraOdds) * static_cast<double>(light.cameraPdf);
+        const double one = found * plan_.photons / static_cast<double>(light.kernel); // by a single light path
+        listener_->gathers(light.photon.light, found, odds > 0 ? one / odds : 0);
+    }
+
+    void add(const SampleId& sample, const Sum& sum, double factor) {
+        const Xyz value = context_.scene.sensor(sum.radiance, lambda_) * factor;
+        const double closer = context_.scene.sensor(sum.closer, lambda_).y * factor;
+        const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z) + std::abs(closer);
+        if (!(size < ExactSum::kLargest)) [[unlikely]]
+            return result_.drop({sample, std::isnan(size) ? DropCause::nan : DropCause::infinite});
+        film_.splat(
+            sample.x, sample.y, sample.replicate,
+            {value, sum.radiance, lambda_, factor, sum.light, PathComponent::caustic, SplatKind::merged, closer});
+        ++result_.splats;
+    }
+
+    const PathContext& context_;
+    const MergePlan& plan_;
+    Film& film_;
+    const MergeJob& job_;
+    MergeListener* const listener_;
+    Sampler sampler_;
+    Arena arena_;
+    TracedView view_;
+    CameraSurroundings around_;
+    typename LightLoop<E>::Media media_;
+    std::vector<Sum> sums_; // of this pixel
+    Wavelengths lambda_;    // of the round
+    float time_ = 0;        // likewise, as CameraSample::time
+    TileResult result_;
+};
+
+} // namespace abbe

@@ -1,0 +1,22 @@
+// Whether merging is worth its time, and its bias, in a scene.
+#pragma once
+
+#include "integrators/light_kernel.h"
+#include "render/integrator.h"
+
+#include <functional>
+#include <memory>
+
+namespace abbe {
+
+struct PlannedMerging {
+    std::unique_ptr<const MergePlan> plan; // null: none
+    MergeFindings findings;
+};
+
+// A context with the plans of light paths and of manifold sampling, if any, and what was found about the first; the
+// reference is that of the frame. `stop` cuts it short, without a plan.
+PlannedMerging planMerging(const PathContext&, const TracedKernel&, const RouletteReference&, const LightPathFindings&,
+                           const std::function<bool()>& stop);
+
+} // namespace abbe

@@ -1,0 +1,28 @@
+// A vertex of a light path that waits to be met by camera paths.
+#pragma once
+
+#include "math/vec.h"
+#include "render/light.h"
+#include "spectrum/spectrum.h"
+
+#include <cstdint>
+
+namespace abbe {
+
+// Light that arrives at a surface after a mirror or clear glass was the first thing it met [Jensen1996].
+struct Photon {
+    Vec3 p;                       // render space
+    Vec3 wi;                      // unit, against its flight
+    Vec3 ng;                      // geometric normal of the surface, outside
+    Spectrum flux;                // W·nm⁻¹ over the density of all before, at the wavelengths of the round
+    Spectrum densities;           // as SpectralDensities::unidirectional, by which sums are divided in the mean
+    const Light* light = nullptr; // where it began
+    float cameraOdds = 0;         // density of the camera paths that come from the lamp here, without the scattering at
+                                  // p, over that of the light paths; 0: there are none
+    std::uint32_t vertices = 0;   // at which it was scattered on the way
+    bool heroOnly = false;        // `flux` and densities are those of the first lane, eight times
+    bool followed = false;        // by a chain that manifold sampling covers, if p is asked for it
+    std::uint8_t axis = 0;        // PhotonMap's own
+};
+
+} // namespace abbe

@@ -1,0 +1,87 @@
+// Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
+// lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
+#include "support/scene_test.h"
+#include "verify/agreement.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+constexpr int kReplicates = 16;
+
+struct Picture {
+    TileSums sums;
+    RenderStatistics statistics;
+};
+
+// `samples`: of each replicate.
+Picture render(const TestScene& test, bool merging, std::uint32_t samples,
+               Technique::LightPaths lightPaths = Technique::LightPaths::automatic) {
+    RenderSettings settings = test.settings();
+    settings.samples = samples * kReplicates;
+    settings.technique.lightPaths = merging ? lightPaths : Technique::LightPaths::off;
+    settings.technique.merging = merging ? Technique::Merging::always : Technique::Merging::off;
+    settings.seed = merging ? 5 : 7;
+    const FilmSettings film = filmSettings(test.built().film);
+    PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), kReplicates);
+    const auto tracer = makePathTracer(test.scene().effects);
+    pixels.keepSplatsOf(*tracer, test.scene(), settings);
+    RenderStatistics statistics = tracer->render(test.scene(), pixels, settings, {});
+    return {TileSums(pixels), std::move(statistics)};
+}
+
+// `error`: what the standard error of the whole picture's difference must be less than.
+void agree(const std::string& name, const Picture& expected, const Picture& found, double error) {
+    const Agreement a = compare(expected.sums, found.sums, 2e-3);
+    const std::string text = fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}; {} rounds, {} splats",
+                                         name, a.probability, 100 * a.whole.difference, 100 * a.whole.error, a.unjudged,
+                                         a.tiles, found.statistics.rounds, found.statistics.splats);
+    MESSAGE(text);
+    std::string where;
+    for (const BlockTest& b : a.culprits(4))
+        where += fmt::format(" [{}, {}) × [{}, {}) {}: {:+.3g} ± {:.2g} %", b.bounds.x0, b.bounds.x1, b.bounds.y0,
+                             b.bounds.y1, "XYZ"[b.channel], 100 * b.difference, 100 * b.error);
+    INFO(text << where);
+    CHECK(a.agrees());
+    CHECK(a.whole.judged);
+    CHECK(a.whole.error < error);
+    CHECK(3 * a.unjudged <= a.tiles);
+    CHECK(found.statistics.rounds > 0);
+    CHECK(found.statistics.cappedPaths == 0);
+}
+
+TestScene inlineScene(const std::string& text) {
+    return TestScene::parse(
+        "scene 1\nfilm { size 48 36 }\nrender { max-depth 16 }\n"
+        "camera { from 0 1.2 2.9; look-at 0 0.6 -2; fov 50 deg }\n"
+        "shape quad { points -3 0 3  3 0 3  3 0 -3  -3 0 -3; material diffuse { reflectance 0.5 } }\n"
+        "shape quad { points -3 0 -2.5  3 0 -2.5  3 3 -2.5  -3 3 -2.5; material conductor { index "
+        "metal Ag } }\n" +
+        text);
+}
+
+// A lamp in balls within balls: all of its light comes over four faces.
+std::string shells(const std::string& outer) {
+    return "shape sphere { center 0 1.2 0; radius 0.7; material dielectric { " + outer +
+           "; priority 1 } }\n"
+           "shape sphere { center 0 1.25 0; radius 0.55; material dielectric { ior 1.5; priority 2 } }\n"
+           "shape sphere { center 0 1.2 0; radius 0.4; material dielectric { ior 1.25; priority 3 } }\n"
+           "shape sphere { center 0.02 1.2 0; radius 0.3; material dielectric { ior 1.6; priority 4 } }\n"
+           "light sphere { center 0 1.2 0; radius 0.15; radiance 10 }\n";
+}
+
+} // namespace
+
+TEST_CASE("merging: a lamp within four balls of glass, in a mirror") {
+    const TestScene scene = inlineScene(shells("ior 1.3"));
+    agree("shells", render(scene, false, 256), render(scene, true, 64), 0.004);
+}
+
+TEST_CASE("merging: glass that disperses") {
+    const TestScene scene = inlineScene(shells("ior glass SF11"));
+    agree("SF11", render(scene, false, 512), render(scene, true, 128), 0.006);
+}
+
+} // namespace abbe::test
