@@ -89,6 +89,7 @@ Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
                                                 {"infinite", dropped(DropCause::infinite)},
                                                 {"negative", dropped(DropCause::negative)}})}});
     if (s.lightPaths > 0) object.set("light_paths", s.lightPaths).set("splats", s.splats);
+    if (s.rounds > 0) object.set("rounds", s.rounds);
     return object;
 }
 
@@ -111,6 +112,13 @@ std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, con
         list.push_back({"abbe.lightPaths", std::to_string(s.lightPaths)});
         list.push_back({"abbe.splats", std::to_string(s.splats)});
     }
+    if (c.merged) {
+        list.push_back({"abbe.estimator", "consistent"}); // and not unbiased
+        list.push_back({"abbe.mergedRounds", std::to_string(c.merged->rounds)});
+        list.push_back({"abbe.mergedShare", c.merged->share});
+        list.push_back({"abbe.mergedBias", c.merged->bias});
+        list.push_back({"abbe.mergedBiasOfTiles", c.merged->biasOfTiles});
+    }
     return list;
 }
 
@@ -127,6 +135,10 @@ std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute> 
     const auto relative = header.figure(kRelative);
     if (relative) c.relative = *relative;
     if (!relative && c.reason.empty()) c.reason = fmt::format("the header lacks `{}`", kRelative);
+    if (const auto share = header.get<double>("abbe.mergedShare"))
+        c.merged =
+            MergedLight{*share, header.get<double>("abbe.mergedBias").value_or(0),
+                        header.get<double>("abbe.mergedBiasOfTiles").value_or(0), header.whole("abbe.mergedRounds")};
     c.display = header.figure(kDisplay);
     c.view = header.get<std::string>("abbe.errorDisplayView").value_or("");
     c.displayReason = header.get<std::string>("abbe.errorDisplayReason").value_or("");
@@ -144,12 +156,24 @@ std::string certificateLine(const ErrorCertificate& c) {
     return line;
 }
 
+std::string mergedLine(const MergedLight& m) {
+    return fmt::format("merged light {:.3g} % of the picture, in {} rounds: consistent, not unbiased; its blur changes "
+                       "tiles of 8×8 by about {:.2g} %, the whole by {:+.2g} %",
+                       100 * m.share, m.rounds, 100 * m.biasOfTiles, 100 * m.bias);
+}
+
 Json certificateJson(const ErrorCertificate& c) {
     const bool stated = c.reason.empty();
     Json object = Json::object({{"stated", stated}, {"reason", stated ? Json() : Json(c.reason)}, {"level", 0.95}});
     object.set("relative", stated ? json(c.relative) : Json());
     object.set("display", stated && c.display ? json(*c.display) : Json());
     object.set("view", c.view).set("display_reason", c.displayReason.empty() ? Json() : Json(c.displayReason));
+    object.set("merged", !c.merged ? Json()
+                                   : Json::object({{"estimator", "consistent"},
+                                                   {"share", c.merged->share},
+                                                   {"rounds", c.merged->rounds},
+                                                   {"bias", c.merged->bias},
+                                                   {"bias_of_tiles", c.merged->biasOfTiles}}));
     return object.set("caveat", kCaveat);
 }
 

@@ -21,6 +21,8 @@ std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute>)
 std::string certificateLine(const ErrorCertificate&);
 // The figures: members relative and display; null where there is none, and then `reason`.
 Json certificateJson(const ErrorCertificate&);
+// How much of the picture is merged light, and the bias of that.
+std::string mergedLine(const MergedLight&);
 
 // What is in the file beside the image.
 struct CertificateFacts {

@@ -97,11 +97,13 @@ void HumanReport::done(const RenderSummary& s) {
                                   countText(static_cast<double>(r.splats))));
     if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
     if (const std::string line = manifoldLine(r.lightPlan.manifold); !line.empty()) console_.line("  " + line);
+    if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
     if (r.manifoldCapped > 0)
         console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
                                   r.manifoldCapped, r.manifoldEstimates));
     if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
+    if (s.certificate && s.certificate->merged) console_.line("  " + mergedLine(*s.certificate->merged));
     console_.line(
         fmt::format("  memory {} MB   {} warning{}", s.memoryBytes / 1000000, s.warnings, s.warnings == 1 ? "" : "s"));
     if (r.excess.above > 0)

@@ -203,6 +203,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
     s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
     if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
+    if (certificate && certificate->merged) s += fmt::format("bias         {}\n", mergedLine(*certificate->merged));
     if (bill) s += billTable(*bill);
     for (const ImageAttribute& a : info.attributes)
         if (!bill || a.name != kBillAttribute) s += fmt::format("{} = {}\n", a.name, text(a));

@@ -81,6 +81,7 @@ class JsonReport final : public RenderReport {
                                    {"bill", s.bill ? billJson(*s.bill) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
+        if (r.rounds > 0) event.set("rounds", r.rounds);
         if (r.lightPlan.verdict != LightPathVerdict::undecided)
             event.set("light_path_plan", lightPathJson(r.lightPlan));
         if (s.spread)

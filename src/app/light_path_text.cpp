@@ -111,6 +111,32 @@ std::string manifoldText(const ManifoldFindings& f) {
     return text;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kInLine, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
+    return names.size() > kInLine ? text + ", …" : text;
+}
+
+// Empty where nobody looked.
+std::string mergeText(const MergeFindings& f) {
+    if (!f.measured) return {};
+    std::string text = "Caustics behind glass and in mirrors that are left: ";
+    if (!f.found) return text + "none that light paths come to\n";
+    if (f.used)
+        text +=
+            fmt::format("merged, of {}, a round of {} light paths for {} of each replicate; consistent, not "
+                        "unbiased\n",
+                        listed(f.lights), f.photons, f.every == 1 ? "each sample" : fmt::format("{} samples", f.every));
+    else
+        text += "left to camera paths\n";
+    if (!f.unseen.empty()) text += fmt::format("  camera paths never find that of {}\n", listed(f.unseen));
+    if (f.lights.empty()) return text + "  camera paths find it better than merging does\n";
+    return text +
+           fmt::format("  forecast {} as efficient; relative second moment of a sample {} by camera paths, {} by "
+                       "merging\n",
+                       times(f.gain), moment(f.before), moment(f.after));
+}
+
 } // namespace
 
 std::string lightPathLine(const LightPathFindings& f) {
@@ -131,6 +157,13 @@ std::string manifoldLine(const ManifoldFindings& f) {
     return text;
 }
 
+std::string mergeLine(const MergeFindings& f) {
+    if (!f.used) return {};
+    return fmt::format("merging behind glass and in mirrors (biased, `merging off` leaves it out): forecast {} as "
+                       "efficient, light of {}",
+                       times(f.gain), listed(f.lights));
+}
+
 std::string lightPathText(const LightPathFindings& f) {
     if (f.verdict == undecided) return {};
     if (!f.measured) return fmt::format("Light paths: none, {}\n", reason(f));
@@ -145,7 +178,7 @@ std::string lightPathText(const LightPathFindings& f) {
     text += fmt::format("  relative variance of a sample by what light paths can bring: {} by camera paths alone",
                         moment(f.before));
     if (f.bestShare > 0) text += fmt::format(", {} by both; by everything else {}", moment(f.after), moment(f.rest));
-    return text + "\n" + shareTable(f) + manifoldText(f.manifold);
+    return text + "\n" + shareTable(f) + manifoldText(f.manifold) + mergeText(f.merging);
 }
 
 Json lightPathJson(const LightPathFindings& f) {
@@ -173,6 +206,22 @@ Json lightPathJson(const LightPathFindings& f) {
                                        {"rest", m.rest},
                                        {"pilot_rays", m.rays},
                                        {"not_followed", std::move(obstacles)}}));
+    const MergeFindings& g = f.merging;
+    Json lights = Json::list(), unseen = Json::list();
+    for (const std::string& light : g.lights) lights.push(Json(light));
+    for (const std::string& light : g.unseen) unseen.push(Json(light));
+    json.set("merging", Json::object({{"measured", g.measured},
+                                      {"used", g.used},
+                                      {"found", g.found},
+                                      {"gain", std::isfinite(g.gain) ? Json(g.gain) : Json()},
+                                      {"before", std::isfinite(g.before) ? Json(g.before) : Json()},
+                                      {"after", g.after},
+                                      {"rest", g.rest},
+                                      {"samples_per_round", static_cast<std::uint64_t>(g.every)},
+                                      {"photons", static_cast<std::uint64_t>(g.photons)},
+                                      {"pilot_rays", g.rays},
+                                      {"lights", std::move(lights)},
+                                      {"never_found", std::move(unseen)}}));
     return json.set("shares", std::move(shares));
 }
 

@@ -55,6 +55,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.lightChoice", std::string(word(technique.lightChoice)));
     text("abbe.roulette", std::string(word(technique.roulette)));
     text("abbe.lightPathTechnique", std::string(word(technique.lightPaths)));
+    text("abbe.mergingTechnique", std::string(word(technique.merging)));
     const LightPathFindings& found = statistics.lightPlan;
     if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
     if (found.measured) {

@@ -102,15 +102,15 @@ ExitCode RenderRun::checkOutputs() {
 }
 
 ExitCode RenderRun::prepare() {
+    settings_ = renderSettings(built_.render);
+    integrator_ = makePathTracer(options_.largestKernel ? kLoopEffects : built_.scene.effects);
     if (const ExitCode code = checkFilm(); code != ExitCode::done) return code;
     if (!alone())
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
-    settings_ = renderSettings(built_.render);
     if (options_.part) {
         settings_.part = static_cast<std::uint32_t>(options_.part->x);
         settings_.parts = static_cast<std::uint32_t>(options_.part->y);
     }
-    integrator_ = makePathTracer(options_.largestKernel ? kLoopEffects : built_.scene.effects);
     return ExitCode::done;
 }
 

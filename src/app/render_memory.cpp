@@ -24,8 +24,12 @@ double RenderRun::memoryBudget() const { return options_.memory ? *options_.memo
 double RenderRun::filmBytes() const {
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
     constexpr double kResolved = 5 * sizeof(float); // RGB, variance, and the writer's rows
-    return pixels * (kResolved + 52.0 * static_cast<double>(built_.render.replicates)) +
-           static_cast<double>(FilmLayers::memoryBytes(film_.crop, built_.layers));
+    const bool splats = integrator_->lightBlocks(built_.scene, settings_) > 0;
+    const bool merged = splats && integrator_->merges(built_.scene, settings_);
+    const auto replicates = static_cast<int>(built_.render.replicates);
+    return pixels * kResolved +
+           static_cast<double>(PixelFilm::memoryBytes(film_.crop, replicates, splats, merged) +
+                               FilmLayers::memoryBytes(film_.crop, built_.layers, splats + merged));
 }
 
 // Before the first sample. What is built already is measured, what is to come is counted; tiles of textures come as

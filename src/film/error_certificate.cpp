@@ -204,6 +204,7 @@ ErrorCertificate ErrorCertificate::of(const PixelFilm& film, const Picture& pict
     certificate.replicates = film.replicates();
     certificate.pixels = film.bounds().area();
     countSamples(film, certificate);
+    certificate.merged = MergedLight::of(film);
     if (film.replicates() < 2) {
         certificate.reason = "one replicate: a single set of samples does not tell its error";
         return certificate;

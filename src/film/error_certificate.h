@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/error_figure.h"
+#include "film/merged_light.h"
 #include "film/pixel_film.h"
 
 #include <functional>
@@ -33,6 +34,8 @@ struct ErrorCertificate {
     ErrorFigure relative; // of Y: film/relative_error.h
     // √ mean (x − t)² of the three display values from 0 to 255, before they are rounded.
     std::optional<ErrorFigure> display;
+    // What the figures above know nothing of; none: the picture is unbiased.
+    std::optional<MergedLight> merged;
     std::string view, displayReason; // the display's, and why it is missing; ErrorCertificate::of leaves them empty
 };
 

@@ -10,13 +10,17 @@
 namespace abbe {
 
 // Half of what lies between the rays of two neighbouring pixels, and half of that again: textures are averaged over
-// less than the filter covers, which averages the rest. `ray`: the camera's of `at`.
+// less than the filter covers, which averages the rest. `ray`: the camera's of `at`. Where no ray is next to it,
+// nothing.
 inline path_detail::Cone coneOf(const Camera& camera, const CameraSample& at, const Ray& ray) {
-    CameraSample next = at;
-    next.film.x += 1;
-    const CameraRay other = camera.ray(next);
-    if (!(other.weight > 0)) return {};
-    return {0.25f * length(other.ray.origin - ray.origin), 0.25f * length(other.ray.direction - ray.direction)};
+    for (const float step : {1.f, -1.f}) {
+        CameraSample next = at;
+        next.film.x += step;
+        const CameraRay other = camera.ray(next);
+        if (other.weight > 0)
+            return {0.25f * length(other.ray.origin - ray.origin), 0.25f * length(other.ray.direction - ray.direction)};
+    }
+    return {};
 }
 
 // What is around the origins of camera rays. Those of a pinhole share their origin, and what is around it.

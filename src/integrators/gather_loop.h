@@ -29,7 +29,7 @@ template <EffectBits E> class GatherLoop : private PathLoop<E> {
     GatherLoop(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
         : Base(context, sampler, arena, counters, media) {}
 
-    // Of photons of the same wavelengths and time, `radius` over that of the path's cone.
+    // Of photons of the same wavelengths and time, `radius` over that of the path's cone, at least MergePlan's.
     template <typename Tell>
     void gather(Ray ray, const Wavelengths& lambda, const PhotonMap& photons, float radius, Tell&& tell);
 
@@ -68,7 +68,8 @@ void GatherLoop<E>::gather(Ray ray, const Wavelengths& lambda, const PhotonMap& 
         const typename Base::Directions eye{hit.shading.toLocal(-direction), -direction};
         const Lobes lobes = bsdf.lobes();
         // In a focus of the cone the disk would vanish, and all light in it with it.
-        const float reach = radius * std::max(path.cone.radius, leastSpread * way);
+        const float reach =
+            std::max(radius * std::max(path.cone.radius, leastSpread * way), this->context_.merging->leastRadius);
         if (depth > 0 && hit.material->reversible() && lobes.any(Lobes(Lobe::diffuse) | Lobe::glossy))
             gatherAt(hit, bsdf, eye, depth, photons, reach, tell);
         if (!lobes.has(Lobe::delta)) return;

@@ -21,6 +21,7 @@ struct MergePlan {
     std::unordered_set<const Light*> lights; // whose light is merged
     std::uint32_t photons = 0;               // > 0
     std::uint32_t every = 1;                 // samples of a replicate there are to a round
+    float leastRadius = 0;                   // m, > 0: of a disk, where a path has no width at all
 
     // Radius of the disk over which the first round gathers, over that of a pixel's cone (path_detail::Cone), which is
     // a quarter of the distance between pixels.

@@ -23,7 +23,7 @@ constexpr std::uint32_t kLeastPhotons = 4096, kMostPhotons = 262144;
 constexpr double kLeastGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
 constexpr double kRoundCost = 2;
-constexpr std::array kEvery{1u, 2u, 4u, 8u};
+constexpr std::array kEvery{1u, 2u, 4u};
 
 // Light of one lamp, over all pixels and rounds of the pilot, relative to what the pixels show.
 struct Heard {
@@ -78,7 +78,7 @@ class Planner {
 
     PlannedMerging run() {
         PlannedMerging result;
-        MergePlan plan{emission(), {}, kPilotPhotons, 1};
+        MergePlan plan{emission(), {}, kPilotPhotons, 1, 1e-5f * context_.scene.intersector->bounds().radius()};
         for (const auto& light : context_.scene.lights)
             if (light->paths() != LightPaths::none) plan.lights.insert(light.get());
         if (plan.emission.empty()) return result;
@@ -194,15 +194,15 @@ class Planner {
         findings_.rest = light_.measured ? light_.rest + (light_.used() ? light_.after : light_.before) : 0;
         const double rays = cameraRays();
         const double round = kRoundCost * (gatherRays_ + photonRays_ * plan.photons / pixels);
-        findings_.gain = 0;
+        double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t every : kEvery) {
-            const double plain = (findings_.rest + findings_.before) * rays;
-            const double gain = plain / ((findings_.rest + own * every) * (rays + round / every));
-            if (!(gain > findings_.gain)) continue;
-            findings_.gain = gain;
+            const double cost = (findings_.rest + own * every) * (rays + round / every);
+            if (!(cost < least)) continue;
+            least = cost;
             findings_.after = own * every;
             findings_.every = plan.every = every;
         }
+        findings_.gain = (findings_.rest + findings_.before) * rays / least;
         return forced || findings_.gain >= kLeastGain;
     }
 

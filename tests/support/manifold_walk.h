@@ -64,7 +64,7 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
                                ->sample(hit.shading.toLocal(-ray.direction), random.uniform(),
                                         {random.uniform(), random.uniform()}, Transport::radiance);
             if (!s) break;
-            test.sampler->follow(chain, hit, s->lobe);
+            test.sampler->follow(chain, hit.shape, s->lobe);
             beta *= s->weight;
             const Vec3 w = normalize(hit.shading.toWorld(s->wi));
             ray = {spawnOrigin(hit, w), w};

@@ -1,4 +1,4 @@
-// Random numbers, textures, cameras and files: cases 73 to 80 of docs/hard_cases.md.
+// Random numbers, textures, cameras and files: cases 73, 75 to 80 of docs/hard_cases.md.
 #include "cameras/perspective.h"
 #include "hard_cases/hard_case.h"
 #include "integrators/sampler.h"
@@ -13,9 +13,6 @@
 
 using namespace abbe;
 using namespace abbe::test;
-
-// What this is of does not exist yet: cases.md says so, and the page fails if it gets a measurement there.
-TEST_CASE("case 74: merged photons: no radius, all in one place" * doctest::skip()) {}
 
 TEST_CASE("case 73: light tracing to a lens nearby or edge-on") {
     HardCase c;

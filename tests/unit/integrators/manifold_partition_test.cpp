@@ -32,12 +32,6 @@ std::string sheet(int n, const char* more) {
     return fmt::format("shape sheet mesh {{ points {{ {} }}; faces {{ {} }}; {} }}\n", points, faces, more);
 }
 
-SurfaceHit hitOf(const Shape& shape) {
-    SurfaceHit hit;
-    hit.shape = &shape;
-    return hit;
-}
-
 constexpr Lobes kMirrored = Lobes(Lobe::delta) | Lobe::reflection;
 constexpr Lobes kThrough = Lobes(Lobe::delta) | Lobe::transmission;
 
@@ -129,7 +123,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     CoveredChain chain;
     chain.start();
     sampler.follow(chain, &ball, kThrough);
-    sampler.follow(chain, hitOf(ball), kThrough);
+    sampler.follow(chain, &ball, kThrough);
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, other, lambda));
     chain.stop();
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, target, lambda));
@@ -138,8 +132,8 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     const ManifoldSampler stricter(scene, plan);
     chain = {};
     chain.start();
-    stricter.follow(chain, hitOf(ball), kThrough);
-    stricter.follow(chain, hitOf(ball), kThrough);
+    stricter.follow(chain, &ball, kThrough);
+    stricter.follow(chain, &ball, kThrough);
     CHECK_FALSE(stricter.covers(chain, start, sample->wi, target, lambda));
     CHECK_FALSE(stricter.estimate(start, target, choice, lambda, random, counts).has_value());
 }
