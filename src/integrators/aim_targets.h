@@ -4,7 +4,9 @@
 #include "integrators/emission_plan.h"
 #include "math/bounds.h"
 #include "render/focusing_shape.h"
+#include "render/scene.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,12 @@ struct AimTargets {
     std::vector<AimTarget> balls;
     std::vector<std::string> names; // as many: of what each is around, "ball, lens, ring and others"
 };
-AimTargets aimTargets(const std::vector<FocusingShape>& focusing, const Bounds3& scene);
+// `round`: boxes of shapes that are balls. The ball around such a box has three times the cross-section of the shape,
+// so that they are aimed at themselves, if by themselves.
+AimTargets aimTargets(const std::vector<FocusingShape>& focusing, const Bounds3& scene,
+                      std::span<const Bounds3> round = {});
+
+// Of the shapes that stand for themselves, not in objects; m, render space.
+std::vector<Bounds3> boxesOfBalls(std::span<const SurfaceUse> surfaces);
 
 } // namespace abbe

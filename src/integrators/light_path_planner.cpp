@@ -79,7 +79,7 @@ class Planner {
         PlannedLightPaths result;
         const Bounds3 bounds = context_.scene.intersector->bounds();
         EmissionPlan emission;
-        AimTargets aims = aimTargets(context_.scene.focusing, bounds);
+        AimTargets aims = aimTargets(context_.scene.focusing, bounds, boxesOfBalls(context_.scene.surfaces));
         emission.targets = std::move(aims.balls);
         names_ = std::move(aims.names);
         LightPathPlan first{AimedEmission(context_.scene.lights, bounds, emission),

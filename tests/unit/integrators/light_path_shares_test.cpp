@@ -1,6 +1,7 @@
 // The largest shares of light paths, and the names of what they are sent to.
 #include "integrators/aim_targets.h"
 #include "integrators/light_path_shares.h"
+#include "support/scene_test.h"
 
 #include <doctest/doctest.h>
 #include <string>
@@ -51,6 +52,37 @@ TEST_CASE("aim targets have the names of what they are around") {
     REQUIRE(put.balls.size() == 2);
     CHECK(put.names[0] == "saucer, cup");
     CHECK(put.names[1] == "bead0, bead1, bead2 and others");
+}
+
+TEST_CASE("aim targets: a ball is aimed at itself, not at the ball around its box") {
+    const auto scene =
+        TestScene::parse("scene 1\ncamera { from 0 0 9; look-at 0 0 0 }\nlight sky { radiance 1 }\n"
+                         "material glass dielectric { ior 1.5 }\n"
+                         "shape ball sphere { center 0.3 -2 1; radius 0.7; material glass }\n"
+                         "shape dice box { min 1 1 1; max 2 2 2; material glass }\n"
+                         "shape egg sphere { center 3 0 0; radius 0.5; material glass; transform { scale 1 1.3 1 } }\n"
+                         // As much area as the ball in a cube around it.
+                         "shape slab box { min 4 0 0; max 5 0.285398 1; material glass }\n"
+                         "shape floor plane { material diffuse { reflectance 0.5 } }\n");
+    const auto round = boxesOfBalls(scene.scene().surfaces);
+    REQUIRE(round.size() == 1);
+    const Bounds3 all{Vec3(-50, -50, -50), Vec3(50, 50, 50)};
+    const auto& focusing = scene.scene().focusing;
+    const AimTargets targets = aimTargets(focusing, all, round), before = aimTargets(focusing, all);
+    REQUIRE(targets.balls.size() == 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        INFO(targets.names[i]);
+        const bool ball = targets.names[i].find("ball") != std::string::npos;
+        const float half = 0.5f * maxComponent(focusing[i].box.diagonal());
+        CHECK(targets.balls[i].radius == doctest::Approx(ball ? 0.7f : before.balls[i].radius).epsilon(3e-4));
+        CHECK(targets.balls[i].radius >= half);
+    }
+    // A ball that reaches beyond the scene's box, and one among others, are no balls.
+    const Bounds3 box = round[0], cut{Vec3(-50, -50, -50), Vec3(50, 50, box.upper.z - 0.1f)};
+    const AimTargets part = aimTargets({{box, "ball"}}, cut, round);
+    CHECK(part.balls.at(0).radius == doctest::Approx(aimTargets({{box, "ball"}}, cut).balls.at(0).radius));
+    std::vector<FocusingShape> many(30, {box, "ball"});
+    CHECK(aimTargets(many, all, round).balls.at(0).radius == doctest::Approx(box.radius()).epsilon(1e-3));
 }
 
 } // namespace abbe::test
