@@ -88,6 +88,43 @@ ended_with() { # CODE
     [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
 }
 
+# survives_kills KILLS SCENE OPTION…: a render that is killed at any moment, KILLS times or as often as it can be, goes on
+# to the bits of one that was not.
+survives_kills() {
+    local kills=$1 scene=$2 killed=0 run
+    shift 2
+    RANDOM=7
+    local long=("$@")
+    expect 0 "$scene" "${long[@]}" --quiet -o long.exr --checkpoint off
+    for ((run = 0; run < 500; ++run)); do
+        rm -f killed.exr
+        "$program" "$scene" "${long[@]}" --quiet -o killed.exr --checkpoint 10ms --resume >out 2>err &
+        job=$!
+        if ((killed < kills)); then
+            # After a checkpoint of this run, or a moment later.
+            for _ in {1..200}; do
+                [[ killed.exr.ckpt -nt out ]] && break
+                kill -0 $job 2>/dev/null || break
+                sleep 0.01
+            done
+            sleep "0.0$((RANDOM % 10))"
+            kill -KILL $job 2>/dev/null && killed=$((killed + 1))
+            wait $job 2>/dev/null
+            [[ -e killed.exr ]] && break
+        else
+            wait $job || fault "continuing after kills: $(cat err)"
+            break
+        fi
+    done
+    ((killed > 0)) || fault "never killed"
+    same_pixels long.exr killed.exr
+    same_certificate long.exr killed.exr
+    if [[ -e long.deep.exr ]]; then same_pixels long.deep.exr killed.deep.exr; fi
+    rm -f long.deep.exr killed.deep.exr
+    [[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
+    printf '%d kills, %d runs %s\n' "$killed" $((run + 1)) "$(basename "$scene")"
+}
+
 finish() {
     [[ $faults -eq 0 ]] || printf '%d faults\n' "$faults"
     exit $((faults > 0))

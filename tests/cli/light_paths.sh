@@ -39,30 +39,8 @@ expect 1 merge left.part1.abbe right.part1.abbe choice.part2.abbe -o no.exr
 says err E0663
 says err "always"
 
-# A render that is killed, as often as it can be, goes on to the same bits; so does one that gets more samples.
-long=(--samples 640 -q --checkpoint 10ms)
-expect 0 "$scene" "${long[@]}" -o long.exr
-killed=0
-for _ in {1..200}; do
-    "$program" "$scene" "${long[@]}" -o killed.exr --resume >out 2>err &
-    job=$!
-    if ((killed < 3)); then
-        for _ in {1..200}; do
-            [[ killed.exr.ckpt -nt out ]] && break
-            kill -0 $job 2>/dev/null || break
-            sleep 0.01
-        done
-        kill -KILL $job 2>/dev/null && killed=$((killed + 1))
-        wait $job 2>/dev/null
-        [[ -e killed.exr ]] && break
-    else
-        wait $job || fault "continuing after kills: $(cat err)"
-        break
-    fi
-done
-((killed > 0)) || fault "never killed"
-same_pixels long.exr killed.exr
-same_certificate long.exr killed.exr
+# A render that is killed goes on to the same bits; so does one that gets more samples.
+survives_kills 3 "$scene" --samples 640
 expect 0 "$scene" --samples 32 -q -o more.exr --checkpoint keep
 expect 0 "$scene" -q -o more.exr --checkpoint keep --resume
 same_pixels whole.exr more.exr

@@ -11,43 +11,9 @@ small=(--size 40x24 --samples 120)
 expect 0 "$scene" "${small[@]}" --quiet -o whole.exr
 [[ ! -e whole.exr.ckpt ]] || fault "a finished render leaves its checkpoint"
 
-# Killed at any moment, as often as need be: survives_kills SCENE OPTION…
-survives_kills() {
-    local scene=$1 killed=0 run
-    shift
-    local long=("$@")
-    expect 0 "$scene" "${long[@]}" --quiet -o long.exr --checkpoint off
-    for ((run = 0; run < 500; ++run)); do
-        rm -f killed.exr
-        "$program" "$scene" "${long[@]}" --quiet -o killed.exr --checkpoint 10ms --resume >out 2>err &
-        job=$!
-        if ((killed < kills)); then
-            # After a checkpoint of this run, or a moment later.
-            for _ in {1..200}; do
-                [[ killed.exr.ckpt -nt out ]] && break
-                kill -0 $job 2>/dev/null || break
-                sleep 0.01
-            done
-            sleep "0.0$((RANDOM % 10))"
-            kill -KILL $job 2>/dev/null && killed=$((killed + 1))
-            wait $job 2>/dev/null
-            [[ -e killed.exr ]] && break
-        else
-            wait $job || fault "continuing after kills: $(cat err)"
-            break
-        fi
-    done
-    ((killed > 0)) || fault "never killed"
-    same_pixels long.exr killed.exr
-    same_certificate long.exr killed.exr
-    if [[ -e long.deep.exr ]]; then same_pixels long.deep.exr killed.deep.exr; fi
-    rm -f long.deep.exr killed.deep.exr
-    [[ ! -e killed.exr.ckpt ]] || fault "the checkpoint stays after the end"
-    printf '%d kills, %d runs %s\n' "$killed" $((run + 1)) "$(basename "$scene")"
-}
-RANDOM=7
-survives_kills "$scene" --size 40x24 --samples $((270 * kills))
-survives_kills "$scenes/uneven.scene" --samples $((90 * kills))
+# Killed at any moment, as often as need be.
+survives_kills "$kills" "$scene" --size 40x24 --samples $((270 * kills))
+survives_kills "$kills" "$scenes/uneven.scene" --samples $((90 * kills))
 
 # Four parts of the samples, in any order.
 for part in 3 1 4 2; do expect 0 "$scene" "${small[@]}" --quiet -o split.exr --part $part/4; done
