@@ -1,10 +1,15 @@
-// How well tiles of 8×8 pixels of scenes are known.
+// How well tiles of 8×8 pixels of scenes and of finished pictures are known.
 //   bench_tile_errors [--size WxH] [--samples N] [--ways on|off|both] [--threads N] SCENE…
 //     default: the scene's size and samples; --ways both: with its light paths and without
-// A tile's error is the standard error of its mean luminance over that mean, from 32 replicates; tiles darker than a
-// thousandth of the mean tile are left out of the mean. What no replicate has found is in no error bar: a render
-// without light paths that misses a caustic looks better here than it is, and the difference of the means shows it.
+//   bench_tile_errors PICTURE.exr…
+// A tile's error is the standard error of its mean luminance over that mean; tiles darker than a thousandth of the mean
+// tile are left out. Scenes are rendered with 32 replicates, which tell it. Pictures tell the variance of each pixel;
+// those of a tile are added: no two pixels share a splat, but several splats of one light path may fall into one tile,
+// which the sum does not know. What no replicate has found is in no error bar: a render without light paths that misses
+// a caustic looks better here than it is, and the difference of the means shows it.
 #include "base/parallel.h"
+#include "io/exr_channels.h"
+#include "io/image.h"
 #include "support/scene_test.h"
 #include "verify/replicate_mean.h"
 
@@ -23,30 +28,71 @@ struct Options {
     std::vector<std::string> scenes;
 };
 
-struct TileErrors {
-    double mean = 0, beyond = 0, most = 0; // `beyond`: the share of tiles above 5 %
-    double picture = 0;                    // mean luminance
+struct Tile {
+    double mean = 0, variance = 0; // of its luminance; of that mean
+    int x = 0, y = 0;              // its first pixel
 };
 
-TileErrors errorsOf(const TileSums& sums) {
-    const ReplicateMean whole(sums.whole(), 1);
-    const double least = 1e-3 * whole.value / (sums.columns() * sums.rows());
+struct TileErrors {
+    double mean = 0, beyond = 0; // `beyond`: the share of tiles above 5 %
+    double most = 0;             // the largest, of the tile at `x`, `y`
+    int x = 0, y = 0;
+    double picture = 0; // sum of the tiles' luminance
+};
+
+TileErrors errorsOf(const std::vector<Tile>& tiles) {
     TileErrors e;
-    e.picture = whole.value;
-    double tiles = 0;
+    for (const Tile& t : tiles) e.picture += t.mean;
+    const double least = 1e-3 * e.picture / static_cast<double>(tiles.size());
+    double counted = 0;
+    for (const Tile& t : tiles) {
+        if (t.mean < least) continue;
+        const double error = std::sqrt(t.variance) / t.mean;
+        e.mean += error;
+        e.beyond += error > 0.05;
+        ++counted;
+        if (error <= e.most) continue;
+        e.most = error;
+        e.x = t.x;
+        e.y = t.y;
+    }
+    e.mean /= counted;
+    e.beyond /= counted;
+    return e;
+}
+
+std::vector<Tile> tilesOf(const TileSums& sums) {
+    std::vector<Tile> tiles;
     for (int row = 0; row < sums.rows(); ++row)
         for (int column = 0; column < sums.columns(); ++column) {
             const ReplicateMean m(sums.at(column, row), 1);
-            if (m.value < least) continue;
-            const double error = std::sqrt(m.variance) / m.value;
-            e.mean += error;
-            e.beyond += error > 0.05;
-            e.most = std::max(e.most, error);
-            ++tiles;
+            const PixelBounds b = sums.bounds(column, row);
+            tiles.push_back({m.value, m.variance, b.x0, b.y0});
         }
-    e.mean /= tiles;
-    e.beyond /= tiles;
-    return e;
+    return tiles;
+}
+
+std::vector<Tile> tilesOf(const std::string& picture) {
+    const RgbImage image = readImage(picture);
+    const std::vector<float> variance = readExrChannel(picture, "variance.Y");
+    const RgbSpace space = image.chromaticities ? image.chromaticities->space() : rgb::rec709;
+    const int columns = (image.width() + 7) / 8, rows = (image.height() + 7) / 8;
+    std::vector<Tile> tiles(static_cast<std::size_t>(columns * rows));
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            Tile& t = tiles[static_cast<std::size_t>(y / 8 * columns + x / 8)];
+            if (x % 8 == 0 && y % 8 == 0) t = {t.mean, t.variance, image.window.x0 + x, image.window.y0 + y};
+            const auto i = static_cast<std::size_t>(y * image.width() + x);
+            t.mean += toXyz({image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]}, space).y;
+            t.variance += static_cast<double>(variance[i]);
+        }
+    return tiles;
+}
+
+void print(const TileErrors& e) {
+    std::printf("%6.2f %%  %6.2f %%  %7.2f %% at %4d,%-4d  %10.4g\n", 100 * e.mean, 100 * e.beyond, 100 * e.most, e.x,
+                e.y, e.picture);
+    std::fflush(stdout);
 }
 
 void measure(const std::string& file, bool lightPaths, const Options& o) {
@@ -61,11 +107,9 @@ void measure(const std::string& file, bool lightPaths, const Options& o) {
     const auto tracer = makePathTracer(scene.scene().effects);
     pixels.keepSplatsOf(*tracer, scene.scene(), settings);
     const RenderStatistics s = tracer->render(scene.scene(), pixels, settings, {});
-    const TileErrors e = errorsOf(TileSums(pixels));
-    std::printf("%-44s  %3s  %4dx%-4d %5u  %8.1f  %7.4g  %6.2f %%  %6.2f %%  %7.2f %%  %10.4g\n", file.c_str(),
-                lightPaths ? "on" : "off", film.crop.width(), film.crop.height(), settings.samples, s.coreSeconds,
-                s.lightPlan.share, 100 * e.mean, 100 * e.beyond, 100 * e.most, e.picture);
-    std::fflush(stdout);
+    std::printf("%-44s  %3s  %4dx%-4d %5u  %8.1f  %7.4g  ", file.c_str(), lightPaths ? "on" : "off", film.crop.width(),
+                film.crop.height(), settings.samples, s.coreSeconds, s.lightPlan.share);
+    print(errorsOf(tilesOf(TileSums(pixels))));
 }
 
 Options read(int argc, char** argv) {
@@ -89,7 +133,7 @@ Options read(int argc, char** argv) {
         } else
             o.scenes.emplace_back(argv[i]);
     }
-    if (o.scenes.empty()) throw std::runtime_error("bench_tile_errors SCENE…");
+    if (o.scenes.empty()) throw std::runtime_error("bench_tile_errors SCENE or PICTURE.exr…");
     return o;
 }
 
@@ -102,6 +146,11 @@ int main(int argc, char** argv) {
             "scene                                         light paths  size  samples  core-s  share  error of a "
             "tile  above 5 %%  most  luminance\n");
         for (const std::string& scene : o.scenes) {
+            if (scene.ends_with(".exr")) {
+                std::printf("%-91s", scene.c_str());
+                print(errorsOf(tilesOf(scene)));
+                continue;
+            }
             if (o.with) measure(scene, true, o);
             if (o.without) measure(scene, false, o);
         }
