@@ -40,8 +40,9 @@ struct LightPathFindings {
     LightPathVerdict verdict = LightPathVerdict::undecided;
     // A pilot has run: whether what follows has been measured.
     bool measured = false;
-    // Of a sample of every pixel, in the mean over pixels: relative variance of the light that light paths could bring,
-    // as camera paths alone find it and as both do, and of everything else.
+    // In the mean over pixels, as the shown noise is relative: variance of the light that light paths could bring, as
+    // camera paths alone find it and as both do, and of everything else. Of the mean of 64 samples of a pixel, times
+    // 64: samples of a pixel are stratified.
     double before = 0, after = 0, rest = 0;
     double gain = 1;           // of efficiency, as far as these tell, with the best share
     double share = 0;          // light paths for each camera path; 0: none

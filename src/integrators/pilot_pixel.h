@@ -1,0 +1,58 @@
+// Single pixels that are looked at before a render.
+#pragma once
+
+#include "render/film.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace abbe {
+
+// A plan that is forecast to gain less is not worth the risk of a rough forecast.
+inline constexpr double kLeastGain = 1.15;
+
+// The film of one pixel without a filter: keeps the last sum of luminance of each replicate.
+class PilotPixel final : public Film {
+  public:
+    static constexpr int kMostReplicates = 4;
+
+    // The pixels in the middles of the cells of an even grid over a frame, row by row.
+    class Grid {
+      public:
+        // Requires: frame.area() > 0. At most `most` columns and rows.
+        Grid(PixelBounds frame, int most)
+            : frame_(frame), columns_(std::min(most, frame.width())), rows_(std::min(most, frame.height())) {}
+        std::size_t size() const { return static_cast<std::size_t>(columns_ * rows_); }
+        PixelBounds pixel(std::size_t i) const {
+            const int column = static_cast<int>(i) % columns_, row = static_cast<int>(i) / columns_;
+            const int x = frame_.x0 + (2 * column + 1) * frame_.width() / (2 * columns_);
+            const int y = frame_.y0 + (2 * row + 1) * frame_.height() / (2 * rows_);
+            return {x, y, x + 1, y + 1};
+        }
+
+      private:
+        PixelBounds frame_;
+        int columns_, rows_;
+    };
+
+    // Requires: 0 < replicates <= kMostReplicates.
+    explicit PilotPixel(PixelBounds pixel, int replicates = kMostReplicates) : pixel_(pixel), replicates_(replicates) {}
+    PixelBounds bounds() const override { return pixel_; }
+    int replicates() const override { return replicates_; }
+    FilterSample filter(Vec2 u) const noexcept override { return {{u.x - 0.5f, u.y - 0.5f}, 1}; }
+    void add(int, int, int r, const ExactXyz& sum, std::uint32_t) noexcept override {
+        y_[static_cast<std::size_t>(r)] = sum.y.value();
+    }
+    Xyz mean(int, int) const noexcept override { return {}; }
+    double relativeNoise() const override { return 0; }
+
+    double luminance(int replicate) const { return y_[static_cast<std::size_t>(replicate)]; }
+
+  private:
+    PixelBounds pixel_;
+    int replicates_;
+    std::array<double, kMostReplicates> y_{};
+};
+
+} // namespace abbe
