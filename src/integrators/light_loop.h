@@ -41,8 +41,6 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     template <typename Tell> void leavePhotons(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
 
   private:
-    static constexpr bool kDispersion = hasEffect(E, Effect::dispersion);
-
     // Camera paths over light paths, up to the last vertex, as in path_loop_traced.h the other way round.
     struct Rivals {
         double met = 0;                                  // those that meet the light by scattering
@@ -250,7 +248,6 @@ LightScattering LightLoop<E>::weighed(const SurfaceHit& hit, const LightVertex& 
     const auto ask = [&](const LightVertex& v) {
         return sampled && sampled->lobe.has(Lobe::delta) ? v.deltaTowards(away, sampled->eta) : v.towards(away);
     };
-    if (!this->path_.densities.heroOnly) return ask(vertex);
     view_.own.reset();
     return ask(LightVertex(hit, this->path_.densities.film, view_.own, view_.eye));
 }
@@ -350,10 +347,8 @@ bool LightLoop<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const
 template <EffectBits E> bool LightLoop<E>::scatterInMedium(Ray& ray, const VertexSample& sample) {
     const PhaseFunction& phase = this->collided_->phase();
     const float cosine = phase.sampleCosine(sample.bsdf.x);
-    const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
     if (phase.spectral()) this->path_.beta *= phase.ratio(cosine, this->path_.lambda);
-    const Frame frame = Frame::fromNormal(ray.direction);
-    ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+    ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
     ++spread_;
     linkCount_ = kMostLinks + 1;
     return anyNonZero(this->path_.beta);

@@ -5,6 +5,7 @@
 #include "integrators/caster_candidates.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/manifold_pilot.h"
+#include "integrators/pilot_pixel.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +17,8 @@ namespace {
 
 constexpr std::uint64_t kLearn = 0x6368616973, kJudge = 0x636861696e; // "chais", "chain"
 constexpr int kCells = 40;                                            // of a row of the pilot
-constexpr int kReplicates = 4;                                        // of a cell
-constexpr std::size_t kLooks = 256;                                   // of ManifoldPilot, each at all kinds of chains
-constexpr double kLeastGain = 1.15;
+constexpr int kReplicates = PilotPixel::kMostReplicates;
+constexpr std::size_t kLooks = 256; // of ManifoldPilot, each at all kinds of chains
 // A lamp that fills more than this everywhere has no small images.
 constexpr double kLargeLight = 0.5; // sr
 
@@ -49,23 +49,6 @@ struct Cell {
         Wavelengths lambda;
     };
     std::vector<Look> looks;
-};
-
-class CellFilm final : public Film {
-  public:
-    CellFilm(PixelBounds pixel, Cell& cell) : pixel_(pixel), cell_(cell) {}
-    PixelBounds bounds() const override { return pixel_; }
-    int replicates() const override { return kReplicates; }
-    FilterSample filter(Vec2 u) const noexcept override { return {{u.x - 0.5f, u.y - 0.5f}, 1}; }
-    void add(int, int, int r, const ExactXyz& sum, std::uint32_t) noexcept override {
-        cell_.y[static_cast<std::size_t>(r)] = sum.y.value();
-    }
-    Xyz mean(int, int) const noexcept override { return {}; }
-    double relativeNoise() const override { return 0; }
-
-  private:
-    PixelBounds pixel_;
-    Cell& cell_;
 };
 
 class CellListener final : public ManifoldListener {
@@ -140,15 +123,12 @@ class Planner {
         PathContext base = context_;
         base.settings.seed = combine64(context_.settings.seed, key);
         base.manifold = &sampler;
-        const int columns = std::min(kCells, frame_.width()), rows = std::min(kCells, frame_.height());
-        std::vector<Cell> cells(static_cast<std::size_t>(columns * rows));
+        const PilotPixel::Grid grid(frame_, kCells);
+        std::vector<Cell> cells(grid.size());
         parallelFor(cells.size(), [&](std::size_t i) {
             if (stop_()) return;
-            const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-            const int x = frame_.x0 + (2 * column + 1) * frame_.width() / (2 * columns);
-            const int y = frame_.y0 + (2 * row + 1) * frame_.height() / (2 * rows);
             Cell& cell = cells[i];
-            CellFilm film({x, y, x + 1, y + 1}, cell);
+            PilotPixel film(grid.pixel(i), kReplicates);
             CellListener listener(context_.scene, cell);
             PathContext context = base;
             context.hears = &listener;
@@ -157,8 +137,8 @@ class Planner {
             removeWorkFlag(WorkFlag::pilot);
             cell.counts = r.counters.manifold;
             cell.rays = static_cast<double>(r.counters.vertices + r.counters.shadowRays);
-            const double relative = static_cast<double>(roulette_.scale(x, y));
-            for (double& v : cell.y) v *= relative;
+            const double relative = static_cast<double>(roulette_.scale(film.bounds().x0, film.bounds().y0));
+            for (int k = 0; k < kReplicates; ++k) cell.y[static_cast<std::size_t>(k)] = film.luminance(k) * relative;
             cell.second *= square(relative);
             cell.chance *= square(relative);
             for (auto& l : cell.looks) l.importance *= static_cast<float>(relative);

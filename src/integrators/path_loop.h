@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/work.h"
 #include "integrators/defensive_bsdf.h"
+#include "integrators/hidden_face.h"
 #include "integrators/light_path_plan.h"
 #include "integrators/light_sampler.h"
 #include "integrators/loop_technique.h"
@@ -146,7 +147,6 @@ template <EffectBits E> class PathLoop {
     Arrival arrive(Ray&, SurfaceHit&, std::uint32_t depth);
     Arrival arriveThrough(Ray&, SurfaceHit&, std::uint32_t depth);
     bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t depth, std::uint32_t crossings);
-    bool hidden(SurfaceHit&, const Ray&, path_detail::Nested&) const;
     float straightOn(SurfaceHit&, const Ray&, path_detail::Nested&);
     void meetSurface(SurfaceHit&, Vec3 direction, std::uint32_t depth);
     void turnCone(const SurfaceHit&, const BsdfSample&, float cosine);

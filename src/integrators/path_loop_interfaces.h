@@ -1,41 +1,8 @@
 // The part of the path loop for what light passes without being scattered: boundaries of media, open surfaces, and
-// faces of dielectrics that lie hidden inside others [Schmidt2002]. Included by path_loop.h.
+// faces of dielectrics that lie hidden inside others (hidden_face.h). Included by path_loop.h.
 #pragma once
 
 namespace abbe {
-
-// Whether the surface of a dielectric separates nothing: the same dielectric fills the space on both sides. Prepares
-// what lies beyond it. Faces of several shapes that coincide are met as one: `hit` becomes the face of the dielectric
-// that is entered or, if none is, left.
-template <EffectBits E> bool PathLoop<E>::hidden(SurfaceHit& hit, const Ray& ray, path_detail::Nested& nested) const {
-    const Material* const before = nested.here.filling();
-    const bool known = dot(ray.direction, hit.ng) < 0 || nested.here.contains(hit.material);
-    nested.beyond = nested.here;
-    nested.beyond.cross(hit, ray.direction);
-    std::array<SurfaceHit, 4> others;
-    std::size_t count = 0;
-    if (context_.scene.nested) {
-        count = context_.scene.intersector->coincident(ray, hit, others);
-        for (std::size_t i = 0; i < count; ++i) nested.beyond.cross(others[i], ray.direction);
-        leaveBeyond(hit, std::span(others).first(count));
-    }
-    const Material* const after = nested.beyond.filling();
-    // A dielectric that is left without having been entered, as through a hole, is taken to have been there.
-    if (before == after && !known && (!before || hit.material->priority() >= before->priority())) {
-        hit.outside = nested.here.ior();
-        return false;
-    }
-    if (before == after) return true;
-    const auto takeFaceOf = [&, offset = hit.pError](const Material* material) {
-        for (std::size_t i = 0; i < count && hit.material != material; ++i)
-            if (others[i].material == material) hit = others[i];
-        hit.pError = offset;
-        return hit.material == material;
-    };
-    if (!after || !takeFaceOf(after)) takeFaceOf(before);
-    hit.outside = hit.material == after ? nested.here.ior() : nested.beyond.ior();
-    return false;
-}
 
 // The share of the light at a surface that goes straight on, which has then crossed it.
 template <EffectBits E> float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nested& nested) {
@@ -54,7 +21,7 @@ template <EffectBits E> float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray
         if (open >= 1) return 1;
     }
     if (material.ior()) {
-        if (!hidden(hit, ray, nested)) return open;
+        if (!isHiddenFace(context_.scene, hit, ray, nested.here, nested.beyond)) return open;
         nested.here = nested.beyond;
         return 1;
     }

@@ -43,6 +43,13 @@ inline Vec3 placeOfCollision(const Ray& ray, float t, const SurfaceHit* ahead) {
     return spawnOrigin(*ahead, -ray.direction);
 }
 
+// A unit direction at an angle to another one; u in [0, 1) turns it around.
+inline Vec3 directionAbout(Vec3 axis, float cosine, float u) {
+    const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * u;
+    const Frame frame = Frame::fromNormal(axis);
+    return normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+}
+
 // Follows the ray up to the surface ahead, if any; true if the path collided on the way, where the ray then starts.
 template <EffectBits E>
 bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& random, std::uint32_t depth,
@@ -84,8 +91,6 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     const float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
     const Blame blame{collided_, "phase function"};
     if (!(std::abs(cosine) < 1.001f)) condemn(cosine, blame);
-    const float sine = safeSqrt((1 - cosine) * (1 + cosine)), azimuth = 2 * kPi * sample.bsdf.y;
-    const Frame frame = Frame::fromNormal(ray.direction);
     path_.from = ray.origin;
     path_.scatters.outline.count = 0;
     path_.bsdfPdf = phase.value(cosine);
@@ -107,7 +112,7 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     }
     if constexpr (kTraced) turnTracedInMedium();
     if constexpr (kTextures) scatterCone();
-    ray.direction = normalize(frame.toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}));
+    ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
     ++counters_.effects.volumes[volumeRow(collided_->number)].scattered;
     return true;
 }
