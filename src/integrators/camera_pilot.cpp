@@ -32,25 +32,25 @@ Probe probe(const PathContext& context, TileFunction render, const RouletteRefer
     return result;
 }
 
-StratifiedVariance varianceOf(const Samples& samples, double weight) {
-    constexpr double kMany = CameraNoise::kMany, kAll = kReplicates * kMany;
+CameraVariance varianceOf(const Samples& samples, double weight) {
+    constexpr double kMany = CameraNoise::kMany;
     std::array<double, kReplicates> means{};
     double mean = 0;
     for (std::size_t k = 0; k < means.size(); ++k) {
         for (const double v : samples[k]) means[k] += v / kMany;
         mean += means[k] / kReplicates;
     }
-    StratifiedVariance result;
+    CameraVariance result;
     for (std::size_t k = 0; k < means.size(); ++k) {
-        for (const double v : samples[k]) result.one += weight * square(v - mean) / (kAll - 1);
-        result.many += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
+        for (const double v : samples[k]) result.secondMoment += weight * square(v) / (kReplicates * kMany);
+        result.ofMeans += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
     }
     return result;
 }
 
-void add(StratifiedVariance& to, const StratifiedVariance& v, double share) {
-    to.one += v.one * share;
-    to.many += v.many * share;
+void add(CameraVariance& to, const CameraVariance& v, double share) {
+    to.secondMoment += v.secondMoment * share;
+    to.ofMeans += v.ofMeans * share;
 }
 
 } // namespace

@@ -7,18 +7,19 @@
 
 namespace abbe {
 
-// Relative variance of camera paths, in the mean over the frame as NoiseMeasure has it: of a single sample, and of the
-// mean of many samples of one pixel, times their number. Samples of a pixel are stratified, so that the latter is less.
-struct StratifiedVariance {
-    double one = 0, many = 0;
+// What camera paths bring, relative and in the mean over the frame as NoiseMeasure has it: the second moment of a
+// sample, and the variance of the mean of many samples of one pixel, times their number. Samples of a pixel are
+// stratified, which takes more off the variance than the square of the mean.
+struct CameraVariance {
+    double secondMoment = 0, ofMeans = 0;
 };
 
 struct CameraNoise {
     static constexpr std::uint32_t kMany = 64; // samples of a pixel
 
-    StratifiedVariance shared; // of the light that light paths could bring, as camera paths find it without them
-    StratifiedVariance rest;   // of everything else
-    double rays = 0;           // of a camera path, without the cost of weights
+    CameraVariance shared; // the light that light paths could bring, as camera paths find it without them
+    CameraVariance rest;   // everything else
+    double rays = 0;       // of a camera path, without the cost of weights
     std::uint64_t pilotRays = 0;
 };
 

@@ -15,32 +15,25 @@ namespace abbe {
 // 9.2]. No camera path has to find the light first.
 class LightPathForecast {
   public:
-    // The measure outlives this.
     LightPathForecast(std::span<const LightDeposit>, PixelBounds frame, const NoiseMeasure&);
 
-    // Relative variance of what light paths can bring, of one sample of all pixels with `share` light paths for each
-    // camera path, all of them independent.
-    double variance(double share) const { return camera(share) + light(share); }
-    // The same with camera paths as stratified as `alone` they were seen to be. Light paths still count as independent:
-    // they are stratified over all the picture, of which a pixel sees little unless lamps are small.
-    double variance(double share, const StratifiedVariance& alone) const;
-    // The second moment of one deposit by itself.
-    double secondMoment(const LightDeposit&, double share) const;
+    // Second moment of what camera paths find now and then, far brighter than its pixel: what light paths are for.
+    double sparks() const;
+    // Variance of what light paths can bring, with `share` of them for each camera path; camera paths were seen to have
+    // `alone` of it without them. Of light paths the second moment is the variance: they are many for a pixel and bring
+    // little each. They count as independent, although they are stratified over the picture as a whole: pixels have
+    // little of that unless lamps are small.
+    double variance(double share, const CameraVariance& alone) const;
 
   private:
     struct Term {
-        std::uint32_t cell = 0;
-        double u = 0, u2 = 0; // relative luminance, and its square times how many paths it stands for
-        double rho = 0;
+        double u2 = 0;  // squared relative luminance that a light path brings to a pixel, times how many it stands for
+        double rho = 0; // as LightDeposit
+        double spark = 0; // relative luminance of a camera path that finds the same
+        double ofCamera(double share) const { return u2 * rho / square(rho + share); }
+        double ofLight(double share) const { return u2 * share / square(rho + share); }
     };
-    double camera(double share) const;
-    double cameraSecondMoment(double share) const;
-    double light(double share) const;
-    double squaredMean(double share) const;
-
-    const NoiseMeasure& measure_;
-    double pixels_;
-    std::vector<Term> terms_;
+    std::vector<Term> terms_; // the brightest sparks first
 };
 
 } // namespace abbe

@@ -27,7 +27,7 @@ constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn"
 constexpr double kTracedCost = 1.4;
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
 constexpr double kLightCost = 2;
-constexpr double kLeastVariance = 0.02; // of what light paths could bring
+constexpr double kLeastSparks = 0.02; // second moment of what light paths could bring better
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
 class Planner {
@@ -72,9 +72,9 @@ class Planner {
         if (stop_()) return undecided;
         measure_.emplace(frame_, roulette_, heard.deposits);
         const LightPathForecast forecast(heard.deposits, frame_, *measure_);
-        findings_.before = findings_.after = forecast.variance(0);
-        if (!forced && known_ && findings_.before < kLeastVariance) {
-            describe(heard, forecast, 0);
+        findings_.before = findings_.after = forecast.sparks();
+        if (!forced && known_ && findings_.before < kLeastSparks) {
+            describe(heard, 0);
             return nothingFound;
         }
         LightPathPlan learned{
@@ -92,7 +92,7 @@ class Planner {
     }
 
     // By names, what was heard, if there were `paths` light paths for each camera path.
-    void describe(const Listened& heard, const LightPathForecast& forecast, double paths) {
+    void describe(const Listened& heard, double paths) {
         findings_.measured = true;
         const double started = std::accumulate(heard.starts.begin(), heard.starts.end(), 0.0);
         std::vector<LightPathShare> shares(lights_ * targets_);
@@ -104,8 +104,9 @@ class Planner {
         }
         for (const LightDeposit& d : heard.deposits) {
             LightPathShare& s = shares[d.light * targets_ + d.target];
-            s.before += forecast.secondMoment(d, 0);
-            s.after += forecast.secondMoment(d, paths);
+            const double second = square(d.luminance) * measure_->weight(d.x, d.y) * d.stands / pixels_;
+            s.before += second / std::max(d.rho, 1e-12);
+            s.after += second / std::max(d.rho + paths, 1e-12);
         }
         findings_.shares = largestShares(shares);
     }
@@ -220,7 +221,7 @@ class Planner {
         if (!(measure_->mean() > 0)) { // nobody saw any light: a guess
             findings_.gain = kLeastGain;
             findings_.bestShare = 1;
-            return describe(heard, forecast, 1);
+            return describe(heard, 1);
         }
         const double light = static_cast<double>(heard.rays) / static_cast<double>(heard.paths);
         PathContext seeded = context_;
@@ -228,7 +229,7 @@ class Planner {
         const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera.shared);
-        findings_.rest = camera.rest.many;
+        findings_.rest = camera.rest.ofMeans;
         const double plain = (findings_.rest + findings_.before) * camera.rays;
         findings_.gain = 0;
         for (const double share : kShares) {
@@ -240,7 +241,7 @@ class Planner {
             findings_.bestShare = share;
             findings_.after = after;
         }
-        describe(heard, forecast, findings_.bestShare);
+        describe(heard, findings_.bestShare);
     }
 
     const PathContext& context_;
