@@ -3,6 +3,7 @@
 
 #include "integrators/emission_plan.h"
 #include "math/frame.h"
+#include "math/warp.h"
 
 #include <cmath>
 #include <optional>
@@ -29,19 +30,30 @@ class AimCone {
     static bool passes(const AimTarget& target, Vec3 from, Vec3 w, double least = 0) {
         const Vec3d d = Vec3d(target.centre) - Vec3d(from);
         const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z); // >= its length
-        const double wide = square(static_cast<double>(target.radius) + 1.001 * kSteps * sum);
+        const double wide = abbe::square(static_cast<double>(target.radius) + 1.001 * kSteps * sum);
         if (!(lengthSquared(cross(d, Vec3d(w))) > wide)) return false;
         const double d2 = lengthSquared(d); // the density is at least 1 / (2π sin² θ), as 1 - cos θ <= sin² θ
         return d2 > 1.00001 * wide && d2 > 1.00001 * 2 * kPiD * wide * least;
     }
 
+    // The square is folded to a disk, and that to the cap by Lambert's projection: both keep areas.
     Vec3 sample(Vec2 u) const {
-        const double h = static_cast<double>(u.x) * oneMinusCos_; // 1 - cos θ
-        const double sine = safeSqrt(h * (2 - h)), phi = 2 * kPiD * static_cast<double>(u.y);
+        const Vec2 p = squareToDisk(u);
+        const double x = static_cast<double>(p.x), y = static_cast<double>(p.y);
+        const double h = (x * x + y * y) * oneMinusCos_; // 1 - cos θ
+        const double scale = safeSqrt(oneMinusCos_ * (2 - h));
         const Frame frame = Frame::fromNormal(Vec3(axis_));
-        return Vec3(normalize(axis_ * (1 - h) + Vec3d(frame.x) * (sine * std::cos(phi)) +
-                              Vec3d(frame.y) * (sine * std::sin(phi))));
+        return Vec3(normalize(axis_ * (1 - h) + Vec3d(frame.x) * (x * scale) + Vec3d(frame.y) * (y * scale)));
     }
+    // The u of sample(), of a direction within the cone; means little unless resolves().
+    Vec2 square(Vec3 w) const {
+        const Frame frame = Frame::fromNormal(Vec3(axis_));
+        const double scale = 1 / std::sqrt(oneMinusCos_ * (1 + dot(axis_, Vec3d(w))));
+        return diskToSquare({static_cast<float>(dot(Vec3d(frame.x), Vec3d(w)) * scale),
+                             static_cast<float>(dot(Vec3d(frame.y), Vec3d(w)) * scale)});
+    }
+    // Whether directions, which are floats, tell parts of it apart.
+    bool resolves() const { return sin2_ > 0x1p-24; }
     bool contains(Vec3 w) const {
         const Vec3d v(w);
         return dot(axis_, v) > 0 && lengthSquared(cross(axis_, v)) <= sin2_;

@@ -59,6 +59,7 @@ AimedEmission::AimedEmission(const std::vector<std::unique_ptr<const Light>>& li
         start_ = std::max(start_, length(balls_.back().centre - scene_.centre) + balls_.back().radius);
     }
     addAim(lights.size());
+    addGrids();
     addLights(lights);
 }
 
@@ -75,6 +76,23 @@ void AimedEmission::addAim(std::size_t lights) {
         for (const double a : aim) shares.push_back(sum > 0 ? (1 - even) * a / sum : 0);
         aim_.emplace_back(shares);
     }
+}
+
+void AimedEmission::addGrids() {
+    if (plan_.parts.empty()) return;
+    ABBE_CHECK(plan_.parts.size() == plan_.aim.size());
+    for (const std::vector<double>& weights : plan_.parts) {
+        const auto row = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(weights.size()))));
+        ABBE_CHECK(row * row == weights.size());
+        grids_.push_back(weights.empty() ? std::nullopt : std::optional<AimGrid>(std::in_place, weights, row));
+    }
+}
+
+// Of a target for the lights of a row; null: even.
+const AimGrid* AimedEmission::gridOf(std::size_t row, std::uint32_t target) const noexcept {
+    if (grids_.empty()) return nullptr;
+    const auto& grid = grids_[row * plan_.targets.size() + target];
+    return grid ? &*grid : nullptr;
 }
 
 void AimedEmission::addLights(const std::vector<std::unique_ptr<const Light>>& lights) {
@@ -126,9 +144,12 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     const auto origin = source.light->sampleOrigin(part, u.position, lambda, time);
     if (!origin) return std::nullopt;
     const auto cone = target == kOwn ? std::nullopt : coneOf(plan_.targets[target], *origin);
-    const Vec3 w = cone ? cone->sample(u.direction) : source.light->sampleDirection(*origin, u.direction);
     EmittedRay ray;
     if (cone) ray.target = target;
+    ray.aim = u.direction;
+    if (cone && cone->resolves())
+        if (const AimGrid* grid = gridOf(source.row, target)) ray.aim = grid->sample(u.direction);
+    const Vec3 w = cone ? cone->sample(ray.aim) : source.light->sampleDirection(*origin, u.direction);
     ray.beta = source.light->leaving(*origin, w, lambda) * origin->cosine(w);
     if (!anyNonZero(ray.beta)) return std::nullopt;
     ray.ray.origin = spawnOrigin(origin->p, origin->pError, origin->n, w);
@@ -139,6 +160,21 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     ray.density.direction = pdfDirection(source, *origin, w, ray.target);
     ray.deltaPosition = origin->point();
     return ray;
+}
+
+// Over that of even directions.
+double AimedEmission::litDensity(std::size_t row, std::uint32_t target, const AimCone& cone, Vec3 w) const noexcept {
+    const AimGrid* grid = gridOf(row, target);
+    return grid && cone.resolves() ? grid->density(cone.square(w)) : 1;
+}
+
+// The same of the line through p along w, whose frame that is, on the target's disk.
+double AimedEmission::litDensity(std::size_t row, std::uint32_t target, Vec3 p, const Frame& frame) const noexcept {
+    const AimGrid* grid = gridOf(row, target);
+    if (!grid || !resolves(balls_[target])) return 1;
+    const Vec3d d = (Vec3d(p) - Vec3d(balls_[target].centre)) / static_cast<double>(balls_[target].radius);
+    return grid->density(
+        diskToSquare({static_cast<float>(dot(d, Vec3d(frame.x))), static_cast<float>(dot(d, Vec3d(frame.y)))}));
 }
 
 // Targets that are not in sight of the origin leave their share to the light's own distribution.
@@ -155,7 +191,7 @@ double AimedEmission::pdfDirection(const Source& source, const LightOrigin& orig
         if (!cone)
             own += share;
         else if (t == chosen || cone->contains(w))
-            density += share * cone->pdf();
+            density += share * cone->pdf() * litDensity(source.row, t, *cone, w);
     }
     return density + own * static_cast<double>(source.light->pdfDirection(origin, w));
 }
@@ -168,11 +204,14 @@ std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std
     const AimTarget& ball = target == kOwn ? scene_ : balls_[target];
     const Vec3 w = -s->wi;
     const Frame frame = Frame::fromNormal(w);
-    const Vec2 q = squareToDisk(u.position) * ball.radius;
+    EmittedRay ray;
+    ray.aim = u.position;
+    if (target != kOwn && resolves(ball))
+        if (const AimGrid* grid = gridOf(source.row, target)) ray.aim = grid->sample(u.position);
+    const Vec2 q = squareToDisk(ray.aim) * ball.radius;
     const Vec3d p =
         Vec3d(ball.centre) + Vec3d(frame.x) * static_cast<double>(q.x) + Vec3d(frame.y) * static_cast<double>(q.y);
     const double back = static_cast<double>(start_) + dot(p - Vec3d(scene_.centre), Vec3d(w));
-    EmittedRay ray;
     ray.target = target;
     ray.beta = s->radiance;
     ray.ray.origin = Vec3(p - Vec3d(w) * back);
@@ -187,10 +226,12 @@ std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std
 
 double AimedEmission::pdfPosition(const Source& source, Vec3 p, Vec3 w, std::uint32_t chosen) const noexcept {
     const Distribution1D& aim = aim_[source.row];
+    const Frame frame = Frame::fromNormal(w);
     double density = chosen == kOwn || crosses(scene_, p, w) ? aim.probability(0) * pdfDisk(scene_) : 0;
     for (std::uint32_t t = 0; t < balls_.size(); ++t) {
         const double share = aim.probability(t + 1);
-        if (share > 0 && (t == chosen || crosses(balls_[t], p, w))) density += share * pdfDisk(balls_[t]);
+        if (share > 0 && (t == chosen || crosses(balls_[t], p, w)))
+            density += share * pdfDisk(balls_[t]) * (grids_.empty() ? 1 : litDensity(source.row, t, p, frame));
     }
     return density;
 }

@@ -1,6 +1,8 @@
 // Paths of light that start at the lights, most of them towards what focuses it.
 #pragma once
 
+#include "integrators/aim_cone.h"
+#include "integrators/aim_grid.h"
 #include "integrators/emission_plan.h"
 #include "integrators/emitted_ray.h"
 #include "math/bounds.h"
@@ -22,10 +24,11 @@ struct EmissionNumbers {
     Vec2 position, direction;
 };
 
-// Lights are drawn by power and usefulness, their parts by power. Directions follow a mixture: evenly over the cone of
-// each target, with the light's own distribution as the rest. For lights far away it is the place across the direction
-// that is aimed: over the disk that each target offers, or the whole scene. Densities are those of the whole mixture
-// [Veach1997, sec. 9.2.4], as the targets may overlap. Immutable, thread-safe; the lights must outlive it.
+// Lights are drawn by power and usefulness, their parts by power. Directions follow a mixture: over the cone of
+// each target, evenly or by a grid of parts that bring light, with the light's own distribution as the rest. For lights
+// far away it is the place across the direction that is aimed: over the disk that each target offers, or the whole
+// scene. Densities are those of the whole mixture [Veach1997, sec. 9.2.4], as the targets may overlap. Immutable,
+// thread-safe; the lights must outlive it.
 class AimedEmission {
   public:
     // The bounds are those that the lights were committed with. Requires a plan as EmissionPlan states it.
@@ -52,6 +55,12 @@ class AimedEmission {
 
     void addLights(const std::vector<std::unique_ptr<const Light>>&);
     void addAim(std::size_t lights);
+    void addGrids();
+    const AimGrid* gridOf(std::size_t row, std::uint32_t target) const noexcept;
+    double litDensity(std::size_t row, std::uint32_t target, const AimCone&, Vec3 w) const noexcept;
+    double litDensity(std::size_t row, std::uint32_t target, Vec3 p, const Frame&) const noexcept;
+    // Whether places, which are floats, tell parts of a disk apart.
+    bool resolves(const AimTarget& disk) const { return disk.radius > 0x1p-10f * (length(scene_.centre) + start_); }
     double pickProbability(std::size_t source, std::uint32_t part) const noexcept;
     // `chosen`: a target that counts whatever rounding says of the direction.
     double pdfDirection(const Source&, const LightOrigin&, Vec3 w, std::uint32_t chosen) const noexcept;
@@ -65,6 +74,7 @@ class AimedEmission {
     std::vector<Source> sources_;
     std::unordered_map<const Light*, std::size_t> places_; // in sources_
     std::optional<Distribution1D> choice_;                 // of a source; none where all are dark
+    std::vector<std::optional<AimGrid>> grids_;            // of plan_.parts
     std::vector<Distribution1D> aim_; // rows: the share of what is not aimed, then those of the targets
     AimTarget scene_;                 // the ball whose disk stands for the whole scene
     std::vector<AimTarget> balls_;    // the targets, as their disks are drawn from far away

@@ -13,7 +13,7 @@ namespace {
 constexpr int kCells = 12; // of a row
 constexpr int kReplicates = 2;
 
-using Samples = std::array<std::array<double, CameraNoise::kMany>, kReplicates>;
+using Samples = std::array<std::array<double, CameraVariance::kMany>, kReplicates>;
 
 struct Probe {
     Samples y{};
@@ -24,7 +24,7 @@ struct Probe {
 Probe probe(const PathContext& context, TileFunction render, const RouletteReference& roulette, PixelBounds pixel) {
     Probe result;
     PilotPixel film(pixel, kReplicates);
-    for (std::uint32_t i = 0; i < CameraNoise::kMany; ++i) {
+    for (std::uint32_t i = 0; i < CameraVariance::kMany; ++i) {
         const TileResult r = render(context, film, {pixel, i, i + 1, &roulette});
         for (int k = 0; k < kReplicates; ++k) result.y[static_cast<std::size_t>(k)][i] = film.luminance(k);
         result.rays += r.counters.vertices + r.counters.shadowRays;
@@ -33,7 +33,7 @@ Probe probe(const PathContext& context, TileFunction render, const RouletteRefer
 }
 
 CameraVariance varianceOf(const Samples& samples, double weight) {
-    constexpr double kMany = CameraNoise::kMany;
+    constexpr double kMany = CameraVariance::kMany;
     std::array<double, kReplicates> means{};
     double mean = 0;
     for (std::size_t k = 0; k < means.size(); ++k) {
@@ -42,7 +42,10 @@ CameraVariance varianceOf(const Samples& samples, double weight) {
     }
     CameraVariance result;
     for (std::size_t k = 0; k < means.size(); ++k) {
-        for (const double v : samples[k]) result.secondMoment += weight * square(v) / (kReplicates * kMany);
+        for (const double v : samples[k]) {
+            result.secondMoment += weight * square(v) / (kReplicates * kMany);
+            result.variance += weight * square(v - mean) / (kReplicates * kMany - 1);
+        }
         result.ofMeans += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
     }
     return result;
@@ -50,6 +53,7 @@ CameraVariance varianceOf(const Samples& samples, double weight) {
 
 void add(CameraVariance& to, const CameraVariance& v, double share) {
     to.secondMoment += v.secondMoment * share;
+    to.variance += v.variance * share;
     to.ofMeans += v.ofMeans * share;
 }
 
@@ -74,7 +78,7 @@ CameraNoise cameraNoise(const PathContext& context, TileFunction render, const R
             for (std::size_t s = 0; s < found.y[k].size(); ++s) found.y[k][s] -= rest.y[k][s];
         const double weight = measure.weight(pixel.x0, pixel.y0);
         pixels[i] = {varianceOf(found.y, weight), varianceOf(rest.y, weight),
-                     static_cast<double>(found.rays) / (kReplicates * CameraNoise::kMany), found.rays + rest.rays};
+                     static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany), found.rays + rest.rays};
     });
     CameraNoise result;
     const double share = 1 / static_cast<double>(pixels.size());

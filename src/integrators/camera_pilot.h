@@ -5,18 +5,24 @@
 #include "integrators/noise_measure.h"
 #include "integrators/tile_kernel.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace abbe {
 
-// What camera paths bring, relative and in the mean over the frame as NoiseMeasure has it: the second moment of a
-// sample, and the variance of the mean of many samples of one pixel, times their number. Samples of a pixel are
-// stratified, which takes more off the variance than the square of the mean.
+// What camera paths bring, relative and in the mean over the frame as NoiseMeasure has it.
 struct CameraVariance {
-    double secondMoment = 0, ofMeans = 0;
+    static constexpr std::uint32_t kMany = 64; // samples of a pixel: a power of two, and the square of another
+
+    double secondMoment = 0, variance = 0; // of one sample
+    double ofMeans = 0;                    // variance of the mean of kMany samples of one pixel, times their number
+
+    // The same of 512 samples, for which renders are planned, whatever their number is. Samples of a pixel are
+    // stratified, and what that takes off the variance grows by a power of their number.
+    double planned() const { return variance > 0 ? ofMeans * std::min(1.0, std::sqrt(ofMeans / variance)) : 0; }
 };
 
 struct CameraNoise {
-    static constexpr std::uint32_t kMany = 64; // samples of a pixel
-
     CameraVariance shared; // the light that light paths could bring, as camera paths find it without them
     CameraVariance rest;   // everything else
     double rays = 0;       // of a camera path, without the cost of weights

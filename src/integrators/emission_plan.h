@@ -23,6 +23,9 @@ struct EmissionPlan {
     // How useful each target is: a row for all lights, or a row for each, one after the other; empty: all alike. A row
     // of zeros aims at nothing.
     std::vector<double> aim;
+    // Where in each target's cone or disk it is: for each entry of `aim` the weights of the cells of an AimGrid, > 0,
+    // as many rows as columns, or none for all alike; empty: all of them alike.
+    std::vector<std::vector<double>> parts;
     // Of the paths of each light, those that take its own directions and, from far away, the whole scene: so that no
     // light is ever missed. In (0, 1].
     float uniformShare = 0.25f;

@@ -18,6 +18,7 @@ struct EmittedRay {
     // Free of the light's own surface. From far away it starts where all finite geometry and all targets still lie
     // ahead: only shapes without an end may shade it there, which a ray backwards tells.
     Ray ray;
+    Vec2 aim;      // where in the square of that target's cone or disk (AimGrid)
     Vec3 n;        // unit normal of the light's surface, outside; 0 where it has none
     Spectrum beta; // W·nm⁻¹: radiance cos θ / density. Its mean over rays is the power of all lights
     EmissionDensity density;

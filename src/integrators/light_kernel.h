@@ -69,6 +69,7 @@ template <EffectBits E> class LightKernel {
             listener.sees(*start, splat, value.y);
             add(replicate, sample, splat, value, lambda, *start);
         });
+        result_.raysAfterSpread += loop.raysAfterSpread();
         removeWorkFlag(WorkFlag::heroOnly);
         setWork(Work::lights);
         if constexpr (PathLoop<E>::kMedia) setWorkCause(0);

@@ -16,6 +16,7 @@ struct LensSplat {
                        // paths, per unit of the filter's integral, is what light paths bring to the picture
     double rivals = 0; // how many times as likely camera paths find the same; `value` is weighed by 1 / (1 + rivals)
     PathComponent component = PathComponent::direct;
+    bool spread = false; // before this vertex, by a matte lobe or in a medium
 };
 
 // One path from a light through the scene, weighed against camera paths as path_loop_traced.h states. It is walked as
@@ -35,6 +36,8 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
         : Base(context, sampler, arena, counters, media), view_(view) {}
 
     void startIn(const Surroundings& around) { this->path_.nested.here = around; }
+    // Of all, those after the path was spread for the first time.
+    std::uint64_t raysAfterSpread() const { return raysAtSpread_ ? rays() - *raysAtSpread_ : 0; }
     // Vertex 0 of the sampler has started the path; vertex k + 1 is that of the path's vertex k.
     template <typename Tell> void trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
     // Instead of what the lens sees: tells of the photons that the path leaves for merging.
@@ -63,7 +66,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
     // started from, 1/sr.
     double askedDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;
-    LightScattering weighed(const SurfaceHit&, const LightVertex&, Vec3 away, const LightVertexSample* sampled);
+    LightScattering weighed(const SurfaceHit&, Vec3 away, const LightVertexSample* sampled);
     template <typename Tell>
     void show(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
     template <typename Tell> void showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t depth, Tell&&);
@@ -79,6 +82,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
     bool scatterInMedium(Ray&, const VertexSample&);
     bool survives(std::uint32_t depth);
+    std::uint64_t rays() const { return this->counters_.vertices + this->counters_.shadowRays; }
 
     TracedView& view_;
     Rivals rivals_;
@@ -93,6 +97,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     static constexpr std::size_t kMostLinks = ChainSignature::kMaxLength;
     std::array<Link, kMostLinks> links_{}; // of the chain of deltas that the path has been so far,
     std::size_t linkCount_ = 0;            // kMostLinks + 1 where it is none or too long
+    std::optional<std::uint64_t> raysAtSpread_;
     float startThroughput_ = 1;
 };
 
@@ -241,15 +246,12 @@ Spectrum LightLoop<E>::passing(Vec3 origin, const LensConnection& c, bool throug
                                this->sampler_.stream(2 * depth + 3));
 }
 
-// The densities at a vertex as both kinds of path tell them.
+// The densities at a vertex as both kinds of path tell them, of a path that belongs to its hero.
 template <EffectBits E>
-LightScattering LightLoop<E>::weighed(const SurfaceHit& hit, const LightVertex& vertex, Vec3 away,
-                                      const LightVertexSample* sampled) {
-    const auto ask = [&](const LightVertex& v) {
-        return sampled && sampled->lobe.has(Lobe::delta) ? v.deltaTowards(away, sampled->eta) : v.towards(away);
-    };
+LightScattering LightLoop<E>::weighed(const SurfaceHit& hit, Vec3 away, const LightVertexSample* sampled) {
     view_.own.reset();
-    return ask(LightVertex(hit, this->path_.densities.film, view_.own, view_.eye));
+    const LightVertex vertex(hit, this->path_.densities.film, view_.own, view_.eye);
+    return sampled && sampled->lobe.has(Lobe::delta) ? vertex.deltaTowards(away, sampled->eta) : vertex.towards(away);
 }
 
 template <EffectBits E>
@@ -264,7 +266,7 @@ void LightLoop<E>::show(const EmittedRay& start, const SurfaceHit& hit, const Li
     const bool through = dot(c->wi, hit.ng) * dot(hit.arrival, hit.ng) > 0;
     const Spectrum clear = passing(spawnOrigin(hit, c->wi), *c, through, depth);
     if (!anyNonZero(clear)) return;
-    const LightScattering w = this->path_.densities.heroOnly ? weighed(hit, vertex, c->wi, nullptr) : s;
+    const LightScattering w = this->path_.densities.heroOnly ? weighed(hit, c->wi, nullptr) : s;
     const bool hero = this->path_.densities.heroOnly || c->heroOnly;
     const auto scattering = static_cast<double>(w.pdfReverse);
     Rivals rivals = rivals_;
@@ -304,7 +306,7 @@ void LightLoop<E>::addSplat(const LensConnection& c, const Spectrum& value, doub
         seen = Spectrum(Float8{seen[0] * static_cast<float>(kLanes) / densities[0], 0, 0, 0, 0, 0, 0, 0});
     else
         seen *= 1 / mean(densities);
-    tell(LensSplat{c.film, seen, rivals, component(spreads)});
+    tell(LensSplat{c.film, seen, rivals, component(spreads), spread_ > 0});
 }
 
 template <EffectBits E>
@@ -315,7 +317,7 @@ bool LightLoop<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const
     if (!next) return false;
     const LightScattering& s = next->scattering;
     const bool delta = next->lobe.has(Lobe::delta);
-    const LightScattering w = path.densities.heroOnly ? weighed(hit, vertex, next->away, &*next) : s;
+    const LightScattering w = path.densities.heroOnly ? weighed(hit, next->away, &*next) : s;
     path.beta *= s.fcos * (1 / s.pdfSolidAngle);
     if (delta && next->lobe.has(Lobe::dispersive)) this->endSecondaryWavelengths();
     if (!delta) path.densities.unidirectional *= Spectrum(s.pdfRatio);
@@ -355,11 +357,17 @@ template <EffectBits E> bool LightLoop<E>::scatterInMedium(Ray& ray, const Verte
 }
 
 template <EffectBits E> bool LightLoop<E>::survives(std::uint32_t depth) {
-    if (depth < 3) return true;
-    float throughput = mean(abs(this->path_.beta)) / startThroughput_;
-    if constexpr (Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);
-    const float p = std::min(depth >= Base::kLongPath ? Base::longPathSurvival(depth) : 1.f,
-                             std::clamp(throughput, RouletteReference::kFloor, 1.f));
+    float p = 1;
+    if (depth >= 3) {
+        float throughput = mean(abs(this->path_.beta)) / startThroughput_;
+        if constexpr (Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);
+        p = std::min(depth >= Base::kLongPath ? Base::longPathSurvival(depth) : 1.f,
+                     std::clamp(throughput, RouletteReference::kFloor, 1.f));
+    }
+    if (spread_ > 0 && !raysAtSpread_) {
+        raysAtSpread_ = rays();
+        if (!photons_) p *= this->context_.traced->afterSpread;
+    }
     if (p >= 1) return true;
     if (this->sampler_.roulette(depth) >= p) return false;
     this->path_.beta *= 1 / p;

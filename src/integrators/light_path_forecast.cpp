@@ -43,7 +43,7 @@ double LightPathForecast::variance(double share, const CameraVariance& alone) co
         missed -= t.ofCamera(0);
         variance += t.ofLight(share);
     }
-    return variance + (seenAlone > 0 ? alone.ofMeans * seen / seenAlone : 0);
+    return variance + (seenAlone > 0 ? alone.planned() * seen / seenAlone : 0);
 }
 
 } // namespace abbe

@@ -4,6 +4,7 @@
 #include "base/work.h"
 #include "integrators/aim_targets.h"
 #include "integrators/darkroom.h"
+#include "integrators/emission_learning.h"
 #include "integrators/light_path_forecast.h"
 #include "integrators/light_path_shares.h"
 #include "integrators/pilot_pixel.h"
@@ -19,14 +20,13 @@ namespace abbe {
 
 namespace {
 
-constexpr std::size_t kMaxLearned = 4096; // pairs of a light and a target that learn their shares one by one
 // Of pilot paths: half as many as the frame has pixels, whatever the number of samples, but within these.
 constexpr std::uint32_t kBlock = 1024, kLeastBlocks = 8, kMostBlocks = 32;
 constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn", "judge"
 // Per camera ray: what asking for the densities of light paths costs, in rays.
 constexpr double kTracedCost = 1.4;
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
-constexpr double kLightCost = 2;
+constexpr double kLightCost = 2.5;
 constexpr double kLeastSparks = 0.02; // second moment of what light paths could bring better
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
@@ -47,7 +47,7 @@ class Planner {
         emission.targets = std::move(aims.balls);
         names_ = std::move(aims.names);
         LightPathPlan first{AimedEmission(context_.scene.lights, bounds, emission),
-                            static_cast<std::uint32_t>(frame_.area()), false};
+                            static_cast<std::uint32_t>(frame_.area()), 1, false};
         findings_.lights = static_cast<std::uint32_t>(lights_);
         findings_.targets = static_cast<std::uint32_t>(names_.size());
         findings_.verdict = LightPathVerdict::noLights;
@@ -59,8 +59,8 @@ class Planner {
   private:
     struct Listened {
         std::vector<LightDeposit> deposits;
-        std::vector<std::uint32_t> starts; // by light and target
-        std::uint64_t paths = 0, rays = 0;
+        std::vector<LightStart> starts;
+        std::uint64_t paths = 0, rays = 0, raysAfterSpread = 0;
     };
 
     LightPathVerdict decide(const EmissionPlan& even, const LightPathPlan& first,
@@ -78,8 +78,9 @@ class Planner {
             return nothingFound;
         }
         LightPathPlan learned{
-            AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(), learn(even, heard)), first.paths,
-            false};
+            AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(),
+                          learnEmission(even, lights_, heard.starts, heard.deposits, *measure_, alone())),
+            first.paths, afterSpread(heard), false};
         judge(learned);
         if (stop_()) return undecided;
         if (!forced && findings_.gain < kLeastGain) return noGain;
@@ -94,16 +95,16 @@ class Planner {
     // By names, what was heard, if there were `paths` light paths for each camera path.
     void describe(const Listened& heard, double paths) {
         findings_.measured = true;
-        const double started = std::accumulate(heard.starts.begin(), heard.starts.end(), 0.0);
+        const auto started = static_cast<double>(heard.starts.size());
         std::vector<LightPathShare> shares(lights_ * targets_);
         for (std::size_t i = 0; i < shares.size(); ++i) {
             const auto name = context_.scene.names.find(context_.scene.lights[i / targets_].get());
             shares[i].light = name == context_.scene.names.end() ? "a light" : name->second;
             if (i % targets_ > 0) shares[i].target = names_[i % targets_ - 1];
-            shares[i].share = started > 0 ? heard.starts[i] / started : 0;
         }
+        for (const LightStart& start : heard.starts) shares[start.light * targets_ + start.target].share += 1 / started;
         for (const LightDeposit& d : heard.deposits) {
-            LightPathShare& s = shares[d.light * targets_ + d.target];
+            LightPathShare& s = shares[d.start.light * targets_ + d.start.target];
             const double second = square(d.luminance) * measure_->weight(d.x, d.y) * d.stands / pixels_;
             s.before += second / std::max(d.rho, 1e-12);
             s.after += second / std::max(d.rho + paths, 1e-12);
@@ -127,7 +128,6 @@ class Planner {
         parallelFor(parts.size(), [&](std::size_t i) {
             if (stop_()) return;
             Listened& part = parts[i];
-            part.starts.resize(lights_ * targets_);
             Listener listener(*this, part);
             Darkroom film(frame_);
             const auto begin = static_cast<std::uint32_t>(i) * kBlock;
@@ -136,14 +136,15 @@ class Planner {
             removeWorkFlag(WorkFlag::pilot);
             part.paths = kBlock;
             part.rays = r.counters.vertices + r.counters.shadowRays;
+            part.raysAfterSpread = r.raysAfterSpread;
         });
         Listened all;
-        all.starts.resize(lights_ * targets_);
         for (const Listened& part : parts) {
             all.deposits.insert(all.deposits.end(), part.deposits.begin(), part.deposits.end());
-            for (std::size_t i = 0; i < part.starts.size(); ++i) all.starts[i] += part.starts[i];
+            all.starts.insert(all.starts.end(), part.starts.begin(), part.starts.end());
             all.paths += part.paths;
             all.rays += part.rays;
+            all.raysAfterSpread += part.raysAfterSpread;
         }
         for (LightDeposit& d : all.deposits) d.stands = pixels_ / static_cast<double>(all.paths);
         findings_.rays += all.rays;
@@ -153,65 +154,41 @@ class Planner {
     class Listener final : public LightListener {
       public:
         Listener(const Planner& planner, Listened& to) : planner_(planner), to_(to) {}
-        void starts(const EmittedRay& start) override { ++to_.starts[place(start)]; }
+        void starts(const EmittedRay& start) override { to_.starts.push_back(place(start)); }
         void sees(const EmittedRay& start, const LensSplat& splat, double y) override {
             const PixelBounds& f = planner_.frame_;
             const int px = static_cast<int>(std::floor(splat.film.x)), py = static_cast<int>(std::floor(splat.film.y));
             if (px < f.x0 || py < f.y0 || px >= f.x1 || py >= f.y1) return;
             const double luminance = y * (1 + splat.rivals) / planner_.pixels_;
             if (!(luminance > 0) || !std::isfinite(luminance)) return;
-            const std::size_t at = place(start);
-            to_.deposits.push_back({static_cast<std::uint32_t>(at / planner_.targets_),
-                                    static_cast<std::uint32_t>(at % planner_.targets_), px, py, luminance, 1,
-                                    splat.rivals});
+            const LightStart from = place(start);
+            to_.deposits.push_back({from, splat.spread, px, py, luminance, 1, splat.rivals});
         }
 
       private:
-        std::size_t place(const EmittedRay& start) const {
-            const std::size_t target = start.target == EmittedRay::kNoTarget ? 0 : start.target + 1;
-            return planner_.numbers_.at(start.light) * planner_.targets_ + target;
+        LightStart place(const EmittedRay& start) const {
+            if (start.target == EmittedRay::kNoTarget) return {planner_.numbers_.at(start.light), 0, 0};
+            return {planner_.numbers_.at(start.light), start.target + 1,
+                    static_cast<std::uint32_t>(AimGrid::cell(start.aim, AimGrid::kFinest))};
         }
         const Planner& planner_;
         Listened& to_;
     };
 
-    // Shares in proportion to the root of the second moment of what a path brings there, which leaves the least
-    // variance [Neyman1934]; a fifth stays as it was, so that nothing is forgotten that a pilot did not see.
-    EmissionPlan learn(const EmissionPlan& even, const Listened& heard) const {
-        EmissionPlan plan = even;
-        const std::size_t lights = lights_, columns = targets_;
-        if (lights * columns > kMaxLearned) return plan;
-        std::vector<double> moment(lights * columns);
+    // With second moments m1 of what paths bring before they are spread and m2 after it, and their rays c1 and c2,
+    // going on with probability p costs (m1 + m2/p) (c1 + p c2), which is least at √(m2 c1 / (m1 c2)) [Veach1997, sec.
+    // 10.4].
+    float afterSpread(const Listened& heard) const {
+        constexpr double kLeast = 0.05; // a pilot sees little of what comes seldom
+        double before = 0, after = 0;
         for (const LightDeposit& d : heard.deposits)
-            moment[d.light * columns + d.target] +=
+            (d.spread ? after : before) +=
                 square(d.luminance) * measure_->weight(d.x, d.y) / (alone() ? 1 : square(1 + d.rho));
-        std::vector<double> ideal(lights * columns), lit(lights);
-        double all = 0, own = 0;
-        const auto paths = static_cast<double>(heard.paths);
-        for (std::size_t i = 0; i < ideal.size(); ++i) {
-            const double share = heard.starts[i] / paths;
-            ideal[i] = std::sqrt(moment[i] * share); // share · √(moment / share)
-            all += ideal[i];
-        }
-        if (!(all > 0)) return plan;
-        plan.aim.assign(lights * (columns - 1), 0);
-        plan.usefulness.assign(lights, 0);
-        for (std::size_t l = 0; l < lights; ++l) {
-            double before = 0;
-            for (std::size_t c = 0; c < columns; ++c) {
-                const double share = heard.starts[l * columns + c] / paths;
-                before += share;
-                const double mixed = 0.2 * share + 0.8 * ideal[l * columns + c] / all;
-                lit[l] += mixed;
-                if (c == 0)
-                    own += mixed;
-                else
-                    plan.aim[l * (columns - 1) + c - 1] = mixed;
-            }
-            plan.usefulness[l] = before > 0 ? lit[l] / before : 1;
-        }
-        plan.uniformShare = static_cast<float>(std::clamp(own, 0.1, 0.6));
-        return plan;
+        const auto raysAfter = static_cast<double>(heard.raysAfterSpread);
+        const double cost = before * raysAfter;
+        if (!(cost > 0)) return 1;
+        return static_cast<float>(
+            std::clamp(std::sqrt(after * (static_cast<double>(heard.rays) - raysAfter) / cost), kLeast, 1.0));
     }
 
     // Efficiencies of all shares; the best is that of the plan.
@@ -229,7 +206,7 @@ class Planner {
         const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera.shared);
-        findings_.rest = camera.rest.ofMeans;
+        findings_.rest = camera.rest.planned();
         const double plain = (findings_.rest + findings_.before) * camera.rays;
         findings_.gain = 0;
         for (const double share : kShares) {

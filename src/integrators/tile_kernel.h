@@ -29,7 +29,8 @@ struct TileResult {
     std::vector<DroppedSample> examples;    // at most a few
     DensityExcess excess;
     std::uint64_t lightPaths = 0, splats = 0, rounds = 0; // as in PathTally
-    std::uint64_t photonRays = 0;                         // of those rays, of light paths for merging
+    // Of all rays that counters tell: of light paths after they were spread, and of those for merging.
+    std::uint64_t raysAfterSpread = 0, photonRays = 0;
 
     void drop(const DroppedSample& sample) {
         ++dropped[static_cast<std::size_t>(sample.cause)];
@@ -44,6 +45,7 @@ struct TileResult {
         lightPaths += r.lightPaths;
         splats += r.splats;
         rounds += r.rounds;
+        raysAfterSpread += r.raysAfterSpread;
         photonRays += r.photonRays;
     }
 };
