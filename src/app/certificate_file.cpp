@@ -158,7 +158,7 @@ std::string certificateLine(const ErrorCertificate& c) {
 
 std::string mergedLine(const MergedLight& m) {
     return fmt::format("merged light {:.3g} % of the picture, in {} rounds: consistent, not unbiased; its blur changes "
-                       "tiles of 8×8 by about {:.2g} %, the whole by {:+.2g} %",
+                       "tiles of 8×8 by at most about {:.2g} %, the whole by {:+.2g} %",
                        100 * m.share, m.rounds, 100 * m.biasOfTiles, 100 * m.bias);
 }
 

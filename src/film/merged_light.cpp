@@ -45,7 +45,7 @@ std::optional<MergedLight> MergedLight::of(const PixelFilm& film) {
     for (int y = all.y0; y < all.y1; y += kTile)
         for (int x = all.x0; x < all.x1; x += kTile)
             tiles.push_back(tileOf(film, {x, y, std::min(x + kTile, all.x1), std::min(y + kTile, all.y1)}));
-    double luminance = 0, merged = 0, bias = 0, squares = 0;
+    double luminance = 0, merged = 0, bias = 0, sum = 0, squares = 0;
     for (const Tile& t : tiles) {
         luminance += t.luminance;
         merged += t.merged;
@@ -53,10 +53,15 @@ std::optional<MergedLight> MergedLight::of(const PixelFilm& film) {
     }
     if (!(luminance > 0)) return result;
     const double least = 0.1 * luminance / static_cast<double>(tiles.size());
-    for (const Tile& t : tiles) squares += t.a * t.b / square(std::max(t.luminance, least));
+    for (const Tile& t : tiles) {
+        const double product = t.a * t.b / square(std::max(t.luminance, least));
+        sum += product;
+        squares += square(product);
+    }
+    const auto count = static_cast<double>(tiles.size());
     result.share = merged / luminance;
     result.bias = bias / luminance;
-    result.biasOfTiles = std::sqrt(std::max(0.0, squares / static_cast<double>(tiles.size())));
+    result.biasOfTiles = std::sqrt(std::max(0.0, sum / count) + 2 * std::sqrt(squares) / count);
     return result;
 }
 

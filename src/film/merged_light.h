@@ -18,9 +18,9 @@ struct MergedLight {
 
     double share = 0; // of the picture's luminance
     double bias = 0;  // of the whole luminance, signed, over it
-    // Of tiles of 8×8 pixels: the root of the mean square of the bias over the tile's luminance, which is taken for at
-    // least a tenth of the picture's. The noise of two halves of the replicates drops out; with a single replicate it
-    // is in it.
+    // What the bias of tiles of 8×8 pixels is at most: the root of the mean square over the tile's luminance, which is
+    // taken for at least a tenth of the picture's, and two standard errors of the mean more. The noise of two halves of
+    // the replicates drops out; with a single replicate it is in it.
     double biasOfTiles = 0;
     std::uint64_t rounds = 0;
 };

@@ -137,6 +137,8 @@ Photon LightLoop<E>::photonAt(const SurfaceHit& hit, const EmittedRay& start, st
     photon.flux = path.beta;
     photon.densities = path.densities.unidirectional;
     photon.light = start.light;
+    photon.target = start.target;
+    photon.aim = start.aim;
     Rivals meeting = rivals_;
     meeting.asked = 0;
     photon.cameraOdds = static_cast<float>(meeting.of(1, Spectrum(1.f), path.densities.heroOnly));

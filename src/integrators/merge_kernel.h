@@ -21,9 +21,10 @@ struct MergeJob {
 class MergeListener {
   public:
     virtual ~MergeListener() = default;
+    virtual void starts(const EmittedRay&) = 0; // a light path
     virtual void begins(int x, int y) = 0;
     // `luminance` and, 0 if there is none, that of the sample of a camera path which finds the same light by itself.
-    virtual void gathers(const Light*, double luminance, double camera) = 0;
+    virtual void gathers(const Photon&, double luminance, double camera) = 0;
 };
 
 // A round is a picture of its own: light paths and camera paths are those of its number alone, whoever makes it.
@@ -91,7 +92,9 @@ template <EffectBits E> class MergeKernel {
     void traceOne(std::vector<Photon>& photons) {
         const Scene& scene = context_.scene;
         const auto start = startOfLightPath(plan_.emission, sampler_, lambda_, scene.camera->rayTime(time_));
-        if (!start || !plan_.lights.contains(start->light) || isShaded(scene, *start)) return;
+        if (!start) return;
+        if (listener_) listener_->starts(*start);
+        if (!plan_.lights.contains(start->light) || isShaded(scene, *start)) return;
         LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
         loop.startIn(surroundingsOf(scene, *start));
         loop.leavePhotons(*start, lambda_, [&](Photon photon) {
@@ -146,7 +149,7 @@ template <EffectBits E> class MergeKernel {
         const double found = context_.scene.sensor(light.value, lambda_).y * factor;
         const double odds = static_cast<double>(light.photon.cameraOdds) * static_cast<double>(light.cameraPdf);
         const double one = found * plan_.photons / static_cast<double>(light.kernel); // by a single light path
-        listener_->gathers(light.photon.light, found, odds > 0 ? one / odds : 0);
+        listener_->gathers(light.photon, found, odds > 0 ? one / odds : 0);
     }
 
     void add(const SampleId& sample, const Sum& sum, double factor) {

@@ -16,7 +16,9 @@ struct Photon {
     Vec3 ng;                      // geometric normal of the surface, outside
     Spectrum flux;                // W·nm⁻¹ over the density of all before, at the wavelengths of the round
     Spectrum densities;           // as SpectralDensities::unidirectional, by which sums are divided in the mean
-    const Light* light = nullptr; // where it began
+    const Light* light = nullptr; // where it began,
+    std::uint32_t target = 0;     // sent to what: as in EmittedRay,
+    Vec2 aim;                     // and where in that
     float cameraOdds = 0;         // density of the camera paths that come from the lamp here, without the scattering at
                                   // p, over that of the light paths; 0: there are none
     std::uint32_t vertices = 0;   // at which it was scattered on the way

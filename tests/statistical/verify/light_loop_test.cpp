@@ -27,7 +27,7 @@ class TwoWays {
     TwoWays(const TestScene& test, EmissionPlan plan, double share, bool alone)
         : scene_(test.scene()), settings_(test.settings()), lights_(scene_.lights, settings_.technique.lightChoice),
           plan_{AimedEmission(scene_.lights, scene_.intersector->bounds(), std::move(plan)),
-                static_cast<std::uint32_t>(share * kWidth * kHeight), alone},
+                static_cast<std::uint32_t>(share * kWidth * kHeight), 1, alone},
           context_{scene_, lights_, settings_, true, 1, LoopTechnique(settings_.technique), &plan_} {}
 
     Parts run(std::uint32_t samples) {
