@@ -82,6 +82,15 @@ Reason needsUsedLightPaths(const StudySubject& s) {
     return std::nullopt;
 }
 
+// What is merged where the scene leaves it to the program.
+Reason needsUsedMerging(const StudySubject& s) {
+    if (const Reason reason = needsLightPaths(s)) return reason;
+    if (s.settings.technique.merging == Technique::Merging::off) return "`merging off` of `render`";
+    const Scene& scene = s.built->scene;
+    if (!makePathTracer(scene.effects)->findLightPaths(scene, s.settings).merging.used) return "no light is merged";
+    return std::nullopt;
+}
+
 Reason needsUnusedLightPaths(const StudySubject& s) {
     if (const Reason reason = needsLightPaths(s)) return reason;
     if (s.settings.technique.lightPaths == Technique::LightPaths::automatic &&
@@ -192,6 +201,10 @@ std::vector<StudyVariant> lightPaths() {
          "what camera paths hardly ever find is missing from most of the images, and from the estimates of their "
          "errors",
          [](S& s) { s.technique.lightPaths = T::LightPaths::off; }, false, needsUsedLightPaths},
+        {"merging-off", "no merging", kGroup, "caustics behind glass and in mirrors without photons", exact,
+         "what camera paths hardly ever find is missing from most of the images, and from the estimates of their "
+         "errors",
+         [](S& s) { s.technique.merging = T::Merging::off; }, false, needsUsedMerging},
         {"light-paths-always", "light paths in any case", kGroup,
          "light paths, whether they are forecast to pay or not", exact, "",
          [](S& s) { s.technique.lightPaths = T::LightPaths::always; }, false, needsUnusedLightPaths},
