@@ -130,8 +130,11 @@ double integralOf(FilterShape shape, double radius) {
 } // namespace
 
 PixelFilter::PixelFilter(FilterShape shape, double radius)
-    : shape_(shape), radius_(radius), integral_(integralOf(shape, radius)) {
+    : shape_(shape), radius_(radius), perCell_(static_cast<float>(kWeights / radius)) {
     ABBE_CHECK(radius > 0);
+    const double integral = integralOf(shape, radius);
+    for (int i = 0; i <= kWeights; ++i)
+        weights_.push_back(static_cast<float>(evaluate(shape, radius, radius * i / kWeights) / integral));
     if (shape == FilterShape::box) return;
     if (shape != FilterShape::mitchell) {
         positive_ = Magnitude(shape, radius, 0, radius);

@@ -25,7 +25,7 @@ struct EmissionPlan {
     std::vector<double> aim;
     // Where in each target's cone or disk it is: for each entry of `aim` the weights of the cells of an AimGrid, > 0,
     // as many rows as columns, or none for all alike; empty: all of them alike.
-    std::vector<std::vector<double>> parts;
+    std::vector<std::vector<double>> parts = {};
     // Of the paths of each light, those that take its own directions and, from far away, the whole scene: so that no
     // light is ever missed. In (0, 1].
     float uniformShare = 0.25f;

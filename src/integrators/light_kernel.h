@@ -1,11 +1,14 @@
 // One block of light paths: the unit of work beside tiles of pixels.
 #pragma once
 
+#include "base/check.h"
 #include "integrators/light_loop.h"
 #include "integrators/light_start.h"
 #include "integrators/merge_kernel.h"
 #include "integrators/tile_kernel.h"
 #include "render/splat.h"
+
+#include <array>
 
 namespace abbe {
 
@@ -20,7 +23,9 @@ struct LightJob {
 template <EffectBits E> class LightKernel {
   public:
     LightKernel(const PathContext& context, Film& film, const LightJob& job)
-        : context_(context), film_(film), job_(job), media_(LightLoop<E>::makeMedia(context.scene)) {}
+        : context_(context), film_(film), job_(job), media_(LightLoop<E>::makeMedia(context.scene)) {
+        ABBE_CHECK(2 * film.filterRadius() + 1 <= static_cast<float>(kMostReach));
+    }
 
     // Tells of every path that starts, and of every splat with its luminance, whether it is within the film or not.
     template <typename Listener> TileResult run(Listener& listener) {
@@ -43,6 +48,7 @@ template <EffectBits E> class LightKernel {
 
   private:
     static constexpr std::uint64_t kKey = 0x6c69676874;        // "light"
+    static constexpr std::size_t kMostReach = 33;              // pixels, for filters of the largest radius
     static constexpr std::uint32_t kPixelNumbers = 0x40000000; // beyond those of vertices
 
     template <typename Listener>
@@ -105,12 +111,17 @@ template <EffectBits E> class LightKernel {
         float factor;
     };
     Drawn drawPixel(float place, int first, int last, float u) const {
+        std::array<float, kMostReach> weights;
         float sum = 0;
-        for (int i = first; i <= last; ++i) sum += std::abs(film_.filterWeight(place - static_cast<float>(i)));
+        for (int i = first; i <= last; ++i) {
+            float& weight = weights[static_cast<std::size_t>(i - first)];
+            weight = film_.filterWeight(place - static_cast<float>(i));
+            sum += std::abs(weight);
+        }
         float left = u * sum;
         Drawn drawn{first, 0};
         for (int i = first; i <= last; ++i) {
-            const float weight = film_.filterWeight(place - static_cast<float>(i));
+            const float weight = weights[static_cast<std::size_t>(i - first)];
             if (weight == 0) continue;
             drawn = {i, std::copysign(sum, weight)};
             left -= std::abs(weight);

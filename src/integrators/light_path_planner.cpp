@@ -47,7 +47,7 @@ class Planner {
         emission.targets = std::move(aims.balls);
         names_ = std::move(aims.names);
         LightPathPlan first{AimedEmission(context_.scene.lights, bounds, emission),
-                            static_cast<std::uint32_t>(frame_.area()), 1, false};
+                            static_cast<std::uint32_t>(frame_.area()), false};
         findings_.lights = static_cast<std::uint32_t>(lights_);
         findings_.targets = static_cast<std::uint32_t>(names_.size());
         findings_.verdict = LightPathVerdict::noLights;
@@ -80,7 +80,7 @@ class Planner {
         LightPathPlan learned{
             AimedEmission(context_.scene.lights, context_.scene.intersector->bounds(),
                           learnEmission(even, lights_, heard.starts, heard.deposits, *measure_, alone())),
-            first.paths, afterSpread(heard), false};
+            first.paths, false, afterSpread(heard)};
         judge(learned);
         if (stop_()) return undecided;
         if (!forced && findings_.gain < kLeastGain) return noGain;

@@ -41,8 +41,8 @@ struct LightPathFindings {
     // A pilot has run: whether what follows has been measured.
     bool measured = false;
     // In the mean over pixels, as the shown noise is relative: variance of the light that light paths could bring, as
-    // camera paths alone find it and as both do, and of everything else. Of the mean of 64 samples of a pixel, times
-    // 64: samples of a pixel are stratified.
+    // camera paths alone find it and as both do, and of everything else. Of the mean of 512 samples of a pixel,
+    // times 512: samples of a pixel are stratified.
     double before = 0, after = 0, rest = 0;
     double gain = 1;           // of efficiency, as far as these tell, with the best share
     double share = 0;          // light paths for each camera path; 0: none

@@ -14,7 +14,7 @@ constexpr int kHeights = 24, kTurns = 48;
 
 // Points of a cell each way over which its density is summed. That has edges, and a cell with a corner of a cone that
 // no point sees must not get more than a few counts.
-int pointsPerCell() { return nightly() ? 56 : 14; }
+int pointsPerCell() { return nightly() ? 56 : 28; }
 
 Vec3 directionOf(double height, double turn) {
     const double z = 2 * height / kHeights - 1, r = safeSqrt(1 - z * z), phi = 2 * kPiD * turn / kTurns;
@@ -55,6 +55,10 @@ EmissionPlan someTargets(Vec3 origin) {
                     {kAhead * -2 - origin, 0.5f},
                     {kAhead * 0.1f - origin, 1.2f}};
     plan.aim = {3, 2, 1, 1, 0.5};
+    plan.parts.resize(5);
+    for (int i = 0; i < 16; ++i) plan.parts[0].push_back(i % 5 == 0 ? 3 : 1);
+    for (int i = 0; i < 256; ++i) plan.parts[1].push_back(i / 16 > 10 ? 2 : 0.5);
+    plan.parts[4] = {1, 2, 3, 4};
     return plan;
 }
 

@@ -24,10 +24,10 @@ struct Parts {
 // What light paths bring, sums over their number, is kept beside what camera paths bring.
 class TwoWays {
   public:
-    TwoWays(const TestScene& test, EmissionPlan plan, double share, bool alone)
+    TwoWays(const TestScene& test, EmissionPlan plan, double share, bool alone, float afterSpread = 1)
         : scene_(test.scene()), settings_(test.settings()), lights_(scene_.lights, settings_.technique.lightChoice),
           plan_{AimedEmission(scene_.lights, scene_.intersector->bounds(), std::move(plan)),
-                static_cast<std::uint32_t>(share * kWidth * kHeight), 1, alone},
+                static_cast<std::uint32_t>(share * kWidth * kHeight), alone, afterSpread},
           context_{scene_, lights_, settings_, true, 1, LoopTechnique(settings_.technique), &plan_} {}
 
     Parts run(std::uint32_t samples) {
@@ -115,12 +115,12 @@ double total(const TileSums& sums) {
 
 // Camera paths alone against light paths that bring all they can, and against both together.
 void compareBoth(const std::string& name, const std::string& text, std::uint32_t samples, std::uint32_t plain,
-                 const EmissionPlan& plan = {}, double share = 1) {
+                 const EmissionPlan& plan = {}, double share = 1, float afterSpread = 1) {
     const TestScene scene =
         TestScene::parse("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n" + text);
     const TileSums expected = seen(scene, plain);
-    check(name + ", alone", expected, TwoWays(scene, plan, share, true).run(samples).both, 0.02);
-    const Parts weighed = TwoWays(scene, plan, share, false).run(samples);
+    check(name + ", alone", expected, TwoWays(scene, plan, share, true, afterSpread).run(samples).both, 0.02);
+    const Parts weighed = TwoWays(scene, plan, share, false, afterSpread).run(samples);
     check(name + ", both", expected, weighed.both, 0.01);
     MESSAGE(fmt::format("light paths bring {:.3g} of it", total(weighed.light) / total(weighed.both)));
 }
@@ -156,6 +156,21 @@ TEST_CASE("light paths: caustics of glass and of glass that disperses") {
                 fmt::format("shape sphere {{ center -0.35 1.8 -0.3; radius 0.45; material dielectric {{ ior {} }} }}\n",
                             ior),
             24, 200, plan);
+}
+
+TEST_CASE("light paths: parts of a target, and fewer after light is spread") {
+    EmissionPlan plan;
+    plan.targets = {{{-0.35f, 1.8f - 2.3f, -0.3f - 3.5f}, 0.46f}};
+    plan.aim = {1};
+    plan.parts.resize(1);
+    for (int i = 0; i < 64; ++i) plan.parts[0].push_back(i % 8 < 3 || i / 8 == 4 ? 4 : 0.5);
+    const std::string scene = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+                              "shape sphere { center -0.35 1.8 -0.3; radius 0.45; material dielectric { ior 1.5 } }\n"
+                              "shape sphere { center 0.7 0.5 0; radius 0.5; material diffuse { reflectance 0.7 } }\n";
+    compareBoth("lamp, parts", scene + "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n", 24, 200, plan, 1,
+                0.4f);
+    compareBoth("sun, parts", scene + "light sun { toward 0.3 -1 0.2; angular-diameter 20 deg }\n", 24, 200, plan, 1,
+                0.4f);
 }
 
 TEST_CASE("light paths: fog") {

@@ -62,6 +62,27 @@ TEST_CASE("filters keep the shapes that they are named for") {
     CHECK(!findFilter("lanczos"));
 }
 
+TEST_CASE("pixel filter: the table of weights is the filter") {
+    for (const FilterShape shape : {FilterShape::box, FilterShape::triangle, FilterShape::gaussian,
+                                    FilterShape::blackmanHarris, FilterShape::mitchell}) {
+        const double radius = defaultRadius(shape) * 1.3;
+        const PixelFilter filter(shape, radius);
+        double sum = 0, worst = 0;
+        constexpr int steps = 20011;
+        for (int i = 0; i < steps; ++i) {
+            const double x = ((i + 0.5) / steps * 2 - 1) * radius;
+            sum += static_cast<double>(filter.weight(static_cast<float>(x))) * 2 * radius / steps;
+            const double exact = PixelFilter::evaluate(shape, radius, x) / PixelFilter::evaluate(shape, radius, 0);
+            const double found = static_cast<double>(filter.weight(static_cast<float>(x)) / filter.weight(0));
+            worst = std::max(worst, std::abs(found - exact));
+        }
+        CAPTURE(name(shape));
+        CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+        CHECK(worst < 5e-6);
+        CHECK(filter.weight(static_cast<float>(radius * 1.001)) == 0);
+    }
+}
+
 TEST_CASE("weighted samples have the filter's integral and moments") {
     for (const FilterShape shape : kShapes)
         for (const double radius : {0.5, 1.5, 3.0}) {

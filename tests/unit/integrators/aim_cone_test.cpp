@@ -50,6 +50,24 @@ TEST_CASE("aim cone: directions stay within it, fill it evenly and point at the 
     }
 }
 
+TEST_CASE("aim cone: the number that makes a direction, and the direction") {
+    test::Random random(3);
+    for (const float distance : {1.001f, 1.5f, 30.f, 1e3f, 4e3f}) {
+        CAPTURE(distance);
+        const Vec3 axis = normalize(Vec3{-1, 3, 0.5f});
+        const auto cone = AimCone::seen({{0, 0, 0}, 1}, axis * -distance);
+        REQUIRE(cone);
+        REQUIRE(cone->resolves());
+        float worst = 0;
+        for (int i = 0; i < 10000; ++i) {
+            const Vec2 u{random.uniform(), random.uniform()}, back = cone->square(cone->sample(u));
+            worst = std::max({worst, std::abs(back.x - u.x), std::abs(back.y - u.y)});
+        }
+        CHECK(worst < 1e-5f + 4e-7f * distance);
+    }
+    CHECK(!AimCone::seen({{0, 0, 0}, 1}, {0, 0, 1e5f})->resolves());
+}
+
 TEST_CASE("aim cone: what passes by quickly is outside, and most of what is outside passes by quickly") {
     test::Random random(4);
     const auto around = [&random](float size) {
