@@ -163,4 +163,26 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     CHECK(makePathTracer(dark.scene().effects)->findLightPaths(dark.scene(), dark.settings()).verdict == noLights);
 }
 
+// Under a ball of glass: with a lamp half as wide as the ball the samples of a pixel, stratified over what is full of
+// the lamp, beat paths from it.
+TEST_CASE("light paths: a small lamp needs them, a large one does not") {
+    for (const double radius : {0.5, 0.02}) {
+        CAPTURE(radius);
+        const TestScene scene = TestScene::parse(
+            "scene 1\nfilm { size 32 32; filter box 0.5 }\n"
+            "camera orthographic { from 0 0.2 0; look-at 0 0 0; up 0 0 -1; width 0.6 }\n"
+            "shape sphere { center 0 1.3 0; radius 1; material dielectric { ior 1.5 } }\n"
+            "shape quad { size 0.6 0.6; material diffuse { reflectance 0.5 }; transform { rotate x -90 deg } }\n"
+            "light disk { center 0 5.8 0; normal 0 -1 0; radius " +
+            std::to_string(radius) + "; radiance 1 }\n");
+        const LightPathFindings found =
+            makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), scene.settings());
+        CHECK(found.measured);
+        CHECK(found.verdict == (radius > 0.1 ? LightPathVerdict::noGain : LightPathVerdict::used));
+        CHECK((radius > 0.1 ? found.gain < 1 : found.gain > 100));
+        CHECK(found.rest == 0);                      // there is no other light
+        CHECK((radius > 0.1) == (found.before < 5)); // what camera paths seldom find is not stratified
+    }
+}
+
 } // namespace abbe::test
