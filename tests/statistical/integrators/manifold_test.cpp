@@ -18,6 +18,15 @@ void checkSame(const Moments& a, double b, double errorB, double resolution) {
     CHECK(error < resolution * std::abs(b));
 }
 
+// Manifold sampling, and paths that find the same light by chance.
+void checkAgainstWalk(const ManifoldMean& m, const Moments& walked, double resolution) {
+    MESSAGE(
+        fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds; {} capped, share {:.2g}; {:.1f} trials",
+                    walked.mean(), walked.standardError(), m.value.mean(), m.value.standardError(), m.counts.capped,
+                    m.cappedShare(), static_cast<double>(m.counts.trials) / m.value.count()));
+    checkSame(m.value, walked.mean(), walked.standardError(), resolution);
+}
+
 } // namespace
 
 TEST_CASE("the images of a small lamp in a glass ball: refracted, reflected, reflected inside") {
@@ -112,9 +121,7 @@ TEST_CASE("all that is covered, and nothing else: two casters, every chain of up
         test.learn(points[i % 2], 400);
         const Moments walked = walkTo(test, points[i % 2], times(6'000'000));
         const ManifoldMean m = test.all(points[i % 2], times(400'000));
-        MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds", walked.mean(),
-                            walked.standardError(), m.value.mean(), m.value.standardError()));
-        checkSame(m.value, walked.mean(), walked.standardError(), 0.06);
+        checkAgainstWalk(m, walked, 0.06);
     }
 }
 
@@ -129,10 +136,7 @@ TEST_CASE("a smooth mesh: its interpolated normals are what refracts") {
     for (const Vec3 p : {Vec3{-0.5f, 0, 0.1f}, Vec3{0.3f, 0, 0.8f}}) {
         const Moments walked = walkTo(test, p, times(2'000'000));
         const ManifoldMean m = test.all(p, times(200'000));
-        MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds, share of capped {:.2g}",
-                            walked.mean(), walked.standardError(), m.value.mean(), m.value.standardError(),
-                            m.cappedShare()));
-        checkSame(m.value, walked.mean(), walked.standardError(), 0.1);
+        checkAgainstWalk(m, walked, 0.1);
     }
 }
 
@@ -149,9 +153,7 @@ TEST_CASE("a sun by way of a ball, and over water") {
         test.learn(p, 400);
         const Moments walked = walkTo(test, p, times(4'000'000));
         const ManifoldMean m = test.all(p, times(100'000));
-        MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds", walked.mean(),
-                            walked.standardError(), m.value.mean(), m.value.standardError()));
-        checkSame(m.value, walked.mean(), walked.standardError(), 0.06);
+        checkAgainstWalk(m, walked, 0.06);
     }
 }
 
@@ -161,9 +163,7 @@ TEST_CASE("dispersion: the hero's own chains, over all wavelengths") {
     REQUIRE(test.scene.report() == "");
     const Moments walked = walkTo(test, {-0.5f, 0, 0.1f}, times(2'000'000), true);
     const ManifoldMean m = test.all({-0.5f, 0, 0.1f}, times(400'000), true);
-    MESSAGE(fmt::format("{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds", walked.mean(),
-                        walked.standardError(), m.value.mean(), m.value.standardError()));
-    checkSame(m.value, walked.mean(), walked.standardError(), 0.05);
+    checkAgainstWalk(m, walked, 0.05);
 }
 
 TEST_CASE("case 72: caustics of a ball and of a ring of glass lose less than a thousandth to the cap, and are finite") {
@@ -177,13 +177,9 @@ TEST_CASE("case 72: caustics of a ball and of a ring of glass lose less than a t
         INFO(fmt::format("{} {} {}", p.x, p.y, p.z));
         const Moments walked = walkTo(test, p, times(2'000'000));
         const ManifoldMean m = test.all(p, times(300'000));
-        MESSAGE(fmt::format(
-            "{:.5g} +- {:.2g} by chance, {:.5g} +- {:.2g} by manifolds; {} capped, share {:.2g}; {:.1f} trials",
-            walked.mean(), walked.standardError(), m.value.mean(), m.value.standardError(), m.counts.capped,
-            m.cappedShare(), static_cast<double>(m.counts.trials) / m.value.count()));
         CHECK(std::isfinite(m.value.mean()));
         CHECK(m.cappedShare() < 1e-3);
-        checkSame(m.value, walked.mean(), walked.standardError(), 0.15);
+        checkAgainstWalk(m, walked, 0.15);
     }
 }
 
