@@ -1,7 +1,8 @@
 // How well tiles of 8×8 pixels of scenes and of finished pictures are known.
 //   bench_tile_errors [--size WxH] [--samples N] [--ways on|off|both] [--threads N] SCENE…
 //     default: the scene's size and samples; --ways both: with its light paths and without
-//   bench_tile_errors PICTURE.exr…
+//   bench_tile_errors [--of N] PICTURE.exr…
+//     --of N: foretold for N samples, errors by 1/√samples; without it those of the picture
 // A tile's error is the standard error of its mean luminance over that mean; tiles darker than a thousandth of the mean
 // tile are left out. Scenes are rendered with 32 replicates, which tell it. Pictures tell the variance of each pixel;
 // those of a tile are added: no two pixels share a splat, but several splats of one light path may fall into one tile,
@@ -24,6 +25,7 @@ namespace {
 struct Options {
     std::optional<Vec2i> size;
     std::uint32_t samples = 0; // 0: the scene's
+    double foretold = 0;       // of pictures; 0: their own
     bool with = true, without = true;
     std::vector<std::string> scenes;
 };
@@ -72,7 +74,14 @@ std::vector<Tile> tilesOf(const TileSums& sums) {
     return tiles;
 }
 
-std::vector<Tile> tilesOf(const std::string& picture) {
+double samplesOf(const std::string& picture) {
+    for (const ImageAttribute& a : readExrInfo(picture).attributes)
+        if (a.name == "abbe.samples") return std::get<int>(a.value);
+    throw std::runtime_error(picture + " does not tell its samples");
+}
+
+std::vector<Tile> tilesOf(const std::string& picture, double foretold) {
+    const double factor = foretold > 0 ? samplesOf(picture) / foretold : 1;
     const RgbImage image = readImage(picture);
     const std::vector<float> variance = readExrChannel(picture, "variance.Y");
     const RgbSpace space = image.chromaticities ? image.chromaticities->space() : rgb::rec709;
@@ -84,7 +93,7 @@ std::vector<Tile> tilesOf(const std::string& picture) {
             if (x % 8 == 0 && y % 8 == 0) t = {t.mean, t.variance, image.window.x0 + x, image.window.y0 + y};
             const auto i = static_cast<std::size_t>(y * image.width() + x);
             t.mean += toXyz({image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]}, space).y;
-            t.variance += static_cast<double>(variance[i]);
+            t.variance += factor * static_cast<double>(variance[i]);
         }
     return tiles;
 }
@@ -123,6 +132,8 @@ Options read(int argc, char** argv) {
             o.size = size;
         } else if (!std::strcmp(argv[i], "--samples"))
             o.samples = static_cast<std::uint32_t>(std::max(1, std::atoi(next())));
+        else if (!std::strcmp(argv[i], "--of"))
+            o.foretold = std::atof(next());
         else if (!std::strcmp(argv[i], "--threads"))
             setThreadCount(std::max(1, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--ways")) {
@@ -148,7 +159,7 @@ int main(int argc, char** argv) {
         for (const std::string& scene : o.scenes) {
             if (scene.ends_with(".exr")) {
                 std::printf("%-91s", scene.c_str());
-                print(errorsOf(tilesOf(scene)));
+                print(errorsOf(tilesOf(scene, o.foretold)));
                 continue;
             }
             if (o.with) measure(scene, true, o);
