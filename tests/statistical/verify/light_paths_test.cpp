@@ -31,9 +31,10 @@ Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
     return {TileSums(pixels), std::move(statistics)};
 }
 
-// `error`: what the standard error of the whole picture's difference must be less than, so that the test means
-// something.
-void agree(const std::string& name, const Picture& expected, const Picture& found, double error) {
+// `error`: what the standard error of the whole picture's difference must be less than, and `unjudged` the share of
+// tiles that are too noisy to be judged, so that the test means something.
+void agree(const std::string& name, const Picture& expected, const Picture& found, double error,
+           double unjudged = 0.34) {
     const Agreement a = compare(expected.sums, found.sums, 1e-3);
     const std::string text =
         fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}; {:.3g} light paths for a camera path", name,
@@ -48,7 +49,7 @@ void agree(const std::string& name, const Picture& expected, const Picture& foun
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);
-    CHECK(3 * a.unjudged <= a.tiles);
+    CHECK(a.unjudged <= unjudged * a.tiles);
     CHECK(found.statistics.splats > 0);
     CHECK(found.statistics.cappedPaths == 0);
 }
@@ -60,8 +61,9 @@ void compareWays(const std::string& name, const TestScene& test, std::uint32_t s
                   alone = render(test, Ways::alone, n);
     CHECK(off.statistics.lightPaths == 0);
     agree(name + ", both for camera paths", off, both, error);
-    agree(name + ", light paths for camera paths", off, alone, 4 * error);
-    agree(name + ", light paths for both", both, alone, 4 * error);
+    // By themselves light paths find badly what shines in rough metal.
+    agree(name + ", light paths for camera paths", off, alone, 4 * error, 0.5);
+    agree(name + ", light paths for both", both, alone, 4 * error, 0.5);
 }
 
 TestScene inlineScene(const std::string& text) {
@@ -125,7 +127,7 @@ TEST_CASE("light paths: rough glass and rough metal all around the camera") {
             "shape sphere { center 0.9 0.5 -0.9; radius 0.4; material conductor { index metal Au; roughness 0.3 } }\n"
             "shape sphere { center 0.9 0.4 0.9; radius 0.35; material dielectric { ior glass SF11; roughness 0.3 } }\n"
             "light sphere { center -0.8 2.6 0.2; radius 0.5; radiance 10 }\n"),
-        64, 0.003);
+        128, 0.003);
 }
 
 // The lenses of the shipped scene under a lamp, as wide as a sun of 20 degrees.
