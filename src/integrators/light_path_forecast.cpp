@@ -14,7 +14,23 @@ LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, Pix
         const double u = d.luminance * std::sqrt(measure.weight(d.x, d.y));
         terms_.push_back({u * u * d.stands / pixels, rho, u / rho});
     }
+    limitOutliers();
     std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::spark);
+}
+
+// A few deposits that camera paths would meet once in millions would say all of a second moment, and next to nothing of
+// what renders show: the largest count as the ninth.
+void LightPathForecast::limitOutliers() {
+    constexpr std::size_t kFew = 8;
+    if (terms_.size() <= kFew) return;
+    const auto largest = [](const Term& a, const Term& b) { return a.ofCamera(0) > b.ofCamera(0); };
+    const auto ninth = terms_.begin() + kFew;
+    std::ranges::nth_element(terms_, ninth, largest);
+    const double most = ninth->ofCamera(0);
+    for (auto t = terms_.begin(); t != ninth; ++t) {
+        t->spark *= most * t->rho / t->u2;
+        t->rho = t->u2 / most;
+    }
 }
 
 double LightPathForecast::sparks() const {

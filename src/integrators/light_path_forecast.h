@@ -33,6 +33,8 @@ class LightPathForecast {
         double ofCamera(double share) const { return u2 * rho / square(rho + share); }
         double ofLight(double share) const { return u2 * share / square(rho + share); }
     };
+    void limitOutliers();
+
     std::vector<Term> terms_; // the brightest sparks first
 };
 

@@ -61,6 +61,19 @@ TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths o
     CHECK(LightPathForecast(even(1, 1), kFrame, measure).sparks() == 0); // all camera paths find it
 }
 
+TEST_CASE("light path forecast: what is met once in a million is no reason") {
+    const RouletteReference unknown;
+    std::vector<LightDeposit> deposits = even(1, 0.25);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const double usual = LightPathForecast(deposits, kFrame, measure).variance(0, {});
+    for (int i = 0; i < 8; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-9;
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    CHECK(forecast.variance(0, {}) == doctest::Approx(usual));
+    CHECK(forecast.sparks() == doctest::Approx(usual));
+    for (int i = 0; i < 100; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-4; // these are many
+    CHECK(LightPathForecast(deposits, kFrame, measure).variance(0, {}) > 50 * usual);
+}
+
 // Common light that a look has seen, and a caustic that it has not.
 TEST_CASE("light path forecast: what a look has missed is the brightest") {
     const RouletteReference unknown;
