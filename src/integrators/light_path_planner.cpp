@@ -179,7 +179,7 @@ class Planner {
     // going on with probability p costs (m1 + m2/p) (c1 + p c2), which is least at √(m2 c1 / (m1 c2)) [Veach1997, sec.
     // 10.4].
     float afterSpread(const Listened& heard) const {
-        constexpr double kLeast = 0.05; // a pilot sees little of what comes seldom
+        constexpr double kLeast = 0.1; // a pilot sees little of what comes seldom, and it would shine the brighter
         double before = 0, after = 0;
         for (const LightDeposit& d : heard.deposits)
             (d.spread ? after : before) +=
