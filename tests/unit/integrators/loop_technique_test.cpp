@@ -86,7 +86,7 @@ TEST_CASE("technique: strata of a whole replicate in places, directions and choi
 
 TEST_CASE("technique: every word says what it says") {
     for (const auto& [name, value] : properties({})) CHECK_FALSE(value.empty());
-    CHECK(properties({}).size() == 8);
+    CHECK(properties({}).size() == 9);
     CHECK(numbersOf("stratified") == Technique::Numbers::stratified);
     CHECK(weightsOf("power") == Technique::Weights::power);
     CHECK(directionsOf("uniform") == Technique::Directions::uniform);

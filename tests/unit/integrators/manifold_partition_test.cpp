@@ -148,7 +148,7 @@ TEST_CASE("what surrounds the receiver counts: glass in water is glass of their 
         ManifoldCounts counts;
         RandomStream random(11);
         const Wavelengths lambda = Wavelengths::sample(0.3f);
-        for (int i = 0; i < 400; ++i) {
+        for (int i = 0; i < 800; ++i) {
             const Vec2 u{random.uniform(), random.uniform()};
             const auto target = LightTarget::sample(*test.scene.scene().lights.at(0), 0, 1, u, lambda, 0);
             const auto s = test.sampler->estimate(start, *target, {caster, ChainSignature::of(signature), 1}, lambda,

@@ -216,7 +216,7 @@ TEST_CASE("the same numbers give the same bits") {
     ManifoldCounts counts[2];
     std::vector<float> light[2];
     for (int run = 0; run < 2; ++run)
-        for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+        for (std::uint64_t seed = 0; seed < 2000; ++seed) {
             RandomStream random(seed);
             const auto s =
                 test.sampler->sample(test.start({0.3f, 0, 0}), Wavelengths::sample(0.2f), random, counts[run]);
