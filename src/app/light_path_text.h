@@ -15,7 +15,7 @@ std::string lightPathLine(const LightPathFindings&);
 std::string lightPathText(const LightPathFindings&);
 // What light paths cannot show to the lens; empty where manifold sampling is not used.
 std::string manifoldLine(const ManifoldFindings&);
-// The rest of that; empty where light paths are not merged.
+// The rest of that, and what nothing finds; empty where light paths are not merged and nothing is missing.
 std::string mergeLine(const MergeFindings&);
 // docs/output.md lists the members.
 Json lightPathJson(const LightPathFindings&);

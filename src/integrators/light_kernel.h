@@ -39,10 +39,7 @@ template <EffectBits E> class LightKernel {
             film_.countLightPaths(r, std::uint64_t{job_.last - job_.first} * (job_.end - job_.begin));
         }
         removeWorkFlag(WorkFlag::light);
-        if constexpr (PathLoop<E>::kMedia) {
-            const MediumCounters& media = media_.tracker.counters;
-            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
-        }
+        if constexpr (PathLoop<E>::kMedia) result_.excess = media_.tracker.counters.excess();
         return std::move(result_);
     }
 

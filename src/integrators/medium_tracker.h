@@ -4,6 +4,7 @@
 #include "integrators/medium_stack.h"
 #include "math/random_stream.h"
 #include "render/effect_counts.h"
+#include "render/integrator.h"
 
 #include <span>
 #include <vector>
@@ -54,6 +55,8 @@ struct MediumCounters {
     float fault = 0;                                  // the last of them
     const Medium* faulty = nullptr;                   // where it was found
     std::array<VolumeCounts, kVolumeWorks> volumes{}; // collisions and lookups alone
+
+    DensityExcess excess() const { return {collisions + lookups, exceeded, mostExceeded}; }
 };
 
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.

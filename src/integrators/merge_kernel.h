@@ -41,10 +41,7 @@ template <EffectBits E> class MergeKernel {
             for (std::uint32_t i = job_.first; i < job_.last; ++i)
                 if (i % plan_.every == 0 && i / plan_.every % job_.blocks == job_.block) round(r, i / plan_.every);
         removeWorkFlag(WorkFlag::light);
-        if constexpr (PathLoop<E>::kMedia) {
-            const MediumCounters& media = media_.tracker.counters;
-            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
-        }
+        if constexpr (PathLoop<E>::kMedia) result_.excess = media_.tracker.counters.excess();
         return std::move(result_);
     }
 

@@ -6,58 +6,21 @@
 #include "base/work.h"
 #include "integrators/defensive_bsdf.h"
 #include "integrators/hidden_face.h"
-#include "integrators/light_path_plan.h"
-#include "integrators/light_sampler.h"
-#include "integrators/loop_technique.h"
-#include "integrators/manifold_listener.h"
 #include "integrators/medium_tracker.h"
-#include "integrators/merge_plan.h"
+#include "integrators/path_context.h"
+#include "integrators/path_counters.h"
 #include "integrators/path_state.h"
 #include "integrators/roulette.h"
 #include "integrators/sampler.h"
 #include "integrators/surroundings_at.h"
 #include "math/equiangular.h"
-#include "render/effect_counts.h"
-#include "render/integrator.h"
 #include "render/light_vertex.h"
 #include "render/path_observer.h"
 #include "render/scene.h"
 
 namespace abbe {
 
-// Everything that the paths of one render share.
-struct PathContext {
-    const Scene& scene;
-    const LightSampler& lights;
-    RenderSettings settings;
-    bool choices = true;      // whether anything in the scene draws a light, a lobe or a place on a lens
-    std::uint32_t strata = 1; // of stratified numbers
-    LoopTechnique how = LoopTechnique(settings.technique);
-    // For kernels with Effect::lightPaths: paths of light beside them; chains of delta interfaces, and who hears of
-    // them.
-    const LightPathPlan* traced = nullptr;
-    const ManifoldSampler* manifold = nullptr;
-    ManifoldListener* hears = nullptr;
-    const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
-};
-
 struct TracedView;
-
-// What the paths of one tile counted.
-struct PathCounters {
-    std::uint64_t paths = 0, vertices = 0, shadowRays = 0, capped = 0;
-    EffectCounts effects;
-    ManifoldCounts manifold;
-
-    void add(const PathCounters& c) {
-        paths += c.paths;
-        vertices += c.vertices;
-        shadowRays += c.shadowRays;
-        capped += c.capped;
-        effects.add(c.effects);
-        manifold.add(c.manifold);
-    }
-};
 
 // What paths through media need and keep from one to the next.
 struct MediaState {

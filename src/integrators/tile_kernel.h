@@ -67,7 +67,7 @@ template <EffectBits E> class TileKernel {
                 for (int r = 0; r < film_.replicates(); ++r) replicate(x, y, r);
         if constexpr (PathLoop<E>::kMedia) {
             const MediumCounters& media = media_.tracker.counters;
-            result_.excess = {media.collisions + media.lookups, media.exceeded, media.mostExceeded};
+            result_.excess = media.excess();
             for (std::size_t i = 0; i < kVolumeWorks; ++i) result_.counters.effects.volumes[i].add(media.volumes[i]);
         }
         result_.counters.effects.textureLookups = workState.textureLookups - lookups;

@@ -66,6 +66,10 @@ expect 0 explain "$scene"
 cmp -s first out || fault "explain says something else the second time"
 expect 0 explain "$scene" --json
 says out '"never_found":'
+sed '$ a shape haze box { min -1 0.1 -0.7; max 1 1.8 0.9; material boundary; interior homogeneous { extinction 0.1 per-m; albedo 0.9 } }' \
+    "$scene" >haze.scene
+expect 0 explain haze.scene
+says out "caustics of lamp in media"
 expect 0 off.scene -o told.exr
 says_not err "merged light"
 expect 0 info told.exr

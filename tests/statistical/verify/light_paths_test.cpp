@@ -1,5 +1,6 @@
 // As a user has them: paths from the camera alone, paths from the lights beside them, and paths from the lights for all
 // that they can bring come to one picture. Lamps are large enough for camera paths to meet them by glass and metal.
+#include "support/agreement_text.h"
 #include "support/scene_test.h"
 #include "verify/agreement.h"
 
@@ -36,16 +37,11 @@ Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
 void agree(const std::string& name, const Picture& expected, const Picture& found, double error,
            double unjudged = 0.34) {
     const Agreement a = compare(expected.sums, found.sums, 1e-3);
-    const std::string text =
-        fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}; {:.3g} light paths for a camera path", name,
-                    a.probability, 100 * a.whole.difference, 100 * a.whole.error, a.unjudged, a.tiles,
-                    static_cast<double>(found.statistics.lightPaths) / static_cast<double>(found.statistics.paths));
+    const std::string text = agreementText(name, a) + fmt::format("; {:.3g} light paths for a camera path",
+                                                                  static_cast<double>(found.statistics.lightPaths) /
+                                                                      static_cast<double>(found.statistics.paths));
     MESSAGE(text);
-    std::string where;
-    for (const BlockTest& b : a.culprits(4))
-        where += fmt::format(" [{}, {}) × [{}, {}) {}: {:+.3g} ± {:.2g} %", b.bounds.x0, b.bounds.x1, b.bounds.y0,
-                             b.bounds.y1, "XYZ"[b.channel], 100 * b.difference, 100 * b.error);
-    INFO(text << where);
+    INFO(text << culpritText(a));
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);

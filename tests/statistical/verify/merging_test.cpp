@@ -1,5 +1,6 @@
 // Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
 // lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
+#include "support/agreement_text.h"
 #include "support/scene_test.h"
 #include "verify/agreement.h"
 
@@ -35,15 +36,10 @@ Picture render(const TestScene& test, bool merging, std::uint32_t samples,
 // `error`: what the standard error of the whole picture's difference must be less than.
 void agree(const std::string& name, const Picture& expected, const Picture& found, double error) {
     const Agreement a = compare(expected.sums, found.sums, 2e-3);
-    const std::string text = fmt::format("{}: p {:.2g}, {:+.3f} ± {:.3f} %, unjudged {} of {}; {} rounds, {} splats",
-                                         name, a.probability, 100 * a.whole.difference, 100 * a.whole.error, a.unjudged,
-                                         a.tiles, found.statistics.rounds, found.statistics.splats);
+    const std::string text = agreementText(name, a) +
+                             fmt::format("; {} rounds, {} splats", found.statistics.rounds, found.statistics.splats);
     MESSAGE(text);
-    std::string where;
-    for (const BlockTest& b : a.culprits(4))
-        where += fmt::format(" [{}, {}) × [{}, {}) {}: {:+.3g} ± {:.2g} %", b.bounds.x0, b.bounds.x1, b.bounds.y0,
-                             b.bounds.y1, "XYZ"[b.channel], 100 * b.difference, 100 * b.error);
-    INFO(text << where);
+    INFO(text << culpritText(a));
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);
@@ -95,7 +91,7 @@ TEST_CASE("merging: beside manifold sampling, which has some of the light") {
     agree("ball", render(scene, false, 256), found, 0.02);
 }
 
-TEST_CASE("merging: fog, textures and absorbing glass") {
+TEST_CASE("merging: fog and absorbing glass") {
     const TestScene scene = inlineScene(
         "shape sphere { center 0 0.9 -1; radius 0.5; material dielectric { ior 1.5; absorption table 400 0.5 700 0.1 "
         "per-m } }\n"

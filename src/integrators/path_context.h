@@ -1,0 +1,30 @@
+// What paths are made of.
+#pragma once
+
+#include "integrators/light_path_plan.h"
+#include "integrators/light_sampler.h"
+#include "integrators/loop_technique.h"
+#include "integrators/manifold_listener.h"
+#include "integrators/merge_plan.h"
+#include "render/integrator.h"
+#include "render/scene.h"
+
+namespace abbe {
+
+// Everything that the paths of one render share.
+struct PathContext {
+    const Scene& scene;
+    const LightSampler& lights;
+    RenderSettings settings;
+    bool choices = true;      // whether anything in the scene draws a light, a lobe or a place on a lens
+    std::uint32_t strata = 1; // of stratified numbers
+    LoopTechnique how = LoopTechnique(settings.technique);
+    // For kernels with Effect::lightPaths: paths of light beside them; chains of delta interfaces, and who hears of
+    // them.
+    const LightPathPlan* traced = nullptr;
+    const ManifoldSampler* manifold = nullptr;
+    ManifoldListener* hears = nullptr;
+    const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
+};
+
+} // namespace abbe
