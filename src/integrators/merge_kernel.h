@@ -61,6 +61,7 @@ template <EffectBits E> class MergeKernel {
         const std::uint64_t before = counters.vertices + counters.shadowRays;
         const PhotonMap photons(trace(replicate, number));
         result_.photonRays += counters.vertices + counters.shadowRays - before;
+        result_.photons += photons.size();
         const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         for (int y = pixels.y0; y < pixels.y1; ++y)
             for (int x = pixels.x0; x < pixels.x1; ++x)

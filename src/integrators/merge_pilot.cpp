@@ -40,7 +40,7 @@ class MergePilot::Listener final : public MergeListener {
         pixel.sum += luminance;
         pixel.squares += square(luminance);
         pixel.camera += luminance * camera;
-        pixel.unseen |= !(camera > 0);
+        if (!(camera > 0)) pixel.unseen += luminance;
         squares_[{start.light, start.target, start.part}] += square(luminance);
     }
     void end() {
@@ -89,7 +89,7 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
     context.settings.seed = combine64(context_.settings.seed, key);
     context.merging = &plan;
     std::vector<Heard> parts(kRounds);
-    std::vector<std::uint64_t> photonRays(kRounds);
+    std::vector<std::uint64_t> photonRays(kRounds), photons(kRounds);
     parallelFor(kRounds, [&](std::size_t i) {
         if (stop_()) return;
         Listener listener(*this, parts[i]);
@@ -101,6 +101,7 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         listener.end();
         parts[i].rays = r.counters.vertices + r.counters.shadowRays;
         photonRays[i] = r.photonRays;
+        photons[i] = r.photons;
     });
     Heard all;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -112,6 +113,7 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         all.looks += part.looks;
         all.rays += part.rays;
         all.photonRays += static_cast<double>(photonRays[i]) / (kRounds * static_cast<double>(kPhotons));
+        all.photons += static_cast<double>(photons[i]) / (kRounds * static_cast<double>(kPhotons));
         all.gatherRays += static_cast<double>(part.rays - photonRays[i]);
     }
     all.looks = std::max(all.looks, 1.0);

@@ -22,7 +22,7 @@ class MergePilot {
         int x = 0, y = 0;
         double sum = 0, squares = 0; // of what its photons bring, and of the squares
         double camera = 0;           // Σ of what a photon brings times the sample of a camera path that finds the same
-        bool unseen = false;         // whether there are photons that no camera path finds
+        double unseen = 0;           // of the sum, by photons that no camera path finds
     };
     struct Heard {
         std::vector<Pixel> pixels;
@@ -32,6 +32,7 @@ class MergePilot {
         double looks = 0;                      // pixels times rounds
         double each = 0;                       // pixels of the frame for each of those
         double gatherRays = 0, photonRays = 0; // of a pixel of a round, and of a light path
+        double photons = 0;                    // that a light path leaves
         std::uint64_t rays = 0;
 
         // As deposits that add up to the light itself.

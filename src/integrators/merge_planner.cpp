@@ -19,7 +19,8 @@ namespace abbe {
 namespace {
 
 constexpr std::uint64_t kLearn = 0x6d65726765, kJudge = 0x6d65726773; // "merge", "mergs"
-constexpr std::uint32_t kLeastPhotons = 4096, kMostPhotons = 262144;
+constexpr std::uint32_t kLeastPaths = 4096, kMostPaths = 262144;      // of light, in a round
+constexpr double kMostPhotons = 524288;                               // that these leave, and a thread keeps: 84 MB
 // Merging is biased: it has to be worth that.
 constexpr double kLeastMergeGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
@@ -29,9 +30,10 @@ constexpr int kCameraRow = 24; // pixels in which rays of camera paths are count
 
 // Light of one lamp: relative second moments of a sample of every pixel, in the mean over pixels.
 struct Moments {
-    double camera = 0; // as camera paths find it
-    double merged = 0; // in a round
-    bool unseen = false;
+    double camera = 0;          // as camera paths find it
+    double merged = 0;          // in a round
+    double sum = 0, unseen = 0; // luminance, and of that what no camera path finds
+    bool isUnseen() const { return unseen > 0.01 * sum; }
 };
 
 class Planner {
@@ -84,10 +86,11 @@ class Planner {
             Moments& m = result[p.light];
             m.camera += weight * p.camera;
             m.merged += weight * (std::max(0.0, square(p.sum) - p.squares) + fewer * p.squares);
-            m.unseen |= p.unseen;
+            m.sum += p.sum;
+            m.unseen += p.unseen;
         }
         for (auto& [light, m] : result)
-            if (m.unseen) m.camera = std::numeric_limits<double>::infinity();
+            if (m.isUnseen()) m.camera = std::numeric_limits<double>::infinity();
         return result;
     }
 
@@ -118,12 +121,13 @@ class Planner {
     // Lamps that camera paths find better by themselves are left to them; then the number of rounds that serves best.
     bool decide(MergePlan& plan, const MergePilot::Heard& heard, const NoiseMeasure& measure) {
         const bool forced = context_.settings.technique.merging == Technique::Merging::always;
+        const double most = std::min<double>(kMostPaths, kMostPhotons / std::max(heard.photons, 1e-3));
         plan.photons = static_cast<std::uint32_t>(
-            std::clamp(frame_.area(), std::int64_t{kLeastPhotons}, std::int64_t{kMostPhotons}));
+            std::clamp(static_cast<double>(frame_.area()), std::min<double>(kLeastPaths, most), most));
         plan.lights.clear();
         double own = 0; // of a round
         for (const auto& [light, m] : moments(heard, measure, plan.photons)) {
-            if (m.unseen) findings_.unseen.push_back(nameOf(light));
+            if (m.isUnseen()) findings_.unseen.push_back(nameOf(light));
             if (!forced && !(m.camera > m.merged)) continue;
             plan.lights.insert(context_.scene.lights[light].get());
             findings_.lights.push_back(nameOf(light));

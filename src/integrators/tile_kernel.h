@@ -31,6 +31,7 @@ struct TileResult {
     std::uint64_t lightPaths = 0, splats = 0, rounds = 0; // as in PathTally
     // Of all rays that counters tell: of light paths after they were spread, and of those for merging.
     std::uint64_t raysAfterSpread = 0, photonRays = 0;
+    std::uint64_t photons = 0; // that these left
 
     void drop(const DroppedSample& sample) {
         ++dropped[static_cast<std::size_t>(sample.cause)];
@@ -47,6 +48,7 @@ struct TileResult {
         rounds += r.rounds;
         raysAfterSpread += r.raysAfterSpread;
         photonRays += r.photonRays;
+        photons += r.photons;
     }
 };
 
