@@ -5,8 +5,8 @@
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 scene=$scenes/merging.scene
-sed 's/samples 64/samples 64; merging off/' "$scene" >off.scene
-sed 's/samples 64/samples 64; merging always/' "$scene" >always.scene
+sed 's/samples 32/samples 32; merging off/' "$scene" >off.scene
+sed 's/samples 32/samples 32; merging always/' "$scene" >always.scene
 
 for threads in 1 2 8; do expect 0 "$scene" -q -o threads$threads.exr -t $threads; done
 cp threads1.exr whole.exr
@@ -35,8 +35,8 @@ expect 1 merge left.part1.abbe right.part1.abbe choice.part2.abbe -o no.exr
 says err E0663
 
 # A render that is killed goes on to the same bits.
-survives_kills 3 "$scene" --samples 640
-expect 0 "$scene" --samples 32 -q -o more.exr --checkpoint keep
+survives_kills 3 "$scene" --samples 160
+expect 0 "$scene" --samples 16 -q -o more.exr --checkpoint keep
 expect 0 "$scene" -q -o more.exr --checkpoint keep --resume
 same_pixels whole.exr more.exr
 
@@ -76,7 +76,7 @@ expect 0 info told.exr
 says_not out "abbe.estimator"
 
 # Billed with light paths.
-expect 0 "$scene" --json --samples 512 -o bill.exr -t 1
+expect 0 "$scene" --json --samples 192 -o bill.exr -t 1
 grep '"event":"done"' out | grep -o '"accounted":[0-9.]*' | awk -F: '{ exit !($2 > 0.95 && $2 < 1.05) }' ||
     fault "the rows do not add up"
 
