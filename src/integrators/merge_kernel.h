@@ -57,6 +57,7 @@ template <EffectBits E> class MergeKernel {
         sampler_.start(number);
         lambda_ = context_.scene.wavelengths.sample(sampler_.wavelength());
         time_ = sampler_.time();
+        radius_ = MergePlan::radius(number);
         const PathCounters& counters = result_.counters;
         const std::uint64_t before = counters.vertices + counters.shadowRays;
         const PhotonMap photons(trace(replicate, number));
@@ -122,7 +123,7 @@ template <EffectBits E> class MergeKernel {
         if (camera.heroOnly) loop.startWithHero();
         const auto factor = static_cast<double>(camera.weight * filter.weight);
         sums_.clear();
-        loop.gather(camera.ray, lambda_, photons, MergePlan::radius(number), [&](const GatheredLight& light) {
+        loop.gather(camera.ray, lambda_, photons, radius_, [&](const GatheredLight& light) {
             if (listener_) tell(light, factor);
             Sum& sum = sumOf(light.photon.light);
             sum.radiance += light.value;
@@ -175,6 +176,7 @@ template <EffectBits E> class MergeKernel {
     std::vector<Sum> sums_; // of this pixel
     Wavelengths lambda_;    // of the round
     float time_ = 0;        // likewise, as CameraSample::time
+    float radius_ = 0;      // likewise, over that of cones
     TileResult result_;
 };
 

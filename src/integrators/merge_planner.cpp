@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/work.h"
 #include "integrators/aim_targets.h"
-#include "integrators/darkroom.h"
 #include "integrators/emission_learning.h"
 #include "integrators/merge_pilot.h"
 #include "integrators/pilot_pixel.h"

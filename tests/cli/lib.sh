@@ -88,6 +88,19 @@ ended_with() { # CODE
     [[ $code -eq $1 ]] || fault "ended with $code instead of $1"
 }
 
+# same_for_threads_and_kernels SCENE IMAGE: renders the image, with the same bits for any threads and the largest kernel.
+same_for_threads_and_kernels() {
+    local scene=$1 image=$2 threads
+    expect 0 "$scene" -q -o "$image" -t 1
+    for threads in 2 8; do
+        expect 0 "$scene" -q -o threads.exr -t $threads
+        same_pixels "$image" threads.exr
+        same_certificate "$image" threads.exr
+    done
+    expect 0 "$scene" -q -o all.exr --kernel all
+    same_pixels "$image" all.exr
+}
+
 # survives_kills KILLS SCENE OPTION…: a render that is killed at any moment, KILLS times or as often as it can be, goes on
 # to the bits of one that was not.
 survives_kills() {

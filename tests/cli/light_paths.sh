@@ -11,16 +11,9 @@ with() { sed "s/samples 64/samples 64; light-paths $1/" "$scene"; }
 for choice in off always alone; do with $choice >$choice.scene; done
 
 # Threads and kernels.
-for threads in 1 2 8; do expect 0 "$scene" -q -o threads$threads.exr -t $threads; done
-cp threads1.exr whole.exr
+same_for_threads_and_kernels "$scene" whole.exr
 expect 0 info whole.exr
 says out "abbe.lightPaths = "
-for threads in 2 8; do
-    same_pixels whole.exr threads$threads.exr
-    same_certificate whole.exr threads$threads.exr
-done
-expect 0 "$scene" -q -o all.exr --kernel all
-same_pixels whole.exr all.exr
 expect 0 "$scene" -q -o seed.exr --seed 1
 [[ $(pixels whole.exr) != $(pixels seed.exr) ]] || fault "the seed changes nothing"
 

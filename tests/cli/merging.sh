@@ -8,14 +8,7 @@ scene=$scenes/merging.scene
 sed 's/samples 32/samples 32; merging off/' "$scene" >off.scene
 sed 's/samples 32/samples 32; merging always/' "$scene" >always.scene
 
-for threads in 1 2 8; do expect 0 "$scene" -q -o threads$threads.exr -t $threads; done
-cp threads1.exr whole.exr
-for threads in 2 8; do
-    same_pixels whole.exr threads$threads.exr
-    same_certificate whole.exr threads$threads.exr
-done
-expect 0 "$scene" -q -o all.exr --kernel all
-same_pixels whole.exr all.exr
+same_for_threads_and_kernels "$scene" whole.exr
 expect 0 off.scene -q -o off.exr
 [[ $(pixels whole.exr) != $(pixels off.exr) ]] || fault "merging brings nothing"
 

@@ -1,8 +1,7 @@
 // As a user has them: paths from the camera alone, paths from the lights beside them, and paths from the lights for all
 // that they can bring come to one picture. Lamps are large enough for camera paths to meet them by glass and metal.
 #include "support/agreement_text.h"
-#include "support/scene_test.h"
-#include "verify/agreement.h"
+#include "support/summed_picture.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -13,10 +12,7 @@ namespace {
 using Ways = Technique::LightPaths;
 constexpr int kReplicates = 32;
 
-struct Picture {
-    TileSums sums;
-    RenderStatistics statistics;
-};
+using Picture = SummedPicture;
 
 // `samples`: of each replicate.
 Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
@@ -24,12 +20,7 @@ Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
     settings.samples = samples * kReplicates;
     settings.technique.lightPaths = ways;
     settings.seed = 3 + static_cast<std::uint64_t>(ways);
-    const FilmSettings film = filmSettings(test.built().film);
-    PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), kReplicates);
-    const auto tracer = makePathTracer(test.scene().effects);
-    pixels.keepSplatsOf(*tracer, test.scene(), settings);
-    RenderStatistics statistics = tracer->render(test.scene(), pixels, settings, {});
-    return {TileSums(pixels), std::move(statistics)};
+    return renderSummed(test, settings, kReplicates);
 }
 
 // `error`: what the standard error of the whole picture's difference must be less than, and `unjudged` the share of

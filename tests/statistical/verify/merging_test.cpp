@@ -1,8 +1,7 @@
 // Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
 // lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
 #include "support/agreement_text.h"
-#include "support/scene_test.h"
-#include "verify/agreement.h"
+#include "support/summed_picture.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -12,10 +11,7 @@ namespace {
 
 constexpr int kReplicates = 16;
 
-struct Picture {
-    TileSums sums;
-    RenderStatistics statistics;
-};
+using Picture = SummedPicture;
 
 // `samples`: of each replicate.
 Picture render(const TestScene& test, bool merging, std::uint32_t samples,
@@ -25,12 +21,7 @@ Picture render(const TestScene& test, bool merging, std::uint32_t samples,
     settings.technique.lightPaths = merging ? lightPaths : Technique::LightPaths::off;
     settings.technique.merging = merging ? Technique::Merging::always : Technique::Merging::off;
     settings.seed = merging ? 5 : 7;
-    const FilmSettings film = filmSettings(test.built().film);
-    PixelFilm pixels(film.crop, PixelFilter(film.filter, film.filterRadius), kReplicates);
-    const auto tracer = makePathTracer(test.scene().effects);
-    pixels.keepSplatsOf(*tracer, test.scene(), settings);
-    RenderStatistics statistics = tracer->render(test.scene(), pixels, settings, {});
-    return {TileSums(pixels), std::move(statistics)};
+    return renderSummed(test, settings, kReplicates);
 }
 
 // `error`: what the standard error of the whole picture's difference must be less than.
