@@ -117,18 +117,10 @@ std::string listed(const std::vector<std::string>& names) {
     return names.size() > kInLine ? text + ", …" : text;
 }
 
-std::string missingText(const MergeFindings& f) {
-    if (f.missing.empty()) return {};
-    return fmt::format("caustics of {} in media are missing where those are seen by way of glass or mirrors: nothing "
-                       "finds them; of a lamp with an extent chance would",
-                       listed(f.missing));
-}
-
 // Empty where nobody looked.
 std::string mergeText(const MergeFindings& f) {
     if (!f.measured) return {};
-    std::string text = f.missing.empty() ? "" : "Media: " + missingText(f) + "\n";
-    text += "Caustics behind glass and in mirrors that are left: ";
+    std::string text = "Caustics behind glass and in mirrors that are left: ";
     if (!f.found) return text + "none that light paths come to\n";
     if (f.used)
         text +=
@@ -166,11 +158,10 @@ std::string manifoldLine(const ManifoldFindings& f) {
 }
 
 std::string mergeLine(const MergeFindings& f) {
-    if (!f.used) return missingText(f);
-    std::string text = f.missing.empty() ? "" : "; " + missingText(f);
+    if (!f.used) return {};
     return fmt::format("merging behind glass and in mirrors (biased, `merging off` leaves it out): forecast {} as "
-                       "efficient, light of {}{}",
-                       times(f.gain), listed(f.lights), text);
+                       "efficient, light of {}",
+                       times(f.gain), listed(f.lights));
 }
 
 std::string lightPathText(const LightPathFindings& f) {
@@ -216,8 +207,7 @@ Json lightPathJson(const LightPathFindings& f) {
                                        {"pilot_rays", m.rays},
                                        {"not_followed", std::move(obstacles)}}));
     const MergeFindings& g = f.merging;
-    Json lights = Json::list(), unseen = Json::list(), missing = Json::list();
-    for (const std::string& light : g.missing) missing.push(Json(light));
+    Json lights = Json::list(), unseen = Json::list();
     for (const std::string& light : g.lights) lights.push(Json(light));
     for (const std::string& light : g.unseen) unseen.push(Json(light));
     json.set("merging", Json::object({{"measured", g.measured},
@@ -231,8 +221,7 @@ Json lightPathJson(const LightPathFindings& f) {
                                       {"photons", static_cast<std::uint64_t>(g.photons)},
                                       {"pilot_rays", g.rays},
                                       {"lights", std::move(lights)},
-                                      {"never_found", std::move(unseen)},
-                                      {"missing_in_media", std::move(missing)}}));
+                                      {"never_found", std::move(unseen)}}));
     return json.set("shares", std::move(shares));
 }
 

@@ -61,11 +61,12 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     template <typename Surface, typename Collision>
     void walk(const EmittedRay&, const Wavelengths&, Surface onSurface, Collision onCollision);
     void arriveAt(const EmittedRay&, Vec3 p, double cosine);
-    Photon photonAt(const SurfaceHit&, const EmittedRay&, std::uint32_t depth) const;
+    Photon photonOf(const EmittedRay&, std::uint32_t depth) const; // that is nowhere yet
     bool followedFrom(const Light*) const;
     // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
     // started from, 1/sr.
     double askedDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;
+    double askedDensity(const EmittedRay&, const Receiver&, Vec3 direction, const ScatterView&) const;
     LightScattering weighed(const SurfaceHit&, Vec3 away, const LightVertexSample* sampled);
     template <typename Tell>
     void show(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec2 lens, std::uint32_t depth, Tell&&);
@@ -80,7 +81,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     std::optional<LensConnection> connect(Vec3 p, Vec2 lens) const;
     Spectrum passing(Vec3 origin, const LensConnection&, bool through, std::uint32_t depth);
     bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
-    bool scatterInMedium(Ray&, const VertexSample&);
+    bool scatterInMedium(const EmittedRay&, Ray&, const VertexSample&);
     bool survives(std::uint32_t depth);
     std::uint64_t rays() const { return this->counters_.vertices + this->counters_.shadowRays; }
 
@@ -121,19 +122,25 @@ void LightLoop<E>::leavePhotons(const EmittedRay& start, const Wavelengths& lamb
     walk(
         start, lambda,
         [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample&, std::uint32_t depth) {
-            if (depth > 0 && vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy))
-                tell(photonAt(hit, start, depth));
+            if (depth == 0 || !vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return;
+            Photon photon = photonOf(start, depth);
+            photon.p = hit.p;
+            photon.wi = -hit.arrival;
+            photon.ng = hit.ng;
+            tell(photon);
         },
-        [](Vec3, Vec3, const VertexSample&, std::uint32_t) {});
+        [&](Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth) {
+            Photon photon = photonOf(start, depth);
+            photon.p = p;
+            photon.wi = -direction;
+            photon.medium = this->collided_;
+            tell(photon);
+        });
 }
 
-template <EffectBits E>
-Photon LightLoop<E>::photonAt(const SurfaceHit& hit, const EmittedRay& start, std::uint32_t depth) const {
+template <EffectBits E> Photon LightLoop<E>::photonOf(const EmittedRay& start, std::uint32_t depth) const {
     const auto& path = this->path_;
     Photon photon;
-    photon.p = hit.p;
-    photon.wi = -hit.arrival;
-    photon.ng = hit.ng;
     photon.flux = path.beta;
     photon.densities = path.densities.unidirectional;
     photon.light = start.light;
@@ -180,9 +187,13 @@ void LightLoop<E>::walk(const EmittedRay& start, const Wavelengths& lambda, Surf
         first_ = depth == 0;
         const VertexSample sample = this->sampler_.vertex(depth + 1);
         if (arrival == Base::Arrival::collision) {
-            if (first_) return; // camera paths have it
-            onCollision(ray.origin, direction, sample, depth);
-            if (!scatterInMedium(ray, sample) || !survives(depth)) return;
+            if (first_) {
+                if (photons_) return; // light that no mirror has sent is not merged
+                arriveAt(start, ray.origin, 1);
+            } else {
+                onCollision(ray.origin, direction, sample, depth); // camera paths have the first, if it is seen at once
+            }
+            if (!scatterInMedium(start, ray, sample) || !survives(depth)) return;
             continue;
         }
         if (!hit.material->reversible()) return;
@@ -214,7 +225,6 @@ template <EffectBits E> void LightLoop<E>::arriveAt(const EmittedRay& start, Vec
 template <EffectBits E>
 double LightLoop<E>::askedDensity(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex,
                                   Vec3 away) const {
-    if (!this->context_.how.asksLights) return 0;
     const auto view = vertex.seen(away);
     const Bsdf& bsdf = *view.bsdf;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return 0;
@@ -222,11 +232,19 @@ double LightLoop<E>::askedDensity(const EmittedRay& start, const SurfaceHit& hit
     const Receiver from{hit.p, wo.z < 0 ? -n : n, bsdf.lobes().has(Lobe::transmission)};
     ScatterView scatters;
     if (this->context_.lights.asksForLobes() && bsdf.lobes().has(Lobe::glossy)) scatters = {away, bsdf.outline(wo)};
+    return askedDensity(start, from, -start.ray.direction, scatters);
+}
+
+// The same for what is at `from`, with the unit direction to the light.
+template <EffectBits E>
+double LightLoop<E>::askedDensity(const EmittedRay& start, const Receiver& from, Vec3 direction,
+                                  const ScatterView& scatters) const {
+    if (!this->context_.how.asksLights) return 0;
     const auto picked = static_cast<double>(this->context_.lights.probability(start.light, start.part, from, scatters));
     if (start.deltaPosition || start.deltaDirection) return picked;
     const float time = this->path_.time;
     const float pdf = start.density.distant
-                          ? start.light->pdfEscaped(from, -start.ray.direction, time)
+                          ? start.light->pdfEscaped(from, direction, time)
                           : start.light->pdfAtPoint(from, start.part, start.ray.origin, start.n, time);
     return picked * static_cast<double>(pdf);
 }
@@ -348,9 +366,15 @@ bool LightLoop<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const
     return anyNonZero(path.beta);
 }
 
-template <EffectBits E> bool LightLoop<E>::scatterInMedium(Ray& ray, const VertexSample& sample) {
+template <EffectBits E>
+bool LightLoop<E>::scatterInMedium(const EmittedRay& start, Ray& ray, const VertexSample& sample) {
     const PhaseFunction& phase = this->collided_->phase();
     const float cosine = phase.sampleCosine(sample.bsdf.x);
+    if (first_) {
+        const auto density = static_cast<double>(phase.value(cosine));
+        if (!(density > 0)) return false;
+        rivals_.asked *= askedDensity(start, ray.origin, -start.ray.direction, {}) / density;
+    }
     if (phase.spectral()) this->path_.beta *= phase.ratio(cosine, this->path_.lambda);
     ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
     ++spread_;

@@ -78,6 +78,12 @@ class MediumTracker {
     // throughout, 1/m. A pure function of the ray and t. If asked, also all that scatters at t.
     float expected(const Ray&, float t, const MediumStack& inside, const Wavelengths&,
                    std::vector<InScattering>* there = nullptr);
+    // Whether the medium is among those in which such a path runs.
+    bool fills(const Medium& medium, const MediumStack& inside) const {
+        bool found = false;
+        forEach(inside, [&](const Medium& m) { found |= &m == &medium; });
+        return found;
+    }
     // The part of the ray up to tMax outside of which there are no media.
     RayExtent extent(const Ray&, float tMax, const MediumStack& inside) const;
 

@@ -60,7 +60,7 @@ template <EffectBits E> class MergeKernel {
         radius_ = MergePlan::radius(number);
         const PathCounters& counters = result_.counters;
         const std::uint64_t before = counters.vertices + counters.shadowRays;
-        const PhotonMap photons(trace(replicate, number));
+        const RoundPhotons photons(trace(replicate, number));
         result_.photonRays += counters.vertices + counters.shadowRays - before;
         result_.photons += photons.size();
         const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
@@ -103,7 +103,7 @@ template <EffectBits E> class MergeKernel {
         removeWorkFlag(WorkFlag::heroOnly);
     }
 
-    void gather(int x, int y, int replicate, std::uint32_t number, const PhotonMap& photons) {
+    void gather(int x, int y, int replicate, std::uint32_t number, const RoundPhotons& photons) {
         const auto place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
         sampler_.startPixel(combine64(key(kGather, replicate), place), Technique::Numbers::sobol, true);

@@ -23,10 +23,7 @@ class MergePilot::Listener final : public MergeListener {
   public:
     Listener(const MergePilot& pilot, Heard& to) : pilot_(pilot), to_(to) {}
 
-    void starts(const EmittedRay& start) override {
-        to_.starts.push_back(place(start.light, start.target, start.aim));
-        if (start.deltaPosition || start.deltaDirection) to_.points.insert(to_.starts.back().light);
-    }
+    void starts(const EmittedRay& start) override { to_.starts.push_back(place(start.light, start.target, start.aim)); }
     void begins(int x, int y) override {
         end();
         x_ = x;
@@ -109,7 +106,6 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         all.pixels.insert(all.pixels.end(), part.pixels.begin(), part.pixels.end());
         all.starts.insert(all.starts.end(), part.starts.begin(), part.starts.end());
         all.deposits.insert(all.deposits.end(), part.deposits.begin(), part.deposits.end());
-        all.points.insert(part.points.begin(), part.points.end());
         all.looks += part.looks;
         all.rays += part.rays;
         all.photonRays += static_cast<double>(photonRays[i]) / (kRounds * static_cast<double>(kPhotons));

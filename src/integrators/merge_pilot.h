@@ -5,7 +5,6 @@
 #include "integrators/light_kernel.h"
 
 #include <functional>
-#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -28,7 +27,6 @@ class MergePilot {
         std::vector<Pixel> pixels;
         std::vector<LightStart> starts;
         std::vector<LightDeposit> deposits;    // whose squares add up as those of the photons do
-        std::set<std::uint32_t> points;        // lamps without extent, or of one direction: places in the scene
         double looks = 0;                      // pixels times rounds
         double each = 0;                       // pixels of the frame for each of those
         double gatherRays = 0, photonRays = 0; // of a pixel of a round, and of a light path

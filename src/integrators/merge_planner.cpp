@@ -56,8 +56,6 @@ class Planner {
         findings_.rays += heard.rays;
         findings_.measured = true;
         findings_.found = !heard.pixels.empty();
-        if (context_.scene.effects.has(Effect::media))
-            for (const std::uint32_t light : heard.points) findings_.missing.push_back(nameOf(light));
         if (!stop_() && findings_.found) {
             const NoiseMeasure measure(frame_, roulette_, heard.shown());
             plan.emission = AimedEmission(

@@ -6,6 +6,7 @@
 #include "base/work.h"
 #include "integrators/defensive_bsdf.h"
 #include "integrators/hidden_face.h"
+#include "integrators/leg_listener.h"
 #include "integrators/medium_tracker.h"
 #include "integrators/path_context.h"
 #include "integrators/path_counters.h"
@@ -212,6 +213,7 @@ template <EffectBits E> class PathLoop {
     template <typename Met> bool covered(Met met) const; // met() makes the LightTarget
     // path_loop_merge.h
     void meetGathering(const SurfaceHit&, const Bsdf&, std::uint32_t depth);
+    void meetGatheringInMedium(std::uint32_t depth);
     bool merged(const Light*) const; // of a light that is met
     // path_loop_traced.h
     void beginTraced(Vec3 p);
@@ -221,7 +223,10 @@ template <EffectBits E> class PathLoop {
     void turnTracedInMedium();
     double tracedMean(const Spectrum&) const;
     float metWeight(float lightPdf, double ends) const;
+    double askedEnds(const LightSample&, const PickedLight&, Vec3 p) const;
+    float askedShare(double asked, double met, double traces) const;
     std::optional<float> askedAgainstTraced(const LightSample&, const PickedLight&, Vec3 woRender);
+    float askedInMedium(const LightSample&, const PickedLight&, Vec3 p, float phase) const;
 
     const PathContext& context_;
     Sampler& sampler_;
@@ -232,6 +237,7 @@ template <EffectBits E> class PathLoop {
     [[no_unique_address]] std::conditional_t<kTraced, TracedView*, path_detail::Nothing> tracedView_{};
     PathObserver* observer_ = nullptr;
     bool startWithHero_ = false;
+    LegListener* legs_ = nullptr;      // it has all light along the way: lights near it are not looked for
     const Medium* collided_ = nullptr; // after Arrival::collision
     bool touched_ = false;             // some medium scattered the path
     float ownPdf_ = 0; // of directions drawn evenly: the density that surface or medium would have; else 0

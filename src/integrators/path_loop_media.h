@@ -59,7 +59,10 @@ bool PathLoop<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
     if constexpr (kDispersion) weights.density = &path_.densities.unidirectional;
     GlowCollector glow(*this, ray);
     setWork(Work::lights);
-    sampleNearLight(ray, tMax, depth, crossings);
+    if (kTraced && legs_)
+        legs_->goes(ray, tMax);
+    else
+        sampleNearLight(ray, tMax, depth, crossings);
     setWork(Work::surface);
     const MediumCollision collision =
         media_.tracker.follow(ray, tMax, path_.nested.here.media(), path_.lambda, random, weights, &glow);
@@ -110,7 +113,10 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
         path_.densities.before = path_.densities.unidirectional;
         path_.densities.direction = path_.densities.unidirectional;
     }
-    if constexpr (kTraced) turnTracedInMedium();
+    if constexpr (kTraced) {
+        meetGatheringInMedium(depth);
+        turnTracedInMedium();
+    }
     if constexpr (kTextures) scatterCone();
     ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
     ++counters_.effects.volumes[volumeRow(collided_->number)].scattered;
@@ -137,10 +143,8 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     const Spectrum passing = transmittance(p, *light, {path_.nested.here, {}}, sampler_.stream(2 * depth + 1));
     if (!anyNonZero(passing)) return;
     const float pdf = picked.probability * light->pdfSolidAngle;
-    BsdfEval eval;
-    eval.pdfSolidAngle = context_.how.mixedDensity(value, depth);
-    Spectrum contribution =
-        path_.beta * light->radiance * passing * (value * lightWeight(pdf, eval, light->delta) / pdf);
+    const float weight = askedInMedium(*light, picked, p, context_.how.mixedDensity(value, depth));
+    Spectrum contribution = path_.beta * light->radiance * passing * (value * weight / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path_.lambda);
     checkDensity(pdf);
     checkDensity(value, {collided_, "phase function"});

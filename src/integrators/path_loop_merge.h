@@ -14,6 +14,10 @@ template <EffectBits E> void PathLoop<E>::meetGathering(const SurfaceHit& hit, c
     traced.gathered &= reversible;
 }
 
+template <EffectBits E> void PathLoop<E>::meetGatheringInMedium(std::uint32_t depth) {
+    path_.traced.gathers = context_.merging && depth > 0 && path_.traced.mirrored;
+}
+
 template <EffectBits E> bool PathLoop<E>::merged(const Light* light) const {
     const auto& traced = path_.traced;
     if (!traced.gathered || !path_.delta || !context_.merging->lights.contains(light)) return false;

@@ -39,15 +39,15 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     if (!light) return;
 
     const float cosine = dot(ray.direction, light->wi), lightPdf = pickedThere * light->pdfSolidAngle;
+    PickedLight asTracking = picked;
+    asTracking.probability = pickedThere;
     Spectrum scattered(0.f);
     for (const InScattering& at : media_.inScattering) {
         const PhaseFunction& phase = at.medium->phase();
-        BsdfEval eval;
-        eval.pdfSolidAngle = phase.value(cosine);
-        checkDensity(eval.pdfSolidAngle, {at.medium, "phase function"});
-        const float density = eval.pdfSolidAngle;
-        eval.pdfSolidAngle = context_.how.mixedDensity(density, depth);
-        Spectrum value = at.coefficient * (density * lightWeight(lightPdf, eval, light->delta));
+        const float density = phase.value(cosine);
+        checkDensity(density, {at.medium, "phase function"});
+        const float weight = askedInMedium(*light, asTracking, p, context_.how.mixedDensity(density, depth));
+        Spectrum value = at.coefficient * (density * weight);
         if (phase.spectral()) value *= phase.ratio(cosine, path_.lambda);
         scattered += value;
     }

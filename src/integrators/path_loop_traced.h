@@ -15,8 +15,8 @@
 // from either side the same numbers, so that the weights of all ways to find a path sum to 1. What lies in media and
 // how far paths go there is left out of them, on both sides.
 //
-// Light that is scattered in a medium before anything else is left to camera paths, which look for lights near their
-// rays; so is what is seen without any vertex between.
+// In a medium there are no cosines. Light that is scattered there before anything else and then seen without any vertex
+// between is left to camera paths, which look for lights near their rays; so is light that is seen at once.
 #pragma once
 
 namespace abbe {
@@ -91,12 +91,16 @@ template <EffectBits E> void PathLoop<E>::turnTraced(const BsdfSample& next, con
     traced.first = false;
 }
 
-// Light scattered in a medium: its phase functions look alike from both sides. The next light is not weighed.
+// Light scattered in a medium: its phase functions look alike from both sides.
 template <EffectBits E> void PathLoop<E>::turnTracedInMedium() {
     auto& traced = path_.traced;
-    traced.weighs = traced.mirrored = false;
+    traced.gathered |= traced.gathers;
+    traced.mirrored = false;
     traced.chain.stop();
-    if (traced.first) traced.odds /= static_cast<double>(path_.bsdfPdf);
+    traced.weighs = traced.odds > 0 && !traced.first;
+    traced.scattering = static_cast<double>(path_.bsdfPdf);
+    traced.before = traced.ahead;
+    if (traced.first) traced.odds /= traced.scattering;
     traced.first = false;
 }
 
@@ -117,6 +121,22 @@ template <EffectBits E> float PathLoop<E>::metWeight(float lightPdf, double ends
     return static_cast<float>(ahead / (ahead + rivals + light)) / mean(path_.densities.unidirectional);
 }
 
+// e Ck' of a light that is asked for from `p`.
+template <EffectBits E>
+double PathLoop<E>::askedEnds(const LightSample& light, const PickedLight& picked, Vec3 p) const {
+    const AimedEmission& emission = context_.traced->emission;
+    if (!(light.distance < kInfinity)) return emission.density(picked.light, p, -light.wi, path_.time).total();
+    const double e = emission.density(picked.light, picked.part, light.p, light.n, -light.wi, path_.time).total();
+    const auto cosine = static_cast<double>(std::abs(dot(light.n, light.wi)));
+    return cosine > 0 ? e / cosine : e / square(static_cast<double>(light.distance));
+}
+
+// Densities of asking, of meeting the same light by scattering, and of light paths.
+template <EffectBits E> float PathLoop<E>::askedShare(double asked, double met, double traces) const {
+    if (context_.traced->alone && traces > 0) return 0;
+    return static_cast<float>(asked / (asked + met + traces)) / mean(path_.densities.unidirectional);
+}
+
 // Nothing where light paths scatter nothing.
 template <EffectBits E>
 std::optional<float> PathLoop<E>::askedAgainstTraced(const LightSample& light, const PickedLight& picked,
@@ -124,24 +144,29 @@ std::optional<float> PathLoop<E>::askedAgainstTraced(const LightSample& light, c
     const auto& traced = path_.traced;
     const LightScattering s = tracedVertex(light.wi).towards(woRender);
     if (!(s.pdfReverse > 0)) return std::nullopt;
-    const double ahead = tracedMean(traced.ahead),
-                 asked = static_cast<double>(picked.probability * light.pdfSolidAngle);
+    const double asked = static_cast<double>(picked.probability * light.pdfSolidAngle) * tracedMean(traced.ahead);
     const double met = light.delta ? 0 : static_cast<double>(s.pdfReverse) * tracedMean(traced.ahead * s.reverseRatio);
     const double back = traced.first ? tracedMean(traced.back)
                                      : static_cast<double>(s.pdfSolidAngle) * tracedMean(traced.back * s.pdfRatio);
-    double ends = 0;
-    const AimedEmission& emission = context_.traced->emission;
-    if (light.distance < kInfinity) {
-        const double e = emission.density(picked.light, picked.part, light.p, light.n, -light.wi, path_.time).total();
-        const auto cosine = static_cast<double>(std::abs(dot(light.n, light.wi)));
-        ends = cosine > 0 ? e / cosine : e / square(static_cast<double>(light.distance));
-    } else {
-        ends = emission.density(picked.light, tracedView_->met.p, -light.wi, path_.time).total();
-    }
     const auto cosine = static_cast<double>(std::abs(dot(light.wi, tracedView_->met.ng)));
-    const double traces = traced.odds * back * cosine * ends;
-    if (context_.traced->alone && traces > 0) return 0;
-    return static_cast<float>(asked * ahead / (asked * ahead + met + traces)) / mean(path_.densities.unidirectional);
+    return askedShare(asked, met, traced.odds * back * cosine * askedEnds(light, picked, tracedView_->met.p));
+}
+
+// The same at the place `p` in a medium, whose phase function has the density `phase` of the light's direction.
+template <EffectBits E>
+float PathLoop<E>::askedInMedium(const LightSample& light, const PickedLight& picked, Vec3 p, float phase) const {
+    const float asked = picked.probability * light.pdfSolidAngle;
+    if constexpr (kTraced) {
+        const auto& traced = path_.traced;
+        if (traced.odds > 0 && !traced.first) {
+            const double ahead = tracedMean(traced.ahead), scattering = static_cast<double>(phase);
+            return askedShare(static_cast<double>(asked) * ahead, light.delta ? 0 : scattering * ahead,
+                              traced.odds * scattering * tracedMean(traced.back) * askedEnds(light, picked, p));
+        }
+    }
+    BsdfEval eval;
+    eval.pdfSolidAngle = phase;
+    return lightWeight(asked, eval, light.delta);
 }
 
 } // namespace abbe

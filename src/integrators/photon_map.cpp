@@ -1,10 +1,11 @@
 #include "integrators/photon_map.h"
 
-#include "math/bounds.h"
-
 namespace abbe {
 
-PhotonMap::PhotonMap(std::vector<Photon> photons) : photons_(std::move(photons)) { build(photons_); }
+PhotonMap::PhotonMap(std::vector<Photon> photons) : photons_(std::move(photons)) {
+    for (const Photon& photon : photons_) bounds_.add(photon.p);
+    build(photons_);
+}
 
 // Along the longest side.
 void PhotonMap::build(std::span<Photon> range) {

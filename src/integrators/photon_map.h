@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrators/photon.h"
+#include "math/bounds.h"
 
 #include <algorithm>
 #include <span>
@@ -21,7 +22,22 @@ class PhotonMap {
     // the photons alone.
     template <typename Tell> void near(Vec3 p, float radius, Tell&& tell) const { visit(photons_, p, radius, tell); }
 
+    // Likewise of all photons within a tube: nearer than radius(t) to the place o + t d, with 0 ≤ tNear ≤ t ≤ tFar,
+    // that is nearest to them on the line; `tell(photon, t, squared distance)`. `d` is a unit vector, the radius a
+    // convex function of t.
+    template <typename Radius, typename Tell>
+    void along(Vec3 o, Vec3 d, float tNear, float tFar, Radius&& radius, Tell&& tell) const {
+        // Tubes without an end reach beyond all photons.
+        const float most = dot(bounds_.centre() - o, d) + 2 * bounds_.radius();
+        if (!photons_.empty()) visit(photons_, Segment{o, d, tNear, std::min(tFar, most)}, radius, tell);
+    }
+
   private:
+    struct Segment {
+        Vec3 o, d;
+        float t0, t1;
+        float at(float t, int axis) const { return o[axis] + t * d[axis]; }
+    };
     static void build(std::span<Photon>);
 
     template <typename Tell> static void visit(std::span<const Photon> range, Vec3 p, float radius, Tell& tell) {
@@ -37,7 +53,38 @@ class PhotonMap {
         }
     }
 
+    // A photon is on its side of the plane that divides the range, so what is nearest to it on the line is not farther
+    // beyond that plane than the tube is wide.
+    template <typename Radius, typename Tell>
+    static void visit(std::span<const Photon> range, Segment s, Radius& radius, Tell& tell) {
+        constexpr float kRounding = 1 + 1e-4f;
+        while (!range.empty() && s.t0 <= s.t1) {
+            const std::size_t middle = range.size() / 2;
+            const Photon& photon = range[middle];
+            const float t = dot(photon.p - s.o, s.d);
+            if (t >= s.t0 && t <= s.t1) {
+                const float d2 = lengthSquared(photon.p - (s.o + s.d * t));
+                if (d2 < square(radius(t))) tell(photon, t, d2);
+            }
+            const float wide = std::max(radius(s.t0), radius(s.t1)) * kRounding;
+            visit(range.first(middle), within(s, photon.axis, photon.p[photon.axis] + wide, false), radius, tell);
+            s = within(s, photon.axis, photon.p[photon.axis] - wide, true);
+            range = range.subspan(middle + 1);
+        }
+    }
+    // The part of the segment below or above a plane across an axis.
+    static Segment within(Segment s, int axis, float plane, bool above) {
+        const float slope = s.d[axis], side = above ? 1.f : -1.f;
+        const float begin = side * (s.at(s.t0, axis) - plane), end = side * (s.at(s.t1, axis) - plane);
+        if (begin >= 0 && end >= 0) return s;
+        if (begin < 0 && end < 0) return {s.o, s.d, 1, 0};
+        const float t = (plane - s.o[axis]) / slope;
+        (begin < 0 ? s.t0 : s.t1) = t;
+        return s;
+    }
+
     std::vector<Photon> photons_;
+    Bounds3 bounds_;
 };
 
 } // namespace abbe

@@ -21,9 +21,6 @@ struct MergeFindings {
     std::uint64_t rays = 0;          // that it took to find out
     std::vector<std::string> lights; // whose light is merged
     std::vector<std::string> unseen; // whose light camera paths never find, whether it is merged or not
-    // Lamps without extent in a scene with media: what glass or mirrors send of their light into a medium that is seen
-    // by way of others nothing finds.
-    std::vector<std::string> missing;
 };
 
 } // namespace abbe

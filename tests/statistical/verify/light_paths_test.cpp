@@ -104,6 +104,25 @@ TEST_CASE("light paths: a glass ball in fog") {
         32, 0.004);
 }
 
+// Most of what is seen the medium scatters before anything else; the wall is lit through the prism, too, and its hero
+// alone may have come that way.
+TEST_CASE("light paths: a lamp in the haze behind a prism") {
+    compareWays("haze",
+                inlineScene("camera { from 0.4 1.2 3; look-at 0 0.7 0; fov 40 deg }\n" + std::string(kFloor) +
+                            "light spot { position -1.9 1 0.2; look-at 1 0.7 0; angle 50 deg; inner-angle 30 deg; "
+                            "intensity 100 cd }\n"
+                            "light sphere { center -0.3 1.7 -0.6; radius 0.2; radiance 8 }\n"
+                            "shape mesh { material dielectric { ior glass SF11; priority 2 }\n"
+                            "    points { - -0.4 0.4 -0.5; - 0.4 0.4 -0.5; - 0 1.0928 -0.5\n"
+                            "             - -0.4 0.4 0.5; - 0.4 0.4 0.5; - 0 1.0928 0.5 }\n"
+                            "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 } }\n"
+                            "shape quad { points 1.3 0 -1.2  1.3 0 1.2  1.3 2 1.2  1.3 2 -1.2; material diffuse }\n"
+                            "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
+                            "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
+                            "henyey-greenstein 0.4 } }\n"),
+                64, 0.006);
+}
+
 TEST_CASE("light paths: rough glass and rough metal all around the camera") {
     compareWays(
         "rough",

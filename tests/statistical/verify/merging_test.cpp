@@ -89,7 +89,20 @@ TEST_CASE("merging: fog and absorbing glass") {
         "shape box { min -1.5 0.1 -2; max 1.5 2 0; material boundary\n"
         "    interior homogeneous { extinction table 400 0.3 700 0.2 per-m; albedo 0.9 } }\n"
         "light sphere { center 0.2 3.4 -0.6; radius 0.7; radiance 10 }\n");
-    agree("fog", render(scene, false, 256), render(scene, true, 64), 0.02);
+    agree("fog", render(scene, false, 256), render(scene, true, 128), 0.02);
+}
+
+// Nothing but haze shows the lamp's light, which comes over four faces.
+TEST_CASE("merging: in haze, in a mirror") {
+    const TestScene scene = TestScene::parse(
+        "scene 1\nfilm { size 48 36 }\nrender { max-depth 16 }\n"
+        "camera { from 0 2 1; look-at 0 0.9 -2.5; fov 26 deg }\n"
+        "shape quad { points -3 0 -2.5  3 0 -2.5  3 3 -2.5  -3 3 -2.5; material conductor { index metal Ag } }\n" +
+        shells("ior 1.3") +
+        "shape box { min -2 -0.5 -1.5; max 2 2.5 2; material boundary\n"
+        "    interior homogeneous { extinction table 400 0.5 700 0.3 per-m; albedo 0.9; phase henyey-greenstein 0.5 } "
+        "}\n");
+    agree("haze", render(scene, false, 256), render(scene, true, 64), 0.02);
 }
 
 } // namespace abbe::test

@@ -55,3 +55,36 @@ TEST_CASE("photon map: photons in one place") {
     map.near({1, 2, 3.1f}, 0.05f, [&](const Photon&, float) { ++found; });
     CHECK(found == photons.size());
 }
+
+TEST_CASE("photon map: all photons in a tube that widens and no others") {
+    RandomStream random(5);
+    const auto place = [&] { return Vec3{random.uniform(), random.uniform(), random.uniform()}; };
+    for (const int count : {0, 1, 2, 100, 2000}) {
+        std::vector<Photon> photons(static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < photons.size(); ++i) {
+            photons[i].p = place();
+            photons[i].vertices = static_cast<std::uint32_t>(i);
+        }
+        const PhotonMap map{photons};
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 o = place() * 2 - Vec3{0.5f, 0.5f, 0.5f};
+            const Vec3 d = i % 5 == 0 ? Vec3{0, 0, -1} : normalize(place() - Vec3{0.5f, 0.5f, 0.5f});
+            const float near = i % 3 == 0 ? 0 : 0.5f * random.uniform(), least = 0.1f * random.uniform();
+            const float far = i % 7 == 0 ? kInfinity : near + random.uniform();
+            const float waist = random.uniform(), spread = 0.2f * random.uniform();
+            const auto radius = [&](float t) { return std::max(std::abs(t - waist) * spread, least); };
+            std::multiset<std::uint32_t> expected, found;
+            for (const Photon& photon : photons) {
+                const float t = dot(photon.p - o, d);
+                if (t >= near && t <= far && lengthSquared(photon.p - (o + d * t)) < radius(t) * radius(t))
+                    expected.insert(photon.vertices);
+            }
+            map.along(o, d, near, far, radius, [&](const Photon& photon, float t, float d2) {
+                CHECK(t == dot(photon.p - o, d));
+                CHECK(d2 == lengthSquared(photon.p - (o + d * t)));
+                found.insert(photon.vertices);
+            });
+            CHECK(found == expected);
+        }
+    }
+}
