@@ -59,14 +59,21 @@ expect 0 explain "$scene"
 cmp -s first out || fault "explain says something else the second time"
 expect 0 explain "$scene" --json
 says out '"never_found":'
-sed '$ a shape haze box { min -1 0.1 -0.7; max 1 1.8 0.9; material boundary; interior homogeneous { extinction 0.1 per-m; albedo 0.9 } }' \
-    "$scene" >haze.scene
-expect 0 explain haze.scene
-says out "caustics of lamp in media"
 expect 0 off.scene -o told.exr
 says_not err "merged light"
 expect 0 info told.exr
 says_not out "abbe.estimator"
+
+# Light that a medium scatters behind the mirror is merged, too.
+haze='shape haze box { min -1 0.1 -0.7; max 1 1.8 0.9; material boundary; interior homogeneous { extinction 0.1 per-m; albedo 0.9 } }'
+sed "\$ a $haze" always.scene >haze.scene
+sed "\$ a $haze" off.scene >unmerged.scene
+expect 0 haze.scene -q -o haze.exr -t 1 --samples 8
+expect 0 haze.scene -q -o threads.exr -t 2 --samples 8
+same_pixels haze.exr threads.exr
+same_certificate haze.exr threads.exr
+expect 0 unmerged.scene -q -o off.exr --samples 8
+[[ $(pixels haze.exr) != $(pixels off.exr) ]] || fault "merging in haze brings nothing"
 
 # Billed with light paths.
 expect 0 "$scene" --json --samples 192 -o bill.exr -t 1
