@@ -144,4 +144,26 @@ TEST_CASE("merged light: the sun through one glass, seen through another") {
     }
 }
 
+TEST_CASE("merged light: the sun in haze under glass, seen through it") {
+    // The glass keeps the sun from all of the haze but by way of itself. From straight above, so that the tube in which
+    // it is gathered stays within the haze. Scattered once, at depths y up to H: T(0)/n² · E cos θ T(θ)/cos θ' · σ_s
+    // p(-cos θ') ∫ exp(-σ_t y (1 + 1/cos θ')) dy.
+    const double sun = 50 * kPiD / 180, extinction = 3, albedo = 0.9, g = 0.3, height = 0.4;
+    const double in = std::sqrt(1 - square(std::sin(sun) / kIndex)); // cos θ'
+    const double phase = (1 - square(g)) / (4 * kPiD * std::pow(1 + square(g) + 2 * g * in, 1.5));
+    const double slope = extinction * (1 + 1 / in);
+    const double scattered = extinction * albedo * phase * (1 - std::exp(-slope * height)) / slope;
+    const double arriving = std::cos(sun) * (1 - fresnel(std::cos(sun), kIndex)) / in;
+    compare("haze", "32 32",
+            fmt::format("render {{ max-depth 3 }}\n"
+                        "camera orthographic {{ from 0 2 0; look-at 0 0 0; width 0.25; up 0 0 -1 }}\n"
+                        "object pane {{ shape quad {{ points -1.1 0 0.25  0.3 0 0.25  0.3 0 -0.25  -1.1 0 -0.25\n"
+                        "    material dielectric {{ ior {} }} }} }}\ninstance pane\n"
+                        "shape box {{ min -0.45 {} -0.2; max 0.3 -0.1 0.2; material boundary\n"
+                        "    interior homogeneous {{ extinction {} per-m; albedo {}; phase henyey-greenstein {} }} }}\n"
+                        "light sun {{ toward {} {} 0; irradiance {} lx; color 1; angular-diameter 0 deg }}\n",
+                        kIndex, -0.1 - height, extinction, albedo, g, std::sin(sun), -std::cos(sun), kLuminousScale),
+            arriving * scattered * (1 - fresnel(1, kIndex)) / square(kIndex), 256);
+}
+
 } // namespace abbe::test
