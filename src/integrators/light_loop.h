@@ -61,7 +61,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     template <typename Surface, typename Collision>
     void walk(const EmittedRay&, const Wavelengths&, Surface onSurface, Collision onCollision);
     void arriveAt(const EmittedRay&, Vec3 p, double cosine);
-    Photon photonOf(const EmittedRay&, std::uint32_t depth) const; // that is nowhere yet
+    Photon photonOf(const EmittedRay&, Vec3 p, Vec3 direction, std::uint32_t depth) const;
     bool followedFrom(const Light*) const;
     // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
     // started from, 1/sr.
@@ -123,24 +123,23 @@ void LightLoop<E>::leavePhotons(const EmittedRay& start, const Wavelengths& lamb
         start, lambda,
         [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample&, std::uint32_t depth) {
             if (depth == 0 || !vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return;
-            Photon photon = photonOf(start, depth);
-            photon.p = hit.p;
-            photon.wi = -hit.arrival;
+            Photon photon = photonOf(start, hit.p, hit.arrival, depth);
             photon.ng = hit.ng;
             tell(photon);
         },
         [&](Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth) {
-            Photon photon = photonOf(start, depth);
-            photon.p = p;
-            photon.wi = -direction;
+            Photon photon = photonOf(start, p, direction, depth);
             photon.medium = this->collided_;
             tell(photon);
         });
 }
 
-template <EffectBits E> Photon LightLoop<E>::photonOf(const EmittedRay& start, std::uint32_t depth) const {
+template <EffectBits E>
+Photon LightLoop<E>::photonOf(const EmittedRay& start, Vec3 p, Vec3 direction, std::uint32_t depth) const {
     const auto& path = this->path_;
     Photon photon;
+    photon.p = p;
+    photon.wi = -direction;
     photon.flux = path.beta;
     photon.densities = path.densities.unidirectional;
     photon.light = start.light;
