@@ -14,6 +14,7 @@ namespace {
 // More than any machine holds: nested objects multiply quickly.
 constexpr std::size_t kMaxInstances = 100'000'000;
 constexpr std::size_t kMaxUnshared = 1'000'000;
+constexpr std::size_t kMostFocusing = 4096; // boxes that one line of the scene makes
 
 // Takes the polygons of a shape apart into triangles.
 class TriangleSink final : public GeometrySink {
@@ -167,11 +168,32 @@ void SceneBuilder::placeStill(const Definition& d, std::vector<Placement> places
         place.into->bounds.add(box);
     else if (!box.empty())
         bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
+    placeFocusing(geometry.focusing, places, place.into);
     if (!geometry.embreeObject) return;
     if (place.into)
         place.into->placed.emplace_back(*geometry.embreeObject, std::move(places));
     else
         embree_.addInstances(*geometry.embreeObject, std::move(places));
+}
+
+void SceneBuilder::noteFocusing(const Material& material, FocusingShape shape, Assembly* into) {
+    if (material.focuses()) focusingIn(into).push_back(std::move(shape));
+}
+
+// A box for each place, or, of very many, one for all of them: light paths aim at some dozens of clusters at most.
+void SceneBuilder::placeFocusing(const std::vector<FocusingShape>& shared, const std::vector<Placement>& places,
+                                 Assembly* into) {
+    std::vector<FocusingShape>& all = focusingIn(into);
+    const bool each = saturated(shared.size(), places.size()) <= kMostFocusing;
+    for (const FocusingShape& shape : shared) {
+        Bounds3 box;
+        for (const Placement& p : places) {
+            if (each) box = Bounds3();
+            box.add(p.toOuter(shape.box));
+            if (each) all.push_back({box, shape.name});
+        }
+        if (!each) all.push_back({box, shape.name});
+    }
 }
 
 // An instance with keys of its own.
@@ -186,7 +208,8 @@ void SceneBuilder::placeMoving(const Definition& d, const ObjectGeometry& geomet
             placeUnshared(geometry, place.motion, d.span);
     }
     if (geometry.embreeObject)
-        addMoving(*geometry.embreeObject, geometry.levels, geometry.bounds, place.motion, place.base, d.targetSpan);
+        addMoving(*geometry.embreeObject, geometry.levels, geometry.bounds, geometry.focusing, place.motion, place.base,
+                  d.targetSpan);
 }
 
 // Emitters are made anew for every instance, because each is a light of its own; so are planes, which have no end to
@@ -247,6 +270,7 @@ SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& obj
     geometry.busy = false;
 
     geometry.bounds = parts.bounds;
+    geometry.focusing = std::move(parts.focusing);
     geometry.levels = parts.levels;
     geometry.shown += geometry.hasShapes;
     geometry.hasUnshared = !geometry.unshared.empty() || !geometry.nested.empty();

@@ -123,9 +123,8 @@ const Material* SceneBuilder::filled(const Material* surface, const ShapeParams&
     return materials_[*index].get();
 }
 
-void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated, const std::string& name) {
+void SceneBuilder::notePlaced(const Material& material, const Bounds3& box, bool repeated) {
     if (material.interior() || material.seesOutside()) placedShapes_.push_back({box, &material, repeated});
-    if (material.focuses()) built_->scene.focusing.push_back({box, name});
 }
 
 // Whether any shape to which it matters may be in another's dielectric: those that are dielectrics themselves, or all

@@ -67,8 +67,9 @@ void SceneBuilder::carry(const KeyedTransform& own, const Place& outer, Span ask
     build(place);
     if (carried.shapes.empty() && carried.placed.empty()) return;
     const Bounds3 bounds = carried.bounds;
+    const std::vector<FocusingShape> focusing = std::move(carried.focusing);
     const int levels = carried.levels;
-    addMoving(addAssembly(std::move(carried)), levels, bounds, onwards, outer.base, asker);
+    addMoving(addAssembly(std::move(carried)), levels, bounds, focusing, onwards, outer.base, asker);
 }
 
 std::uint32_t SceneBuilder::addAssembly(Assembly parts) {
@@ -78,9 +79,11 @@ std::uint32_t SceneBuilder::addAssembly(Assembly parts) {
     return number;
 }
 
-void SceneBuilder::addMoving(std::uint32_t object, int levels, const Bounds3& bounds, const Motion& motion,
-                             Assembly* into, Span asker) {
+void SceneBuilder::addMoving(std::uint32_t object, int levels, const Bounds3& bounds,
+                             const std::vector<FocusingShape>& focusing, const Motion& motion, Assembly* into,
+                             Span asker) {
     const Bounds3 box = swept(motion, bounds);
+    for (const FocusingShape& shape : focusing) focusingIn(into).push_back({swept(motion, shape.box), shape.name});
     if (!into) {
         if (!box.empty()) bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
         embree_.addMoving(object, motion);

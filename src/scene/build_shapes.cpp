@@ -180,7 +180,8 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
 
 void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {
     const Bounds3 box = shape.bounds();
-    notePlaced(*binding.material, place.into ? kEverything : box, place.object != nullptr, built_->scene.names[&shape]);
+    notePlaced(*binding.material, place.into ? kEverything : box, place.object != nullptr);
+    noteFocusing(*binding.material, {box, built_->scene.names[&shape]}, place.into);
     built_->scene.surfaces.push_back({&shape, binding.material, place.into != nullptr});
     if (place.into) {
         place.into->shapes.emplace_back(&shape, binding);

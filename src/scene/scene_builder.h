@@ -86,7 +86,8 @@ class SceneBuilder final : public schema::Resolver {
         std::vector<std::pair<std::uint32_t, std::vector<Placement>>> placed; // objects by number
         std::vector<std::pair<std::uint32_t, Motion>> moving;
         Bounds3 bounds;
-        int levels = 0; // of objects inside of it
+        std::vector<FocusingShape> focusing; // in that space
+        int levels = 0;                      // of objects inside of it
     };
     // Where definitions are placed.
     struct Place {
@@ -107,12 +108,13 @@ class SceneBuilder final : public schema::Resolver {
         std::vector<const Definition*> unshared;   // emitters, planes and lights, with the transform of their group
         std::vector<Motion> unsharedPlace;
         std::vector<NestedObject> nested;
-        Bounds3 bounds;           // of what is shared, object space
-        std::size_t shown = 0;    // how many objects with shapes one instance shows, nested ones included
-        int levels = 0;           // of objects inside of it
-        bool hasUnshared = false; // nested ones included
-        bool hasShapes = false;   // of its own
-        bool busy = false;        // being built: meeting it again is a cycle
+        Bounds3 bounds;                      // of what is shared, object space
+        std::vector<FocusingShape> focusing; // likewise
+        std::size_t shown = 0;               // how many objects with shapes one instance shows, nested ones included
+        int levels = 0;                      // of objects inside of it
+        bool hasUnshared = false;            // nested ones included
+        bool hasShapes = false;              // of its own
+        bool busy = false;                   // being built: meeting it again is a cycle
     };
 
     template <typename P> std::optional<P> bound(const Definition&);
@@ -231,7 +233,10 @@ class SceneBuilder final : public schema::Resolver {
     const Material* filled(const Material* surface, const ShapeParams&);
     void noteInterior(const Medium&);
     bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
-    void notePlaced(const Material&, const Bounds3&, bool repeated, const std::string& name);
+    void notePlaced(const Material&, const Bounds3&, bool repeated);
+    void noteFocusing(const Material&, FocusingShape, Assembly* into);
+    std::vector<FocusingShape>& focusingIn(Assembly* into) { return into ? into->focusing : built_->scene.focusing; }
+    void placeFocusing(const std::vector<FocusingShape>& shared, const std::vector<Placement>&, Assembly* into);
     bool mayLieInDielectric(bool dielectrics) const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
@@ -247,7 +252,8 @@ class SceneBuilder final : public schema::Resolver {
     Bounds3 swept(const Motion&, const Bounds3&) const;
     void carry(const KeyedTransform& own, const Place& outer, Span asker, const std::function<void(const Place&)>&);
     std::uint32_t addAssembly(Assembly);
-    void addMoving(std::uint32_t object, int levels, const Bounds3&, const Motion&, Assembly* into, Span asker);
+    void addMoving(std::uint32_t object, int levels, const Bounds3&, const std::vector<FocusingShape>&, const Motion&,
+                   Assembly* into, Span asker);
     bool nest(Assembly& into, int levels, Span asker); // makes room for an object with so many in it, or reports
     void tooDeep(Span asker);
     // False after an error; nothing if the light stands still.

@@ -81,7 +81,8 @@ std::unique_ptr<const Shape> SceneBuilder::withFaceMaterials(const LoadedShape& 
     for (const schema::GroupReference& group : loaded.common.groupMaterials) {
         usedMaterials_.insert(group.reference.index);
         materials.push_back(filled(materials_[group.reference.index].get(), loaded.common));
-        notePlaced(*materials.back(), kEverything, false, nameOf(*loaded.definition));
+        notePlaced(*materials.back(), kEverything, false);
+        noteFocusing(*materials.back(), {kEverything, nameOf(*loaded.definition)}, nullptr);
     }
     return std::make_unique<const FaceMaterials>(std::move(shape), std::move(materials), loaded.faceMaterials);
 }
