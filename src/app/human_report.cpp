@@ -98,6 +98,7 @@ void HumanReport::done(const RenderSummary& s) {
     if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
     if (const std::string line = manifoldLine(r.lightPlan.manifold); !line.empty()) console_.line("  " + line);
     if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
+    if (const std::string line = glintLine(r.lightPlan.glints); !line.empty()) console_.line("  " + line);
     if (r.manifoldCapped > 0)
         console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
                                   r.manifoldCapped, r.manifoldEstimates));

@@ -137,6 +137,17 @@ std::string mergeText(const MergeFindings& f) {
                        times(f.gain), moment(f.before), moment(f.after));
 }
 
+std::string glintText(const GlintFindings& f) {
+    if (!f.measured) return {};
+    std::string text =
+        fmt::format("Glints, small images of lamps in mirrors and glass: a pilot took {} rays\n", f.pilotRays);
+    if (f.found == 0) return text + "  none that camera paths would not find soon enough\n";
+    return text +
+           fmt::format("  {} probed, {:.2g} rays for each camera path; without probes 1024 samples leave an error of "
+                       "{:.2g} % in a tile of 8×8\n",
+                       f.found, f.rays, 100 * f.error);
+}
+
 } // namespace
 
 std::string lightPathLine(const LightPathFindings& f) {
@@ -164,6 +175,12 @@ std::string mergeLine(const MergeFindings& f) {
                        times(f.gain), listed(f.lights));
 }
 
+std::string glintLine(const GlintFindings& f) {
+    if (f.found == 0) return {};
+    return fmt::format("{} small image{} of lamps in mirrors and glass {} probed: {:.2g} rays for each camera path",
+                       f.found, f.found == 1 ? "" : "s", f.found == 1 ? "is" : "are", f.rays);
+}
+
 std::string lightPathText(const LightPathFindings& f) {
     if (f.verdict == undecided) return {};
     if (!f.measured) return fmt::format("Light paths: none, {}\n", reason(f));
@@ -178,7 +195,7 @@ std::string lightPathText(const LightPathFindings& f) {
     text += fmt::format("  relative variance of a sample by what light paths can bring: {} by camera paths alone",
                         moment(f.before));
     if (f.bestShare > 0) text += fmt::format(", {} by both; by everything else {}", moment(f.after), moment(f.rest));
-    return text + "\n" + shareTable(f) + manifoldText(f.manifold) + mergeText(f.merging);
+    return text + "\n" + shareTable(f) + manifoldText(f.manifold) + mergeText(f.merging) + glintText(f.glints);
 }
 
 Json lightPathJson(const LightPathFindings& f) {
@@ -222,6 +239,11 @@ Json lightPathJson(const LightPathFindings& f) {
                                       {"pilot_rays", g.rays},
                                       {"lights", std::move(lights)},
                                       {"never_found", std::move(unseen)}}));
+    json.set("glints", Json::object({{"measured", f.glints.measured},
+                                     {"probed", static_cast<std::uint64_t>(f.glints.found)},
+                                     {"error_without", f.glints.error},
+                                     {"rays_per_camera_path", f.glints.rays},
+                                     {"pilot_rays", f.glints.pilotRays}}));
     return json.set("shares", std::move(shares));
 }
 

@@ -17,6 +17,8 @@ std::string lightPathText(const LightPathFindings&);
 std::string manifoldLine(const ManifoldFindings&);
 // The rest of that, and what nothing finds; empty where light paths are not merged and nothing is missing.
 std::string mergeLine(const MergeFindings&);
+// Empty where no glints are probed.
+std::string glintLine(const GlintFindings&);
 // docs/output.md lists the members.
 Json lightPathJson(const LightPathFindings&);
 

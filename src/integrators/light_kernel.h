@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/check.h"
+#include "integrators/glint_search.h"
 #include "integrators/light_loop.h"
 #include "integrators/light_start.h"
 #include "integrators/merge_kernel.h"
@@ -153,6 +154,7 @@ struct TracedKernel {
     TileResult (*trace)(const PathContext&, Film&, const LightJob&);
     TileResult (*listen)(const PathContext&, Film&, const LightJob&, LightListener&);
     TileResult (*merge)(const PathContext&, Film&, const MergeJob&, MergeListener*); // null: nobody listens
+    void (*glints)(const PathContext&, std::span<const GlintQuery>, PathCounters&, const GlintHearer&);
 };
 
 template <EffectBits E> TileResult traceLight(const PathContext& context, Film& film, const LightJob& job) {

@@ -1,6 +1,7 @@
 // What paths are made of.
 #pragma once
 
+#include "integrators/glint_plan.h"
 #include "integrators/light_path_plan.h"
 #include "integrators/light_sampler.h"
 #include "integrators/loop_technique.h"
@@ -25,6 +26,7 @@ struct PathContext {
     const ManifoldSampler* manifold = nullptr;
     ManifoldListener* hears = nullptr;
     const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
+    const GlintPlan* glints = nullptr;  // likewise by probes
 };
 
 } // namespace abbe

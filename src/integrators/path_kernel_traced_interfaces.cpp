@@ -6,6 +6,7 @@ template TileResult renderTile<kTracedInterfacesKernel.bits()>(const PathContext
 
 const TracedKernel kTracedInterfaces = {
     renderTile<kTracedInterfacesKernel.bits()>, traceLight<kTracedInterfacesKernel.bits()>,
-    listenToLight<kTracedInterfacesKernel.bits()>, merge<kTracedInterfacesKernel.bits()>};
+    listenToLight<kTracedInterfacesKernel.bits()>, merge<kTracedInterfacesKernel.bits()>,
+    searchGlints<kTracedInterfacesKernel.bits()>};
 
 } // namespace abbe

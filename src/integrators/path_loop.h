@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/work.h"
 #include "integrators/defensive_bsdf.h"
+#include "integrators/forced_lobe.h"
 #include "integrators/hidden_face.h"
 #include "integrators/leg_listener.h"
 #include "integrators/medium_tracker.h"
@@ -85,6 +86,11 @@ template <EffectBits E> class PathLoop {
     void startWith(const path_detail::Cone& cone) requires(kTextures) { path_.cone = cone; }
     // Light paths bring light, too: requires the camera's ray in the view, and its query without a point.
     void weighAgainst(TracedView& view) requires(kTraced) { tracedView_ = &view; }
+    // Glints that are probed are left out: those of the row of the pixel, and where on the film the path starts.
+    void leaveOut(std::span<const std::uint32_t> glintsOfRow, Vec2 film) requires(kTraced) {
+        path_.traced.glintsOfRow = glintsOfRow;
+        path_.traced.film = film;
+    }
     // `rouletteScale` of the pixel, see RouletteReference. Lanes at fault are negative or not finite.
     Spectrum radiance(Ray ray, const Wavelengths& lambda, float rouletteScale);
     // Of the last path: the least that any of the light in it came to, per lane; 0 at most. Without media, in which
@@ -215,6 +221,9 @@ template <EffectBits E> class PathLoop {
     void meetGathering(const SurfaceHit&, const Bsdf&, std::uint32_t depth);
     void meetGatheringInMedium(std::uint32_t depth);
     bool merged(const Light*) const; // of a light that is met
+    // path_loop_glints.h
+    void meetGlint(const Bsdf&, const Directions&, const BsdfSample& next);
+    bool probed(const Light*) const; // of a light that is met
     // path_loop_traced.h
     void beginTraced(Vec3 p);
     void arriveTraced(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
@@ -291,6 +300,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         if constexpr (kTraced) {
             askManifold(hit, bsdf, eye, depth);
             meetGathering(hit, bsdf, depth);
+            if (next) meetGlint(bsdf, eye, *next);
         }
         setWork(Work::surface);
         if (!next || !scatter(hit, *next, eye, ray) || !survives(depth, rouletteScale)) break;
@@ -435,6 +445,7 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 
 #include "integrators/path_loop_cone.h"
 #include "integrators/path_loop_faults.h"
+#include "integrators/path_loop_glints.h"
 #include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_lights.h"
 #include "integrators/path_loop_manifold.h"

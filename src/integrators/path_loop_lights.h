@@ -50,7 +50,8 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
                    hit.light->pdfSolidAngle(path_.from, hit, path_.time);
     checkDensities(lightPdf, path_.bsdfPdf);
     if constexpr (kTraced)
-        if (merged(hit.light) || covered([&] { return LightTarget::met(hit, path_.time); })) return;
+        if (probed(hit.light) || merged(hit.light) || covered([&] { return LightTarget::met(hit, path_.time); }))
+            return;
     const float weight = foundWeight(lightPdf, [&] {
         const double e =
             context_.traced->emission.density(hit.light, hit.light->partOf(hit), hit.p, hit.ng, -direction, path_.time)
@@ -72,7 +73,9 @@ template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
         checkDensities(lightPdf, path_.bsdfPdf);
         const Spectrum arriving = light->escaped(direction, path_.lambda, path_.time);
         if constexpr (kTraced)
-            if (merged(light) || covered([&] { return LightTarget::met(*light, direction, path_.time); })) continue;
+            if (probed(light) || merged(light) ||
+                covered([&] { return LightTarget::met(*light, direction, path_.time); }))
+                continue;
         const float weight = foundWeight(lightPdf, [&] {
             return context_.traced->emission.density(light, path_.from.p, -direction, path_.time).total();
         });

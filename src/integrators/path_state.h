@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrators/covered_chain.h"
+#include "integrators/glint_plan.h"
 #include "integrators/surroundings.h"
 #include "render/effects.h"
 #include "render/receiver.h"
@@ -48,6 +49,11 @@ struct TracedDensities {
     // path_loop_merge.h
     bool gathers = false;  // at a vertex at which merging gathers light
     bool gathered = false; // behind one
+    // path_loop_glints.h
+    std::span<const std::uint32_t> glintsOfRow; // that may be where the path starts; empty: nothing is left out
+    Vec2 film;                                  // where it starts
+    GlintChain events;                          // so far
+    bool forced = true;                         // all of them as forcedLobe() has them
 };
 // The curve of absorption of the medium around the present segment; null in air.
 struct Interior {

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "integrators/darkroom.h"
+#include "integrators/glint_planner.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
 #include "integrators/manifold_planner.h"
@@ -136,7 +137,11 @@ class RenderJob {
             context_.merging = merging_.plan.get();
             light_.findings.merging = merging_.findings;
         }
-        if (context_.traced || context_.manifold || context_.merging) render_ = kernel_.traced().render;
+        glints_ = planGlints(context_, film_, kernel_.traced(), ahead_.roulette, stop);
+        context_.glints = glints_.plan.get();
+        light_.findings.glints = glints_.findings;
+        if (context_.traced || context_.manifold || context_.merging || context_.glints)
+            render_ = kernel_.traced().render;
     }
 
     void look(const PathContext& context) {
@@ -147,7 +152,8 @@ class RenderJob {
         else
             light_.findings.verdict = lightPathVerdict(context_.scene, settings_.technique);
         statistics_.lightPlan = light_.findings;
-        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays + merging_.findings.rays;
+        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays + merging_.findings.rays +
+                                glints_.findings.pilotRays;
     }
 
     static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
@@ -332,6 +338,7 @@ class RenderJob {
     PlannedLightPaths light_;
     PlannedManifold manifold_;
     PlannedMerging merging_;
+    PlannedGlints glints_;
     TileFunction render_ = kernel_.render; // of pixels
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one

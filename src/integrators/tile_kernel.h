@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrators/camera_start.h"
+#include "integrators/glint_loop.h"
 #include "integrators/path_loop.h"
 
 #include <algorithm>
@@ -92,6 +93,8 @@ template <EffectBits E> class TileKernel {
         sampler_.startPixel(seed, context_.settings.technique.numbers, context_.choices, context_.strata);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
+        if constexpr (PathLoop<E>::kTraced)
+            if (context_.glints) glints_ = context_.glints->ofRow(y);
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
@@ -133,9 +136,13 @@ template <EffectBits E> class TileKernel {
             view_.camera = camera;
             view_.query = lensQuery(context_.scene.frame, camera.ray.time, lambda.nm[0]);
             loop.weighAgainst(view_);
+            loop.leaveOut(glints_, place);
         }
         [[maybe_unused]] const std::uint64_t before = signedWeights();
+        Spectrum glints(0.f);
+        if constexpr (PathLoop<E>::kTraced) glints = probeGlints(x, y, lambda);
         radiance_ = loop.radiance(camera.ray, lambda, rouletteScale);
+        if constexpr (PathLoop<E>::kTraced) addGlints(glints);
         setWork(Work::film);
         if constexpr (hasEffect(E, Effect::dispersion)) removeWorkFlag(WorkFlag::heroOnly);
         if constexpr (PathLoop<E>::kMedia) setWorkCause(0);
@@ -146,6 +153,70 @@ template <EffectBits E> class TileKernel {
             condemnDensities();
         }
         return context_.scene.sensor(radiance_, lambda) * factor_;
+    }
+
+    // Lanes that are at fault stay as they are.
+    void addGlints(const Spectrum& light) {
+        const Spectrum sum = radiance_ + light;
+        radiance_ = PathLoop<E>::kMedia ? sum : Spectrum(_mm256_blendv_ps(sum.v, radiance_.v, radiance_.v));
+    }
+
+    // What the pixel sees of glints, over factor_: the mean over probes, even within what the filter has in common
+    // with the box, of the filter times the light.
+    Spectrum probeGlints(int x, int y, const Wavelengths& lambda) {
+        Spectrum sum(0.f);
+        constexpr std::uint32_t kNumbers = 0x30000000; // beyond those of vertices and of chains
+        const Vec2 centre{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+        const float reach = film_.filterRadius();
+        const FilmBox support{centre - Vec2{reach, reach}, centre + Vec2{reach, reach}};
+        for (const std::uint32_t i : glints_) {
+            const Glint& glint = context_.glints->glints()[i];
+            const FilmBox box = glint.box.common(support);
+            if (!(box.area() > 0)) continue;
+            RandomStream random = sampler_.stream(kNumbers + i);
+            const float step = 1 / static_cast<float>(glint.side);
+            for (std::uint32_t j = 0; j < glint.side * glint.side; ++j) {
+                const Vec2 cell{static_cast<float>(j % glint.side), static_cast<float>(j / glint.side)};
+                const float u = random.uniform(), v = random.uniform();
+                const Vec2 place{box.lower.x + (cell.x + u) * step * (box.upper.x - box.lower.x),
+                                 box.lower.y + (cell.y + v) * step * (box.upper.y - box.lower.y)};
+                const Vec2 lens{random.uniform(), random.uniform()};
+                const float density = film_.filterWeight(place.x - centre.x) * film_.filterWeight(place.y - centre.y);
+                sum += probe(glint.chain, {place, lens, sampler_.time(), lambda.nm[0]}, lambda,
+                             density * box.area() * step * step);
+            }
+        }
+        return sum;
+    }
+
+    Spectrum probe(const GlintChain& chain, const CameraSample& at, const Wavelengths& lambda, float share) {
+        const CameraRay camera = context_.scene.camera->ray(at);
+        Spectrum sum(0.f);
+        if (!(camera.weight > 0)) return sum;
+        if constexpr (PathLoop<E>::kTraced) {
+            GlintLoop<E> loop(context_, sampler_, arena_, result_.counters, media_);
+            loop.startIn(around_.at(context_.scene, camera.ray));
+            loop.startWith(coneOf(*context_.scene.camera, at, camera.ray));
+            if (camera.heroOnly) loop.startWithHero();
+            const float factor = share * camera.weight / static_cast<float>(factor_);
+            loop.follow(camera.ray, lambda, chain, [&](const GlintView& view) {
+                const auto see = [&](const Light* light) {
+                    if (!context_.glints->has(light)) return;
+                    const Spectrum emitted = view.emitted(*light, loop.wavelengths());
+                    const Spectrum found = view.throughput * emitted * factor;
+                    if (!anyNonZero(found)) return;
+                    sum += found;
+                    if (!recorder_) return;
+                    recorder_->meets(light, emitted, 0);
+                    recorder_->gathers(found, light, false);
+                };
+                if (view.hit && view.hit->light) see(view.hit->light);
+                if (!view.hit)
+                    for (const Light* light : context_.lights.infinite()) see(light);
+            });
+            if constexpr (hasEffect(E, Effect::dispersion)) removeWorkFlag(WorkFlag::heroOnly);
+        }
+        return sum;
     }
 
     // Where the camera gives no ray there is no light, unless that is a fault of its own.
@@ -204,6 +275,7 @@ template <EffectBits E> class TileKernel {
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kInterfaces, CameraSurroundings, path_detail::Nothing>
         around_;
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kTraced, TracedView, path_detail::Nothing> view_;
+    std::span<const std::uint32_t> glints_; // of the row
     TileResult result_;
     Spectrum radiance_; // of the last sample
     std::uint64_t densityFaults_ = 0;

@@ -1,6 +1,7 @@
 // What was found out about paths of light before a render, for people to read.
 #pragma once
 
+#include "render/glint_findings.h"
 #include "render/manifold_findings.h"
 #include "render/merge_findings.h"
 
@@ -56,6 +57,7 @@ struct LightPathFindings {
     // What light paths cannot show to the lens.
     ManifoldFindings manifold;
     MergeFindings merging;
+    GlintFindings glints; // and what needs no light path: lamps that mirrors and glass show
 
     bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
 };
