@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <new>
 #include <sstream>
+#include <string_view>
 
 namespace abbe {
 
@@ -21,11 +23,12 @@ struct OcioView::Processor {
 
 namespace {
 
-// Runs `body`; OpenColorIO's exceptions become IoErrors.
+// Runs `body`; OpenColorIO's exceptions become IoErrors, but for those into which it turns a lack of memory.
 template <typename F> auto guarded(const F& body) {
     try {
         return body();
     } catch (const OCIO::Exception& e) {
+        if (std::string_view(e.what()).find("std::bad_alloc") != std::string_view::npos) throw std::bad_alloc();
         throw IoError(fmt::format("OpenColorIO: {}", e.what()));
     }
 }

@@ -146,7 +146,7 @@ TEST_CASE("light paths: an array of lenses") {
     compareWays("lenses",
                 inlineScene("camera { from 0.4 1.8 1.8; look-at 0 0.2 0; fov 40 deg }\n" + std::string(kFloor) +
                             lenses + "light sphere { center -0.8 3.5 -0.4; radius 0.6; radiance 10 }\n"),
-                12, 0.03);
+                24, 0.03);
 }
 
 } // namespace abbe::test
