@@ -24,7 +24,7 @@ fault() {
 expect() {
     local wanted=$1 code
     shift
-    timeout 120 "$program" "$@" >out 2>err
+    timeout 300 "$program" "$@" >out 2>err
     code=$?
     [[ $code -eq $wanted ]] && return 0
     fault "abbe $* ended with $code instead of $wanted"

@@ -46,13 +46,18 @@ done
 ((late > 0)) || fault "never killed after the reference"
 ((killed > 0)) || fault "never killed"
 printf '%d kills, %d of them after the reference, %d runs\n' "$killed" $late $run
-[[ $(figures whole.csv) == "$(figures killed.csv)" ]] || {
+# How many rungs other ways than the program's own get depends on their time; those that both studies have are the same.
+rungs() { figures "$1" | cut -d, -f1,2 | sort -u; }
+common() { figures "$1" | grep -Ff <(comm -12 <(rungs whole.csv) <(rungs killed.csv) | sed 's/$/,/'); }
+[[ $(common whole.csv) == "$(common killed.csv)" ]] || {
     fault "figures differ after $killed kills"
-    diff <(figures whole.csv) <(figures killed.csv)
+    diff <(common whole.csv) <(common killed.csv)
 }
-# Biases need the images of all seeds.
-biases() { grep -o '"bias2[A-Za-z]*":[^,}]*' "$1"; }
-[[ -n $(biases whole.json) && $(biases whole.json) == "$(biases killed.json)" ]] || fault "biases differ after kills"
+[[ $(figures killed.csv | grep -c '^abbe,') -eq 20 ]] || fault "the main curve is not whole after kills"
+# Biases need the images of all seeds. Those of the fewer rungs are all among those of the other.
+biases() { grep -o '"bias2[A-Za-z]*":[^,}]*' "$1" | sort; }
+[[ -n $(biases whole.json) && (-z $(comm -23 <(biases whole.json) <(biases killed.json)) ||
+    -z $(comm -13 <(biases whole.json) <(biases killed.json))) ]] || fault "biases differ after kills"
 [[ ! -e killed.state ]] || fault "the state stays after the end"
 
 # Interrupted, and continued as something else.
