@@ -18,6 +18,8 @@ class WatchedFilm final : public Film {
     PixelBounds bounds() const override { return film_.bounds(); }
     int replicates() const override { return film_.replicates(); }
     FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
+    float filterRadius() const noexcept override { return film_.filterRadius(); }
+    float filterWeight(float offset) const noexcept override { return film_.filterWeight(offset); }
     bool takesSplats() const override { return film_.takesSplats(); }
     void add(int, int, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
         if (replicate == present_.replicate()) present_.end(sum, samples > 0);
