@@ -1,5 +1,5 @@
 // The bright spot under a ball of glass, as the benchmarks of caustics render and judge it: the ball of
-// scenes/check/ball-caustic.scene, and the floor of 0.6 m below it.
+// scenes/check/ball-caustic.scene, and the floor below it.
 #pragma once
 
 #include "render_error.h"
@@ -14,35 +14,42 @@
 
 namespace abbe {
 
-// For a round lamp of radiance 1. The spot is made of the pixels with a tenth and more of the greatest irradiance.
+// For a round lamp of radiance 1.
 class BallSpot {
   public:
-    // `size`: pixels along each side of the picture.
-    BallSpot(double lampRadius, int size) : lampRadius_(lampRadius), size_(size) {
+    struct View {
+        int size = 48;      // pixels along each side of the picture
+        double width = 0.6; // m, of the floor; the ball's shadow is more than 2 m wide
+        double least = 0.1; // the spot is made of the pixels with so much and more of the greatest irradiance
+    };
+
+    BallSpot(double lampRadius, View view) : lampRadius_(lampRadius), view_(view) {
+        const int size = view.size;
         test::BallCausticScene scene;
         scene.lampRadius = lampRadius;
-        const double pixel = 2 * kHalfWidth / size;
-        const test::BallCausticProfile profile(test::BallCaustic(scene), 1.5 * kHalfWidth, pixel, 1e-3);
+        const double half = view.width / 2, pixel = view.width / size;
+        const test::BallCausticProfile profile(test::BallCaustic(scene), 1.5 * half, pixel, 1e-3);
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x) {
-                const double x0 = -kHalfWidth + x * pixel, z0 = -kHalfWidth + y * pixel;
+                const double x0 = -half + x * pixel, z0 = -half + y * pixel;
                 exact_.push_back(kReflectance / kPiD * profile.mean(x0, x0 + pixel, z0, z0 + pixel, 2));
             }
-        least_ = 0.1 * *std::max_element(exact_.begin(), exact_.end());
+        least_ = view.least * *std::max_element(exact_.begin(), exact_.end());
     }
 
     // With `properties` of render. The floor ends where the picture does, so that little comes back to it by the ball:
     // some 1 % at this reflectance. Throws if the properties are wrong.
     test::TestScene scene(const std::string& properties) const {
-        auto scene = test::TestScene::parse(fmt::format(R"(scene 1
+        auto scene =
+            test::TestScene::parse(fmt::format(R"(scene 1
 film {{ size {0} {0}; filter box 0.5 }}
-camera orthographic {{ from 0 0.2 0; look-at 0 0 0; up 0 0 -1; width 0.6 }}
+camera orthographic {{ from 0 0.2 0; look-at 0 0 0; up 0 0 -1; width {4} }}
 render {{ replicates 1; {1} }}
 shape sphere {{ center 0 1.3 0; radius 1; material dielectric {{ ior 1.5 }} }}
-shape quad {{ size 0.6 0.6; material diffuse {{ reflectance {2} }}; transform {{ rotate x -90 deg }} }}
+shape quad {{ size {4} {4}; material diffuse {{ reflectance {2} }}; transform {{ rotate x -90 deg }} }}
 light disk {{ center 0 5.8 0; normal 0 -1 0; radius {3}; radiance 1 }}
 )",
-                                                        size_, properties, kReflectance, lampRadius_));
+                                               view_.size, properties, kReflectance, lampRadius_, view_.width));
         if (scene.diagnostics().hasErrors()) throw std::runtime_error(scene.report());
         return scene;
     }
@@ -77,10 +84,10 @@ light disk {{ center 0 5.8 0; normal 0 -1 0; radius {3}; radiance 1 }}
     }
 
   private:
-    static constexpr double kHalfWidth = 0.3, kReflectance = 0.5; // m
+    static constexpr double kReflectance = 0.5;
 
     double lampRadius_;
-    int size_;
+    View view_;
     std::vector<double> exact_; // radiance of each pixel, Y; light falls alike on all sides of the axis
     double least_ = 0;
 };

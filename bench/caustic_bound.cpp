@@ -1,6 +1,5 @@
 // How efficient light paths could be in the spot of bench_caustic if all but their rays cost nothing.
-//   bench_caustic_bound [--size N] [--seconds N] [--way PROPERTIES] [RADIUS…]
-//     default: 48, 10, 'light-paths alone', 0.5 0.1
+//   bench_caustic_bound, with the options of bench_caustic; --seconds 10 and --way 'alone=light-paths alone' by default
 // Of N independent paths, each of which meets pixel i with probability p_i, the best estimate has a relative variance
 // of 1 / (N p_i) in that pixel, less what is negligible; in the mean over the P pixels of the spot that is at least P /
 // (N Σ p_i) (arithmetic and harmonic mean). So the efficiency, 1 / (relMSE × core-seconds), is at most
@@ -9,14 +8,14 @@
 // traced again, in the same order and by the same intersector. "least" is by asking whether anything lies on the ray at
 // all, which finds no nearest hit and nothing about it. "ideal" is with that and with paths that all bring one splat,
 // for four rays: to the ball, through it, to the floor, and to the lens.
-#include "ball_spot.h"
+#include "ball_spot_options.h"
 #include "base/parallel.h"
 #include "base/work.h"
 #include "film/film_params.h"
 #include "measure.h"
+#include "support/forwarding_film.h"
 
 #include <cstdio>
-#include <cstring>
 
 using namespace abbe;
 
@@ -75,44 +74,25 @@ class KeepingIntersector final : public Intersector {
 };
 
 // Counts what light paths bring to a spot.
-class CountingFilm final : public Film {
+class CountingFilm final : public test::ForwardingFilm {
   public:
-    CountingFilm(PixelFilm& film, const BallSpot& spot) : film_(film), spot_(spot) {}
+    CountingFilm(PixelFilm& film, const BallSpot& spot) : ForwardingFilm(film), spot_(spot) {}
 
     std::uint64_t inSpot() const { return inSpot_; }
     std::uint64_t lightPaths() const { return lightPaths_; }
 
-    PixelBounds bounds() const override { return film_.bounds(); }
-    int replicates() const override { return film_.replicates(); }
-    FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
-    float filterRadius() const noexcept override { return film_.filterRadius(); }
-    float filterWeight(float offset) const noexcept override { return film_.filterWeight(offset); }
-    void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
-        film_.add(x, y, replicate, sum, samples);
-    }
-    Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
-    double relativeNoise() const override { return film_.relativeNoise(); }
-    bool takesSplats() const override { return film_.takesSplats(); }
     void splat(int x, int y, int replicate, const Splat& splat) noexcept override {
         inSpot_ += spot_.contains(static_cast<std::size_t>(y * bounds().width() + x));
-        film_.splat(x, y, replicate, splat);
+        ForwardingFilm::splat(x, y, replicate, splat);
     }
     void countLightPaths(int replicate, std::uint64_t paths) noexcept override {
         lightPaths_ += paths;
-        film_.countLightPaths(replicate, paths);
+        ForwardingFilm::countLightPaths(replicate, paths);
     }
 
   private:
-    PixelFilm& film_;
     const BallSpot& spot_;
     std::uint64_t inSpot_ = 0, lightPaths_ = 0;
-};
-
-struct Options {
-    int size = 48;
-    double seconds = 10;
-    std::string way = "light-paths alone";
-    std::vector<double> radii;
 };
 
 // Of a path that starts at the lamp.
@@ -134,9 +114,9 @@ template <typename Trace> double secondsOf(const std::vector<KeptRay>& rays, Tra
     return least / static_cast<double>(rays.size());
 }
 
-LightPathCost costOf(const BallSpot& spot, const Options& o) {
+LightPathCost costOf(const BallSpot& spot, const std::string& properties) {
     std::vector<KeptRay> rays;
-    test::TestScene scene = spot.scene(o.way);
+    test::TestScene scene = spot.scene(properties);
     auto keeping = std::make_unique<KeepingIntersector>(std::move(scene.changeable().intersector), rays);
     const Intersector& inner = keeping->inner();
     scene.changeable().intersector = std::move(keeping);
@@ -176,46 +156,33 @@ Efficiency measured(const BallSpot& spot, const std::string& way, double wanted)
             static_cast<double>(a.statistics.lightPaths)};
 }
 
-void run(const Options& o) {
-    for (const double radius : o.radii) {
-        const BallSpot spot(radius, o.size);
-        const auto pixels = static_cast<double>(spot.area());
-        const LightPathCost cost = costOf(spot, o);
-        const Efficiency camera = measured(spot, "light-paths off", o.seconds),
-                         light = measured(spot, o.way, o.seconds);
-        std::printf("lamp of radius %g, spot of %.0f pixels\n", radius, pixels);
-        std::printf("  a light path: %.2f rays, %.3f splats in the spot; a ray %.0f ns, at least %.0f ns\n", cost.rays,
-                    cost.share, 1e9 * cost.seconds, 1e9 * cost.anySeconds);
-        std::printf("  camera paths: efficiency %.3g\n", camera.value);
-        std::printf("  %s: efficiency %.3g, ×%.3g; relMSE %.3g, of independent splats at least %.3g\n", o.way.c_str(),
-                    light.value, light.value / camera.value, light.relMse, pixels / (light.lightPaths * cost.share));
-        const auto bound = [&](const char* name, double perSecond, double share) {
-            const double efficiency = perSecond * share / pixels;
-            std::printf("  bound, %-6s %.3g million paths/s: efficiency %.4g, ×%.4g\n", name, 1e-6 * perSecond,
-                        efficiency, efficiency / camera.value);
-        };
-        bound("rays", 1 / (cost.rays * cost.seconds), cost.share);
-        bound("least", 1 / (cost.rays * cost.anySeconds), cost.share);
-        bound("ideal", 1 / (kIdealRays * cost.anySeconds), 1);
-        std::fflush(stdout);
-    }
+void report(const BallSpot& spot, const BallSpotOptions::Way& way, double camera, double seconds) {
+    const auto pixels = static_cast<double>(spot.area());
+    const LightPathCost cost = costOf(spot, way.properties);
+    const Efficiency light = measured(spot, way.properties, seconds);
+    std::printf("  %s: %.2f rays, %.3f splats in the spot for each path; a ray %.0f ns, at least %.0f ns\n",
+                way.name.c_str(), cost.rays, cost.share, 1e9 * cost.seconds, 1e9 * cost.anySeconds);
+    std::printf("    efficiency %.3g, ×%.3g; relMSE %.3g, of independent splats at least %.3g\n", light.value,
+                light.value / camera, light.relMse, pixels / (light.lightPaths * cost.share));
+    const auto bound = [&](const char* name, double perSecond, double share) {
+        const double efficiency = perSecond * share / pixels;
+        std::printf("    bound, %-6s %.3g million paths/s: efficiency %.4g, ×%.4g\n", name, 1e-6 * perSecond,
+                    efficiency, efficiency / camera);
+    };
+    bound("rays", 1 / (cost.rays * cost.seconds), cost.share);
+    bound("least", 1 / (cost.rays * cost.anySeconds), cost.share);
+    bound("ideal", 1 / (kIdealRays * cost.anySeconds), 1);
+    std::fflush(stdout);
 }
 
-Options read(int argc, char** argv) {
-    Options o;
-    for (int i = 1; i < argc; ++i) {
-        const auto next = [&] { return ++i < argc ? argv[i] : ""; };
-        if (!std::strcmp(argv[i], "--size"))
-            o.size = std::max(1, std::atoi(next()));
-        else if (!std::strcmp(argv[i], "--seconds"))
-            o.seconds = std::atof(next());
-        else if (!std::strcmp(argv[i], "--way"))
-            o.way = next();
-        else
-            o.radii.push_back(std::atof(argv[i]));
+void run(const BallSpotOptions& o) {
+    for (const double radius : o.radii) {
+        const BallSpot spot(radius, o.view);
+        const double camera = measured(spot, "light-paths off", o.seconds).value;
+        std::printf("lamp of radius %g, spot of %zu pixels; camera paths: efficiency %.3g\n", radius, spot.area(),
+                    camera);
+        for (const BallSpotOptions::Way& way : o.ways) report(spot, way, camera, o.seconds);
     }
-    if (o.radii.empty()) o.radii = {0.5, 0.1};
-    return o;
 }
 
 } // namespace
@@ -223,7 +190,7 @@ Options read(int argc, char** argv) {
 int main(int argc, char** argv) {
     setThreadCount(1);
     try {
-        run(read(argc, argv));
+        run(BallSpotOptions::read(argc, argv, {{}, 10, {{"alone", "light-paths alone"}}, {0.5, 0.1}}));
     } catch (const std::exception& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;

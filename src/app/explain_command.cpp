@@ -2,6 +2,7 @@
 #include "app/light_path_text.h"
 #include "app/options.h"
 #include "base/diagnostic_catalogue.h"
+#include "film/pixel_film.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/path_tracer.h"
 #include "integrators/render_params.h"
@@ -31,7 +32,10 @@ LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& desc
     Diagnostics faults; // those of the scene's text have been told
     const BuiltScene built = buildScene(loaded.tree, loaded.types, {}, faults);
     if (faults.hasErrors()) return found;
-    return makePathTracer(built.scene.effects)->findLightPaths(built.scene, settings);
+    const FilmSettings film = filmSettings(built.film);
+    const PixelFilm like({0, 0, 1, 1}, PixelFilter(film.filter, film.filterRadius),
+                         static_cast<int>(built.render.replicates));
+    return makePathTracer(built.scene.effects)->findLightPaths(built.scene, like, settings);
 }
 
 ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common) {

@@ -2,13 +2,13 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "integrators/darkroom.h"
 #include "integrators/glint_planner.h"
 #include "integrators/light_path_planner.h"
 #include "integrators/look_ahead.h"
 #include "integrators/manifold_planner.h"
 #include "integrators/merge_planner.h"
 #include "integrators/pass_schedule.h"
+#include "integrators/plan_film.h"
 #include "integrators/time_left.h"
 #include "render/render_state.h"
 
@@ -371,13 +371,14 @@ class PathTracer final : public Integrator {
     bool merges(const Scene&, const RenderSettings& settings) const override {
         return settings.technique.merging != Technique::Merging::off;
     }
-    LightPathFindings findLightPaths(const Scene& scene, const RenderSettings& settings) const override {
+    LightPathFindings findLightPaths(const Scene& scene, const Film& like,
+                                     const RenderSettings& settings) const override {
         LightPathFindings known;
         known.verdict = lightPathVerdict(scene, settings.technique);
         if (lightBlocks(scene, settings) == 0) return known;
         RenderSettings even = settings; // a plan of the samples changes nothing
         even.adaptive = false;
-        Darkroom film(scene.frame);
+        PlanFilm film(like, scene.frame);
         return RenderJob(kernel_, scene, film, even, {}).lightPaths();
     }
 

@@ -137,8 +137,8 @@ class Integrator {
     // Whether the film is to take merged light, too; only if there are such blocks.
     virtual bool merges(const Scene&, const RenderSettings&) const { return false; }
     // What render() decides on light paths of the scene's whole frame, without rendering. Takes a fraction of a second
-    // where it has to look.
-    virtual LightPathFindings findLightPaths(const Scene&, const RenderSettings&) const = 0;
+    // where it has to look. The film tells the pixel filter and the number of replicates alone.
+    virtual LightPathFindings findLightPaths(const Scene&, const Film&, const RenderSettings&) const = 0;
 };
 
 } // namespace abbe

@@ -1,5 +1,6 @@
 #include "study/study_variant.h"
 
+#include "film/pixel_film.h"
 #include "integrators/light_sampler.h"
 #include "integrators/path_tracer.h"
 
@@ -52,12 +53,17 @@ Reason needsHalves(const StudySubject& s) {
     return std::nullopt;
 }
 
+LightPathFindings lightPathsOf(const StudySubject& s, const RenderSettings& settings) {
+    const Scene& scene = s.built->scene;
+    const PixelFilm like({0, 0, 1, 1}, PixelFilter(s.film.filter, s.film.filterRadius), s.replicates);
+    return makePathTracer(scene.effects)->findLightPaths(scene, like, settings);
+}
+
 // What is done about light paths where the scene leaves it to the program.
 LightPathVerdict automaticLightPaths(const StudySubject& s) {
     RenderSettings settings = s.settings;
     settings.technique.lightPaths = Technique::LightPaths::automatic;
-    const Scene& scene = s.built->scene;
-    return makePathTracer(scene.effects)->findLightPaths(scene, settings).verdict;
+    return lightPathsOf(s, settings).verdict;
 }
 
 Reason needsLightPaths(const StudySubject& s) {
@@ -86,8 +92,7 @@ Reason needsUsedLightPaths(const StudySubject& s) {
 Reason needsUsedMerging(const StudySubject& s) {
     if (const Reason reason = needsLightPaths(s)) return reason;
     if (s.settings.technique.merging == Technique::Merging::off) return "`merging off` of `render`";
-    const Scene& scene = s.built->scene;
-    if (!makePathTracer(scene.effects)->findLightPaths(scene, s.settings).merging.used) return "no light is merged";
+    if (!lightPathsOf(s, s.settings).merging.used) return "no light is merged";
     return std::nullopt;
 }
 

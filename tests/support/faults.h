@@ -5,6 +5,7 @@
 #include "integrators/watched_film.h"
 #include "render/scene.h"
 #include "scene/forwarding_material.h"
+#include "support/forwarding_film.h"
 
 #include <array>
 #include <atomic>
@@ -280,27 +281,15 @@ class FaultyIntersector final : public Intersector {
 };
 
 // Arms the injection once the pilot, which looks at another film, is done.
-class ArmingFilm final : public Film {
+class ArmingFilm final : public ForwardingFilm {
   public:
-    ArmingFilm(Film& film, Injection& injection) : film_(film), injection_(injection) {}
-    PixelBounds bounds() const override { return film_.bounds(); }
-    int replicates() const override { return film_.replicates(); }
-    FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
-    void add(int x, int y, int r, const ExactXyz& sum, std::uint32_t samples) noexcept override {
-        film_.add(x, y, r, sum, samples);
-    }
-    bool takesSplats() const override { return film_.takesSplats(); }
-    void splat(int x, int y, int r, const Splat& splat) noexcept override { film_.splat(x, y, r, splat); }
-    void countLightPaths(int r, std::uint64_t paths) noexcept override { film_.countLightPaths(r, paths); }
-    Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
-    double relativeNoise() const override { return film_.relativeNoise(); }
+    ArmingFilm(Film& film, Injection& injection) : ForwardingFilm(film), injection_(injection) {}
     std::unique_ptr<SampleRecorder> makeRecorder() override {
         injection_.arm(true);
-        return film_.makeRecorder();
+        return ForwardingFilm::makeRecorder();
     }
 
   private:
-    Film& film_;
     Injection& injection_;
 };
 

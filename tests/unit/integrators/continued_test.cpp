@@ -2,6 +2,7 @@
 // whole.
 #include "integrators/pass_schedule.h"
 #include "render/render_state.h"
+#include "support/forwarding_film.h"
 #include "support/same_bits.h"
 #include "support/scene_test.h"
 
@@ -20,25 +21,16 @@ light sky { luminance 100 nits }
 )";
 
 // Sets a flag after so many additions to another film.
-class StoppingFilm final : public Film {
+class StoppingFilm final : public ForwardingFilm {
   public:
     StoppingFilm(RecordingFilm& film, std::atomic<bool>& stop, std::uint64_t additions)
-        : film_(film), stop_(stop), last_(additions) {}
-    PixelBounds bounds() const override { return film_.bounds(); }
-    int replicates() const override { return film_.replicates(); }
-    FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
+        : ForwardingFilm(film), stop_(stop), last_(additions) {}
     void add(int x, int y, int r, const ExactXyz& sum, std::uint32_t n) noexcept override {
-        film_.add(x, y, r, sum, n);
+        ForwardingFilm::add(x, y, r, sum, n);
         if (++added_ >= last_) stop_ = true;
     }
-    bool takesSplats() const override { return film_.takesSplats(); }
-    void splat(int x, int y, int r, const Splat& splat) noexcept override { film_.splat(x, y, r, splat); }
-    void countLightPaths(int r, std::uint64_t paths) noexcept override { film_.countLightPaths(r, paths); }
-    Xyz mean(int x, int y) const noexcept override { return film_.mean(x, y); }
-    double relativeNoise() const override { return film_.relativeNoise(); }
 
   private:
-    RecordingFilm& film_;
     std::atomic<bool>& stop_;
     std::uint64_t last_;
     std::atomic<std::uint64_t> added_{0};

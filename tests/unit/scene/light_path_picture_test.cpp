@@ -58,10 +58,12 @@ struct Picture {
     }
 };
 
-LightPathFindings findingsOf(const std::string& text) {
-    const TestScene scene = TestScene::parse(text);
-    return makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), scene.settings());
+LightPathFindings findingsOf(const TestScene& scene) {
+    const RecordingFilm like(scene.built().film, 2);
+    return makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), like, scene.settings());
 }
+
+LightPathFindings findingsOf(const std::string& text) { return findingsOf(TestScene::parse(text)); }
 
 } // namespace
 
@@ -160,7 +162,7 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     CHECK((needless.verdict == noGain || needless.verdict == nothingFound));
     TestScene dark = TestScene::parse(text);
     dark.changeable().lights.clear();
-    CHECK(makePathTracer(dark.scene().effects)->findLightPaths(dark.scene(), dark.settings()).verdict == noLights);
+    CHECK(findingsOf(dark).verdict == noLights);
 }
 
 // Under a ball of glass: with a lamp half as wide as the ball the samples of a pixel, stratified over what is full of
@@ -175,8 +177,7 @@ TEST_CASE("light paths: a small lamp needs them, a large one does not") {
             "shape quad { size 0.6 0.6; material diffuse { reflectance 0.5 }; transform { rotate x -90 deg } }\n"
             "light disk { center 0 5.8 0; normal 0 -1 0; radius " +
             std::to_string(radius) + "; radiance 1 }\n");
-        const LightPathFindings found =
-            makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), scene.settings());
+        const LightPathFindings found = findingsOf(scene);
         CHECK(found.measured);
         CHECK(found.verdict == (radius > 0.1 ? LightPathVerdict::noGain : LightPathVerdict::used));
         CHECK((radius > 0.1 ? found.gain < 1 : found.gain > 100));
