@@ -310,15 +310,6 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
     return Spectrum(_mm256_blendv_ps(path_.radiance.v, path_.least.v, path_.least.v));
 }
 
-template <EffectBits E>
-typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
-    if constexpr (kInterfaces) return arriveThrough(ray, hit, depth);
-    if (!context_.scene.intersector->intersect(ray, hit)) return Arrival::nowhere;
-    if constexpr (kAbsorption) absorb(hit, ray.direction, hit.distance);
-    if constexpr (kTextures) path_.cone.advance(hit.distance);
-    return Arrival::surface;
-}
-
 // What shading needs to know of the path, and what the surface gives off.
 template <EffectBits E>
 void PathLoop<E>::meetSurface(SurfaceHit& hit, Vec3 direction, [[maybe_unused]] std::uint32_t depth) {
@@ -379,27 +370,6 @@ inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
     return anyNonZero(path_.beta);
 }
 
-template <EffectBits E> float PathLoop<E>::throughput() const {
-    // Tracking scales the densities: only their ratio to beta means anything. Beyond a bound beta may have a sign.
-    if constexpr (kMedia && kDispersion)
-        return mean(abs(path_.beta)) / mean(path_.densities.unidirectional) * path_.etaScale;
-    if constexpr (kMedia) return mean(abs(path_.beta)) * path_.etaScale;
-    return mean(path_.beta) * path_.etaScale;
-}
-
-template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
-    if (depth == 0) return true; // the first bounce carries most of the image
-    const float scale = path_.delta ? std::max(rouletteScale, context_.how.leastAfterDelta) : rouletteScale;
-    float p = RouletteReference::survival(throughput(), scale);
-    // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
-    // albedo ρ has finite variance only for p > ρ².
-    if (depth >= kLongPath) p = std::min(p, longPathSurvival(depth));
-    if (p >= 1) return true;
-    if (sampler_.roulette(depth) >= p) return false;
-    path_.beta *= 1 / p;
-    return true;
-}
-
 // What stands for the scattering at a surface some of whose directions are drawn evenly.
 template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     const Bsdf& own = *hit.material->bsdf(hit, path_.lambda, arena_);
@@ -410,35 +380,6 @@ template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, V
         if (dot(hit.shading.z, direction) > 0) eta = 1 / eta; // on the way out
     }
     return arena_.make<DefensiveBsdf>(own, eta, context_.how.evenShare(depth));
-}
-
-// Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a
-// boundary met from behind while no interior was entered.
-template <EffectBits E> void PathLoop<E>::absorb(const SurfaceHit& hit, Vec3 direction, float distance) {
-    if constexpr (kInterfaces) {
-        if (const Curve* clear = path_.nested.here.absorption()) path_.beta *= exp(clear->at(path_.lambda) * -distance);
-        return;
-    }
-    const Curve*& absorption = path_.interior.absorption;
-    if (!absorption && dot(direction, hit.ng) > 0) absorption = hit.material->absorption();
-    if (absorption) path_.beta *= exp(absorption->at(path_.lambda) * -distance);
-}
-
-// The direction just taken belongs to the hero alone: the densities of all other lanes are 0, so that the mean of the
-// ratios is 1/8 of the hero's and the hero counts eightfold. From here on every lane evaluates the hero's wavelength,
-// which keeps means over lanes (lobe choices, roulette) meaningful; only lane 0 still adds to the image.
-template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
-    if (path_.densities.heroOnly) return;
-    path_.densities.heroOnly = true;
-    addWorkFlag(WorkFlag::heroOnly);
-    if (!(path_.densities.unidirectional[0] > 0)) { // a hero that the media on the way never chose
-        path_.beta = Spectrum(0.f);
-        return;
-    }
-    const float hero = path_.beta[0] * (static_cast<float>(kLanes) / path_.densities.unidirectional[0]);
-    path_.beta = Spectrum(Float8{hero, 0, 0, 0, 0, 0, 0, 0});
-    path_.densities.unidirectional = Spectrum(1.f);
-    path_.lambda.keepHero();
 }
 
 } // namespace abbe
@@ -452,4 +393,5 @@ template <EffectBits E> void PathLoop<E>::endSecondaryWavelengths() {
 #include "integrators/path_loop_media.h"
 #include "integrators/path_loop_merge.h"
 #include "integrators/path_loop_near_light.h"
+#include "integrators/path_loop_throughput.h"
 #include "integrators/path_loop_traced.h"

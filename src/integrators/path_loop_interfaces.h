@@ -4,6 +4,15 @@
 
 namespace abbe {
 
+template <EffectBits E>
+typename PathLoop<E>::Arrival PathLoop<E>::arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
+    if constexpr (kInterfaces) return arriveThrough(ray, hit, depth);
+    if (!context_.scene.intersector->intersect(ray, hit)) return Arrival::nowhere;
+    if constexpr (kAbsorption) absorb(hit, ray.direction, hit.distance);
+    if constexpr (kTextures) path_.cone.advance(hit.distance);
+    return Arrival::surface;
+}
+
 // The share of the light at a surface that goes straight on, which has then crossed it.
 template <EffectBits E> float PathLoop<E>::straightOn(SurfaceHit& hit, const Ray& ray, path_detail::Nested& nested) {
     const Material& material = *hit.material;
