@@ -99,12 +99,17 @@ std::string shareTable(const LightPathFindings& f) {
     return text;
 }
 
+std::string manifoldName(const ManifoldFindings& f) {
+    return f.estimates > 1 ? fmt::format("manifold sampling ({} estimates a vertex)", f.estimates)
+                           : "manifold sampling";
+}
+
 // Empty where nothing was looked for.
 std::string manifoldText(const ManifoldFindings& f) {
     std::string text;
     if (f.measured)
         text = fmt::format("Caustics behind glass and in mirrors: {}, forecast {} as efficient\n",
-                           f.used ? "manifold sampling" : "left to camera paths", times(f.gain));
+                           f.used ? manifoldName(f) : "left to camera paths", times(f.gain));
     for (const std::string& obstacle : f.obstacles) text += fmt::format("  not followed: {}\n", obstacle);
     if (f.obstacleCount > f.obstacles.size())
         text += fmt::format("  and {} more\n", f.obstacleCount - f.obstacles.size());
@@ -160,7 +165,7 @@ std::string lightPathLine(const LightPathFindings& f) {
 std::string manifoldLine(const ManifoldFindings& f) {
     std::string text;
     if (f.used)
-        text = fmt::format("manifold sampling behind glass and in mirrors: forecast {} as efficient", times(f.gain));
+        text = fmt::format("{} behind glass and in mirrors: forecast {} as efficient", manifoldName(f), times(f.gain));
     if (f.used && f.obstacleCount > 0)
         text += fmt::format("; {} polished shape{} cannot be followed: what {} focus{} is found by chance there",
                             f.obstacleCount, f.obstacleCount == 1 ? "" : "s", f.obstacleCount == 1 ? "it" : "they",
@@ -221,6 +226,7 @@ Json lightPathJson(const LightPathFindings& f) {
                                        {"before", m.before},
                                        {"after", m.after},
                                        {"rest", m.rest},
+                                       {"estimates", m.estimates},
                                        {"pilot_rays", m.rays},
                                        {"not_followed", std::move(obstacles)}}));
     const MergeFindings& g = f.merging;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kKey = 0x676c696e74; // "glint"
 constexpr std::size_t kMostLamps = 8;
-constexpr int kStep = 4, kWalks = 12;          // pixels between places from which so many walks start
+constexpr int kStep = 4, kWalks = 36;          // pixels between places from which so many walks start
 constexpr double kMostSeeds = 16384;           // such places; larger frames have wider steps
 constexpr float kNear = 1.2f;                  // of the lamp's direction: from where Newton's method starts
 constexpr int kBlock = 4;                      // pixels; of candidates that are alike and this near one is taken

@@ -33,6 +33,9 @@ struct ManifoldPlan {
     // image of the whole lamp is meant, magnified as at the point of it that a chain leads to. Next to caustics it has
     // no bound, and estimates of it would have none either.
     float largestImage = 0.5f;
+    // How many estimates a vertex asks for; their mean counts. Each has its own point of the lamp: where that decides
+    // how much light there is, as near caustics, this is worth more than as many paths from the camera.
+    std::uint32_t estimates = 1; // > 0
     // Solutions of which a trial in this many would find one are given up. Trials cost as much as there are solutions,
     // in the mean, however rare they are; the cap only keeps a single one from taking seconds.
     std::uint32_t maxTrials = 100'000;

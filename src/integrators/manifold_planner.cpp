@@ -19,6 +19,7 @@ constexpr std::uint64_t kLearn = 0x6368616973, kJudge = 0x636861696e; // "chais"
 constexpr int kCells = 40;                                            // of a row of the pilot
 constexpr int kReplicates = PilotPixel::kMostReplicates;
 constexpr std::size_t kLooks = 256; // of ManifoldPilot, each at all kinds of chains
+constexpr std::uint32_t kMostEstimates = 16;
 // A lamp that fills more than this everywhere has no small images.
 constexpr double kLargeLight = 0.5; // sr
 
@@ -39,7 +40,9 @@ double extentOf(const Light& light) {
 // One pixel of the pilot: what its samples came to, and what manifold sampling told them.
 struct Cell {
     std::array<double, kReplicates> y{};
-    double second = 0, chance = 0; // Σ of squares of what was found, and of what chance would have in place of that
+    // Σ over estimates of squares of what was found, and of what chance would have in place of that; Σ over pairs of
+    // estimates at one vertex of their products
+    double second = 0, chance = 0, product = 0;
     double rays = 0;
     std::uint64_t asked = 0;
     ManifoldCounts counts;
@@ -56,9 +59,11 @@ class CellListener final : public ManifoldListener {
     CellListener(const Scene& scene, Cell& cell) : scene_(scene), cell_(cell) {}
     void asked(const ChainStart& start, const Spectrum& beta, const Wavelengths& lambda, const Spectrum& light,
                const Spectrum& chance) override {
-        ++cell_.asked;
+        const bool even = cell_.asked++ % 2 == 0; // a path asks at one vertex, or none
         if (cell_.looks.empty()) cell_.looks.push_back({start, mean(beta), lambda});
         const double found = scene_.sensor(light, lambda).y;
+        if (!even) cell_.product += before_ * found;
+        before_ = found;
         if (!(found > 0)) return;
         cell_.second += found * found;
         cell_.chance += found * scene_.sensor(chance, lambda).y;
@@ -67,6 +72,7 @@ class CellListener final : public ManifoldListener {
   private:
     const Scene& scene_;
     Cell& cell_;
+    double before_ = 0;
 };
 
 class Planner {
@@ -81,14 +87,16 @@ class Planner {
         result.findings = findings_;
         if (plan.casters.empty() || plan.lights.empty()) return result;
         findings_.measured = true;
+        plan.estimates = 2;
         const ManifoldSampler first(context_.scene, plan);
         const std::vector<Cell> seen = look(first, kLearn);
         if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.asked > 0; })) {
-            auto sampler = std::make_unique<const ManifoldSampler>(context_.scene, learn(plan, seen));
-            judge(look(*sampler, kJudge));
+            plan = learn(plan, seen);
+            judge(look(ManifoldSampler(context_.scene, plan), kJudge));
+            plan.estimates = findings_.estimates;
             const bool forced = context_.settings.technique.lightPaths == Technique::LightPaths::always;
             if (!stop_() && (findings_.gain >= kLeastGain || (forced && findings_.before > 0)))
-                result.sampler = std::move(sampler);
+                result.sampler = std::make_unique<const ManifoldSampler>(context_.scene, std::move(plan));
         }
         findings_.used = result.sampler != nullptr;
         result.findings = findings_;
@@ -141,6 +149,7 @@ class Planner {
             for (int k = 0; k < kReplicates; ++k) cell.y[static_cast<std::size_t>(k)] = film.luminance(k) * relative;
             cell.second *= square(relative);
             cell.chance *= square(relative);
+            cell.product *= square(relative);
             for (auto& l : cell.looks) l.importance *= static_cast<float>(relative);
         });
         for (const Cell& c : cells) findings_.rays += static_cast<std::uint64_t>(c.rays) + c.counts.rays;
@@ -160,22 +169,32 @@ class Planner {
         return pilot.learned();
     }
 
+    // Of cells with two estimates for each vertex. Of the second moment of one estimate the product of two is left
+    // however many there are, and the rest goes with their number.
     void judge(const std::vector<Cell>& cells) {
-        double variance = 0, rays = 0, own = 0;
+        double variance = 0, rays = 0, own = 0, single = 0, left = 0;
         const auto n = static_cast<double>(cells.size()), samples = n * kReplicates;
         for (const Cell& c : cells) {
             double mean = 0;
             for (const double v : c.y) mean += v / kReplicates;
             for (const double v : c.y) variance += square(v - mean) / (kReplicates - 1) / n;
-            findings_.after += c.second / samples;
-            findings_.before += c.chance / samples;
+            single += c.second / (2 * samples);
+            left += c.product / samples;
+            findings_.before += c.chance / (2 * samples);
             rays += c.rays / samples;
-            own += static_cast<double>(c.counts.rays) / samples;
+            own += static_cast<double>(c.counts.rays) / (2 * samples);
         }
-        findings_.rest = std::max(variance - findings_.after, 0.1 * variance);
+        left = std::min(left, single);
+        findings_.rest = std::max(variance - (single + left) / 2, 0.1 * variance);
         const double plain = (findings_.rest + findings_.before) * rays;
-        const double cost = (findings_.rest + findings_.after) * (rays + own);
-        findings_.gain = cost > 0 ? plain / cost : 0;
+        findings_.gain = 0;
+        for (std::uint32_t k = 1; k <= kMostEstimates; k *= 2) {
+            const double after = left + (single - left) / k, cost = (findings_.rest + after) * (rays + k * own);
+            if (!(cost > 0) || plain / cost <= findings_.gain) continue;
+            findings_.gain = plain / cost;
+            findings_.after = after;
+            findings_.estimates = k;
+        }
     }
 
     const PathContext& context_;

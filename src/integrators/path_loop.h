@@ -215,6 +215,8 @@ template <EffectBits E> class PathLoop {
 
     // path_loop_manifold.h
     void askManifold(const SurfaceHit&, const Bsdf&, const Directions&, std::uint32_t depth);
+    void askForChain(const SurfaceHit&, const Bsdf&, const Directions&, std::uint32_t depth, float share,
+                     RandomStream&);
     void followChain(const SurfaceHit&, const BsdfSample&, Vec3 direction);
     template <typename Met> bool covered(Met met) const; // met() makes the LightTarget
     // path_loop_merge.h

@@ -21,6 +21,16 @@ void PathLoop<E>::askManifold(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     start.time = path_.time;
     start.around = path_.nested.here;
     RandomStream random = sampler_.stream(kNumbers + depth);
+    const std::uint32_t estimates = context_.manifold->plan().estimates;
+    for (std::uint32_t i = 0; i < estimates; ++i)
+        askForChain(hit, bsdf, eye, depth, 1 / static_cast<float>(estimates), random);
+}
+
+// One estimate, of which a share counts.
+template <EffectBits E>
+void PathLoop<E>::askForChain(const SurfaceHit& hit, const Bsdf& bsdf, const Directions& eye, std::uint32_t depth,
+                              float share, RandomStream& random) {
+    const ChainStart& start = tracedView_->start;
     MediumTracker* media = nullptr;
     if constexpr (kMedia) media = &media_.tracker;
     const auto found = context_.manifold->sample(start, path_.lambda, random, counters_.manifold, media);
@@ -31,15 +41,16 @@ void PathLoop<E>::askManifold(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
         const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
         if (sidesAgree(hit, eye, wi, found->wi) && dot(found->wi, start.receiver.n) > 0) {
             const Spectrum& densities = path_.densities.unidirectional;
-            const float share = found->heroOnly ? densities[0] : mean(densities);
-            const Spectrum scattered = path_.beta * eval.fcos * (1 / share);
+            const Spectrum scattered =
+                path_.beta * eval.fcos * (1 / (found->heroOnly ? densities[0] : mean(densities)));
             light = scattered * found->irradiance;
             if (eval.pdfSolidAngle > 0) chance = scattered * found->radiance * (1 / eval.pdfSolidAngle);
         }
     }
     if (context_.hears) [[unlikely]]
         context_.hears->asked(start, path_.beta, path_.lambda, light, chance);
-    if (anyNonZero(light)) gather(light, found->light, false, [&] { observer_->chains(found->light, found->wi); });
+    if (anyNonZero(light))
+        gather(light * share, found->light, false, [&] { observer_->chains(found->light, found->wi); });
 }
 
 // A chain starts where it was asked for, in any direction but that of a mirror, on the side of the eye.

@@ -17,7 +17,8 @@ struct ManifoldFindings {
     // interfaces bring to what is seen by way of others, as chance and as manifold sampling find it; relative variance
     // of everything else; and what all of that comes to in efficiency.
     double before = 0, after = 0, rest = 0, gain = 1;
-    std::uint64_t rays = 0; // that it took to find out
+    std::uint32_t estimates = 1; // of which a vertex takes the mean: as many as serve efficiency best
+    std::uint64_t rays = 0;      // that it took to find out
     // Polished shapes over which chains cannot be followed, with the reason: what they focus is left to chance where it
     // is seen by way of glass or mirrors. The first kObstacles of so many.
     std::vector<std::string> obstacles;

@@ -86,14 +86,15 @@ class TwoWays {
 };
 
 TileSums seen(const TestScene& test, std::uint32_t samples,
-              Technique::LightPaths lightPaths = Technique::LightPaths::off) {
+              Technique::LightPaths lightPaths = Technique::LightPaths::off, LightPathFindings* plan = nullptr) {
     PixelFilm film({0, 0, kWidth, kHeight}, box(), kReplicates);
     RenderSettings settings = test.settings();
     settings.technique.lightPaths = lightPaths;
     if (lightPaths != Technique::LightPaths::off) film.keepSplats();
     settings.samples = samples * kReplicates;
     settings.seed = 5;
-    makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
+    const auto statistics = makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
+    if (plan) *plan = statistics.lightPlan;
     return TileSums(film);
 }
 
@@ -185,17 +186,29 @@ TEST_CASE("light paths: fog") {
 
 // A caustic in a mirror, and one seen through the ball that makes it: manifold sampling and what it leaves to chance.
 TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampling") {
+    const auto sceneOf = [](const std::string& view, const std::string& ior, const std::string& lamp) {
+        return TestScene::parse("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n"
+                                "camera { from 0 2.3 3.5; " +
+                                view + " }\n" + kFloor +
+                                "shape ball sphere { center -0.35 0.9 -0.3; radius 0.45; material dielectric { ior " +
+                                ior +
+                                " } }\n"
+                                "shape mirror quad { points { - -2 0 -1.5; - 2 0 -1.5; - 2 2 -1.5; - -2 2 -1.5 };"
+                                " material conductor { index metal Ag } }\n"
+                                "light sphere { center -1.5 5 -1; " +
+                                lamp + " }\n");
+    };
+    const std::string wide = "look-at 0 0.6 0; fov 40 deg", narrow = "look-at -0.3 0.6 -1.5; fov 24 deg";
     for (const char* ior : {"1.5", "glass SF11"}) {
-        const TestScene scene = TestScene::parse(
-            std::string("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n"
-                        "camera { from 0 2.3 3.5; look-at 0 0.6 0; fov 40 deg }\n") +
-            kFloor + "shape ball sphere { center -0.35 0.9 -0.3; radius 0.45; material dielectric { ior " + ior +
-            " } }\n"
-            "shape mirror quad { points { - -2 0 -1.5; - 2 0 -1.5; - 2 2 -1.5; - -2 2 -1.5 };"
-            " material conductor { index metal Ag } }\n"
-            "light sphere { center -1.5 5 -1; radius 0.5; radiance 10 }\n");
+        const TestScene scene = sceneOf(wide, ior, "radius 0.5; radiance 10");
         check(std::string(ior) + ", manifolds", seen(scene, 300), seen(scene, 64, Technique::LightPaths::always), 0.02);
     }
+    // Where little else is seen several estimates for each vertex are worth it.
+    const TestScene scene = sceneOf(narrow, "1.5", "radius 0.2; radiance 100");
+    LightPathFindings plan;
+    const TileSums found = seen(scene, 64, Technique::LightPaths::always, &plan);
+    CHECK(plan.manifold.estimates > 1);
+    check(fmt::format("{} estimates", plan.manifold.estimates), seen(scene, 600), found, 0.02);
 }
 
 } // namespace abbe::test
