@@ -1,8 +1,9 @@
 // How well tiles of 8×8 pixels of scenes and of finished pictures are known.
 //   bench_tile_errors [--size WxH] [--samples N] [--ways on|off|both] [--threads N] SCENE…
 //     default: the scene's size and samples; --ways both: with its light paths and without
-//   bench_tile_errors [--of N] PICTURE.exr…
+//   bench_tile_errors [--of N] [--worst K] PICTURE.exr…
 //     --of N: foretold for N samples, errors by 1/√samples; without it those of the picture
+//     --worst K: also the K tiles with the largest errors, and how much of their variance is that of one pixel
 // A tile's error is the standard error of its mean luminance over that mean; tiles darker than a thousandth of the mean
 // tile are left out. Scenes are rendered with 32 replicates, which tell it. Pictures tell the variance of each pixel;
 // those of a tile are added: no two pixels share a splat, but several splats of one light path may fall into one tile,
@@ -26,6 +27,7 @@ struct Options {
     std::optional<Vec2i> size;
     std::uint32_t samples = 0; // 0: the scene's
     double foretold = 0;       // of pictures; 0: their own
+    std::size_t worst = 0;     // tiles of pictures to be listed
     bool with = true, without = true;
     std::vector<std::string> scenes;
 };
@@ -33,6 +35,9 @@ struct Options {
 struct Tile {
     double mean = 0, variance = 0; // of its luminance; of that mean
     int x = 0, y = 0;              // its first pixel
+    double largest = 0;            // variance of one pixel, as part of that of the tile
+
+    double error() const { return std::sqrt(variance) / mean; }
 };
 
 struct TileErrors {
@@ -49,7 +54,7 @@ TileErrors errorsOf(const std::vector<Tile>& tiles) {
     double counted = 0;
     for (const Tile& t : tiles) {
         if (t.mean < least) continue;
-        const double error = std::sqrt(t.variance) / t.mean;
+        const double error = t.error();
         e.mean += error;
         e.beyond += error > 0.05;
         ++counted;
@@ -69,7 +74,7 @@ std::vector<Tile> tilesOf(const TileSums& sums) {
         for (int column = 0; column < sums.columns(); ++column) {
             const ReplicateMean m(sums.at(column, row), 1);
             const PixelBounds b = sums.bounds(column, row);
-            tiles.push_back({m.value, m.variance, b.x0, b.y0});
+            tiles.push_back({m.value, m.variance, b.x0, b.y0, 0});
         }
     return tiles;
 }
@@ -90,10 +95,12 @@ std::vector<Tile> tilesOf(const std::string& picture, double foretold) {
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
             Tile& t = tiles[static_cast<std::size_t>(y / 8 * columns + x / 8)];
-            if (x % 8 == 0 && y % 8 == 0) t = {t.mean, t.variance, image.window.x0 + x, image.window.y0 + y};
+            if (x % 8 == 0 && y % 8 == 0) t = {0, 0, image.window.x0 + x, image.window.y0 + y, 0};
             const auto i = static_cast<std::size_t>(y * image.width() + x);
             t.mean += toXyz({image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]}, space).y;
-            t.variance += factor * static_cast<double>(variance[i]);
+            const double own = factor * static_cast<double>(variance[i]);
+            t.variance += own;
+            t.largest = std::max(t.largest, own);
         }
     return tiles;
 }
@@ -102,6 +109,15 @@ void print(const TileErrors& e) {
     std::printf("%6.2f %%  %6.2f %%  %7.2f %% at %4d,%-4d  %10.4g\n", 100 * e.mean, 100 * e.beyond, 100 * e.most, e.x,
                 e.y, e.picture);
     std::fflush(stdout);
+}
+
+void printWorst(std::vector<Tile> tiles, std::size_t count) {
+    std::erase_if(tiles, [](const Tile& t) { return !(t.mean > 0); });
+    std::ranges::sort(tiles, std::greater(), &Tile::error);
+    tiles.resize(std::min(count, tiles.size()));
+    for (const Tile& t : tiles)
+        std::printf("    %4d,%-4d  %6.2f %%, of its variance in one pixel %3.0f %%\n", t.x, t.y, 100 * t.error(),
+                    100 * t.largest / t.variance);
 }
 
 void measure(const std::string& file, bool lightPaths, const Options& o) {
@@ -134,6 +150,8 @@ Options read(int argc, char** argv) {
             o.samples = static_cast<std::uint32_t>(std::max(1, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--of"))
             o.foretold = std::atof(next());
+        else if (!std::strcmp(argv[i], "--worst"))
+            o.worst = static_cast<std::size_t>(std::max(0, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--threads"))
             setThreadCount(std::max(1, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--ways")) {
@@ -159,7 +177,9 @@ int main(int argc, char** argv) {
         for (const std::string& scene : o.scenes) {
             if (scene.ends_with(".exr")) {
                 std::printf("%-91s", scene.c_str());
-                print(errorsOf(tilesOf(scene, o.foretold)));
+                const std::vector<Tile> tiles = tilesOf(scene, o.foretold);
+                print(errorsOf(tiles));
+                printWorst(tiles, o.worst);
                 continue;
             }
             if (o.with) measure(scene, true, o);

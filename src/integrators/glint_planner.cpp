@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <tuple>
 
@@ -22,14 +23,14 @@ constexpr double kMostSeeds = 16384;           // such places; larger frames hav
 constexpr float kNear = 1.2f;                  // of the lamp's direction: from where Newton's method starts
 constexpr int kBlock = 4;                      // pixels; of candidates that are alike and this near one is taken
 constexpr std::size_t kMostCandidates = 16384; // of which Newton's method starts
-constexpr int kIterations = 24;
-constexpr float kDifference = 0.05f, kLongestStep = 6; // pixels
-constexpr float kMargin = 1.3f;                        // of boxes
-constexpr double kLargestBox = 256;                    // pixels: what is larger is no glint
-constexpr double kSamples = 1024;                      // of a picture in which noise starts to matter less than specks
-constexpr double kLeastError = 0.003;                  // of a tile, that is worth probes
-constexpr double kTile = 64;                           // pixels
-constexpr double kMostRays = 1.5;                      // for a sample of every pixel, in the mean over pixels
+constexpr int kIterations = 32;
+constexpr float kDifference = 0.05f, kFinest = 0.002f, kLongestStep = 6; // pixels
+constexpr float kMargin = 1.3f;                                          // of boxes
+constexpr double kLargestBox = 256;                                      // pixels: what is larger is no glint
+constexpr double kSamples = 1024;     // of a picture in which noise starts to matter less than specks
+constexpr double kLeastError = 0.003; // of a tile, that is worth probes
+constexpr double kTile = 64;          // pixels
+constexpr double kMostRays = 1.5;     // for a sample of every pixel, in the mean over pixels
 constexpr std::array kHeroes{0.01f, 0.25f, 0.5f, 0.75f, 0.99f}; // of chains that disperse each has an image of its own
 
 // A place from which Newton's method starts.
@@ -91,9 +92,12 @@ class Planner {
         rays += counters.vertices;
     }
 
-    // How far off a lamp a segment goes, across two axes.
+    // How far off a lamp a segment goes, across two axes. Stereographic: it grows all the way to the opposite
+    // direction, or Newton's method would not find the way back.
     static Vec2 missOf(const GlintView& view, const GlintLamp& lamp, const Frame& about) {
-        const Vec3 off = view.direction - lamp.from(view.p);
+        const Vec3 towards = lamp.from(view.p);
+        const float cosine = dot(view.direction, towards), scale = 2 / (1 + std::max(cosine, -1 + 1e-4f));
+        const Vec3 off = (view.direction - towards * cosine) * scale;
         return {dot(off, about.x), dot(off, about.y)};
     }
 
@@ -148,20 +152,24 @@ class Planner {
         return list;
     }
 
-    // One segment of a chain at three places next to each other: how far off the lamp it goes, and how that changes.
+    // One segment of a chain at a place, and before and behind it along both axes of the film: how far off the lamp it
+    // goes, and how that changes.
     struct Look {
-        std::array<bool, 3> known{};
-        std::array<Vec2, 3> miss;
+        std::array<bool, 5> seen{};
+        std::array<Vec2, 5> miss;
+        bool known() const { return std::ranges::all_of(seen, std::identity()); }
         Vec3 p;
         bool met = false;
         double luminance = 0, probability = 0;
     };
-    Look look(const Candidate& c, float hero, std::uint64_t& rays) const {
+    Look look(const Candidate& c, float hero, float difference, std::uint64_t& rays) const {
         const GlintLamp& lamp = lamps_[c.lamp];
-        std::array<GlintQuery, 3> queries;
+        std::array<GlintQuery, 5> queries;
         for (GlintQuery& q : queries) q = {c.film, hero, c.chain, kKey};
-        queries[1].film.x += kDifference;
-        queries[2].film.y += kDifference;
+        queries[1].film.x -= 0.5f * difference;
+        queries[2].film.x += 0.5f * difference;
+        queries[3].film.y -= 0.5f * difference;
+        queries[4].film.y += 0.5f * difference;
         Look look;
         Frame about;
         ask(queries, rays, [&](std::size_t k, const GlintView& view, const Wavelengths& lambda) {
@@ -174,7 +182,7 @@ class Planner {
                     context_.scene.sensor(view.throughput * emitted, context_.scene.wavelengths.sample(hero)).y;
                 look.probability = view.probability;
             }
-            look.known[k] = true;
+            look.seen[k] = true;
             look.miss[k] = missOf(view, lamp, about);
         });
         return look;
@@ -185,8 +193,8 @@ class Planner {
         Vec2 dx, dy;
         float determinant = 0;
 
-        explicit Slope(const Look& at)
-            : dx((at.miss[1] - at.miss[0]) * (1 / kDifference)), dy((at.miss[2] - at.miss[0]) * (1 / kDifference)),
+        Slope(const Look& at, float difference)
+            : dx((at.miss[2] - at.miss[1]) * (1 / difference)), dy((at.miss[4] - at.miss[3]) * (1 / difference)),
               determinant(dx.x * dy.y - dx.y * dy.x) {}
         // To where there would be none, and no farther than is trusted.
         Vec2 step(Vec2 miss) const {
@@ -202,34 +210,53 @@ class Planner {
     };
     static float size(Vec2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
-    // Newton's method on the film. A step that leads nowhere, or farther off, is halved.
+    // Newton's method on the film. A step that leads nowhere, or farther off, is halved; where that does not help, as
+    // along the rim of a ball, the slope was taken over too wide a difference.
     std::optional<Image> imageOf(Candidate& c, float hero, std::uint64_t& rays) const {
         Vec2 before = c.film, step;
-        float least = kInfinity;
+        float least = kInfinity, nearest = kInfinity, difference = kDifference;
         for (int i = 0; i < kIterations; ++i) {
-            const Look at = look(c, hero, rays);
-            const bool known = at.known[0] && at.known[1] && at.known[2];
-            const float off = known ? size(at.miss[0]) : kInfinity;
+            const Look at = look(c, hero, difference, rays);
+            const float off = at.known() ? size(at.miss[0]) : kInfinity;
+            if (i == kIterations / 4 && !(nearest < 0.5f * c.miss)) return std::nullopt; // most of these end nowhere
+            nearest = std::min(nearest, off);
             if (!(off < least)) {
                 if (i == 0) return std::nullopt;
-                step = step * 0.5f;
-                c.film = before + step;
+                if (size(step) > 2 * difference) {
+                    step = step * 0.5f;
+                    c.film = before + step;
+                } else {
+                    difference *= 0.25f;
+                    if (difference < kFinest) return std::nullopt;
+                    least = kInfinity;
+                    c.film = before;
+                }
                 continue;
             }
-            const Slope slope(at);
+            const Slope slope(at, difference);
             if (!(std::abs(slope.determinant) > 0)) return std::nullopt;
             const float radius = lamps_[c.lamp].sine(at.p);
-            if (at.met && off < 0.5f * radius) return slope.image(c.film, radius, at);
-            least = off;
             before = c.film;
+            if (at.met && off < 0.5f * radius) {
+                const Image image = slope.image(c.film, radius, at);
+                const float own = std::clamp(std::min(image.half.x, image.half.y), kFinest, kDifference);
+                if (!(own < 0.5f * difference)) return image;
+                difference = own; // over the image itself
+                least = kInfinity;
+                step = {};
+                continue;
+            }
+            least = off;
             step = slope.step(at.miss[0]);
             c.film = before + step;
-            const float edge = 8;
-            if (!(c.film.x > static_cast<float>(frame_.x0) - edge && c.film.x < static_cast<float>(frame_.x1) + edge &&
-                  c.film.y > static_cast<float>(frame_.y0) - edge && c.film.y < static_cast<float>(frame_.y1) + edge))
-                return std::nullopt;
+            if (!isNear(c.film)) return std::nullopt;
         }
         return std::nullopt;
+    }
+    bool isNear(Vec2 film) const {
+        constexpr float kEdge = 8; // pixels
+        return film.x > static_cast<float>(frame_.x0) - kEdge && film.x < static_cast<float>(frame_.x1) + kEdge &&
+               film.y > static_cast<float>(frame_.y0) - kEdge && film.y < static_cast<float>(frame_.y1) + kEdge;
     }
 
     std::vector<Found> measured(std::vector<Candidate> list) {

@@ -62,7 +62,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     void walk(const EmittedRay&, const Wavelengths&, Surface onSurface, Collision onCollision);
     void arriveAt(const EmittedRay&, Vec3 p, double cosine);
     Photon photonOf(const EmittedRay&, Vec3 p, Vec3 direction, std::uint32_t depth) const;
-    bool followedFrom(const Light*) const;
+    bool followedFrom(const EmittedRay&, const SurfaceHit&) const;
     // Density with which a camera path at the first vertex, coming from `away`, asks for the place that the path
     // started from, 1/sr.
     double askedDensity(const EmittedRay&, const SurfaceHit&, const LightVertex&, Vec3 away) const;

@@ -13,6 +13,7 @@ void LightLoop<E>::leavePhotons(const EmittedRay& start, const Wavelengths& lamb
             if (depth == 0 || !vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return;
             Photon photon = photonOf(start, hit.p, hit.arrival, depth);
             photon.ng = hit.ng;
+            photon.followed = followedFrom(start, hit);
             tell(photon);
         },
         [&](Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth) {
@@ -38,18 +39,25 @@ Photon LightLoop<E>::photonOf(const EmittedRay& start, Vec3 p, Vec3 direction, s
     photon.cameraOdds = static_cast<float>(meeting.of(1, Spectrum(1.f), path.densities.heroOnly));
     photon.vertices = depth;
     photon.heroOnly = path.densities.heroOnly;
-    photon.followed = followedFrom(start.light);
     return photon;
 }
 
-// Camera paths would meet the links the other way round.
-template <EffectBits E> bool LightLoop<E>::followedFrom(const Light* light) const {
+// Camera paths would meet the links the other way round, on the side that the light came from.
+template <EffectBits E> bool LightLoop<E>::followedFrom(const EmittedRay& start, const SurfaceHit& hit) const {
     const ManifoldSampler* const sampler = this->context_.manifold;
     if (!sampler || linkCount_ > kMostLinks) return false;
     CoveredChain chain;
     chain.start();
     for (std::size_t i = linkCount_; i-- > 0;) sampler->follow(chain, links_[i].shape, links_[i].lobe);
-    return sampler->coversKind(chain, light);
+    if (start.deltaPosition || start.deltaDirection) return sampler->coversKind(chain, start.light);
+    const float time = this->path_.time;
+    ChainStart from;
+    from.receiver = Receiver(hit.p, hit.shading.z, true);
+    from.pError = hit.pError;
+    from.ng = hit.ng;
+    from.time = time;
+    from.around = this->path_.nested.here;
+    return sampler->covers(chain, from, -hit.arrival, LightTarget::begun(start, time), this->path_.lambda);
 }
 
 } // namespace abbe

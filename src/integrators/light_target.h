@@ -1,6 +1,7 @@
 // A point of a light, or a direction to one far away, that chains of delta interfaces are to lead to.
 #pragma once
 
+#include "integrators/emitted_ray.h"
 #include "render/light.h"
 
 #include <cmath>
@@ -57,6 +58,15 @@ struct LightTarget {
         target.distant = true;
         target.direction = w;
         target.pdf = light.pdfDistant(w, time);
+        return target;
+    }
+
+    // And for where a light path began, of a light that has an extent.
+    static LightTarget begun(const EmittedRay& start, float time) noexcept {
+        if (start.density.distant) return met(*start.light, -start.ray.direction, time);
+        LightTarget target;
+        target.light = start.light;
+        target.takeOrigin(start.light->originAt(start.part, start.ray.origin, start.n, time));
         return target;
     }
 

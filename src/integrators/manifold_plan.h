@@ -22,17 +22,17 @@ struct SpecularCaster {
 
 // Frozen before light is gathered: it says which light the path tracer leaves out.
 struct ManifoldPlan {
-    struct LightWeight {
+    struct AskedLight {
         const Light* light = nullptr;
         float weight = 1; // > 0: how often it is asked, relative to the others
+        // sr: where the lamp's image is larger than this, it is left to others: to merging or to the path tracer, whose
+        // rays find it soon enough. The image of the whole lamp is meant, magnified as at the point of it that a chain
+        // leads to. Next to caustics it has no bound, and estimates of it would have none either.
+        float largestImage = 0.5f;
     };
 
     std::vector<SpecularCaster> casters; // those of casterCandidates() that are wanted
-    std::vector<LightWeight> lights;     // with Light::paths() other than none
-    // sr: where a lamp's image is larger than this, it is left to the path tracer, whose rays find it soon enough. The
-    // image of the whole lamp is meant, magnified as at the point of it that a chain leads to. Next to caustics it has
-    // no bound, and estimates of it would have none either.
-    float largestImage = 0.5f;
+    std::vector<AskedLight> lights;     // with Light::paths() other than none
     // How many estimates a vertex asks for; their mean counts. Each has its own point of the lamp: where that decides
     // how much light there is, as near caustics, this is worth more than as many paths from the camera.
     std::uint32_t estimates = 1; // > 0

@@ -22,6 +22,10 @@ constexpr std::size_t kLooks = 256; // of ManifoldPilot, each at all kinds of ch
 constexpr std::uint32_t kMostEstimates = 16;
 // A lamp that fills more than this everywhere has no small images.
 constexpr double kLargeLight = 0.5; // sr
+// sr. Merging finds the light near caustics with little noise, where estimates by manifold sampling are rare and
+// bright: a tile at the cusp behind the mirror of scenes/mirror-caustic keeps, with 1024 samples, an error of 11 % with
+// a bound of 0.5 sr, 7 % with 0.1 and 6 % with 0.02. What is merged is blurred, so that the bound is not lower.
+constexpr float kLargestBesideMerging = 0.02f;
 
 // Solid angle of a light far away, in the harmonic mean over what it samples; 0 for a single direction.
 double extentOf(const Light& light) {
@@ -206,6 +210,13 @@ class Planner {
 };
 
 } // namespace
+
+void PlannedManifold::besideMerging(const Scene& scene, const MergePlan& merging) {
+    ManifoldPlan plan = sampler->plan();
+    for (auto& light : plan.lights)
+        if (merging.lights.contains(light.light)) light.largestImage = kLargestBesideMerging;
+    sampler = std::make_unique<const ManifoldSampler>(scene, std::move(plan));
+}
 
 PlannedManifold planManifold(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
                              const std::function<bool()>& stop) {

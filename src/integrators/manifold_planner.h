@@ -12,6 +12,9 @@ namespace abbe {
 struct PlannedManifold {
     std::unique_ptr<const ManifoldSampler> sampler; // null: none
     ManifoldFindings findings;
+
+    // Leaves large images of lamps whose light is merged to merging. Requires a sampler.
+    void besideMerging(const Scene&, const MergePlan&);
 };
 
 // A context with the plan of light paths, if any; the reference is that of the frame. `stop` cuts it short, without a

@@ -114,10 +114,10 @@ ManifoldSampler::ManifoldSampler(const Scene& scene, ManifoldPlan plan) : scene_
     }
     weights.clear();
     for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
-        const auto& [light, weight] = plan_.lights[i];
-        ABBE_CHECK(light->paths() != LightPaths::none && weight > 0);
-        lights_.emplace(light, i);
-        weights.push_back(static_cast<double>(weight));
+        const ManifoldPlan::AskedLight& asked = plan_.lights[i];
+        ABBE_CHECK(asked.light->paths() != LightPaths::none && asked.weight > 0);
+        lights_.emplace(asked.light, i);
+        weights.push_back(static_cast<double>(asked.weight));
     }
     if (!weights.empty()) lightChoice_.emplace(weights);
 }
@@ -148,6 +148,11 @@ ManifoldChoice ManifoldSampler::choose(Vec3 p, RandomStream& random) const noexc
     return choice;
 }
 
+bool ManifoldSampler::isSmall(const SpecularChain& chain, const LightTarget& target) const noexcept {
+    const float largest = plan_.lights[lights_.at(target.light)].largestImage;
+    return imageSize(chain, target) < static_cast<double>(largest);
+}
+
 std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start, const LightTarget& target,
                                                         const ManifoldChoice& choice, const Wavelengths& lambda,
                                                         RandomStream& random, ManifoldCounts& counts,
@@ -163,7 +168,7 @@ std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start,
     std::optional<ManifoldSample> sample;
     ++counts.estimates;
     const SpecularChain* const chain = trial();
-    const bool small = chain && imageSize(*chain, target) < static_cast<double>(plan_.largestImage);
+    const bool small = chain && isSmall(*chain, target);
     const bool seen = small && !(start.receiver.oneSided() && dot(chain->direction, Vec3d(start.receiver.n)) < 0);
     if (seen && tracer.reachesLight(solver.solution())) {
         const Vec3d found = chain->direction;
@@ -224,8 +229,7 @@ bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start,
     const SpecularCaster& caster = plan_.casters[chain.caster];
     ChainTracer tracer(scene_, followed_, start, met, lambda);
     SpecularChain again;
-    return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) &&
-           imageSize(again, met) < static_cast<double>(plan_.largestImage);
+    return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) && isSmall(again, met);
 }
 
 } // namespace abbe

@@ -65,6 +65,9 @@ class ManifoldSampler {
                 const Wavelengths&) const noexcept;
 
   private:
+    // Whether the lamp's image is, so that chains to it are covered.
+    bool isSmall(const SpecularChain&, const LightTarget&) const noexcept;
+
     const Scene& scene_;
     ManifoldPlan plan_;
     std::optional<Distribution1D> lightChoice_;

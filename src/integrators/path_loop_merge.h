@@ -19,9 +19,7 @@ template <EffectBits E> void PathLoop<E>::meetGatheringInMedium(std::uint32_t de
 }
 
 template <EffectBits E> bool PathLoop<E>::merged(const Light* light) const {
-    const auto& traced = path_.traced;
-    if (!traced.gathered || !path_.delta || !context_.merging->lights.contains(light)) return false;
-    return !context_.manifold || !context_.manifold->coversKind(traced.chain, light);
+    return path_.traced.gathered && path_.delta && context_.merging->lights.contains(light);
 }
 
 } // namespace abbe

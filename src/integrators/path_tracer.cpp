@@ -136,6 +136,8 @@ class RenderJob {
             merging_ = planMerging(context_, kernel_.traced(), ahead_.roulette, light_.findings, stop);
             context_.merging = merging_.plan.get();
             light_.findings.merging = merging_.findings;
+            if (manifold_.sampler && merging_.plan) manifold_.besideMerging(context_.scene, *merging_.plan);
+            context_.manifold = manifold_.sampler.get();
         }
         glints_ = planGlints(context_, film_, kernel_.traced(), ahead_.roulette, stop);
         context_.glints = glints_.plan.get();

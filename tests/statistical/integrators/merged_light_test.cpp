@@ -1,7 +1,7 @@
 // Merged light against closed forms, sharp enough to see a fault of one per cent. All light of these pictures is
-// merged: their glass stands in instances, over which chains are not followed, and the eye sees all through it. It is
-// even where it is gathered, so that disks of any size blur nothing; and a sphere within a chord r of a point has the
-// area π r² of a flat disk.
+// merged, but for one: their glass stands in instances, over which chains are not followed, and the eye sees all
+// through it. It is even where it is gathered, so that disks of any size blur nothing; and a sphere within a chord r of
+// a point has the area π r² of a flat disk.
 #include "spectrum/named_spectra.h"
 #include "spectrum/observer.h"
 #include "spectrum/sampled_curve.h"
@@ -29,13 +29,15 @@ double fresnel(double cosine, double n) {
     return (square(s) + square(p)) / 2;
 }
 
-// `rounds`: of merging, in all replicates together. `film`: its size, and a crop. `exact`: Y of every pixel.
+// `rounds`: of merging, in all replicates together. `film`: its size, and a crop. `exact`: Y of every pixel. `shared`:
+// manifold sampling has some of it.
 void compare(const std::string& name, const std::string& film, const std::string& text, double exact,
-             std::uint32_t rounds) {
+             std::uint32_t rounds, bool shared = false) {
     const TestScene scene = TestScene::parse("scene 1\nfilm { filter box 0.5; size " + film + " }\n" + text);
     RenderSettings settings = scene.settings();
     settings.samples = (nightly() ? 8 : 1) * rounds;
     settings.technique.merging = Technique::Merging::always;
+    if (shared) settings.technique.lightPaths = Technique::LightPaths::always;
     const TestImage image = renderAsProgram(scene, settings, kReplicates);
     const ImageComparison c = compareExpected(image.film, [&](int, int) { return exact; });
     const RenderStatistics& s = image.statistics;
@@ -45,8 +47,9 @@ void compare(const std::string& name, const std::string& film, const std::string
     CHECK(c.same());
     CHECK(c.wholeP > kLevel);
     CHECK(c.error < kResolution);
-    CHECK(s.rounds == settings.samples); // fewer would be coarser, not wrong
-    CHECK_FALSE(s.lightPlan.manifold.used);
+    if (!shared) CHECK(s.rounds == settings.samples); // fewer would be coarser, not wrong
+    CHECK(s.lightPlan.manifold.used == shared);
+    CHECK(s.lightPlan.merging.used);
     CHECK(s.cappedPaths == 0);
 }
 
@@ -57,15 +60,15 @@ struct Shell {
     double outer, inner;
     double eye; // from the middle
 
-    std::string scene(const std::string& lamp) const {
+    std::string scene(const std::string& lamp, bool followed = false) const {
+        const std::string glass =
+            fmt::format("    shape sphere {{ radius {}; material dielectric {{ ior {}; priority 1 }} }}\n"
+                        "    shape sphere {{ radius {}; material dielectric {{ ior 1; priority 2 }} }}\n",
+                        outer, kIndex, inner);
         return fmt::format("camera spherical {{ from 0 {} 0 }}\n"
-                           "shape sphere {{ radius 1; material diffuse {{ reflectance {} }} }}\n"
-                           "object shell {{\n"
-                           "    shape sphere {{ radius {}; material dielectric {{ ior {}; priority 1 }} }}\n"
-                           "    shape sphere {{ radius {}; material dielectric {{ ior 1; priority 2 }} }}\n}}\n"
-                           "instance shell\n",
-                           eye, kReflectance, outer, kIndex, inner) +
-               lamp;
+                           "shape sphere {{ radius 1; material diffuse {{ reflectance {} }} }}\n",
+                           eye, kReflectance) +
+               (followed ? glass : "object shell {\n" + glass + "}\ninstance shell\n") + lamp;
     }
     // Share of the light of an even ball of radius a in the middle that gets out, and of light from outside towards
     // that ball that gets in. What is reflected comes back to the ball: it keeps its distance from the middle.
@@ -99,6 +102,16 @@ TEST_CASE("merged light: a ball that camera paths meet, in an integrating sphere
     const double brought = square(a) * shell.transmittance(a);
     compare("ball", "40 32; crop 0 8 40 24", shell.scene(fmt::format("light sphere {{ radius {}; radiance 1 }}\n", a)),
             kReflectance * brought / (1 - kReflectance + kReflectance * brought), 192);
+}
+
+// In the middle of the ball's disk its image, were all of the ball like there, is 0.03 sr, at the rim nothing.
+TEST_CASE("merged light: a ball of which manifold sampling has the rim and merging the middle") {
+    const double a = 0.05;
+    const Shell shell{0.5, 0.4, 0.3};
+    const double brought = square(a) * shell.transmittance(a);
+    compare("rim and middle", "40 32; crop 0 4 40 28",
+            shell.scene(fmt::format("light sphere {{ radius {}; radiance 1 }}\n", a), true),
+            kReflectance * brought / (1 - kReflectance + kReflectance * brought), 1024, true);
 }
 
 TEST_CASE("merged light: the sun through one glass, seen through another") {

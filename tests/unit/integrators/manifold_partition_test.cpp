@@ -128,7 +128,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     chain.stop();
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, target, lambda));
     // The lamp's image there is a few 1e-3 sr.
-    plan.largestImage = 1e-5f;
+    for (auto& light : plan.lights) light.largestImage = 1e-5f;
     const ManifoldSampler stricter(scene, plan);
     chain = {};
     chain.start();
