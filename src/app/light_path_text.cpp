@@ -109,7 +109,10 @@ std::string manifoldText(const ManifoldFindings& f) {
     std::string text;
     if (f.measured)
         text = fmt::format("Caustics behind glass and in mirrors: {}, forecast {} as efficient\n",
-                           f.used ? manifoldName(f) : "left to camera paths", times(f.gain));
+                           f.used            ? manifoldName(f)
+                           : f.leftToMerging ? fmt::format("left to merging, as a pilot found too few ({})", f.chains)
+                                             : "left to camera paths",
+                           times(f.gain));
     for (const std::string& obstacle : f.obstacles) text += fmt::format("  not followed: {}\n", obstacle);
     if (f.obstacleCount > f.obstacles.size())
         text += fmt::format("  and {} more\n", f.obstacleCount - f.obstacles.size());
@@ -222,6 +225,8 @@ Json lightPathJson(const LightPathFindings& f) {
     for (const std::string& obstacle : m.obstacles) obstacles.push(Json(obstacle));
     json.set("manifold", Json::object({{"measured", m.measured},
                                        {"used", m.used},
+                                       {"left_to_merging", m.leftToMerging},
+                                       {"chains_found", m.chains},
                                        {"gain", m.gain},
                                        {"before", m.before},
                                        {"after", m.after},

@@ -24,7 +24,6 @@ void ManifoldPilot::look(const ChainStart& start, float importance, const Wavele
 }
 
 ManifoldPlan ManifoldPilot::learned() const {
-    constexpr double kLeast = 0.02; // share of the best, of those that found little or nothing
     ManifoldPlan plan = sampler_.plan();
     for (std::size_t caster = 0; caster < tallies_.size(); ++caster) {
         std::array<double, ChainSignature::kCount> worth{};
@@ -36,7 +35,7 @@ ManifoldPlan ManifoldPilot::learned() const {
         if (!(best > 0)) continue; // nothing was seen: as it was
         for (std::size_t i = 0; i < worth.size(); ++i) {
             float& weight = plan.casters[caster].weights[i];
-            if (weight > 0) weight = static_cast<float>(std::max(worth[i] / best, kLeast));
+            if (weight > 0) weight = std::max(static_cast<float>(worth[i] / best), kLeastWeight);
         }
     }
     return plan;

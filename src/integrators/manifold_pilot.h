@@ -10,6 +10,9 @@ namespace abbe {
 // a small share, since a pilot sees little; what is covered does not change. Not thread-safe; deterministic.
 class ManifoldPilot {
   public:
+    // Of kinds that found little or nothing; the best of a caster has 1.
+    static constexpr float kLeastWeight = 0.02f;
+
     // The scene must outlive it. The plan is one for ManifoldSampler.
     ManifoldPilot(const Scene&, ManifoldPlan);
 

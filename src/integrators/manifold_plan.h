@@ -32,7 +32,7 @@ struct ManifoldPlan {
     };
 
     std::vector<SpecularCaster> casters; // those of casterCandidates() that are wanted
-    std::vector<AskedLight> lights;     // with Light::paths() other than none
+    std::vector<AskedLight> lights;      // with Light::paths() other than none
     // How many estimates a vertex asks for; their mean counts. Each has its own point of the lamp: where that decides
     // how much light there is, as near caustics, this is worth more than as many paths from the camera.
     std::uint32_t estimates = 1; // > 0

@@ -13,7 +13,8 @@ struct PlannedManifold {
     std::unique_ptr<const ManifoldSampler> sampler; // null: none
     ManifoldFindings findings;
 
-    // Leaves large images of lamps whose light is merged to merging. Requires a sampler.
+    // Leaves large images of lamps whose light is merged to merging, and rare kinds of chains if all of it is. Requires
+    // a sampler; may leave none.
     void besideMerging(const Scene&, const MergePlan&);
 };
 

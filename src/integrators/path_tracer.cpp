@@ -131,7 +131,6 @@ class RenderJob {
         context_.traced = light_.plan.get();
         manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
         context_.manifold = manifold_.sampler.get();
-        light_.findings.manifold = manifold_.findings;
         if (film_.takesMerged()) {
             merging_ = planMerging(context_, kernel_.traced(), ahead_.roulette, light_.findings, stop);
             context_.merging = merging_.plan.get();
@@ -139,6 +138,7 @@ class RenderJob {
             if (manifold_.sampler && merging_.plan) manifold_.besideMerging(context_.scene, *merging_.plan);
             context_.manifold = manifold_.sampler.get();
         }
+        light_.findings.manifold = manifold_.findings;
         glints_ = planGlints(context_, film_, kernel_.traced(), ahead_.roulette, stop);
         context_.glints = glints_.plan.get();
         light_.findings.glints = glints_.findings;

@@ -13,6 +13,8 @@ struct ManifoldFindings {
 
     bool measured = false; // a pilot has run: whether the numbers below mean anything
     bool used = false;
+    bool leftToMerging = false; // which has the light of all these lamps; the pilot found too few chains to trust them
+    std::uint64_t chains = 0;   // that the pilot found
     // Of a sample of every pixel, in the mean over pixels: relative second moment of the light that chains of polished
     // interfaces bring to what is seen by way of others, as chance and as manifold sampling find it; relative variance
     // of everything else; and what all of that comes to in efficiency.
