@@ -31,17 +31,23 @@ struct ManifoldMean {
     double cappedShare() const { return total > 0 ? capped / total : 0; }
 };
 
-// Every shape with delta lobes is a caster, every light is asked. `largestImage`: of each, as in ManifoldPlan.
+// Every shape that chains can start at is a caster, every light is asked. `largestImage`: of each.
+inline ManifoldPlan planOfAll(const Scene& scene, float largestImage) {
+    ManifoldPlan plan;
+    for (const CasterCandidate& c : casterCandidates(scene))
+        if (c.obstacle.empty()) plan.casters.push_back(c.caster());
+    for (const auto& light : scene.lights) plan.lights.push_back({light.get(), 1, largestImage});
+    return plan;
+}
+
+// A scene and that plan of it.
 class ManifoldCase {
   public:
     explicit ManifoldCase(const std::string& shapes, float largestImage = kInfinity, std::uint32_t maxTrials = 100'000)
         : scene(TestScene::parse("scene 1\ncamera { from 0 0 -20; look-at 0 0 0 }\n" + shapes + "\n")) {
         if (!ok()) return;
-        ManifoldPlan plan;
+        ManifoldPlan plan = planOfAll(scene.scene(), largestImage);
         plan.maxTrials = maxTrials;
-        for (const CasterCandidate& c : casterCandidates(scene.scene()))
-            if (c.obstacle.empty()) plan.casters.push_back(c.caster());
-        for (const auto& light : scene.scene().lights) plan.lights.push_back({light.get(), 1, largestImage});
         sampler = std::make_unique<ManifoldSampler>(scene.scene(), plan);
     }
 

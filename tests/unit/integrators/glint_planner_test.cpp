@@ -1,7 +1,5 @@
 // Which glints the pilot finds.
-#include "film/film_params.h"
-#include "film/pixel_film.h"
-#include "support/scene_test.h"
+#include "support/light_plan.h"
 
 #include <doctest/doctest.h>
 
@@ -19,15 +17,11 @@ TEST_CASE("glints: the lamp in a ball in a mirror in that ball") {
                          "    transform { translate 0 11 0; rotate x -6 deg; rotate y -8 deg; translate 0 0 -15 } }\n"
                          "light sphere { center -48 42 -12; radius 0.4; power 900 lm }\n");
     REQUIRE(scene.report() == "");
-    const FilmSettings s = filmSettings(scene.built().film);
-    const auto tracer = makePathTracer(scene.scene().effects);
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
         RenderSettings settings = scene.settings();
         settings.seed = seed;
-        PixelFilm film(s.crop, PixelFilter(s.filter, s.filterRadius), 2);
-        film.keepSplatsOf(*tracer, scene.scene(), settings);
         CAPTURE(seed);
-        CHECK(tracer->findLightPaths(scene.scene(), film, settings).glints.found == 3);
+        CHECK(lightPlanOf(scene, settings).glints.found == 3);
     }
 }
 

@@ -1,8 +1,7 @@
 // Several estimates by manifold sampling at one vertex: each counts its share.
 #include "film/pixel_film.h"
-#include "integrators/caster_candidates.h"
 #include "integrators/tile_kernel.h"
-#include "support/scene_test.h"
+#include "support/manifold_cases.h"
 
 #include <doctest/doctest.h>
 
@@ -37,11 +36,8 @@ struct Told {
 
 Told renderedWith(std::uint32_t estimates, const TestScene& test) {
     const Scene& scene = test.scene();
-    ManifoldPlan plan;
+    ManifoldPlan plan = planOfAll(scene, 0.5f);
     plan.estimates = estimates;
-    for (const CasterCandidate& c : casterCandidates(scene))
-        if (c.obstacle.empty()) plan.casters.push_back(c.caster());
-    for (const auto& light : scene.lights) plan.lights.push_back({light.get(), 1});
     const ManifoldSampler sampler(scene, std::move(plan));
     const RenderSettings settings = test.settings();
     const LightSampler lights(scene.lights, settings.technique.lightChoice);

@@ -1,6 +1,7 @@
 // Pictures that light paths are part of: their layers, their single samples, and what is said of them.
 #include "film/layer_planes.h"
 #include "integrators/path_tracer.h"
+#include "support/light_plan.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>
@@ -58,10 +59,7 @@ struct Picture {
     }
 };
 
-LightPathFindings findingsOf(const TestScene& scene) {
-    const RecordingFilm like(scene.built().film, 2);
-    return makePathTracer(scene.scene().effects)->findLightPaths(scene.scene(), like, scene.settings());
-}
+LightPathFindings findingsOf(const TestScene& scene) { return lightPlanOf(scene, scene.settings()); }
 
 LightPathFindings findingsOf(const std::string& text) { return findingsOf(TestScene::parse(text)); }
 
