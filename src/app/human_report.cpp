@@ -96,7 +96,7 @@ void HumanReport::done(const RenderSummary& s) {
         console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
                                   countText(static_cast<double>(r.splats))));
     if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
-    if (const std::string line = manifoldLine(r.lightPlan.manifold); !line.empty()) console_.line("  " + line);
+    if (const std::string line = manifoldLine(r.lightPlan); !line.empty()) console_.line("  " + line);
     if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
     if (const std::string line = glintLine(r.lightPlan.glints); !line.empty()) console_.line("  " + line);
     if (r.manifoldCapped > 0)

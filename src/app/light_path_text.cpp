@@ -165,14 +165,16 @@ std::string lightPathLine(const LightPathFindings& f) {
                        forecast(f), sharesInLine(f));
 }
 
-std::string manifoldLine(const ManifoldFindings& f) {
+std::string manifoldLine(const LightPathFindings& all) {
+    const ManifoldFindings& f = all.manifold;
     std::string text;
     if (f.used)
         text = fmt::format("{} behind glass and in mirrors: forecast {} as efficient", manifoldName(f), times(f.gain));
     if (f.used && f.obstacleCount > 0)
-        text += fmt::format("; {} polished shape{} cannot be followed: what {} focus{} is found by chance there",
-                            f.obstacleCount, f.obstacleCount == 1 ? "" : "s", f.obstacleCount == 1 ? "it" : "they",
-                            f.obstacleCount == 1 ? "es" : "");
+        text += fmt::format("; {} polished shape{} cannot be followed: what {} focus{} is {} there", f.obstacleCount,
+                            f.obstacleCount == 1 ? "" : "s", f.obstacleCount == 1 ? "it" : "they",
+                            f.obstacleCount == 1 ? "es" : "",
+                            all.merging.used ? "merged or found by chance" : "found by chance");
     return text;
 }
 
@@ -195,6 +197,9 @@ std::string lightPathText(const LightPathFindings& f) {
     std::string text = f.used() ? fmt::format("Light paths: {:.3g} per camera path{}\n", f.share,
                                               f.verdict == asked ? ", as `light-paths` of `render` asks" : "")
                                 : fmt::format("Light paths: none, {}\n", reason(f));
+    if (f.used())
+        text += fmt::format("  {:.3g} % of them go on past what first spreads them, a rough surface or a medium\n",
+                            100 * f.afterSpread);
     text += fmt::format("  {} light{}, {} target{}; a pilot took {} rays\n", f.lights, f.lights == 1 ? "" : "s",
                         f.targets, f.targets == 1 ? "" : "s", f.rays);
     if (f.bestShare > 0)
@@ -209,7 +214,7 @@ std::string lightPathText(const LightPathFindings& f) {
 Json lightPathJson(const LightPathFindings& f) {
     Json json = Json::object({{"verdict", std::string(wordOf(f.verdict))}, {"text", lightPathLine(f)}});
     if (!f.measured) return json;
-    json.set("per_camera_path", f.share);
+    json.set("per_camera_path", f.share).set("go_on_after_spread", f.afterSpread);
     json.set("judged_per_camera_path", f.bestShare).set("gain", f.gain);
     json.set("before", f.before).set("after", f.after).set("rest", f.rest);
     json.set("pilot_rays", f.rays).set("lights", f.lights).set("targets", f.targets);

@@ -14,7 +14,7 @@ std::string lightPathLine(const LightPathFindings&);
 // The same with all that was measured, line by line.
 std::string lightPathText(const LightPathFindings&);
 // What light paths cannot show to the lens; empty where manifold sampling is not used.
-std::string manifoldLine(const ManifoldFindings&);
+std::string manifoldLine(const LightPathFindings&);
 // The rest of that, and what nothing finds; empty where light paths are not merged and nothing is missing.
 std::string mergeLine(const MergeFindings&);
 // Empty where no glints are probed.

@@ -27,6 +27,9 @@ constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn"
 constexpr double kTracedCost = 1.4;
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
 constexpr double kLightCost = 2.5;
+// Of all that a picture takes, what is spent against light that comes too seldom for a pilot to see it, and shines the
+// brighter for it.
+constexpr double kInsurance = 0.1;
 constexpr double kLeastSparks = 0.02; // second moment of what light paths could bring better
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
@@ -87,6 +90,8 @@ class Planner {
         findings_.share = findings_.bestShare;
         if (alone()) findings_.share = std::max(findings_.share, 1.0); // the gain is that of both together
         learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
+        learned.afterSpread = insured(learned.afterSpread);
+        findings_.afterSpread = static_cast<double>(learned.afterSpread);
         learned.alone = alone();
         plan = std::make_unique<const LightPathPlan>(std::move(learned));
         return forced ? asked : used;
@@ -191,6 +196,15 @@ class Planner {
             std::clamp(std::sqrt(after * (static_cast<double>(heard.rays) - raysAfter) / cost), kLeast, 1.0));
     }
 
+    // The optimum is one for the mean of all pixels, as a pilot knows them, and says little of the few that mirror a
+    // caustic. Going on more often costs at most kInsurance, and brings these as many more paths.
+    float insured(float afterSpread) const {
+        const double spent = costs_.camera + findings_.share * costs_.light;
+        const double each = findings_.share * costs_.afterSpread / afterSpread;
+        if (!(each > 0)) return afterSpread;
+        return static_cast<float>(std::min(afterSpread + kInsurance * spent / each, 1.0));
+    }
+
     // Efficiencies of all shares; the best is that of the plan.
     void judge(const LightPathPlan& plan) {
         const Listened heard = listen(plan, kJudge);
@@ -200,10 +214,12 @@ class Planner {
             findings_.bestShare = 1;
             return describe(heard, 1);
         }
-        const double light = static_cast<double>(heard.rays) / static_cast<double>(heard.paths);
         PathContext seeded = context_;
         seeded.settings.seed = combine64(context_.settings.seed, kJudge);
         const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
+        const double each = kLightCost / static_cast<double>(heard.paths);
+        costs_ = {kTracedCost * camera.rays, each * static_cast<double>(heard.rays),
+                  each * static_cast<double>(heard.raysAfterSpread)};
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera.shared);
         findings_.rest = camera.rest.planned();
@@ -211,8 +227,7 @@ class Planner {
         findings_.gain = 0;
         for (const double share : kShares) {
             const double after = forecast.variance(share, camera.shared);
-            const double gain =
-                plain / ((findings_.rest + after) * (kTracedCost * camera.rays + share * kLightCost * light));
+            const double gain = plain / ((findings_.rest + after) * (costs_.camera + share * costs_.light));
             if (!(gain > findings_.gain)) continue; // nor where all is dark
             findings_.gain = gain;
             findings_.bestShare = share;
@@ -232,6 +247,10 @@ class Planner {
     std::size_t lights_ = 0, targets_ = 1; // with what is not aimed
     std::vector<std::string> names_;       // of the targets
     std::unordered_map<const Light*, std::uint32_t> numbers_;
+    struct Costs {
+        double camera = 0, light = 0, afterSpread = 0; // of a path, in rays; the last is a part of light
+    };
+    Costs costs_;
     LightPathFindings findings_;
 };
 

@@ -47,6 +47,7 @@ struct LightPathFindings {
     double before = 0, after = 0, rest = 0;
     double gain = 1;           // of efficiency, as far as these tell, with the best share
     double share = 0;          // light paths for each camera path; 0: none
+    double afterSpread = 1;    // probability to go on past the first rough surface or scattering
     double bestShare = 0;      // what was judged, whether it is taken or not
     std::uint64_t rays = 0;    // that it took to find out
     std::uint32_t lights = 0;  // of the scene

@@ -16,6 +16,7 @@ LightPathFindings measured() {
     f.rest = 0.05;
     f.gain = 11.7;
     f.share = f.bestShare = 2;
+    f.afterSpread = 0.39;
     f.rays = 4000;
     f.lights = 1;
     f.targets = 2;
@@ -63,14 +64,30 @@ TEST_CASE("light paths: each reason why there are none has words and a word of i
     }
 }
 
+TEST_CASE("what manifold sampling cannot follow is said to be merged only where merging is used") {
+    LightPathFindings f = measured();
+    CHECK(manifoldLine(f).empty());
+    f.manifold.used = true;
+    f.manifold.gain = 3;
+    f.manifold.estimates = 1;
+    f.manifold.obstacleCount = 1;
+    CHECK(manifoldLine(f) == "manifold sampling behind glass and in mirrors: forecast 3 × as efficient; 1 polished shape "
+                             "cannot be followed: what it focuses is found by chance there");
+    f.manifold.obstacleCount = 2;
+    f.merging.used = true;
+    CHECK(manifoldLine(f).ends_with("2 polished shapes cannot be followed: what they focus is merged or found by chance "
+                                    "there"));
+}
+
 TEST_CASE("light paths at length and in JSON") {
     const std::string text = lightPathText(measured());
     for (const char* part : {"Light paths: 2 per camera path", "lamp → ball", "lamp → elsewhere", "all others",
-                             "1 light, 2 targets", "3 by camera paths alone, 0.25 by both; by everything else 0.05"})
+                             "39 % of them go on", "1 light, 2 targets", "3 by camera paths alone, 0.25 by both; by everything else 0.05"})
         CHECK_MESSAGE(text.find(part) != std::string::npos, part);
     const auto json = nlohmann::json::parse(lightPathJson(measured()).text());
     CHECK(json["verdict"] == "used");
     CHECK(json["gain"] == 11.7);
+    CHECK(json["go_on_after_spread"] == 0.39);
     REQUIRE(json["shares"].size() == 4);
     CHECK(json["shares"][1]["target"].is_null());
     CHECK(json["shares"][3]["light"].is_null());

@@ -163,6 +163,20 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     CHECK(findingsOf(dark).verdict == noLights);
 }
 
+// Hardly anything that has been spread comes back to what the camera sees: for the mean of all pixels it would be best
+// to end nine of ten of these paths. What ends them saves next to nothing, though.
+TEST_CASE("light paths: going on past a rough surface is left off only as far as it saves time") {
+    const LightPathFindings open = findingsOf(sceneText(""));
+    CHECK(open.afterSpread > 0.5);
+    // Within white walls paths that go on are long, and a camera that looks at the caustic sees little of what they
+    // bring.
+    std::string text = sceneText("light-paths always",
+                                 "shape room box { min -3 -1 -3; max 3 4 6; material diffuse { reflectance 0.97 } }\n");
+    text.replace(text.find("look-at 0 0.3 0; fov 45 deg"), 27, "look-at -0.45 0 0; fov 4 deg");
+    const LightPathFindings closed = findingsOf(text);
+    CHECK(closed.afterSpread < 0.5);
+}
+
 // Under a ball of glass: with a lamp half as wide as the ball the samples of a pixel, stratified over what is full of
 // the lamp, beat paths from it.
 TEST_CASE("light paths: a small lamp needs them, a large one does not") {
