@@ -71,18 +71,21 @@ TEST_CASE("what manifold sampling cannot follow is said to be merged only where 
     f.manifold.gain = 3;
     f.manifold.estimates = 1;
     f.manifold.obstacleCount = 1;
-    CHECK(manifoldLine(f) == "manifold sampling behind glass and in mirrors: forecast 3 × as efficient; 1 polished shape "
-                             "cannot be followed: what it focuses is found by chance there");
+    CHECK(manifoldLine(f) ==
+          "manifold sampling behind glass and in mirrors: forecast 3 × as efficient; 1 polished shape "
+          "cannot be followed: what it focuses is found by chance there");
     f.manifold.obstacleCount = 2;
     f.merging.used = true;
-    CHECK(manifoldLine(f).ends_with("2 polished shapes cannot be followed: what they focus is merged or found by chance "
-                                    "there"));
+    CHECK(
+        manifoldLine(f).ends_with("2 polished shapes cannot be followed: what they focus is merged or found by chance "
+                                  "there"));
 }
 
 TEST_CASE("light paths at length and in JSON") {
     const std::string text = lightPathText(measured());
-    for (const char* part : {"Light paths: 2 per camera path", "lamp → ball", "lamp → elsewhere", "all others",
-                             "39 % of them go on", "1 light, 2 targets", "3 by camera paths alone, 0.25 by both; by everything else 0.05"})
+    for (const char* part :
+         {"Light paths: 2 per camera path", "lamp → ball", "lamp → elsewhere", "all others", "39 % of them go on",
+          "1 light, 2 targets", "3 by camera paths alone, 0.25 by both; by everything else 0.05"})
         CHECK_MESSAGE(text.find(part) != std::string::npos, part);
     const auto json = nlohmann::json::parse(lightPathJson(measured()).text());
     CHECK(json["verdict"] == "used");
