@@ -29,7 +29,7 @@ add_library(abbe_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest
 
 # abbe_test(name folder DEPS … LABEL …): one doctest executable from every .cpp of a folder under tests/.
 function(abbe_test name folder)
-    cmake_parse_arguments(A "NUMERIC" "LABEL;TIMEOUT" "DEPS" ${ARGN})
+    cmake_parse_arguments(A "INPUT" "LABEL;TIMEOUT" "DEPS" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
     if(NOT sources)
         return()
@@ -42,7 +42,7 @@ function(abbe_test name folder)
     add_test(NAME ${name} COMMAND test_${name})
     if(A_LABEL STREQUAL quick)
         add_dependencies(quick_tests test_${name})
-        if(NOT A_NUMERIC)
+        if(A_INPUT)
             add_dependencies(input_tests test_${name})
             list(APPEND A_LABEL input)
         endif()

@@ -12,11 +12,6 @@ constexpr Lobes kBothSides = Lobes(Lobe::reflection) | Lobe::transmission;
 
 Spectrum relativeIndex(Spectrum n, bool outside) { return outside ? n : Spectrum(1.f) / n; }
 
-// Radiance is compressed into a smaller cone by refraction: 1/η² towards the eye, nothing for light paths.
-Spectrum compression(Spectrum eta, Transport transport) {
-    return transport == Transport::radiance ? Spectrum(1.f) / (eta * eta) : Spectrum(1.f);
-}
-
 Spectrum meanInLanes(Spectrum a) { return Spectrum(mean(a)); }
 
 } // namespace

@@ -15,6 +15,11 @@ namespace abbe {
 // True if the index differs between the lanes by more than rounding.
 inline bool disperses(Spectrum n) { return maxLane(abs(n - Spectrum(n[0]))) >= 1e-5f; }
 
+// Radiance is compressed into a smaller cone by refraction: 1/η² towards the eye, nothing for light paths.
+inline Spectrum compression(Spectrum eta, Transport transport) {
+    return transport == Transport::radiance ? Spectrum(1.f) / (eta * eta) : Spectrum(1.f);
+}
+
 class SmoothDielectricBsdf final : public Bsdf {
   public:
     explicit SmoothDielectricBsdf(Spectrum n)

@@ -10,11 +10,6 @@ namespace {
 
 const Spectrum kOne(1.f), kNone(0.f);
 
-// Radiance is compressed into a smaller cone by refraction: 1/η² towards the eye, nothing for light paths.
-Spectrum compression(Spectrum eta, Transport transport) {
-    return transport == Transport::radiance ? kOne / (eta * eta) : kOne;
-}
-
 bool isOne(const Spectrum& a) { return maxLane(abs(a - kOne)) == 0; }
 
 Vec3 flipped(Vec3 w) { return {w.x, w.y, -w.z}; }

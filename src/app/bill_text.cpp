@@ -32,13 +32,6 @@ std::string countOf(std::uint64_t n) {
     return text;
 }
 
-// By characters, of which labels may have such that take several bytes.
-std::string padded(const std::string& text, std::size_t width) {
-    const auto columns =
-        static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
-    return text + std::string(width > columns ? width - columns : 0, ' ');
-}
-
 std::string line(const BillRow& row, double seconds) {
     std::string text = fmt::format("  {} {:>9.3f} s ±{:<7.3f}{:>6.1f} %", padded(row.label, 26), row.seconds,
                                    row.uncertainty, seconds > 0 ? 100 * row.seconds / seconds : 0);

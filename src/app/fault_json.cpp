@@ -2,11 +2,7 @@
 
 namespace abbe {
 
-namespace {
-
 Json nameOrNull(const std::string& name) { return name.empty() ? Json() : Json(name); }
-
-} // namespace
 
 Json lanesJson(const Spectrum& s) {
     Json list = Json::list();

@@ -8,5 +8,6 @@ namespace abbe {
 
 Json faultJson(const FoundFault&);
 Json lanesJson(const Spectrum&);
+Json nameOrNull(const std::string& name); // null where it is empty
 
 } // namespace abbe

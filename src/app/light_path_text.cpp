@@ -1,5 +1,7 @@
 #include "app/light_path_text.h"
 
+#include "app/progress_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -77,12 +79,6 @@ std::string reason(const LightPathFindings& f) {
     default:
         return "nobody looked";
     }
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-    const auto columns =
-        static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
-    return text + std::string(width > columns ? width - columns : 0, ' ');
 }
 
 std::string moment(double v) { return v > 1e6 ? "unbounded" : fmt::format("{:.3g}", v); }

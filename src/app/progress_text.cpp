@@ -43,6 +43,12 @@ int columns(std::string_view text) {
 
 } // namespace
 
+std::string padded(const std::string& text, std::size_t width) {
+    const auto columns =
+        static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+    return text + std::string(width > columns ? width - columns : 0, ' ');
+}
+
 std::string clockText(double seconds) {
     const auto s = static_cast<long long>(std::min(seconds, 1e15));
     if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);

@@ -11,6 +11,8 @@ namespace abbe {
 std::string clockText(double seconds);
 // "11.8 M", "950", "2.30 k": three digits.
 std::string countText(double count);
+// With blanks up to a width in characters, which may take several bytes each.
+std::string padded(const std::string& text, std::size_t width);
 
 // Whether the time left can be told yet: too early it would jump about.
 bool knowsTimeLeft(const Progress&);

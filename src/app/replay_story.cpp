@@ -88,8 +88,6 @@ Json triad(Vec3d v) {
     return list;
 }
 
-Json nameOrNull(const std::string& name) { return name.empty() ? Json() : Json(name); }
-
 constexpr std::string_view kKinds[] = {"surface", "light_asked", "light_met", "contribution",
                                        "scatter", "collision",   "fault",     "escape"}; // by PathEvent::Kind
 

@@ -238,12 +238,6 @@ ExitCode StudyCommand::study(StudyState& state, InterruptGuard& interrupt) {
     return ExitCode::done;
 }
 
-void writeText(const std::string& path, const std::string& text) {
-    AtomicFile file(path);
-    file.write(text);
-    file.commit();
-}
-
 void StudyCommand::write(const StudyReport& report, bool complete) {
     StudyFacts facts;
     facts.command = common_.commandLine;
@@ -259,9 +253,9 @@ void StudyCommand::write(const StudyReport& report, bool complete) {
     facts.complete = complete;
     facts.leftOut = plan_.chosen.leftOut;
     const std::string json = studyJson(report, facts), base = outputBase();
-    writeText(base + ".json", json);
-    writeText(base + ".csv", studyCsv(report, facts));
-    writeText(base + ".html", studyPage(json));
+    writeAtomically(base + ".json", json);
+    writeAtomically(base + ".csv", studyCsv(report, facts));
+    writeAtomically(base + ".html", studyPage(json));
     if (common_.json) {
         for (const char* extension : {".html", ".csv", ".json"})
             common_.console.data(Json::object({{"event", "file"}, {"path", base + extension}}).text() + "\n");

@@ -62,12 +62,6 @@ Json findingJson(const EffectFinding& f, const SourceMap& sources) {
         .set("png", png(f.image));
 }
 
-void writeText(const std::string& path, const std::string& text) {
-    AtomicFile file(path);
-    file.write(text);
-    file.commit();
-}
-
 } // namespace
 
 std::string effectsJson(const EffectStudy& study, const StudyOptions& options, const CommonOptions& common,
@@ -144,9 +138,9 @@ ExitCode studyEffects(const StudyOptions& options, const CommonOptions& common, 
     line.clear();
     if (study.stopped) return static_cast<ExitCode>(128 + interrupt.signal());
     const std::string json = effectsJson(study, options, common, loaded);
-    writeText(name + ".json", json);
-    writeText(name + ".csv", effectsCsv(study));
-    writeText(name + ".html", studyPage(json));
+    writeAtomically(name + ".json", json);
+    writeAtomically(name + ".csv", effectsCsv(study));
+    writeAtomically(name + ".html", studyPage(json));
     if (common.json) {
         for (const char* extension : {".html", ".csv", ".json"})
             common.console.data(Json::object({{"event", "file"}, {"path", name + extension}}).text() + "\n");

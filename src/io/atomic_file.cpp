@@ -81,4 +81,10 @@ void AtomicFile::commit() {
     syncFolder(target_);
 }
 
+void writeAtomically(const std::string& path, std::span<const char> bytes) {
+    AtomicFile file(path);
+    file.write(bytes);
+    file.commit();
+}
+
 } // namespace abbe

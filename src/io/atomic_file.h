@@ -35,4 +35,7 @@ class AtomicFile {
     std::uint64_t position_ = 0;
 };
 
+// A whole file at once.
+void writeAtomically(const std::string& path, std::span<const char> bytes);
+
 } // namespace abbe

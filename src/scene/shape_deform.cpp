@@ -82,6 +82,11 @@ double offGridDistance(const std::vector<SizedPoint>& key, const std::vector<Siz
     return largest;
 }
 
+bool mismatch(Span span, Diagnostics& diagnostics, const std::string& message) {
+    diagnostics.error("E0680", span, message, "not the points of the first key");
+    return false;
+}
+
 void warnOffGrid(double distance, Span span, Diagnostics& diagnostics) {
     if (!(distance > 0)) return;
     diagnostics

@@ -64,6 +64,8 @@ std::vector<Vec3> directionsOf(const std::vector<Vec3>& a, const std::vector<Vec
 double offGridDistance(const std::vector<Vec3>& key, const std::vector<Vec3>& instead, const Transform& place);
 double offGridDistance(const std::vector<SizedPoint>& key, const std::vector<SizedPoint>& instead, const Transform&);
 void warnOffGrid(double distance, Span, Diagnostics&);
+// E0680: a key has not the points of the first one. False.
+bool mismatch(Span, Diagnostics&, const std::string& message);
 
 template <typename State, typename Step>
 void warnOffGrid(const KeyGrid& grid, State state, Step step, const Transform& place, Span span,

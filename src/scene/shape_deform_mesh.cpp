@@ -11,14 +11,6 @@ namespace abbe {
 
 namespace {
 
-// As everywhere (shape_place.cpp): squares of coordinates stay finite in float.
-constexpr double kLargestCoordinate = 1e15;
-
-bool mismatch(Span span, Diagnostics& diagnostics, const std::string& message) {
-    diagnostics.error("E0680", span, message, "not the points of the first key");
-    return false;
-}
-
 template <typename Faces> std::optional<std::size_t> firstDifference(const Faces& a, const Faces& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (a[i] != b[i]) return i;

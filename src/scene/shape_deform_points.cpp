@@ -21,10 +21,6 @@ template <typename Params> Params withKey(const Params& params, const ShapeKey& 
 bool ownPoints(const SizedPointsParams& p) { return !p.file.value.empty() || !p.points.empty(); }
 bool ownRadius(const SizedPointsParams& p) { return p.radius || !p.radii.empty(); }
 
-void mismatch(Span span, Diagnostics& diagnostics, const std::string& message) {
-    diagnostics.error("E0680", span, message, "not the points of the first key");
-}
-
 const auto kPointsOf = [](const auto& data) -> const std::vector<SizedPoint>& { return data.points; };
 
 // The points of all steps; a warning if they are not exactly the keys.

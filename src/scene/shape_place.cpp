@@ -12,9 +12,6 @@ namespace abbe {
 
 namespace {
 
-// Embree takes coordinates up to about 1.8e18 and squares of them must stay finite in float.
-constexpr double kLargestCoordinate = 1e15;
-
 bool inReach(Vec3d p) { return isFinite(p) && maxComponent(abs(p)) < kLargestCoordinate; }
 
 void outOfReach(Span span, Diagnostics& diagnostics) {

@@ -6,9 +6,6 @@ namespace abbe {
 
 namespace {
 
-// Embree squares coordinates in float.
-constexpr double kLargestCoordinate = 1e15;
-
 std::optional<PointFile> readFile(const schema::Text& file, Span span, Diagnostics& diagnostics) {
     const Span at = file.span.valid() ? file.span : span;
     try {

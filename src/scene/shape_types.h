@@ -14,6 +14,9 @@
 
 namespace abbe {
 
+// m: Embree takes coordinates up to about 1.8e18, and squares of them must stay finite in float.
+inline constexpr double kLargestCoordinate = 1e15;
+
 // What every shape has. The transform takes the shape to its parent (object, group or world).
 struct ShapeParams {
     schema::Reference material;                         // unset: grey diffuse
