@@ -117,6 +117,7 @@ class Reader {
         };
         c->add_option_function<std::string>(name, store, help)->type_name(type);
     }
+    void addFrame(CLI::App* c, BuildOptions& b);
     void addGoals(CLI::App* c);
     void addSaving();
     void addRender();
@@ -160,10 +161,17 @@ class Reader {
     DoctorOptions doctor_;
 };
 
-void Reader::addGoals(CLI::App* c) {
-    BuildOptions& b = render_.build;
+// What of the command line a render's picture and plans hang on, beside the scene.
+void Reader::addFrame(CLI::App* c, BuildOptions& b) {
     c->add_option("--camera", b.camera, "Camera to render; without it the first one")->type_name("NAME");
     addRead(c, "--size", b.size, "WxH", "Size of the image in pixels", "a size such as 640x480", readSize);
+    c->add_option("--seed", b.seed, "Choose other random numbers")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
+        ->type_name("N");
+}
+
+void Reader::addGoals(CLI::App* c) {
+    BuildOptions& b = render_.build;
     c->add_option("--samples", b.samples, "Samples per pixel")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{4294967295}).description(""))
         ->type_name("N");
@@ -185,9 +193,6 @@ void Reader::addGoals(CLI::App* c) {
             "on or off", [](const std::string& text) -> std::optional<bool> {
                 return text == "on" || text == "off" ? std::optional(text == "on") : std::nullopt;
             });
-    c->add_option("--seed", b.seed, "Choose other random numbers")
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
-        ->type_name("N");
 }
 
 void Reader::addSaving() {
@@ -218,6 +223,7 @@ void Reader::addRender() {
     RenderOptions& r = render_;
     c->add_option("scene", r.input.path, "Scene file")->required()->type_name("");
     c->add_option("-o,--output", r.output, "Image to write (EXR)")->type_name("FILE");
+    addFrame(c, r.build);
     addGoals(c);
     addSaving();
     addDefines(c, r.input.defines);
@@ -277,6 +283,7 @@ void Reader::addExplain() {
          "Scene file, or words of the language")
         ->type_name("");
     c->add_flag("--effects", explain_.effects, "What a scene needs simulated; without one: all effects");
+    addFrame(c, explain_.build);
     addDefines(c, explain_.defines);
     addJson(c);
     c->callback([this] {

@@ -42,6 +42,7 @@ inline constexpr const char* kExplainHelp = R"(Explains a scene, a property, a t
 
 Examples:
   abbe explain room.scene --effects            what it needs simulated and which line asks, and what is not simulated
+  abbe explain pool.scene --camera diver       also which light paths a render with these options will take
   abbe explain camera.lens
   abbe explain dielectric
   abbe explain E0310

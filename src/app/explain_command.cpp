@@ -23,14 +23,16 @@ bool looksLikeFile(const std::string& topic) {
            std::filesystem::is_regular_file(topic, error);
 }
 
+bool hasFrame(const BuildOptions& b) { return !b.camera.empty() || b.size || b.seed; }
+
 // Decided by a look at the scene if need be, which takes its geometry. Undecided if that is at fault.
-LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& described) {
+LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& described, const BuildOptions& build) {
     const RenderSettings settings = renderSettings(described.render);
     LightPathFindings found;
     found.verdict = lightPathVerdict(described.scene, settings.technique);
     if (found.verdict != LightPathVerdict::undecided) return found;
     Diagnostics faults; // those of the scene's text have been told
-    const BuiltScene built = buildScene(loaded.tree, loaded.types, {}, faults);
+    const BuiltScene built = buildScene(loaded.tree, loaded.types, build, faults);
     if (faults.hasErrors()) return found;
     const FilmSettings film = filmSettings(built.film);
     const PixelFilm like({0, 0, 1, 1}, PixelFilter(film.filter, film.filterRadius),
@@ -40,13 +42,13 @@ LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& desc
 
 ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common) {
     const auto loaded = loadScene({options.topic, options.defines});
-    BuildOptions build;
+    BuildOptions build = options.build;
     build.geometry = false;
     BuiltScene built;
     if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
     common.console.report(loaded->diagnostics, loaded->sources);
     if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
-    const LightPathFindings found = lightPathsOf(*loaded, built);
+    const LightPathFindings found = lightPathsOf(*loaded, built, options.build);
     common.console.data(common.json
                             ? effectsJson(*loaded, built).set("light_paths", lightPathJson(found)).text(true) + "\n"
                             : effectsText(*loaded, built) + lightPathText(found));
@@ -56,11 +58,16 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
 } // namespace
 
 ExitCode run(const ExplainOptions& options, const CommonOptions& common) {
+    const bool scene = looksLikeFile(options.topic);
+    if (!scene && hasFrame(options.build)) {
+        common.console.line("`--camera`, `--size` and `--seed` are for a scene: `abbe explain x.scene --camera NAME`");
+        return ExitCode::usage;
+    }
     if (options.effects && options.topic.empty()) {
         common.console.data(allEffectsText());
         return ExitCode::done;
     }
-    if (options.effects || looksLikeFile(options.topic)) return explainScene(options, common);
+    if (options.effects || scene) return explainScene(options, common);
     schema::TypeTable types = makeTypeTable();
     SourceMap sources;
     Diagnostics diagnostics;

@@ -70,6 +70,7 @@ struct CheckOptions {
 struct ExplainOptions {
     std::string topic;    // a scene file, or words of the language
     bool effects = false; // of the scene; without a topic: those that there are
+    BuildOptions build;   // camera, size and seed of the render that is explained
     std::vector<std::string> defines;
 };
 

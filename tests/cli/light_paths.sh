@@ -92,6 +92,25 @@ cmp -s first out || fault "explain says something else the second time"
 expect 0 explain "$scene" --json
 says out '"verdict": "used"'
 says out '"target": "bead"'
+
+# A plan is one camera's, size's and seed's: explained as rendered.
+gain() { tr -d ' \n' <out | grep -o '"gain":[0-9.e+-]*' | head -n 1; }
+sed 's/^camera {/camera front {/
+    /^film/i camera side { from 4 2 0; look-at 0 0.4 0; fov 30 deg }' "$scene" >cameras.scene
+expect 0 explain cameras.scene --json
+front=$(gain)
+for frame in "--camera side" "--seed 3" "--size 40x40 --camera side --seed 3"; do
+    # shellcheck disable=SC2086 # flags and their values
+    expect 0 explain cameras.scene $frame --json
+    [[ $(gain) != "$front" ]] || fault "$frame changes no plan"
+    explained=$(gain)
+    # shellcheck disable=SC2086
+    expect 0 cameras.scene $frame --samples 8 -o frame.exr --json
+    [[ -n $explained && $(gain) == "$explained" ]] || fault "$frame: $explained explained, $(gain) rendered"
+done
+expect 1 explain cameras.scene --camera rear
+says err "no camera is named \`rear\`"
+expect 2 explain camera.lens --camera side
 expect 0 explain off.scene
 says out "Light paths: none, \`light-paths off\`"
 expect 0 explain "$scenes/room.scene"
