@@ -41,6 +41,7 @@ bool study(const Bsdf& bsdf, Vec3 wo, const Curve* ior, const Wavelengths& lambd
 std::string obstacleOf(const SurfaceUse& use, CasterCandidate& found) {
     const Material& material = *use.material;
     if (material.isBoundary()) return "nothing happens at it";
+    if (!material.focuses()) return "it is matte";
     SurfaceHit hit;
     hit.ng = {0, 0, 1};
     hit.material = &material;

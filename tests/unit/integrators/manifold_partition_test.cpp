@@ -41,6 +41,7 @@ TEST_CASE("casters: every polished shape is named, with what keeps chains from b
     const auto list = candidates(
         "material glass dielectric { ior 1.5 }\n"
         "shape paper quad { size 9 9; material diffuse }\n"
+        "shape tiles quad { size 9 9; material diffuse { reflectance checker { scale 1 } } }\n"
         "shape frosted sphere { center 3 0 0; material dielectric { roughness 0.3 } }\n"
         "shape ball sphere { material glass }\n"
         "shape egg sphere { center 0 4 0; transform { scale 1 1.2 1 }; material glass }\n"
@@ -66,6 +67,7 @@ TEST_CASE("casters: every polished shape is named, with what keeps chains from b
             CHECK_MESSAGE(list.at(name).find(part) != std::string::npos, list.at(name));
     };
     CHECK_FALSE(list.contains("paper"));
+    CHECK_FALSE(list.contains("tiles")); // looks at textures, but is matte whatever they say
     CHECK_FALSE(list.contains("frosted"));
     for (const char* name : {"ball", "egg", "ring", "water", "pane", "varnished"}) has(name, "");
     has("tinted", "textures");
