@@ -194,10 +194,7 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
                               {"program", versionNumber()}});
     if (s.statistics.lightPlan.verdict != LightPathVerdict::undecided)
         file.set("light_path_plan", lightPathJson(s.statistics.lightPlan));
-    const std::string text = file.text(true) + "\n";
-    AtomicFile out(path);
-    out.write(text);
-    out.commit();
+    writeAtomically(path, file.text(true) + "\n");
 }
 
 } // namespace abbe

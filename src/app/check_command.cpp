@@ -29,9 +29,7 @@ std::size_t fixScene(const SceneInput& input) {
         const FixResult fixed = applyFixes(loaded->sources.text(file), file, loaded->diagnostics);
         if (fixed.applied == 0) return applied;
         applied += fixed.applied;
-        AtomicFile out(input.path);
-        out.write(fixed.text);
-        out.commit();
+        writeAtomically(input.path, fixed.text);
     }
     return applied;
 }

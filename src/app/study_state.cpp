@@ -31,9 +31,7 @@ void writeFile(const std::string& path, std::span<const std::byte> bytes) {
     out.number(static_cast<std::uint64_t>(bytes.size()));
     whole.insert(whole.end(), bytes.begin(), bytes.end());
     out.number(hashOf(bytes));
-    AtomicFile file(path);
-    file.write({reinterpret_cast<const char*>(whole.data()), whole.size()});
-    file.commit();
+    writeAtomically(path, {reinterpret_cast<const char*>(whole.data()), whole.size()});
 }
 
 [[noreturn]] void damaged(const std::string& path) {

@@ -110,9 +110,7 @@ void writePng(const std::string& path, const PngPicture& p) {
     } catch (const IoError& e) {
         throw IoError(fmt::format("cannot write `{}`: {}", path, e.what()));
     }
-    AtomicFile file(path);
-    file.write(bytes);
-    file.commit();
+    writeAtomically(path, bytes);
 }
 
 } // namespace abbe
