@@ -3,7 +3,7 @@
 //   deformation still: only rays against a room of quads and a still mesh, for counting instructions
 #include "bench/measure.h"
 #include "geometry/deforming_mesh.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/quad.h"
 #include "unit/geometry/test_meshes.h"

@@ -1,7 +1,7 @@
 // Dicing of subdivision surfaces: million triangles per second on one thread, and bytes per triangle with the
 // acceleration structure; still, then displaced by noise and by an image. `dicing [LEVEL]`
 #include "base/parallel.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
 #include "textures/noise_texture.h"

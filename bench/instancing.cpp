@@ -4,7 +4,7 @@
 // dense at every count. Rays start at random points among them and go in random directions: what paths do after a
 // bounce. Each count runs in a process of its own, so that peaks do not mix.
 #include "base/parallel.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "math/hash.h"
 

@@ -2,7 +2,7 @@
 //   primitives [points, in thousands] [hairs, in thousands]
 #include "bench/measure.h"
 #include "geometry/curves.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/points.h"
 
 #include <cstdio>

@@ -6,6 +6,7 @@
 #include "math/vec.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace abbe {
 namespace {
@@ -184,73 +185,84 @@ class Layered final : public Material {
     NumberInput scale_, darkening_;
 };
 
+// What the coat absorbs, and how thick it is.
+std::vector<schema::FieldInfo> absorptionFields() {
+    using namespace schema;
+    using P = LayeredParams;
+    return {
+        field(FieldType::spectrum, "tint", &P::tint)
+            .role(SpectrumRole::albedo)
+            .range(0, 1)
+            .group("absorption")
+            .synonyms({"coat_color", "color"})
+            .doc("Share of the light left after going straight in and out again; all when absent.")
+            .example("tint rgb 0.9 0.7 0.4"),
+        field(FieldType::spectrum, "absorption", &P::absorption)
+            .role(SpectrumRole::unbounded)
+            .unit({Dimension::inverseLength, Dimension::none})
+            .range(0, 1e12)
+            .group("absorption")
+            .synonyms({"sigma_a"})
+            .doc("Absorption coefficient of the coat, 1/m, instead of tint.")
+            .example("absorption rgb 0.5 2 6 per-mm"),
+        field(FieldType::quantity, "thickness", &P::thickness)
+            .unit({Dimension::length})
+            .range(0, 1)
+            .byDefault("0.1 mm")
+            .synonyms({"depth"})
+            .doc("Thickness of the coat, for its absorption.")
+            .example("thickness 50 um"),
+        field(FieldType::number, "thickness-scale", &P::thicknessScale)
+            .unit({Dimension::none, Dimension::fraction})
+            .range(0, static_cast<double>(kThickest))
+            .byDefault("1")
+            .synonyms({"coat_thickness"})
+            .doc("Factor on the thickness, for absorption or tint: a texture lets lacquer pool and wear off.")
+            .example("thickness-scale ramp { input noise { scale 5 cm }; stop 0.4 0.2; stop 0.6 2 }"),
+    };
+}
+
 } // namespace
 
 schema::TypeInfo layeredType() {
     using namespace schema;
     using P = LayeredParams;
+    std::vector<FieldInfo> fields = {
+        field(FieldType::reference, "base", &P::base)
+            .to(Kind::material)
+            .required()
+            .synonyms({"substrate", "bottom", "under"})
+            .doc("Name of the material under the coat, or one written in place.")
+            .example("base diffuse { reflectance 0.3 }"),
+        field(FieldType::spectrum, "ior", &P::ior)
+            .role(SpectrumRole::index)
+            .range(1, 4)
+            .byDefault("1.5")
+            .synonyms({"coat_ior", "coat_IOR", "eta"})
+            .doc("Refractive index of the coat, that at 587.6 nm for all wavelengths; 1 is no coat.")
+            .example("ior 1.5"),
+        field(FieldType::number, "roughness", &P::roughness)
+            .unit({Dimension::none, Dimension::fraction})
+            .range(0, 1)
+            .byDefault("0")
+            .synonyms({"coat_roughness", "alpha"})
+            .doc("Roughness of the coat: 0 polished, 1 matte.")
+            .example("roughness 0.1"),
+    };
+    std::ranges::move(absorptionFields(), std::back_inserter(fields));
+    fields.push_back(
+        field(FieldType::number, "darkening", &P::darkening)
+            .unit({Dimension::none, Dimension::fraction})
+            .range(0, 1)
+            .byDefault("1")
+            .synonyms({"coat_darkening"})
+            .doc("How much the light reflected back onto the base darkens it: 1 as in nature, 0 not at all.")
+            .example("darkening 50 %"));
     return {.kind = Kind::material,
             .name = "layered",
             .doc = "A clear coat over another material: varnish, lacquer, a wet film.",
             .example = "material wood layered { base diffuse { reflectance rgb 0.4 0.2 0.1 }; roughness 0.1 }",
-            .fields = {
-                field(FieldType::reference, "base", &P::base)
-                    .to(Kind::material)
-                    .required()
-                    .synonyms({"substrate", "bottom", "under"})
-                    .doc("Name of the material under the coat, or one written in place.")
-                    .example("base diffuse { reflectance 0.3 }"),
-                field(FieldType::spectrum, "ior", &P::ior)
-                    .role(SpectrumRole::index)
-                    .range(1, 4)
-                    .byDefault("1.5")
-                    .synonyms({"coat_ior", "coat_IOR", "eta"})
-                    .doc("Refractive index of the coat, that at 587.6 nm for all wavelengths; 1 is no coat.")
-                    .example("ior 1.5"),
-                field(FieldType::number, "roughness", &P::roughness)
-                    .unit({Dimension::none, Dimension::fraction})
-                    .range(0, 1)
-                    .byDefault("0")
-                    .synonyms({"coat_roughness", "alpha"})
-                    .doc("Roughness of the coat: 0 polished, 1 matte.")
-                    .example("roughness 0.1"),
-                field(FieldType::spectrum, "tint", &P::tint)
-                    .role(SpectrumRole::albedo)
-                    .range(0, 1)
-                    .group("absorption")
-                    .synonyms({"coat_color", "color"})
-                    .doc("Share of the light left after going straight in and out again; all when absent.")
-                    .example("tint rgb 0.9 0.7 0.4"),
-                field(FieldType::spectrum, "absorption", &P::absorption)
-                    .role(SpectrumRole::unbounded)
-                    .unit({Dimension::inverseLength, Dimension::none})
-                    .range(0, 1e12)
-                    .group("absorption")
-                    .synonyms({"sigma_a"})
-                    .doc("Absorption coefficient of the coat, 1/m, instead of tint.")
-                    .example("absorption rgb 0.5 2 6 per-mm"),
-                field(FieldType::quantity, "thickness", &P::thickness)
-                    .unit({Dimension::length})
-                    .range(0, 1)
-                    .byDefault("0.1 mm")
-                    .synonyms({"depth"})
-                    .doc("Thickness of the coat, for its absorption.")
-                    .example("thickness 50 um"),
-                field(FieldType::number, "thickness-scale", &P::thicknessScale)
-                    .unit({Dimension::none, Dimension::fraction})
-                    .range(0, static_cast<double>(kThickest))
-                    .byDefault("1")
-                    .synonyms({"coat_thickness"})
-                    .doc("Factor on the thickness, for absorption or tint: a texture lets lacquer pool and wear off.")
-                    .example("thickness-scale ramp { input noise { scale 5 cm }; stop 0.4 0.2; stop 0.6 2 }"),
-                field(FieldType::number, "darkening", &P::darkening)
-                    .unit({Dimension::none, Dimension::fraction})
-                    .range(0, 1)
-                    .byDefault("1")
-                    .synonyms({"coat_darkening"})
-                    .doc("How much the light reflected back onto the base darkens it: 1 as in nature, 0 not at all.")
-                    .example("darkening 50 %"),
-            }};
+            .fields = std::move(fields)};
 }
 
 std::unique_ptr<const Material> makeLayered(const LayeredParams& params, const Material& base) {

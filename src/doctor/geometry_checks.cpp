@@ -1,6 +1,6 @@
 #include "doctor/geometry_checks.h"
 
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "math/random_stream.h"
 #include "math/warp.h"

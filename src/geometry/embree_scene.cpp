@@ -1,21 +1,14 @@
 #include "geometry/embree_scene.h"
 
-#include "base/check.h"
-#include "base/parallel.h"
 #include "base/work.h"
-#include "geometry/embree_device.h"
-#include "geometry/embree_sink.h"
-#include "geometry/instance_table.h"
 #include "geometry/surface_math.h"
 #include "geometry/time_steps.h"
 #include "render/material.h"
-#include "render/own_space.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <embree3/rtcore.h>
-#include <map>
+#include <cmath>
+#include <limits>
 
 namespace abbe {
 
@@ -39,51 +32,51 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.flags = 0;
 }
 
-// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding
-// of Embree's distance, a few ulp.
-constexpr float kBeforeEnd = 1 - 0x1p-20f;
-
-class EmbreeScene final : public Intersector {
-  public:
-    bool intersect(const Ray&, SurfaceHit&) const noexcept override;
-    bool occluded(const Ray&) const noexcept override;
-    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
-        return occluded({from, to - from, kBeforeEnd, time});
-    }
-    std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
-    std::optional<Passage> passage(const Ray&, const SurfaceHit&, float distance) const noexcept override;
-    Bounds3 bounds() const override { return bounds_; }
-    std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
-
-    EmbreeDevice device;
-    std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
-    EmbreeHandle<RTCScene, rtcReleaseScene> scene;
-    std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
-    std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
-    std::vector<std::unique_ptr<const InstanceTable>> tables;
-    Bounds3 bounds_;
-    bool moving = false; // anything
-
-  private:
-    using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
-
-    const GeometryRecord& recordOf(const RTCHit&, Path) const;
-    void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
-    void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;
-    void countMotion(const RTCHit&, Path) const;
-    void parametrize(const GeometryRecord&, const RawHit&, const Ray&, SurfaceHit&) const;
-    bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
-    bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
-    Passage passage(const RTCHit&, Path, float distance, const Ray&, const SurfaceHit&) const;
-
-    mutable std::atomic<std::uint64_t> rejected_{0};
-};
-
 [[gnu::always_inline]] inline void cast(RTCScene scene, RayContext& context, RTCRayHit& rayHit) {
     const WorkScope work(Work::tracing);
     rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context.rtc, &rayHit);
 }
+
+// How far the hit point is from the ray's line, squared, and where along the ray it is.
+struct Deviation {
+    float along, offLine2;
+};
+Deviation deviation(const Ray& ray, const SurfaceHit& hit) {
+    const Vec3 e = hit.p - ray.origin;
+    const float along = dot(e, ray.direction);
+    return {along, lengthSquared(e - ray.direction * along)};
+}
+
+// Corners of the triangles that a primitive consists of, in render space: one, or the two halves of a quad.
+struct Corners {
+    std::array<std::array<Vec3d, 3>, 2> triangle;
+    int count = 0;
+};
+Corners cornersOf(RTCScene scene, const RTCHit& h, const GeometryRecord& record, std::span<const PlacementStep> path,
+                  float time) {
+    Transform toRender;
+    for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement(time).map());
+    RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
+    const auto verticesOf = [&](unsigned step) {
+        return static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, step));
+    };
+    const StepPosition at = record.steps > 1 ? stepAt(time, record.steps) : StepPosition{};
+    const Vec3* const vertices = verticesOf(at.step);
+    const Vec3* const next = record.steps > 1 ? verticesOf(at.step + 1) : vertices;
+    const auto* indices =
+        static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+    const std::size_t corners = record.kind == PrimitiveKind::quads ? 4 : 3;
+    const auto vertex = [&](std::size_t i) {
+        const std::uint32_t v = indices[corners * h.primID + i];
+        const Vec3d p(record.steps > 1 ? between(vertices[v], next[v], at.fraction) : vertices[v]);
+        return path.empty() ? p : toRender.point(p);
+    };
+    if (corners == 3) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
+    return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
+}
+
+} // namespace
 
 const GeometryRecord& EmbreeScene::recordOf(const RTCHit& h, Path path) const {
     return records[h.geomID + (path.empty() ? 0 : path.back().table->firstRecord())];
@@ -130,16 +123,6 @@ void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw,
         if (textured) instance.parametrizationToRender(hit);
     }
     hit.instance = static_cast<std::uint32_t>(path[0].table->firstInstance() + path[0].index);
-}
-
-// How far the hit point is from the ray's line, squared, and where along the ray it is.
-struct Deviation {
-    float along, offLine2;
-};
-Deviation deviation(const Ray& ray, const SurfaceHit& hit) {
-    const Vec3 e = hit.p - ray.origin;
-    const float along = dot(e, ray.direction);
-    return {along, lengthSquared(e - ray.direction * along)};
 }
 
 bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
@@ -200,34 +183,6 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     hit.distance = distance;
     if (moving) countMotion(nearest, way);
     return true;
-}
-
-// Corners of the triangles that a primitive consists of, in render space: one, or the two halves of a quad.
-struct Corners {
-    std::array<std::array<Vec3d, 3>, 2> triangle;
-    int count = 0;
-};
-Corners cornersOf(RTCScene scene, const RTCHit& h, const GeometryRecord& record, std::span<const PlacementStep> path,
-                  float time) {
-    Transform toRender;
-    for (std::size_t i = path.size(); i-- > 0;) toRender = toRender.then(path[i].placement(time).map());
-    RTCGeometry geometry = rtcGetGeometry(scene, h.geomID);
-    const auto verticesOf = [&](unsigned step) {
-        return static_cast<const Vec3*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, step));
-    };
-    const StepPosition at = record.steps > 1 ? stepAt(time, record.steps) : StepPosition{};
-    const Vec3* const vertices = verticesOf(at.step);
-    const Vec3* const next = record.steps > 1 ? verticesOf(at.step + 1) : vertices;
-    const auto* indices =
-        static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
-    const std::size_t corners = record.kind == PrimitiveKind::quads ? 4 : 3;
-    const auto vertex = [&](std::size_t i) {
-        const std::uint32_t v = indices[corners * h.primID + i];
-        const Vec3d p(record.steps > 1 ? between(vertices[v], next[v], at.fraction) : vertices[v]);
-        return path.empty() ? p : toRender.point(p);
-    };
-    if (corners == 3) return {{{{vertex(0), vertex(1), vertex(2)}}}, 1};
-    return {{{{vertex(0), vertex(1), vertex(3)}, {vertex(2), vertex(3), vertex(1)}}}, 2};
 }
 
 // The true barycentrics and distance of a hit [Moller1997]; false if the ray misses the primitive. Rays that pass an
@@ -331,159 +286,6 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     const WorkScope work(Work::tracing);
     rtcOccluded1(scene.get(), &context.rtc, &r);
     return r.tfar < 0;
-}
-
-} // namespace
-
-struct EmbreeSceneBuilder::Impl {
-    using Shapes = std::vector<std::pair<const Shape*, Binding>>;
-    using Inside = std::pair<std::uint32_t, std::uint32_t>; // what holds placements, and the object placed
-    Shapes shapes;
-    std::vector<Shapes> objects;
-    std::map<Inside, std::vector<Placement>> placements;
-    std::map<Inside, std::vector<Motion>> moving;
-    Interval shutter;
-    bool nested = false;
-
-    // What is known of an object's scene once it is built.
-    struct BuiltObject {
-        RTCScene scene = nullptr;
-        std::size_t firstRecord = 0;
-        Bounds3 bounds;
-        int levels = 0; // of objects inside of it
-    };
-    std::vector<BuiltObject> built;
-    std::uint64_t instanceCount = 0;
-
-    static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
-    void addShapes(EmbreeScene&, const Shapes&, BuiltObject&) const;
-    void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
-    void addMoving(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
-    static const InstanceTable& addTable(EmbreeScene&, std::size_t geometryId, const BuiltObject& placed,
-                                         BuiltObject& inside, std::unique_ptr<const InstanceTable>);
-};
-
-EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
-    EmbreeHandle<RTCScene, rtcReleaseScene> scene(rtcNewScene(target.device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    return scene;
-}
-
-// Adds the shapes to the scene, their records to the target, and the bounds of the finite ones.
-void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& added, BuiltObject& object) const {
-    object.firstRecord = target.records.size();
-    EmbreeSink sink(target.device.get(), object.scene, target.records, nested);
-    for (const auto& [shape, binding] : added) {
-        std::uint32_t space = GeometryRecord::kUntextured;
-        if (binding.parametrized || shape->usesTextures() || (binding.material && binding.material->usesTextures())) {
-            space = static_cast<std::uint32_t>(target.ownSpaces.size());
-            target.ownSpaces.emplace_back(binding.toOwn.value_or(Transform{}));
-        }
-        sink.add(*shape, binding.material, binding.light, space);
-        if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());
-    }
-}
-
-// Adds what is placed inside, with geometry ids from the given one on, which no record needs: hits name what they met
-// in the innermost object.
-void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
-                                         BuiltObject& object) {
-    for (auto list = placements.lower_bound({inside, 0}); list != placements.end() && list->first.first == inside;
-         ++list) {
-        const BuiltObject& placed = built[list->first.second];
-        const auto& table = addTable(target, geometryId++, placed, object,
-                                     std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
-                                                                           placed.firstRecord, instanceCount));
-        if (inside == kScene) instanceCount += table.size();
-    }
-    addMoving(target, inside, geometryId, object);
-    ABBE_CHECK(object.levels <= kMaxInstanceLevels);
-}
-
-void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
-                                         BuiltObject& object) {
-    for (auto list = moving.lower_bound({inside, 0}); list != moving.end() && list->first.first == inside; ++list) {
-        const BuiltObject& placed = built[list->first.second];
-        const auto& table = addTable(target, geometryId++, placed, object,
-                                     std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
-                                                                           shutter, placed.firstRecord, instanceCount));
-        if (inside == kScene) instanceCount += table.size();
-    }
-}
-
-const InstanceTable& EmbreeSceneBuilder::Impl::addTable(EmbreeScene& target, std::size_t geometryId,
-                                                        const BuiltObject& placed, BuiltObject& inside,
-                                                        std::unique_ptr<const InstanceTable> table) {
-    table->attach(target.device.get(), inside.scene, geometryId);
-    inside.bounds.add(table->bounds(placed.bounds));
-    inside.levels = std::max(inside.levels, placed.levels + 1);
-    return *target.tables.emplace_back(std::move(table));
-}
-
-EmbreeSceneBuilder::EmbreeSceneBuilder() : impl_(std::make_unique<Impl>()) {}
-EmbreeSceneBuilder::~EmbreeSceneBuilder() = default;
-
-std::uint32_t EmbreeSceneBuilder::addShape(const Shape& shape, Binding binding) {
-    impl_->shapes.emplace_back(&shape, binding);
-    return static_cast<std::uint32_t>(impl_->shapes.size() - 1);
-}
-
-std::uint32_t EmbreeSceneBuilder::addObject(std::vector<std::pair<const Shape*, Binding>> shapes) {
-    impl_->objects.push_back(std::move(shapes));
-    return static_cast<std::uint32_t>(impl_->objects.size() - 1);
-}
-
-void EmbreeSceneBuilder::addInstance(std::uint32_t object, const Transform& map, std::uint32_t inside) {
-    ABBE_CHECK(object < impl_->objects.size() &&
-               (inside == kScene || (inside > object && inside < impl_->objects.size())));
-    impl_->placements[{inside, object}].emplace_back(map);
-}
-
-void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placement> placements, std::uint32_t inside) {
-    ABBE_CHECK(object < impl_->objects.size() &&
-               (inside == kScene || (inside > object && inside < impl_->objects.size())));
-    if (placements.empty()) return;
-    auto& list = impl_->placements[{inside, object}];
-    if (list.empty())
-        list = std::move(placements);
-    else
-        list.insert(list.end(), placements.begin(), placements.end());
-}
-
-void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutter = {open, duration}; }
-Interval EmbreeSceneBuilder::shutter() const { return impl_->shutter; }
-void EmbreeSceneBuilder::setNested(bool nested) { impl_->nested = nested; }
-
-void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, std::uint32_t inside) {
-    ABBE_CHECK(object < impl_->objects.size() &&
-               (inside == kScene || (inside > object && inside < impl_->objects.size())));
-    impl_->moving[{inside, object}].push_back(motion);
-}
-
-std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
-    auto result = std::make_unique<EmbreeScene>();
-    EmbreeScene& s = *result;
-    s.scene = Impl::newScene(s);
-    Impl::BuiltObject top;
-    top.scene = s.scene.get();
-    impl_->addShapes(s, impl_->shapes, top); // first: its records stand at its geometry ids
-    const std::size_t firstTable = s.records.size();
-    for (std::uint32_t i = 0; i < impl_->objects.size(); ++i) {
-        Impl::BuiltObject object;
-        object.scene = s.objectScenes.emplace_back(Impl::newScene(s)).get();
-        impl_->addShapes(s, impl_->objects[i], object);
-        impl_->addTables(s, i, s.records.size() - object.firstRecord, object);
-        rtcCommitScene(object.scene);
-        impl_->built.push_back(object);
-    }
-    impl_->addTables(s, kScene, firstTable, top);
-    s.bounds_ = top.bounds;
-    s.moving = std::ranges::any_of(s.records, [](const GeometryRecord& r) { return r.steps > 1; }) ||
-               std::ranges::any_of(s.tables, [](const auto& table) { return table->moves(); });
-    rtcCommitScene(s.scene.get());
-    s.device.throwIfFailed();
-    return result;
 }
 
 } // namespace abbe

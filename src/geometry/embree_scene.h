@@ -1,64 +1,59 @@
-// All geometry of a scene behind one intersector (Embree underneath, hidden in the .cpp).
+// All geometry of a scene behind one intersector, by Embree. EmbreeSceneBuilder fills it.
 #pragma once
 
-#include "geometry/instance.h"
-#include "math/key_grid.h"
-#include "math/keyed_transform.h"
+#include "geometry/embree_device.h"
+#include "geometry/embree_sink.h"
+#include "geometry/instance_table.h"
 #include "render/intersector.h"
-#include "render/shape.h"
+#include "render/own_space.h"
 
-#include <cstdint>
+#include <atomic>
+#include <embree3/rtcore.h>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
 namespace abbe {
 
-// Collects shapes, then builds the intersector once. Shapes are referred to, not owned: they, and the spans that
-// their commit() hands out, must outlive the intersector. Spans of vertices must be readable for 4 bytes past their
-// end (Embree loads 16 bytes). Not thread-safe; the build itself uses threadCount() threads.
-class EmbreeSceneBuilder {
+// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding
+// of Embree's distance, a few ulp.
+inline constexpr float kBeforeEnd = 1 - 0x1p-20f;
+
+class EmbreeScene final : public Intersector {
   public:
-    struct Binding {
-        const Material* material = nullptr;
-        const Light* light = nullptr;
-        // For textures: from the coordinates of the shape to its own space, before its transform; nothing: the same.
-        std::optional<Transform> toOwn = {};
-        bool parametrized = false; // even if no material looks at textures
-    };
+    bool intersect(const Ray&, SurfaceHit&) const noexcept override;
+    bool occluded(const Ray&) const noexcept override;
+    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
+        return occluded({from, to - from, kBeforeEnd, time});
+    }
+    std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
+    std::optional<Passage> passage(const Ray&, const SurfaceHit&, float distance) const noexcept override;
+    Bounds3 bounds() const override { return bounds_; }
+    std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 
-    EmbreeSceneBuilder();
-    ~EmbreeSceneBuilder();
-    EmbreeSceneBuilder(const EmbreeSceneBuilder&) = delete;
-    EmbreeSceneBuilder& operator=(const EmbreeSceneBuilder&) = delete;
-
-    // A shape in render space. Returns how many were added before.
-    std::uint32_t addShape(const Shape&, Binding);
-    // Shapes in a space of their own, seen only through instances. Returns the object's number. There may be none: an
-    // object can consist of instances alone.
-    std::uint32_t addObject(std::vector<std::pair<const Shape*, Binding>>);
-
-    static constexpr std::uint32_t kScene = 0xffffffffu;
-    // Places an object in the scene, or inside an object that was added after it; many times at 48 bytes each, and
-    // about 60 more for Embree. Requires maps without fault (Placement::findFault), object numbers from addObject, and
-    // objects in at most kMaxInstanceLevels objects.
-    void addInstance(std::uint32_t object, const Transform&, std::uint32_t inside = kScene);
-    void addInstances(std::uint32_t object, std::vector<Placement>, std::uint32_t inside = kScene);
-    // The time, in s, at which Ray::time is 0, and how much later it is 1. Before the first addMoving.
-    void setShutter(double open, double duration);
-    Interval shutter() const;
-    // Whether Intersector::coincident() is to find anything, for which meshes of dielectrics pay.
-    void setNested(bool);
-    // Places an object that moves while the shutter is open, as addInstance. Requires maps without fault at all times
-    // of the interval.
-    void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene);
-    // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
-    std::unique_ptr<Intersector> build();
+    EmbreeDevice device;
+    std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
+    EmbreeHandle<RTCScene, rtcReleaseScene> scene;
+    std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
+    std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
+    std::vector<std::unique_ptr<const InstanceTable>> tables;
+    Bounds3 bounds_;
+    bool moving = false; // anything
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
+
+    const GeometryRecord& recordOf(const RTCHit&, Path) const;
+    void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
+    void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;
+    void countMotion(const RTCHit&, Path) const;
+    void parametrize(const GeometryRecord&, const RawHit&, const Ray&, SurfaceHit&) const;
+    bool resolve(RTCRayHit&, RayContext&, const Ray&, SurfaceHit&) const;
+    bool recompute(RTCHit&, Path, const Ray&, float& distance) const;
+    Passage passage(const RTCHit&, Path, float distance, const Ray&, const SurfaceHit&) const;
+
+    mutable std::atomic<std::uint64_t> rejected_{0};
 };
 
 } // namespace abbe

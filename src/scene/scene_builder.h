@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cameras/camera_params.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/subdivision_surface.h"
 #include "lights/amount.h"
 #include "lights/area_light_types.h"

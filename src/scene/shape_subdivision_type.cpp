@@ -2,22 +2,25 @@
 #include "scene/shape_subdivision.h"
 #include "scene/shape_subdivision_words.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace abbe {
 
+using namespace schema;
 using namespace subdivision_words;
 
 namespace {
+
+using P = SubdivisionParams;
 
 template <std::size_t n> std::vector<std::string_view> words(const std::string_view (&list)[n]) {
     return {list, list + n};
 }
 
-} // namespace
-
-schema::TypeInfo subdivisionType() {
-    using namespace schema;
-    using P = SubdivisionParams;
-    std::vector<FieldInfo> fields = {
+// The cage and what its points carry.
+std::vector<FieldInfo> cageFields() {
+    return {
         field<P, Text>(FieldType::file, "file", &P::file)
             .argument(0)
             .group("source")
@@ -43,6 +46,12 @@ schema::TypeInfo subdivisionType() {
             .doc("The rows of `uvs` that the corners of each face have, like `faces`: seams where neighbours differ.")
             .example("uv-faces { - 0 1 2 3 }"),
         attributeField<P>(),
+    };
+}
+
+// How the cage is smoothed.
+std::vector<FieldInfo> ruleFields() {
+    return {
         field<P, Choice>(FieldType::choice, "scheme", &P::scheme)
             .choices(words(kSchemes))
             .byDefault("catmull-clark")
@@ -68,6 +77,12 @@ schema::TypeInfo subdivisionType() {
             .doc("How sharpness fades along a crease of several values. The file's own choice when absent, else "
                  "uniform.")
             .example("creasing chaikin"),
+    };
+}
+
+// What stays sharp, and what is left out.
+std::vector<FieldInfo> sharpFields() {
+    return {
         field<P, std::vector<SharpRow>>(FieldType::sharpRow, "crease", &P::creases)
             .synonyms({"creases", "crease-edges"})
             .doc("A chain of points whose edges stay sharp: 0 smooth, 10 (when absent) infinitely sharp.")
@@ -81,6 +96,12 @@ schema::TypeInfo subdivisionType() {
             .synonyms({"hole"})
             .doc("Numbers of faces, from 0, that shape the surface and are left out.")
             .example("holes 3 4"),
+    };
+}
+
+// How finely the limit surface is cut.
+std::vector<FieldInfo> dicingFields() {
+    return {
         field<P, Quantity>(FieldType::quantity, "dicing", &P::dicing)
             .unit({Dimension::none, Dimension::pixels, Dimension::length})
             .range(0, 1e15)
@@ -104,6 +125,14 @@ schema::TypeInfo subdivisionType() {
             .doc("Most memory for the diced surface, in MiB: a finer `dicing` is made coarser, with a warning.")
             .example("memory 512"),
     };
+}
+
+} // namespace
+
+TypeInfo subdivisionType() {
+    std::vector<FieldInfo> fields = cageFields();
+    for (const auto more : {ruleFields, sharpFields, dicingFields})
+        std::ranges::move(more(), std::back_inserter(fields));
     fields.push_back(keysField<P>(meshKeyFields()));
     addGroupedShapeFields<P>(fields);
     return {Kind::shape,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "film/pixel_film.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/plane.h"
 #include "integrators/path_tracer.h"
 #include "lights/sky_light.h"

@@ -1,7 +1,7 @@
 // Rays from inside a closed mesh: one that meets nothing has found a crack.
 #pragma once
 
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "support/statistics.h"
 

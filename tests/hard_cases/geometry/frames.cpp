@@ -1,6 +1,6 @@
 // Faces without area, frames and normals: cases 9 to 12 and 23 of docs/hard_cases.md.
 #include "film/pixel_film.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_cleanup.h"
 #include "geometry/subdivision_surface.h"

@@ -1,7 +1,7 @@
 // Rays that leave surfaces and meet others: cases 1 to 5 of docs/hard_cases.md.
 #include "doctor/geometry_checks.h"
 #include "geometry/disk.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/plane.h"
 #include "geometry/quad.h"

@@ -1,5 +1,5 @@
 // Places, sizes and closed surfaces: cases 6 to 8 of docs/hard_cases.md.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/sphere.h"
 #include "hard_cases/hard_case.h"

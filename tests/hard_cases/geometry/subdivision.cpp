@@ -1,6 +1,6 @@
 // Subdivision surfaces, polygons, displacement and curves: cases 13 to 16 and 22 of docs/hard_cases.md.
 #include "geometry/curves.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_cleanup.h"
 #include "geometry/subdivision_check.h"

@@ -1,5 +1,5 @@
 // Maps that mirror, flatten, pile up and move: cases 17 to 21 of docs/hard_cases.md.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "hard_cases/hard_case.h"
 #include "math/keyed_transform.h"

@@ -1,6 +1,6 @@
 // Area lights over real shapes: irradiance against closed forms, and every sample against a traced ray.
 #include "geometry/disk.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/plane.h"
 #include "geometry/quad.h"

@@ -1,7 +1,7 @@
 // Curves against their definitions, solved in double without Embree.
 #include "geometry/curves.h"
 #include "geometry/curves_segment.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // where they are then.
 #include "geometry/curves.h"
 #include "geometry/deforming_mesh.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/points.h"
 #include "geometry/subdivision_surface.h"

@@ -1,5 +1,5 @@
 // Displaced surfaces against closed forms, and that they stay closed.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_surface.h"
 #include "support/analytic_textures.h"

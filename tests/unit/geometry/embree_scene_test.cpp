@@ -1,5 +1,5 @@
 #include "geometry/disk.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/plane.h"
 #include "geometry/quad.h"

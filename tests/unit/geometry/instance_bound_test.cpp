@@ -1,5 +1,5 @@
 // The error bounds of instances hold, and are not far above what rounding does.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/quad.h"
 #include "support/statistics.h"
 

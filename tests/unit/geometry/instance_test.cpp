@@ -1,5 +1,5 @@
 // Instances: one level, many, inside each other; what they promise about points, errors and distances.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/instance_table.h"
 #include "geometry/mesh.h"
 #include "geometry/sphere.h"

@@ -1,4 +1,4 @@
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_cleanup.h"
 #include "shape_test_support.h"

@@ -1,5 +1,5 @@
 // Objects that move while the shutter is open: at each time they are where they would stand still.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "math/warp.h"
 #include "support/statistics.h"

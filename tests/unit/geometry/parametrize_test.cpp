@@ -3,7 +3,7 @@
 #include "geometry/curves.h"
 #include "geometry/deforming_mesh.h"
 #include "geometry/disk.h"
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/face_materials.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"

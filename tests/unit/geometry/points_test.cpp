@@ -1,5 +1,5 @@
 // Points against spheres and disks in double.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/points.h"
 #include "support/statistics.h"
 

@@ -1,7 +1,7 @@
 // Seen from a point: what a shape's sampler promises, by tracing rays at the shape.
 #pragma once
 
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "render/shape.h"
 #include "support/chi_square.h"
 #include "support/statistics.h"

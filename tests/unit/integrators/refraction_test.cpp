@@ -1,6 +1,6 @@
 // Single rays through glass: exit angles against Snell's law, and absorption against Beer and Lambert's, in double
 // precision.
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "materials/dielectric.h"
 #include "spectrum/sampled_curve.h"

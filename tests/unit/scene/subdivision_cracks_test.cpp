@@ -1,6 +1,6 @@
 // No ray leaves a closed surface from inside: all closed ones of the reference cages, at three rates of dicing. A
 // million rays each at night (docs/testing.md).
-#include "geometry/embree_scene.h"
+#include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_check.h"
 #include "io/cage_file.h"
