@@ -29,7 +29,7 @@ add_library(abbe_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest
 
 # abbe_test(name folder DEPS … LABEL …): one doctest executable from every .cpp of a folder under tests/.
 function(abbe_test name folder)
-    cmake_parse_arguments(A "INPUT" "LABEL;TIMEOUT" "DEPS" ${ARGN})
+    cmake_parse_arguments(A "INPUT" "LABEL" "DEPS" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
     if(NOT sources)
         return()
@@ -47,8 +47,5 @@ function(abbe_test name folder)
             list(APPEND A_LABEL input)
         endif()
     endif()
-    if(NOT A_TIMEOUT)
-        set(A_TIMEOUT 300)
-    endif()
-    set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}" TIMEOUT ${A_TIMEOUT})
+    set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}")
 endfunction()
