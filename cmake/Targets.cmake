@@ -1,3 +1,20 @@
+# abbe_unity(target): its sources are compiled in units of up to 32 files of a folder, because headers cost more than what is in
+# the files. So names in anonymous namespaces are unique within a folder; -DABBE_UNITY=OFF compiles each file by itself.
+function(abbe_unity target)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${ABBE_UNITY} UNITY_BUILD_BATCH_SIZE 32)
+endfunction()
+
+# abbe_rarely_run(target…): code that takes longer to compile than it ever runs: commands, reports, tables of fields.
+function(abbe_rarely_run)
+    foreach(target IN LISTS ARGN)
+        if(ABBE_SANITIZE)
+            target_compile_options(${target} PRIVATE -O0) # two thirds to compile of -O1
+        else()
+            target_compile_options(${target} PRIVATE -O1) # two thirds to compile of -O2
+        endif()
+    endforeach()
+endfunction()
+
 # abbe_library(name folder DEPS … PRIVATE_DEPS …): the library of one folder, abbe::name. A folder without
 # sources (render: interfaces only) becomes an INTERFACE library. Project includes are written from the
 # top: "base/check.h" for src/base, "parser/scanner.h", "materials/diffuse.h".
@@ -9,19 +26,13 @@ function(abbe_library name folder)
         add_library(abbe_${name} STATIC ${sources})
         target_include_directories(abbe_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
         target_link_libraries(abbe_${name} PUBLIC ${A_DEPS} PRIVATE ${A_PRIVATE_DEPS})
+        abbe_unity(abbe_${name})
     else()
         add_library(abbe_${name} INTERFACE)
         target_include_directories(abbe_${name} INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
         target_link_libraries(abbe_${name} INTERFACE ${A_DEPS})
     endif()
     add_library(abbe::${name} ALIAS abbe_${name})
-endfunction()
-
-# abbe_little_run(target): its own code takes longer to compile than to run; under sanitizers that is most of the work.
-function(abbe_little_run target)
-    if(ABBE_SANITIZE)
-        target_compile_options(${target} PRIVATE -O0) # two thirds to compile of -O1
-    endif()
 endfunction()
 
 # The main program of every test, compiled once: doctest's own code is as much as ten tests.
@@ -38,7 +49,7 @@ function(abbe_test name folder)
     target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_link_libraries(test_${name} PRIVATE ${A_DEPS})
     target_compile_definitions(test_${name} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    abbe_little_run(test_${name})
+    abbe_rarely_run(test_${name})
     add_test(NAME ${name} COMMAND test_${name})
     if(A_LABEL STREQUAL quick)
         add_dependencies(quick_tests test_${name})

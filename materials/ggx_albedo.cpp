@@ -7,7 +7,7 @@ namespace {
 
 #include "materials/data/ggx_albedo.inl"
 
-using Grid = GgxAlbedoGrid;
+using AlbedoGrid = GgxAlbedoGrid;
 
 // Four neighbours of a position on an axis of `count` nodes and their weights: Catmull-Rom, with a straight
 // continuation beyond both ends.
@@ -38,8 +38,8 @@ struct Neighbours {
 
 // Linear along mu, where the coordinate has made the function nearly straight between nodes.
 float row(const std::uint16_t* table, float position) {
-    const float scaled = std::clamp(position, 0.f, 1.f) * (Grid::kMu - 1);
-    const int cell = std::min(static_cast<int>(scaled), Grid::kMu - 2);
+    const float scaled = std::clamp(position, 0.f, 1.f) * (AlbedoGrid::kMu - 1);
+    const int cell = std::min(static_cast<int>(scaled), AlbedoGrid::kMu - 2);
     const float a = table[cell], b = table[cell + 1];
     return a + (b - a) * (scaled - static_cast<float>(cell));
 }
@@ -48,31 +48,32 @@ float plane(const std::uint16_t* table, float position, const Neighbours& roughn
     float sum = 0;
     for (int i = 0; i < 4; ++i)
         if (roughness.weight[i] != 0)
-            sum += roughness.weight[i] * row(table + roughness.index[i] * Grid::kMu, position);
+            sum += roughness.weight[i] * row(table + roughness.index[i] * AlbedoGrid::kMu, position);
     return sum;
 }
 
-float widthOf(float alpha) { return std::max(alpha, static_cast<float>(Grid::kMinAlpha)); }
+float widthOf(float alpha) { return std::max(alpha, static_cast<float>(AlbedoGrid::kMinAlpha)); }
 
 } // namespace
 
 float ggxAlbedo(float mu, float alpha) {
-    const float x = Grid::coordinate(mu, widthOf(alpha), 0.f);
-    return plane(kMirrorAlbedo, x, {std::sqrt(alpha), Grid::kRoughness}) * (1.f / 65535);
+    const float x = AlbedoGrid::coordinate(mu, widthOf(alpha), 0.f);
+    return plane(kMirrorAlbedo, x, {std::sqrt(alpha), AlbedoGrid::kRoughness}) * (1.f / 65535);
 }
 
 float ggxAlbedo(float mu, float alpha, float eta) {
     const bool inside = eta < 1;
     const float contrast = std::abs(eta - 1) / (eta + 1);
     const float criticalMu = inside ? std::sqrt((1 - eta) * (1 + eta)) : 0;
-    const float x = Grid::coordinate(mu, widthOf(alpha), criticalMu);
-    const Neighbours roughness(std::sqrt(alpha), Grid::kRoughness);
-    const Neighbours index(std::sqrt(contrast / static_cast<float>(Grid::kMaxContrast)), Grid::kEta);
+    const float x = AlbedoGrid::coordinate(mu, widthOf(alpha), criticalMu);
+    const Neighbours roughness(std::sqrt(alpha), AlbedoGrid::kRoughness);
+    const Neighbours index(std::sqrt(contrast / static_cast<float>(AlbedoGrid::kMaxContrast)), AlbedoGrid::kEta);
     const std::uint16_t* table = inside ? kInsideAlbedo : kOutsideAlbedo;
     float sum = 0;
     for (int i = 0; i < 4; ++i)
         if (index.weight[i] != 0)
-            sum += index.weight[i] * plane(table + index.index[i] * Grid::kRoughness * Grid::kMu, x, roughness);
+            sum += index.weight[i] *
+                   plane(table + index.index[i] * AlbedoGrid::kRoughness * AlbedoGrid::kMu, x, roughness);
     return sum * (1.f / 65535);
 }
 

@@ -9,10 +9,10 @@ namespace {
 
 #include "materials/data/microfacet_cosines.inl"
 
-using Grid = MicrofacetCosineGrid;
+using CosineGrid = MicrofacetCosineGrid;
 
 Spectrum node(const std::int16_t* table, int roughness, int mu) {
-    const std::int16_t* row = table + (roughness * Grid::kMu + mu) * 8;
+    const std::int16_t* row = table + (roughness * CosineGrid::kMu + mu) * 8;
     const __m128i packed = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row));
     return Spectrum(_mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(packed)));
 }
@@ -30,10 +30,10 @@ int cellOf(float& position, int count) {
 Spectrum lookUp(const std::int16_t* table, float mu, float alpha) {
     const float width = std::max(alpha, static_cast<float>(GgxAlbedoGrid::kMinAlpha));
     float x = GgxAlbedoGrid::coordinate(mu, width, 0.f), y = std::sqrt(std::min(alpha, 1.f));
-    const int i = cellOf(x, Grid::kMu), j = cellOf(y, Grid::kRoughness);
+    const int i = cellOf(x, CosineGrid::kMu), j = cellOf(y, CosineGrid::kRoughness);
     const Spectrum low = between(node(table, j, i), node(table, j, i + 1), x);
     const Spectrum high = between(node(table, j + 1, i), node(table, j + 1, i + 1), x);
-    const Spectrum scale(width * static_cast<float>(1 / Grid::kScale));
+    const Spectrum scale(width * static_cast<float>(1 / CosineGrid::kScale));
     return min(max(fma(between(low, high, y), scale, Spectrum(mu)), Spectrum(0.f)), Spectrum(1.f));
 }
 

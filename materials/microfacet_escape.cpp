@@ -10,7 +10,7 @@ constexpr float kPoint[kPoints] = {0.0337652429f, 0.1693953068f, 0.3806904070f,
 constexpr float kWeight[kPoints] = {0.0856622462f, 0.1803807865f, 0.2339569673f,
                                     0.2339569673f, 0.1803807865f, 0.0856622462f};
 
-const Spectrum kOne(1.f), kNone(0.f), kTiny(1e-12f);
+constexpr Spectrum kTiny(1e-12f);
 
 } // namespace
 

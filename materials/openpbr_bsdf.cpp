@@ -8,8 +8,6 @@
 namespace abbe {
 namespace {
 
-const Spectrum kOne(1.f), kNone(0.f);
-
 bool isOne(const Spectrum& a) { return maxLane(abs(a - kOne)) == 0; }
 
 Vec3 flipped(Vec3 w) { return {w.x, w.y, -w.z}; }

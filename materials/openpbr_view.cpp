@@ -7,8 +7,6 @@
 namespace abbe {
 namespace {
 
-const Spectrum kOne(1.f);
-
 // Cosines at which a lobe meets microfacets, for integrals over them: dense where most of the light is and, from within
 // a dense base, where total reflection makes an edge.
 class MetCosines {

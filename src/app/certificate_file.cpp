@@ -13,8 +13,8 @@ namespace abbe {
 
 namespace {
 
-constexpr const char* kVersion = "abbe-certificate 1";
-constexpr const char* kNone = "none: ";
+constexpr const char* kCertificateFormat = "abbe-certificate 1";
+constexpr const char* kNoVerdict = "none: ";
 constexpr const char* kCaveat =
     "estimated from the samples: what no sample has hit is not in the image nor in its error";
 
@@ -96,7 +96,8 @@ Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
 } // namespace
 
 std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, const RenderStatistics& s) {
-    std::vector<ImageAttribute> list{{"abbe.certificate", c.reason.empty() ? kVersion : kNone + c.reason}};
+    std::vector<ImageAttribute> list{
+        {"abbe.certificate", c.reason.empty() ? kCertificateFormat : kNoVerdict + c.reason}};
     if (c.reason.empty()) {
         addFigure(list, kRelative, c.relative);
         if (c.display) addFigure(list, kDisplay, *c.display);
@@ -131,7 +132,7 @@ std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute> 
     c.fewest = header.whole("abbe.samplesFewest");
     c.samples = header.get<double>("abbe.samplesMean").value_or(0);
     c.most = header.whole("abbe.samplesMost");
-    if (verdict->starts_with(kNone)) c.reason = verdict->substr(std::string_view(kNone).size());
+    if (verdict->starts_with(kNoVerdict)) c.reason = verdict->substr(std::string_view(kNoVerdict).size());
     const auto relative = header.figure(kRelative);
     if (relative) c.relative = *relative;
     if (!relative && c.reason.empty()) c.reason = fmt::format("the header lacks `{}`", kRelative);
@@ -181,7 +182,7 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
     const RenderSummary& s = *facts.summary;
     double seconds = 0;
     for (const auto& phase : s.phases) seconds += phase.second;
-    Json file = Json::object({{"format", kVersion},
+    Json file = Json::object({{"format", kCertificateFormat},
                               {"image", std::filesystem::path(s.image).filename().string()},
                               {"partial", s.statistics.stopped || s.partial},
                               {"parts", facts.parts},

@@ -17,8 +17,8 @@ namespace abbe {
 
 namespace {
 
-constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kVersion = 4;
+constexpr char kCheckpointMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
+constexpr std::uint32_t kCheckpointVersion = 4;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
@@ -253,8 +253,8 @@ bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, co
                      RenderState& state, const std::function<bool()>& sound) {
     ABBE_CHECK(header.lightBlocks == state.lightBlockCount());
     AtomicFile file(path);
-    writeBytes(file, kMagic, sizeof kMagic);
-    const std::uint32_t version[2] = {kVersion, 0};
+    writeBytes(file, kCheckpointMagic, sizeof kCheckpointMagic);
+    const std::uint32_t version[2] = {kCheckpointVersion, 0};
     writeBytes(file, version, sizeof version);
     writeBlock(file, headerBlock, bytesOf(header));
     writeTiles(file, planes, state);
@@ -298,17 +298,17 @@ const CheckpointReader::Block& CheckpointReader::next() {
 }
 
 void CheckpointReader::readHeader() {
-    char magic[sizeof kMagic] = {};
+    char magic[sizeof kCheckpointMagic] = {};
     std::uint32_t version[2] = {};
     file_.read(magic, sizeof magic);
     file_.read(reinterpret_cast<char*>(version), sizeof version);
-    if (!file_ || std::memcmp(magic, kMagic, sizeof magic) != 0)
+    if (!file_ || std::memcmp(magic, kCheckpointMagic, sizeof magic) != 0)
         throw CheckpointFault("E0661", fmt::format("`{}` is no checkpoint of a render", path_),
                               "checkpoints end in `.ckpt`, parts of renders in `.abbe`");
-    if (version[0] != kVersion || version[1] != 0)
+    if (version[0] != kCheckpointVersion || version[1] != 0)
         throw CheckpointFault("E0661",
                               fmt::format("`{}` is a checkpoint of version {}; this program knows version {}", path_,
-                                          version[0], kVersion),
+                                          version[0], kCheckpointVersion),
                               "continue it with the program that made it");
     position_ = sizeof magic + sizeof version;
     const Block& block = next();

@@ -6,7 +6,7 @@ namespace abbe {
 
 namespace {
 
-constexpr const char* kInfoHelp =
+constexpr const char* kVolumeInfoHelp =
     R"(Tells what is in an OpenVDB file: grids, bounds, voxels, ranges, and what looks wrong.
 
 Examples:
@@ -64,7 +64,7 @@ void addConvert(CLI::App& command, VolumeOptions& v) {
 
 void addVolumeActions(CLI::App& command, VolumeOptions& v, bool& json) {
     command.require_subcommand(1);
-    CLI::App* info = addAction(command, "info", kInfoHelp, v, VolumeOptions::Action::info);
+    CLI::App* info = addAction(command, "info", kVolumeInfoHelp, v, VolumeOptions::Action::info);
     info->add_option("file", v.input, "OpenVDB file")->required()->type_name("");
     info->add_flag("--json", json, "JSON on stdout");
     CLI::App* make = addAction(command, "make", kMakeHelp, v, VolumeOptions::Action::make);

@@ -13,10 +13,10 @@ namespace abbe {
 namespace {
 
 bool isExr(const std::string& path) {
-    constexpr char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
+    constexpr char kExrMagic[4] = {0x76, 0x2f, 0x31, 0x01};
     char bytes[4] = {};
     std::ifstream file(path, std::ios::binary);
-    return file.read(bytes, 4) && std::equal(bytes, bytes + 4, kMagic);
+    return file.read(bytes, 4) && std::equal(bytes, bytes + 4, kExrMagic);
 }
 
 int replicatesOf(const ExrInfo& info) {

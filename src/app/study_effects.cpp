@@ -23,7 +23,7 @@ namespace abbe {
 namespace {
 
 constexpr std::uint32_t kSamples = 64; // of each render, where nobody asked for others
-constexpr const char* kMeasure =
+constexpr const char* kEffectMeasure =
     "deltaTime: share of the processor time of rendering that goes with the effect, over pairs of one seed; flip: mean "
     "HDR-FLIP between the images; relMse = mean (x - a)(x' - b)/(r^2 + 0.01 mean(r)^2) of the image without the "
     "effect, "
@@ -78,7 +78,7 @@ std::string effectsJson(const EffectStudy& study, const StudyOptions& options, c
                                                  {"effects", effectNames(study.effects)}})},
                          {"replicates", options.seeds},
                          {"seed", static_cast<std::int64_t>(options.build.seed.value_or(0))},
-                         {"measure", kMeasure},
+                         {"measure", kEffectMeasure},
                          {"curves", Json::list()},
                          {"effects", std::move(effects)},
                          {"bill", billJson(study.bill)},
@@ -89,7 +89,7 @@ std::string effectsJson(const EffectStudy& study, const StudyOptions& options, c
 
 std::string effectsCsv(const EffectStudy& study) {
     std::string text =
-        fmt::format("# {}\neffect,seconds_on,seconds_off,delta_time,low,high,predicted,flip,relmse\n", kMeasure);
+        fmt::format("# {}\neffect,seconds_on,seconds_off,delta_time,low,high,predicted,flip,relmse\n", kEffectMeasure);
     for (const EffectFinding& f : study.findings)
         if (f.reason.empty())
             text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}\n", f.name, f.secondsOn,

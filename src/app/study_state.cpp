@@ -18,16 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kMagic[8] = {'A', 'B', 'B', 'E', 'S', 'T', 'D', 'Y'};
-constexpr std::uint32_t kVersion = 1;
+constexpr char kStudyMagic[8] = {'A', 'B', 'B', 'E', 'S', 'T', 'D', 'Y'};
+constexpr std::uint32_t kStudyVersion = 1;
 constexpr const char* kExtension = ".abbe";
 
 // Magic, version, size of the bytes, the bytes, their hash.
 void writeFile(const std::string& path, std::span<const std::byte> bytes) {
     std::vector<std::byte> whole;
     ByteWriter out(whole);
-    for (const char c : kMagic) out.number(c);
-    out.number(kVersion);
+    for (const char c : kStudyMagic) out.number(c);
+    out.number(kStudyVersion);
     out.number(static_cast<std::uint64_t>(bytes.size()));
     whole.insert(whole.end(), bytes.begin(), bytes.end());
     out.number(hashOf(bytes));
@@ -46,9 +46,9 @@ std::optional<std::vector<std::byte>> readFile(const std::string& path) {
     if (!file) throw IoError(fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
     const std::vector<char> text((std::istreambuf_iterator<char>(file)), {});
     ByteReader in(std::as_bytes(std::span(text)));
-    for (const char c : kMagic)
+    for (const char c : kStudyMagic)
         if (in.number<char>() != c) damaged(path);
-    if (in.number<std::uint32_t>() != kVersion) damaged(path);
+    if (in.number<std::uint32_t>() != kStudyVersion) damaged(path);
     const auto bytes = in.take(in.number<std::uint64_t>());
     const auto hash = in.number<std::uint64_t>();
     if (!in.sound() || !in.atEnd() || hash != hashOf(bytes)) damaged(path);

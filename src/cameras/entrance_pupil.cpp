@@ -13,9 +13,9 @@ constexpr std::array kWavelengths = {360.0, 430.0, 550.0, 830.0};
 // Filters and overscan look at places beyond the corner.
 constexpr double kBeyondCorner = 1.1;
 
-class Search {
+class EntranceSearch {
   public:
-    Search(const LensTrain& train, const Aperture& opening, double plane)
+    EntranceSearch(const LensTrain& train, const Aperture& opening, double plane)
         : train_(train), opening_(opening), plane_(plane) {}
 
     // The box of what passes at that angle with the axis, from the side of +x.
@@ -87,7 +87,7 @@ EntrancePupil::EntrancePupil(const LensTrain& train, const Aperture& opening, do
     ABBE_CHECK(radius > 0);
     // Blades have the same box in every direction: that of the circle around them.
     const Aperture round(opening.outerRadius());
-    const Search search(train, round, plane_);
+    const EntranceSearch search(train, round, plane_);
     const double widest = std::min(0.999, 1.02 * search.widestSine(exit, film, kBeyondCorner * radius) + 1e-6);
     scale_ = kIntervals / widest;
     PupilBox last = search.box(0);

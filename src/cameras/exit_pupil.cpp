@@ -9,14 +9,14 @@ namespace abbe {
 
 namespace {
 
-constexpr int kIntervals = 32;
-constexpr std::array kWavelengths = {360.0, 430.0, 550.0, 830.0};
+constexpr int kExitIntervals = 32;
+constexpr std::array kExitWavelengths = {360.0, 430.0, 550.0, 830.0};
 
 using Box = ExitPupil::Box;
 
-class Search {
+class ExitSearch {
   public:
-    Search(const LensTrain& train, const Aperture& opening, double film)
+    ExitSearch(const LensTrain& train, const Aperture& opening, double film)
         : train_(train), opening_(opening), film_(film) {}
 
     // The box of what passes from a film point at `radius`.
@@ -42,7 +42,7 @@ class Search {
     }
 
     bool passes(double radius, Vec2d p) const {
-        for (const double nm : kWavelengths) {
+        for (const double nm : kExitWavelengths) {
             const Vec3d from{radius, 0, film_};
             LensRay ray{from, normalize(Vec3d{p.x, p.y, train_.length()} - from)};
             if (train_.toScene(ray, nm, opening_)) return true;
@@ -59,13 +59,13 @@ class Search {
 } // namespace
 
 ExitPupil::ExitPupil(const LensTrain& train, const Aperture& opening, double film, double radius)
-    : scale_(kIntervals / radius) {
+    : scale_(kExitIntervals / radius) {
     ABBE_CHECK(radius > 0 && film > train.length() && film > train.rearEdge());
     // Blades have the same box in every direction: that of the circle around them.
     const Aperture round(opening.outerRadius());
-    const Search search(train, round, film);
+    const ExitSearch search(train, round, film);
     Box last = search.box(0);
-    for (int i = 1; i <= kIntervals; ++i) {
+    for (int i = 1; i <= kExitIntervals; ++i) {
         const Box next = search.box(i / scale_);
         boxes_.push_back(Box::hull(last, next));
         last = next;
@@ -73,7 +73,7 @@ ExitPupil::ExitPupil(const LensTrain& train, const Aperture& opening, double fil
 }
 
 const ExitPupil::Box& ExitPupil::at(double filmRadius) const noexcept {
-    return boxes_[static_cast<std::size_t>(std::clamp(filmRadius * scale_, 0.0, kIntervals - 1.0))];
+    return boxes_[static_cast<std::size_t>(std::clamp(filmRadius * scale_, 0.0, kExitIntervals - 1.0))];
 }
 
 } // namespace abbe

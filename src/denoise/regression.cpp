@@ -11,7 +11,7 @@ namespace abbe {
 
 namespace {
 
-constexpr int kWindowRadius = 9;
+constexpr int kRegressionRadius = 9;
 
 // Predictions summed with their weights.
 struct Sums {
@@ -62,8 +62,8 @@ template <int N> struct Window {
     }
     // Calls visit(weights, features relative to the centre, dx, dy) for all neighbours.
     template <typename Visit> void forEach(const Visit& visit) const {
-        for (int dy = -kWindowRadius; dy <= kWindowRadius; ++dy)
-            for (int dx = -kWindowRadius; dx <= kWindowRadius; ++dx) {
+        for (int dy = -kRegressionRadius; dy <= kRegressionRadius; ++dy)
+            for (int dx = -kRegressionRadius; dx <= kRegressionRadius; ++dx) {
                 Lanes f[N > 0 ? N : 1];
                 for (std::size_t i = 0; i < N; ++i) f[i] = load(source.features[i].row(y + dy) + x + dx) - centre[i];
                 visit(source.weight(dx, dy, xt, yt), f, dx, dy);
@@ -120,7 +120,7 @@ std::array<ColourPlanes, 2> regress(const std::vector<Plane>& colours, const Mod
     const RegressTile run = chooseFor(features.size(), std::make_integer_sequence<int, kMaxFeatures + 1>());
     std::array<Sums, 2> sums{Sums(width, height), Sums(width, height)};
     forEachTile(width, height, [&](const Tile& tile) {
-        PatchWeights weights(kWindowRadius);
+        PatchWeights weights(kRegressionRadius);
         weights.compute(guide, tile);
         for (std::size_t k = 0; k < 2; ++k)
             run({colours, modulation, features, weights, k == 1 ? narrowing : 0}, tile, sums[k]);

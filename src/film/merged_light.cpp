@@ -9,7 +9,7 @@ namespace abbe {
 
 namespace {
 
-constexpr int kTile = 8;
+constexpr int kRadiusTile = 8;
 constexpr double kFactor = 1 / (1 - 1 / std::numbers::sqrt2);
 
 struct Tile {
@@ -42,9 +42,9 @@ std::optional<MergedLight> MergedLight::of(const PixelFilm& film) {
     if (result.rounds == 0) return std::nullopt;
     const PixelBounds all = film.bounds();
     std::vector<Tile> tiles;
-    for (int y = all.y0; y < all.y1; y += kTile)
-        for (int x = all.x0; x < all.x1; x += kTile)
-            tiles.push_back(tileOf(film, {x, y, std::min(x + kTile, all.x1), std::min(y + kTile, all.y1)}));
+    for (int y = all.y0; y < all.y1; y += kRadiusTile)
+        for (int x = all.x0; x < all.x1; x += kRadiusTile)
+            tiles.push_back(tileOf(film, {x, y, std::min(x + kRadiusTile, all.x1), std::min(y + kRadiusTile, all.y1)}));
     double luminance = 0, merged = 0, bias = 0, sum = 0, squares = 0;
     for (const Tile& t : tiles) {
         luminance += t.luminance;

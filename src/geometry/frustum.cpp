@@ -14,12 +14,12 @@ double turns(double x, double z) {
 }
 
 // The part of a line between two planes y = ±h; from > to if there is none.
-struct Interval {
+struct LinePart {
     double from, to;
 };
-Interval slab(double y, double dy, double h) {
+LinePart slab(double y, double dy, double h) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (dy == 0) return std::abs(y) <= h ? Interval{-infinity, infinity} : Interval{infinity, -infinity};
+    if (dy == 0) return std::abs(y) <= h ? LinePart{-infinity, infinity} : LinePart{infinity, -infinity};
     const double a = (-h - y) / dy, b = (h - y) / dy;
     return {std::min(a, b), std::max(a, b)};
 }
@@ -46,7 +46,7 @@ struct Roots {
     std::array<double, 2> t;
     int count = 0;
 };
-Roots rootsWithin(const SideQuadratic& f, Interval in) {
+Roots rootsWithin(const SideQuadratic& f, LinePart in) {
     Roots roots;
     if (!(f.discriminant >= 0)) return roots;
     const double q = -(f.b + std::copysign(std::sqrt(f.discriminant), f.b));
@@ -96,7 +96,7 @@ std::optional<ParametricShape::LocalHit> Frustum::meet(Vec3d origin, Vec3d d, do
     const double shift = -dot(origin, d);
     const Vec3d o = origin + d * shift;
     if (!(lengthSquared(o) <= reach2_)) return std::nullopt;
-    const Interval between = slab(o.y, d.y, halfHeight_);
+    const LinePart between = slab(o.y, d.y, halfHeight_);
     if (!(between.from <= between.to)) return std::nullopt;
     // The solid is convex: the line is inside from one t to another. Both come from the same few numbers, so no ray
     // slips through the edge where side and cap meet.

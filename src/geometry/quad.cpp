@@ -32,7 +32,7 @@ template <typename Rectangle> std::optional<SphericalRectangle> sphericalView(co
 // [Hart2020]; nothing if the rectangle is behind the horizon. The least corner keeps a share, because some of what lies
 // between a corner below the horizon and one above it is seen.
 template <typename Rectangle> std::optional<BilinearDensity> cosineDensity(const Rectangle& r, const Receiver& from) {
-    constexpr float kLeastShare = 0.01f;
+    constexpr float kLeastCorner = 0.01f;
     const Vec3 d = r.centre - from.p, x = r.x * (0.5f * r.width), y = r.y * (0.5f * r.height);
     BilinearDensity density{};
     float most = 0;
@@ -43,7 +43,7 @@ template <typename Rectangle> std::optional<BilinearDensity> cosineDensity(const
         most = std::max(most, density.corner[i]);
     }
     if (!(most > 0)) return std::nullopt;
-    for (float& c : density.corner) c = std::max(c, kLeastShare * most);
+    for (float& c : density.corner) c = std::max(c, kLeastCorner * most);
     return density;
 }
 

@@ -8,7 +8,7 @@ namespace abbe {
 
 namespace {
 
-constexpr std::size_t kMost = 24;
+constexpr std::size_t kMostTargets = 24;
 
 Bounds3 inside(const Bounds3& box, const Bounds3& scene) {
     return {max(box.lower, scene.lower), min(box.upper, scene.upper)};
@@ -97,7 +97,7 @@ AimTargets aimTargets(const std::vector<FocusingShape>& focusing, const Bounds3&
         // What lies in part beyond the scene's box is not a ball any more.
         if (!b.empty()) shapes.push_back({b, {shape.name}, false, std::ranges::binary_search(balls, keyOf(b))});
     }
-    for (int cells = 16; shapes.size() > kMost && cells > 0; cells /= 2) shapes = gathered(shapes, scene, cells);
+    for (int cells = 16; shapes.size() > kMostTargets && cells > 0; cells /= 2) shapes = gathered(shapes, scene, cells);
     AimTargets targets;
     for (const Cluster& shape : shapes) {
         const float radius = shape.radius() * (1 + 1e-4f);

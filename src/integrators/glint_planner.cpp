@@ -21,16 +21,16 @@ constexpr std::size_t kMostLamps = 8;
 constexpr int kStep = 4, kWalks = 36;          // pixels between places from which so many walks start
 constexpr double kMostSeeds = 16384;           // such places; larger frames have wider steps
 constexpr float kNear = 1.2f;                  // of the lamp's direction: from where Newton's method starts
-constexpr int kBlock = 4;                      // pixels; of candidates that are alike and this near one is taken
+constexpr int kPixelBlock = 4;                 // pixels; of candidates that are alike and this near one is taken
 constexpr std::size_t kMostCandidates = 16384; // of which Newton's method starts
 constexpr int kIterations = 32;
-constexpr float kDifference = 0.05f, kFinest = 0.002f, kLongestStep = 6; // pixels
-constexpr float kMargin = 1.3f;                                          // of boxes
-constexpr double kLargestBox = 256;                                      // pixels: what is larger is no glint
-constexpr double kSamples = 1024;     // of a picture in which noise starts to matter less than specks
-constexpr double kLeastError = 0.003; // of a tile, that is worth probes
-constexpr double kTile = 64;          // pixels
-constexpr double kMostRays = 1.5;     // for a sample of every pixel, in the mean over pixels
+constexpr float kDifference = 0.05f, kFinestStep = 0.002f, kLongestPixelStep = 6; // pixels
+constexpr float kMargin = 1.3f;                                                   // of boxes
+constexpr double kLargestBox = 256;                                               // pixels: what is larger is no glint
+constexpr double kRelevantSamples = 1024; // of a picture in which noise starts to matter less than specks
+constexpr double kLeastError = 0.003;     // of a tile, that is worth probes
+constexpr double kTile = 64;              // pixels
+constexpr double kMostRays = 1.5;         // for a sample of every pixel, in the mean over pixels
 constexpr std::array kHeroes{0.01f, 0.25f, 0.5f, 0.75f, 0.99f}; // of chains that disperse each has an image of its own
 
 // A place from which Newton's method starts.
@@ -55,10 +55,10 @@ struct Found {
     double rays = 0;  // of all probes for a sample of every pixel
 };
 
-class Planner {
+class GlintPlanner {
   public:
-    Planner(const PathContext& context, const Film& film, const TracedKernel& kernel, const RouletteReference& roulette,
-            const std::function<bool()>& stop)
+    GlintPlanner(const PathContext& context, const Film& film, const TracedKernel& kernel,
+                 const RouletteReference& roulette, const std::function<bool()>& stop)
         : context_(context), film_(film), kernel_(kernel), roulette_(roulette), stop_(stop),
           frame_(context.scene.frame), lamps_(glintLamps(context.scene, kMostLamps)) {}
 
@@ -141,8 +141,9 @@ class Planner {
         std::map<std::tuple<GlintChain, std::size_t, int, int>, Candidate> nearest;
         for (const auto& part : parts)
             for (const Candidate& c : part) {
-                const auto place = nearest.try_emplace(
-                    {c.chain, c.lamp, static_cast<int>(c.film.x) / kBlock, static_cast<int>(c.film.y) / kBlock}, c);
+                const auto place = nearest.try_emplace({c.chain, c.lamp, static_cast<int>(c.film.x) / kPixelBlock,
+                                                        static_cast<int>(c.film.y) / kPixelBlock},
+                                                       c);
                 if (c.miss < place.first->second.miss) place.first->second = c;
             }
         std::vector<Candidate> list;
@@ -200,7 +201,7 @@ class Planner {
         Vec2 step(Vec2 miss) const {
             const Vec2 all = Vec2{dy.x * miss.y - dy.y * miss.x, dx.y * miss.x - dx.x * miss.y} * (1 / determinant);
             const float way = size(all);
-            return way > kLongestStep ? all * (kLongestStep / way) : all;
+            return way > kLongestPixelStep ? all * (kLongestPixelStep / way) : all;
         }
         Image image(Vec2 film, float radius, const Look& at) const {
             const float each = radius / std::abs(determinant);
@@ -227,7 +228,7 @@ class Planner {
                     c.film = before + step;
                 } else {
                     difference *= 0.25f;
-                    if (difference < kFinest) return std::nullopt;
+                    if (difference < kFinestStep) return std::nullopt;
                     least = kInfinity;
                     c.film = before;
                 }
@@ -239,7 +240,7 @@ class Planner {
             before = c.film;
             if (at.met && off < 0.5f * radius) {
                 const Image image = slope.image(c.film, radius, at);
-                const float own = std::clamp(std::min(image.half.x, image.half.y), kFinest, kDifference);
+                const float own = std::clamp(std::min(image.half.x, image.half.y), kFinestStep, kDifference);
                 if (!(own < 0.5f * difference)) return image;
                 difference = own; // over the image itself
                 least = kInfinity;
@@ -311,7 +312,7 @@ class Planner {
         const Vec2 place = middle.film;
         const double beside = expected(static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)));
         const double share = light / (light + kTile * beside);
-        found.error = share / std::sqrt(std::max(1e-30, hits * kSamples));
+        found.error = share / std::sqrt(std::max(1e-30, hits * kRelevantSamples));
         const double fill = area / static_cast<double>(box.area());
         found.glint.side = static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(4 / fill)), 2.0, 8.0));
         const double reach = static_cast<double>(film_.filterRadius());
@@ -378,7 +379,7 @@ class Planner {
 PlannedGlints planGlints(const PathContext& context, const Film& film, const TracedKernel& kernel,
                          const RouletteReference& roulette, const std::function<bool()>& stop) {
     if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
-    return Planner(context, film, kernel, roulette, stop).run();
+    return GlintPlanner(context, film, kernel, roulette, stop).run();
 }
 
 } // namespace abbe

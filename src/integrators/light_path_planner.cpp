@@ -22,7 +22,7 @@ namespace {
 
 // Of pilot paths: half as many as the frame has pixels, whatever the number of samples, but within these.
 constexpr std::uint32_t kBlock = 1024, kLeastBlocks = 8, kMostBlocks = 32;
-constexpr std::uint64_t kLearn = 0x6c6561726e, kJudge = 0x6a75646765; // "learn", "judge"
+constexpr std::uint64_t kLearnLightPaths = 0x6c6561726e, kJudgeLightPaths = 0x6a75646765; // "learn", "judge"
 // Per camera ray: what asking for the densities of light paths costs, in rays.
 constexpr double kTracedCost = 1.4;
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
@@ -33,10 +33,10 @@ constexpr double kInsurance = 0.1;
 constexpr double kLeastSparks = 0.02; // second moment of what light paths could bring better
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
-class Planner {
+class LightPathPlanner {
   public:
-    Planner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
-            const std::function<bool()>& stop)
+    LightPathPlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+                     const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), stop_(stop), frame_(context.scene.frame),
           pixels_(static_cast<double>(frame_.area())), known_(roulette.average() > 0) {
         for (const auto& light : context.scene.lights) numbers_[light.get()] = static_cast<std::uint32_t>(lights_++);
@@ -71,7 +71,7 @@ class Planner {
         using enum LightPathVerdict;
         const Technique::LightPaths choice = context_.settings.technique.lightPaths;
         const bool forced = choice != Technique::LightPaths::automatic;
-        const Listened heard = listen(first, kLearn);
+        const Listened heard = listen(first, kLearnLightPaths);
         if (stop_()) return undecided;
         measure_.emplace(frame_, roulette_, heard.deposits);
         const LightPathForecast forecast(heard.deposits, frame_, *measure_);
@@ -158,7 +158,7 @@ class Planner {
 
     class Listener final : public LightListener {
       public:
-        Listener(const Planner& planner, Listened& to) : planner_(planner), to_(to) {}
+        Listener(const LightPathPlanner& planner, Listened& to) : planner_(planner), to_(to) {}
         void starts(const EmittedRay& start) override { to_.starts.push_back(place(start)); }
         void sees(const EmittedRay& start, const LensSplat& splat, double y) override {
             const PixelBounds& f = planner_.frame_;
@@ -176,7 +176,7 @@ class Planner {
             return {planner_.numbers_.at(start.light), start.target + 1,
                     static_cast<std::uint32_t>(AimGrid::cell(start.aim, AimGrid::kFinest))};
         }
-        const Planner& planner_;
+        const LightPathPlanner& planner_;
         Listened& to_;
     };
 
@@ -184,7 +184,8 @@ class Planner {
     // going on with probability p costs (m1 + m2/p) (c1 + p c2), which is least at √(m2 c1 / (m1 c2)) [Veach1997, sec.
     // 10.4].
     float afterSpread(const Listened& heard) const {
-        constexpr double kLeast = 0.1; // a pilot sees little of what comes seldom, and it would shine the brighter
+        constexpr double kLeastSurvival =
+            0.1; // a pilot sees little of what comes seldom, and it would shine the brighter
         double before = 0, after = 0;
         for (const LightDeposit& d : heard.deposits)
             (d.spread ? after : before) +=
@@ -193,7 +194,7 @@ class Planner {
         const double cost = before * raysAfter;
         if (!(cost > 0)) return 1;
         return static_cast<float>(
-            std::clamp(std::sqrt(after * (static_cast<double>(heard.rays) - raysAfter) / cost), kLeast, 1.0));
+            std::clamp(std::sqrt(after * (static_cast<double>(heard.rays) - raysAfter) / cost), kLeastSurvival, 1.0));
     }
 
     // The optimum is one for the mean of all pixels, as a pilot knows them, and says little of the few that mirror a
@@ -207,7 +208,7 @@ class Planner {
 
     // Efficiencies of all shares; the best is that of the plan.
     void judge(const LightPathPlan& plan) {
-        const Listened heard = listen(plan, kJudge);
+        const Listened heard = listen(plan, kJudgeLightPaths);
         const LightPathForecast forecast(heard.deposits, frame_, *measure_);
         if (!(measure_->mean() > 0)) { // nobody saw any light: a guess
             findings_.gain = kLeastGain;
@@ -215,7 +216,7 @@ class Planner {
             return describe(heard, 1);
         }
         PathContext seeded = context_;
-        seeded.settings.seed = combine64(context_.settings.seed, kJudge);
+        seeded.settings.seed = combine64(context_.settings.seed, kJudgeLightPaths);
         const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
         const double each = kLightCost / static_cast<double>(heard.paths);
         costs_ = {kTracedCost * camera.rays, each * static_cast<double>(heard.rays),
@@ -276,7 +277,7 @@ std::size_t lightBlocksOf(const Scene& scene, const Technique& technique) {
 
 PlannedLightPaths planLightPaths(const PathContext& context, const TracedKernel& kernel,
                                  const RouletteReference& roulette, const std::function<bool()>& stop) {
-    return Planner(context, kernel, roulette, stop).run();
+    return LightPathPlanner(context, kernel, roulette, stop).run();
 }
 
 } // namespace abbe

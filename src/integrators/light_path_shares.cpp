@@ -31,14 +31,14 @@ std::vector<LightPathShare> byName(const std::vector<LightPathShare>& shares) {
 } // namespace
 
 std::vector<LightPathShare> largestShares(const std::vector<LightPathShare>& all) {
-    constexpr std::size_t kMost = LightPathFindings::kShares;
+    constexpr std::size_t kMostShares = LightPathFindings::kShares;
     std::vector<LightPathShare> shares = byName(all);
     std::erase_if(shares, [](const LightPathShare& s) { return !(s.share > 0); });
     std::ranges::stable_sort(shares, std::ranges::greater(), &LightPathShare::share);
-    if (shares.size() <= kMost) return shares;
+    if (shares.size() <= kMostShares) return shares;
     LightPathShare others;
-    for (std::size_t i = kMost - 1; i < shares.size(); ++i) add(others, shares[i]);
-    shares.resize(kMost - 1);
+    for (std::size_t i = kMostShares - 1; i < shares.size(); ++i) add(others, shares[i]);
+    shares.resize(kMostShares - 1);
     shares.push_back(others);
     return shares;
 }

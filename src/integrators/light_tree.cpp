@@ -14,7 +14,7 @@ constexpr float kSlack = 1e-3f;
 // Least share of the cosine at receivers that are lit from both sides: hair and cloth go by no cosine.
 constexpr float kBothSides = 0.1f;
 // Importance stays in a range whose sums and ratios are finite and not 0.
-constexpr float kLeast = 1e-30f, kMost = 1e30f;
+constexpr float kLeastImportance = 1e-30f, kMostImportance = 1e30f;
 
 // The arithmetic of spectra serves any eight numbers.
 using Eight = Spectrum;
@@ -41,8 +41,8 @@ template <typename Scatters>
 Spectrum LightTree::weigh(const Node& node, const Receiver& at, Scatters&& scatters) noexcept {
     const Eight x = Eight(node.x) - Eight(at.p.x), y = Eight(node.y) - Eight(at.p.y), z = Eight(node.z) - Eight(at.p.z);
     const Eight d2 = fma(x, x, fma(y, y, z * z)), radius2(node.radius2);
-    const Eight base = Eight(node.power) / max(fma(radius2, Eight(1.f / 3), d2), Eight(kLeast));
-    const Int8 outside = (d2.v > radius2.v) & (d2.v < Eight(kMost).v);
+    const Eight base = Eight(node.power) / max(fma(radius2, Eight(1.f / 3), d2), Eight(kLeastImportance));
+    const Int8 outside = (d2.v > radius2.v) & (d2.v < Eight(kMostImportance).v);
     // What follows is not a number or means nothing for places inside.
     const Eight inverse = Eight(1.f) / sqrt(d2);
     const Eight sin2 = min(Eight(1.f), radius2 * inverse * inverse);
@@ -69,7 +69,7 @@ Spectrum LightTree::weigh(const Node& node, const Receiver& at, Scatters&& scatt
     }
     factor = select(outside, factor, Eight(1.f));
     const Int8 counts = (factor.v > Eight(0.f).v) & (node.power > Eight(0.f).v);
-    return select(counts, clamped(base * factor, kLeast, kMost), Eight(0.f));
+    return select(counts, clamped(base * factor, kLeastImportance, kMostImportance), Eight(0.f));
 }
 
 Spectrum LightTree::importance(const Node& node, const Receiver& at) noexcept {
@@ -91,8 +91,9 @@ Spectrum LightTree::importance(const Node& node, const Along& along) noexcept {
     const Eight t = clamped(x * w.x + y * w.y + z * w.z, along.extent.tNear, along.extent.tFar);
     const Eight dx = x - t * w.x, dy = y - t * w.y, dz = z - t * w.z;
     const Eight d2 = fma(dx, dx, fma(dy, dy, dz * dz));
-    const Eight value = Eight(node.power) / sqrt(max(fma(Eight(node.radius2), Eight(1.f / 3), d2), Eight(kLeast)));
-    return select(node.power > Eight(0.f).v, clamped(value, kLeast, kMost), Eight(0.f));
+    const Eight value =
+        Eight(node.power) / sqrt(max(fma(Eight(node.radius2), Eight(1.f / 3), d2), Eight(kLeastImportance)));
+    return select(node.power > Eight(0.f).v, clamped(value, kLeastImportance, kMostImportance), Eight(0.f));
 }
 
 template <typename Place> Spectrum LightTree::shares(const Node& node, const Place& at) noexcept {
@@ -162,7 +163,7 @@ float LightTree::probability(std::uint32_t light, const Ray& ray, RayExtent exte
 
 // Between a lamp that shines all around, 1/4π, and one that faces the receiver, 1/π.
 float LightTree::irradiance(const Receiver& at) const noexcept {
-    return std::min(sum(importance(nodes_[0], at)), kMost) * (0.5f * kInvPi);
+    return std::min(sum(importance(nodes_[0], at)), kMostImportance) * (0.5f * kInvPi);
 }
 
 LightTree::LightTree(std::span<const LightBounds> lights) : places_(lights.size()) {

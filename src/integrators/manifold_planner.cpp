@@ -15,9 +15,9 @@ namespace abbe {
 
 namespace {
 
-constexpr std::uint64_t kLearn = 0x6368616973, kJudge = 0x636861696e; // "chais", "chain"
-constexpr int kCells = 40;                                            // of a row of the pilot
-constexpr int kReplicates = PilotPixel::kMostReplicates;
+constexpr std::uint64_t kLearnChains = 0x6368616973, kJudgeChains = 0x636861696e; // "chais", "chain"
+constexpr int kPilotCells = 40;                                                   // of a row of the pilot
+constexpr int kPilotReplicates = PilotPixel::kMostReplicates;
 constexpr std::size_t kLooks = 256; // of ManifoldPilot, each at all kinds of chains
 constexpr std::uint32_t kMostEstimates = 16;
 // A lamp that fills more than this everywhere has no small images.
@@ -43,20 +43,20 @@ void leaveRareKinds(ManifoldPlan& plan) {
 // Solid angle of a light far away, in the harmonic mean over what it samples; 0 for a single direction.
 double extentOf(const Light& light) {
     double sum = 0;
-    constexpr int kSamples = 16;
-    for (int i = 0; i < kSamples; ++i) {
-        const Vec2 u{(static_cast<float>(i) + 0.5f) / kSamples,
+    constexpr int kLampSamples = 16;
+    for (int i = 0; i < kLampSamples; ++i) {
+        const Vec2 u{(static_cast<float>(i) + 0.5f) / kLampSamples,
                      static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
         const auto s = light.sampleDistant(u, Wavelengths::sample(0.5f), 0);
         if (s && s->delta) return 0;
-        if (s) sum += static_cast<double>(s->pdfSolidAngle) / kSamples;
+        if (s) sum += static_cast<double>(s->pdfSolidAngle) / kLampSamples;
     }
     return sum > 0 ? 1 / sum : 4 * kPiD;
 }
 
 // One pixel of the pilot: what its samples came to, and what manifold sampling told them.
 struct Cell {
-    std::array<double, kReplicates> y{};
+    std::array<double, kPilotReplicates> y{};
     // Σ over estimates of squares of what was found, and of what chance would have in place of that; Σ over pairs of
     // estimates at one vertex of their products
     double second = 0, chance = 0, product = 0;
@@ -92,10 +92,10 @@ class CellListener final : public ManifoldListener {
     double before_ = 0;
 };
 
-class Planner {
+class ManifoldPlanner {
   public:
-    Planner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
-            const std::function<bool()>& stop)
+    ManifoldPlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+                    const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), stop_(stop), frame_(context.scene.frame) {}
 
     PlannedManifold run() {
@@ -106,10 +106,10 @@ class Planner {
         findings_.measured = true;
         plan.estimates = 2;
         const ManifoldSampler first(context_.scene, plan);
-        const std::vector<Cell> seen = look(first, kLearn);
+        const std::vector<Cell> seen = look(first, kLearnChains);
         if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.asked > 0; })) {
             plan = learn(plan, seen);
-            judge(look(ManifoldSampler(context_.scene, plan), kJudge));
+            judge(look(ManifoldSampler(context_.scene, plan), kJudgeChains));
             plan.estimates = findings_.estimates;
             const bool forced = context_.settings.technique.lightPaths == Technique::LightPaths::always;
             if (!stop_() && (findings_.gain >= kLeastGain || (forced && findings_.before > 0)))
@@ -148,12 +148,12 @@ class Planner {
         PathContext base = context_;
         base.settings.seed = combine64(context_.settings.seed, key);
         base.manifold = &sampler;
-        const PilotPixel::Grid grid(frame_, kCells);
+        const PilotPixel::Grid grid(frame_, kPilotCells);
         std::vector<Cell> cells(grid.size());
         parallelFor(cells.size(), [&](std::size_t i) {
             if (stop_()) return;
             Cell& cell = cells[i];
-            PilotPixel film(grid.pixel(i), kReplicates);
+            PilotPixel film(grid.pixel(i), kPilotReplicates);
             CellListener listener(context_.scene, cell);
             PathContext context = base;
             context.hears = &listener;
@@ -163,7 +163,8 @@ class Planner {
             cell.counts = r.counters.manifold;
             cell.rays = static_cast<double>(r.counters.vertices + r.counters.shadowRays);
             const double relative = static_cast<double>(roulette_.scale(film.bounds().x0, film.bounds().y0));
-            for (int k = 0; k < kReplicates; ++k) cell.y[static_cast<std::size_t>(k)] = film.luminance(k) * relative;
+            for (int k = 0; k < kPilotReplicates; ++k)
+                cell.y[static_cast<std::size_t>(k)] = film.luminance(k) * relative;
             cell.second *= square(relative);
             cell.chance *= square(relative);
             cell.product *= square(relative);
@@ -175,7 +176,7 @@ class Planner {
 
     ManifoldPlan learn(const ManifoldPlan& plan, const std::vector<Cell>& cells) {
         ManifoldPilot pilot(context_.scene, plan);
-        RandomStream random(combine64(context_.settings.seed, kLearn));
+        RandomStream random(combine64(context_.settings.seed, kLearnChains));
         std::vector<const Cell::Look*> looks;
         for (const Cell& c : cells)
             if (!c.looks.empty()) looks.push_back(&c.looks.front());
@@ -190,11 +191,11 @@ class Planner {
     // however many there are, and the rest goes with their number.
     void judge(const std::vector<Cell>& cells) {
         double variance = 0, rays = 0, own = 0, single = 0, left = 0;
-        const auto n = static_cast<double>(cells.size()), samples = n * kReplicates;
+        const auto n = static_cast<double>(cells.size()), samples = n * kPilotReplicates;
         for (const Cell& c : cells) {
             double mean = 0;
-            for (const double v : c.y) mean += v / kReplicates;
-            for (const double v : c.y) variance += square(v - mean) / (kReplicates - 1) / n;
+            for (const double v : c.y) mean += v / kPilotReplicates;
+            for (const double v : c.y) variance += square(v - mean) / (kPilotReplicates - 1) / n;
             single += c.second / (2 * samples);
             left += c.product / samples;
             findings_.before += c.chance / (2 * samples);
@@ -241,7 +242,7 @@ void PlannedManifold::besideMerging(const Scene& scene, const MergePlan& merging
 PlannedManifold planManifold(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
                              const std::function<bool()>& stop) {
     if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
-    return Planner(context, kernel, roulette, stop).run();
+    return ManifoldPlanner(context, kernel, roulette, stop).run();
 }
 
 } // namespace abbe

@@ -9,7 +9,7 @@ namespace abbe {
 
 namespace {
 
-constexpr double kLongestStep = 1; // of Newton's method, over the sine of half the cone of first directions
+constexpr double kLongestNewtonStep = 1; // of Newton's method, over the sine of half the cone of first directions
 
 // First directions of trials: even over the cone of the caster's ball. From within the ball one half is even over all
 // that the receiver can see, the other leads to points of the shape.
@@ -52,8 +52,8 @@ class Seeds {
 };
 
 float preference(const SpecularCaster& caster, Vec3 p) {
-    constexpr float kLeast = 0.02f; // small ones are drawn, too
-    return std::min(1.f, square(caster.radius) / lengthSquared(caster.centre - p)) + kLeast;
+    constexpr float kLeastReach = 0.02f; // small ones are drawn, too
+    return std::min(1.f, square(caster.radius) / lengthSquared(caster.centre - p)) + kLeastReach;
 }
 
 // dω at the receiver per area across the light's last ray, or per solid angle of a light far away.
@@ -160,7 +160,7 @@ std::optional<ManifoldSample> ManifoldSampler::estimate(const ChainStart& start,
     const SpecularCaster& caster = plan_.casters[choice.caster];
     ChainTracer tracer(scene_, followed_, start, target, lambda);
     const Seeds seeds(start, caster);
-    ChainSolver solver(tracer, kLongestStep * seeds.size());
+    ChainSolver solver(tracer, kLongestNewtonStep * seeds.size());
     const auto trial = [&] {
         ++counts.trials;
         return solver.solve(seeds.draw(random), choice.signature, caster.shape);

@@ -17,9 +17,9 @@ namespace abbe {
 
 namespace {
 
-constexpr std::uint64_t kLearn = 0x6d65726765, kJudge = 0x6d65726773; // "merge", "mergs"
-constexpr std::uint32_t kLeastPaths = 4096, kMostPaths = 262144;      // of light, in a round
-constexpr double kMostPhotons = 524288;                               // that these leave, and a thread keeps: 84 MB
+constexpr std::uint64_t kLearnMerging = 0x6d65726765, kJudgeMerging = 0x6d65726773; // "merge", "mergs"
+constexpr std::uint32_t kLeastPaths = 4096, kMostPaths = 262144;                    // of light, in a round
+constexpr double kMostPhotons = 524288; // that these leave, and a thread keeps: 84 MB
 // Merging is biased: it has to be worth that.
 constexpr double kLeastMergeGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
@@ -35,10 +35,10 @@ struct Moments {
     bool isUnseen() const { return unseen > 0.01 * sum; }
 };
 
-class Planner {
+class MergePlanner {
   public:
-    Planner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
-            const LightPathFindings& light, const std::function<bool()>& stop)
+    MergePlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+                 const LightPathFindings& light, const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), light_(light), stop_(stop),
           frame_(context.scene.frame), pilot_(context, kernel, stop) {}
 
@@ -52,7 +52,7 @@ class Planner {
         for (const auto& light : context_.scene.lights)
             if (light->paths() != LightPaths::none) plan.lights.insert(light.get());
         if (plan.emission.empty()) return result;
-        const MergePilot::Heard heard = pilot_.listen(plan, kLearn);
+        const MergePilot::Heard heard = pilot_.listen(plan, kLearnMerging);
         findings_.rays += heard.rays;
         findings_.measured = true;
         findings_.found = !heard.pixels.empty();
@@ -61,7 +61,7 @@ class Planner {
             plan.emission = AimedEmission(
                 context_.scene.lights, bounds,
                 learnEmission(even, context_.scene.lights.size(), heard.starts, heard.deposits, measure, true));
-            const MergePilot::Heard judged = pilot_.listen(plan, kJudge);
+            const MergePilot::Heard judged = pilot_.listen(plan, kJudgeMerging);
             findings_.rays += judged.rays;
             if (!stop_() && decide(plan, judged, measure))
                 result.plan = std::make_unique<const MergePlan>(std::move(plan));
@@ -94,7 +94,7 @@ class Planner {
     // Rays of a sample of the path tracer.
     double cameraRays() {
         PathContext context = context_;
-        context.settings.seed = combine64(context_.settings.seed, kJudge);
+        context.settings.seed = combine64(context_.settings.seed, kJudgeMerging);
         const PilotPixel::Grid grid(frame_, kCameraRow);
         std::vector<double> rays(grid.size());
         parallelFor(rays.size(), [&](std::size_t i) {
@@ -164,7 +164,7 @@ class Planner {
 PlannedMerging planMerging(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
                            const LightPathFindings& light, const std::function<bool()>& stop) {
     if (context.settings.technique.merging == Technique::Merging::off) return {};
-    return Planner(context, kernel, roulette, light, stop).run();
+    return MergePlanner(context, kernel, roulette, light, stop).run();
 }
 
 } // namespace abbe

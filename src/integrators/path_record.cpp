@@ -2,9 +2,9 @@
 
 namespace abbe {
 
-using Kind = PathEvent::Kind;
+using EventKind = PathEvent::Kind;
 
-PathEvent PathRecorder::event(Kind kind) const {
+PathEvent PathRecorder::event(EventKind kind) const {
     PathEvent e;
     e.kind = kind;
     e.vertex = vertex_;
@@ -25,7 +25,7 @@ void PathRecorder::start(const Ray& fromEye, const Wavelengths& lambda) noexcept
 void PathRecorder::arrives(const SurfaceHit& hit, const Spectrum& beta) noexcept {
     ++vertex_;
     at_ = hit;
-    PathEvent e = event(Kind::surface);
+    PathEvent e = event(EventKind::surface);
     e.beta = beta;
     add(e);
 }
@@ -34,13 +34,13 @@ void PathRecorder::collides(Vec3 p, const Spectrum& beta) noexcept {
     ++vertex_;
     at_ = {};
     at_.p = p;
-    PathEvent e = event(Kind::collides);
+    PathEvent e = event(EventKind::collides);
     e.beta = beta;
     add(e);
 }
 
 void PathRecorder::asks(const void* source, const LightSample& light, const BsdfEval& value, float pdf) noexcept {
-    PathEvent e = event(Kind::sampled);
+    PathEvent e = event(EventKind::sampled);
     e.source = source;
     e.radiance = light.radiance;
     e.direction = light.wi;
@@ -50,7 +50,7 @@ void PathRecorder::asks(const void* source, const LightSample& light, const Bsdf
 }
 
 void PathRecorder::meets(const void* source, const Spectrum& emitted, float pdf) noexcept {
-    PathEvent e = event(Kind::met);
+    PathEvent e = event(EventKind::met);
     e.source = source;
     e.radiance = emitted;
     e.pdf = pdf;
@@ -58,7 +58,7 @@ void PathRecorder::meets(const void* source, const Spectrum& emitted, float pdf)
 }
 
 void PathRecorder::gathers(const Spectrum& radiance, const void* source, bool) noexcept {
-    PathEvent e = event(Kind::gathers);
+    PathEvent e = event(EventKind::gathers);
     e.source = source;
     e.light = radiance;
     add(e);
@@ -66,14 +66,14 @@ void PathRecorder::gathers(const Spectrum& radiance, const void* source, bool) n
 
 void PathRecorder::scatters(const SurfaceHit& hit, Lobes, const Spectrum& beta, const BsdfSample* next) noexcept {
     at_ = hit;
-    PathEvent e = event(Kind::scatters);
+    PathEvent e = event(EventKind::scatters);
     e.beta = beta;
     if (next) e.next = *next;
     add(e);
 }
 
 void PathRecorder::blames(const void* who, const char* what, float number) noexcept {
-    PathEvent e = event(Kind::blames);
+    PathEvent e = event(EventKind::blames);
     e.source = who;
     e.what = what;
     e.pdf = number;
@@ -81,7 +81,7 @@ void PathRecorder::blames(const void* who, const char* what, float number) noexc
 }
 
 void PathRecorder::leaves(Vec3 direction) noexcept {
-    PathEvent e = event(Kind::leaves);
+    PathEvent e = event(EventKind::leaves);
     e.direction = direction;
     add(e);
 }

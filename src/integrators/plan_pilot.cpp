@@ -8,13 +8,13 @@
 namespace abbe {
 
 namespace {
-constexpr std::int64_t kMaxCells = 8192;
+constexpr std::int64_t kMostPlanCells = 8192;
 }
 
 PlanPilot::PlanPilot(PixelBounds frame, std::uint64_t seed) : frame_(frame), seed_(seed) {
     ABBE_CHECK(frame.area() > 0);
     const auto cells = [&](int pixels) { return (pixels + cellSize_ - 1) / cellSize_; };
-    while (static_cast<std::int64_t>(cells(frame.width())) * cells(frame.height()) > kMaxCells) cellSize_ *= 2;
+    while (static_cast<std::int64_t>(cells(frame.width())) * cells(frame.height()) > kMostPlanCells) cellSize_ *= 2;
     columns_ = cells(frame.width());
     rows_ = cells(frame.height());
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));

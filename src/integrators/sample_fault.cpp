@@ -8,7 +8,7 @@ namespace abbe {
 
 namespace {
 
-using Kind = PathEvent::Kind;
+using EventKind = PathEvent::Kind;
 using Culprit = SampleFault::Culprit;
 
 // Whose numbers PathObserver::blames() tells.
@@ -38,26 +38,26 @@ class Search {
   private:
     bool look(const PathEvent& e) {
         switch (e.kind) {
-        case Kind::surface:
-        case Kind::collides:
+        case EventKind::surface:
+        case EventKind::collides:
             return spectrum(e, e.beta, Culprit::medium, "transmission");
-        case Kind::sampled:
+        case EventKind::sampled:
             return spectrum(e, e.radiance, Culprit::light, "radiance") || density(e, e.pdf, Culprit::light) ||
                    direction(e, e.direction, Culprit::light) || spectrum(e, e.value.fcos, scatterer(e), "value") ||
                    density(e, e.value.pdfSolidAngle, scatterer(e)) ||
                    spectrum(e, e.value.pdfRatio, scatterer(e), "ratio of densities");
-        case Kind::met:
+        case EventKind::met:
             return spectrum(e, e.radiance, Culprit::light, "radiance") || density(e, e.pdf, Culprit::light);
-        case Kind::gathers:
+        case EventKind::gathers:
             return spectrum(e, e.light, Culprit::medium, "transmission");
-        case Kind::scatters:
+        case EventKind::scatters:
             return e.next && (spectrum(e, e.next->weight, scatterer(e), "weight") ||
                               density(e, e.next->pdfSolidAngle, scatterer(e)) ||
                               spectrum(e, e.next->pdfRatio, scatterer(e), "ratio of densities") ||
                               direction(e, e.next->wi, scatterer(e)));
-        case Kind::blames:
+        case EventKind::blames:
             return found(e, e.pdf, 0xff, blamedFor(e.what), e.what);
-        case Kind::leaves: // of a scattered ray it was found there
+        case EventKind::leaves: // of a scattered ray it was found there
             return direction(e, e.direction, Culprit::camera);
         }
         return false;
@@ -66,14 +66,14 @@ class Search {
     static Culprit scatterer(const PathEvent& e) { return e.hit.material ? Culprit::material : Culprit::medium; }
     // Of whoever was blamed while the path was at e: its own material, one on the way, or a medium.
     static const void* who(const PathEvent& e, Culprit culprit) {
-        if (e.kind == Kind::blames || culprit == Culprit::light) return e.source;
+        if (e.kind == EventKind::blames || culprit == Culprit::light) return e.source;
         return culprit == Culprit::material ? e.hit.material : nullptr;
     }
 
     // What a medium did to the light on the way shows before its density is told.
     SampleFault blamed() {
         for (const PathEvent& e : record_.events())
-            if (e.kind == Kind::blames) look(e);
+            if (e.kind == EventKind::blames) look(e);
         return fault_;
     }
 
@@ -107,7 +107,7 @@ class Search {
     SampleFault largest() {
         float most = 0;
         for (const PathEvent& e : record_.events()) {
-            if (e.kind != Kind::gathers || !(maxLane(e.light) > most)) continue;
+            if (e.kind != EventKind::gathers || !(maxLane(e.light) > most)) continue;
             most = maxLane(e.light);
             std::uint32_t lanes = 0;
             for (int i = 0; i < kLanes; ++i)

@@ -58,9 +58,9 @@ struct Reading {
     int quarters = 0;
 };
 
-class Planner {
+class FactorPlanner {
   public:
-    explicit Planner(const PlanPilot& pilot) : pilot_(pilot) {
+    explicit FactorPlanner(const PlanPilot& pilot) : pilot_(pilot) {
         Grid luminance = gridOf([](const PlanCell& c) { return 0.5 * (c.luminance[0] + c.luminance[1]); });
         double mean = 0, pixels = 0;
         each([&](int c, int r, const PlanCell& cell) {
@@ -120,7 +120,7 @@ class Planner {
     // nothing about other samples, unless those around it agree: the other half of the cell's looks, and its
     // neighbours.
     void limitSpecks() {
-        constexpr double kMost = 4; // times the mean of those around
+        constexpr double kMostOfOthers = 4; // times the mean of those around
         each([&](int column, int row, const PlanCell&) {
             double sum = 0;
             int count = 0;
@@ -130,7 +130,7 @@ class Planner {
             for (std::size_t half = 0; half < 2; ++half) {
                 const double others = (sum - noise_[half].at(column, row)) / (2 * count - 1);
                 double& noise = limited_[half].at(column, row);
-                noise = std::min(noise, kMost * others);
+                noise = std::min(noise, kMostOfOthers * others);
             }
         });
     }
@@ -209,7 +209,7 @@ class Planner {
 
 SamplingPlan::SamplingPlan(const PlanPilot& pilot)
     : frame_(pilot.frame()), cellSize_(pilot.cellSize()), columns_(pilot.columns()), rows_(pilot.rows()) {
-    factors_ = Planner(pilot).best();
+    factors_ = FactorPlanner(pilot).best();
 }
 
 // Linear between the centres of cells.

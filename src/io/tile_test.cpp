@@ -15,7 +15,7 @@ namespace abbe {
 
 namespace {
 
-constexpr int kTile = 8;
+constexpr int kTestTile = 8;
 constexpr double kLevel = 0.01;
 
 double normalBelow(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
@@ -106,11 +106,11 @@ TileTest tileTest(const NoisyPlane& a, const NoisyPlane& b, int width, int heigh
                b.variances.size() == size && a.replicates >= 2 && b.replicates >= 2);
     TileTest test;
     std::vector<double> scores;
-    for (int y = 0; y < height; y += kTile)
-        for (int x = 0; x < width; x += kTile) {
+    for (int y = 0; y < height; y += kTestTile)
+        for (int x = 0; x < width; x += kTestTile) {
             TileSums sumsA, sumsB;
-            for (int v = y; v < std::min(y + kTile, height); ++v)
-                for (int u = x; u < std::min(x + kTile, width); ++u) {
+            for (int v = y; v < std::min(y + kTestTile, height); ++v)
+                for (int u = x; u < std::min(x + kTestTile, width); ++u) {
                     const std::size_t i =
                         static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
                     sumsA.add(a, i);

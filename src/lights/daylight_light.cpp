@@ -13,15 +13,15 @@ namespace {
 
 using schema::FieldType;
 
-constexpr int kColumns = 256, kRows = 256; // the horizon lies between two rows
-constexpr double kCellSolidAngle = 4 * kPiD / (kColumns * kRows);
+constexpr int kSkyColumns = 256, kSkyRows = 256; // the horizon lies between two rows
+constexpr double kCellSolidAngle = 4 * kPiD / (kSkyColumns * kSkyRows);
 constexpr double kGroundAlbedo = 0.2;
 constexpr double kSunHalfAngle = 0.265 * kPiD / 180;
 
-double rowHeight(double row) { return 2 * row / kRows - 1; }
+double rowHeight(double row) { return 2 * row / kSkyRows - 1; }
 
 Vec3 direction(double column, double row) {
-    const double z = rowHeight(row), r = safeSqrt((1 - z) * (1 + z)), phi = 2 * kPiD * column / kColumns;
+    const double z = rowHeight(row), r = safeSqrt((1 - z) * (1 + z)), phi = 2 * kPiD * column / kSkyColumns;
     return Vec3(Vec3d{r * std::cos(phi), r * std::sin(phi), z});
 }
 
@@ -105,8 +105,8 @@ void DaylightSky::commit(const Bounds3& bounds) { power_ = radiant_ * sceneDiskA
 DaylightSky::Totals DaylightSky::totals(const DaylightModel& model, const Curve& groundAlbedo, const Curve* sunlight,
                                         double sunHeight) {
     DaylightModel::Mix scalar, horizontal; // ∫ L dω, ∫ L cos θ dω
-    for (int row = kRows / 2; row < kRows; ++row)
-        for (int column = 0; column < kColumns; ++column) {
+    for (int row = kSkyRows / 2; row < kSkyRows; ++row)
+        for (int column = 0; column < kSkyColumns; ++column) {
             const DaylightModel::Mix m = model.mix(direction(column + 0.5, row + 0.5));
             const double height = rowHeight(row + 0.5) * kCellSolidAngle;
             scalar = {scalar.s0 + m.s0 * kCellSolidAngle, scalar.s1 + m.s1 * kCellSolidAngle,
@@ -125,15 +125,15 @@ DaylightSky::Totals DaylightSky::totals(const DaylightModel& model, const Curve&
 }
 
 Distribution2D DaylightSky::density() const {
-    std::vector<double> weights(static_cast<std::size_t>(kColumns) * kRows, luminousIntegral(*totals_.ground));
-    for (int row = kRows / 2; row < kRows; ++row)
-        for (int column = 0; column < kColumns; ++column) {
+    std::vector<double> weights(static_cast<std::size_t>(kSkyColumns) * kSkyRows, luminousIntegral(*totals_.ground));
+    for (int row = kSkyRows / 2; row < kSkyRows; ++row)
+        for (int column = 0; column < kSkyColumns; ++column) {
             double sum = 0;
             for (const double dr : {0.25, 0.75})
                 for (const double dc : {0.25, 0.75}) sum += model_.luminance(direction(column + dc, row + dr)) / 4;
-            weights[static_cast<std::size_t>(row * kColumns + column)] = sum;
+            weights[static_cast<std::size_t>(row * kSkyColumns + column)] = sum;
         }
-    return {weights, kColumns};
+    return {weights, kSkyColumns};
 }
 
 std::optional<LightSample> DaylightSky::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
@@ -154,10 +154,10 @@ Spectrum DaylightSky::escaped(Vec3 w, const Wavelengths& lambda, float) const no
 float DaylightSky::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept {
     const Vec3 local = axes_.toLocal(w);
     const float turn = std::atan2(local.y, local.x) * (0.5f * kInvPi);
-    const int column = static_cast<int>((turn < 0 ? turn + 1 : turn) * kColumns);
-    const int row = static_cast<int>(0.5f * (local.z + 1) * kRows);
-    const double p = distribution_.probability(static_cast<std::size_t>(std::min(column, kColumns - 1)),
-                                               static_cast<std::size_t>(std::clamp(row, 0, kRows - 1)));
+    const int column = static_cast<int>((turn < 0 ? turn + 1 : turn) * kSkyColumns);
+    const int row = static_cast<int>(0.5f * (local.z + 1) * kSkyRows);
+    const double p = distribution_.probability(static_cast<std::size_t>(std::min(column, kSkyColumns - 1)),
+                                               static_cast<std::size_t>(std::clamp(row, 0, kSkyRows - 1)));
     return static_cast<float>(p / kCellSolidAngle);
 }
 

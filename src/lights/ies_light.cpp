@@ -163,12 +163,13 @@ IesLight::Angles IesLight::angles(Vec3 w) const noexcept {
 namespace {
 
 // Cells of directions; within one the density is even per solid angle.
-constexpr int kRows = 90, kColumns = 24;
+constexpr int kIesRows = 90, kIesColumns = 24;
 
-double rowEdge(std::size_t row) { return kPiD * static_cast<double>(row) / kRows; }
+double rowEdge(std::size_t row) { return kPiD * static_cast<double>(row) / kIesRows; }
 // 2 sin a sin b for cos(a - b) - cos(a + b): nothing cancels near the axis.
 double cellSolidAngle(std::size_t row) {
-    return 2 * kPiD / kColumns * 2 * std::sin((rowEdge(row) + rowEdge(row + 1)) / 2) * std::sin(kPiD / (2 * kRows));
+    return 2 * kPiD / kIesColumns * 2 * std::sin((rowEdge(row) + rowEdge(row + 1)) / 2) *
+           std::sin(kPiD / (2 * kIesRows));
 }
 
 } // namespace
@@ -179,22 +180,22 @@ Distribution2D IesLight::density() const {
     constexpr int points = 3;
     const double floor = 0.01 * profile_.lumens() / (4 * kPiD);
     std::vector<double> weights;
-    for (std::size_t row = 0; row < kRows; ++row)
-        for (int column = 0; column < kColumns; ++column) {
+    for (std::size_t row = 0; row < kIesRows; ++row)
+        for (int column = 0; column < kIesColumns; ++column) {
             double sum = 0;
             for (int i = 0; i < points; ++i)
                 for (int j = 0; j < points; ++j)
                     sum += profile_.candela(std::lerp(rowEdge(row), rowEdge(row + 1), (i + 0.5) / points),
-                                            2 * kPiD * (column + (j + 0.5) / points) / kColumns - kPiD);
+                                            2 * kPiD * (column + (j + 0.5) / points) / kIesColumns - kPiD);
             weights.push_back((sum / (points * points) + floor) * cellSolidAngle(row));
         }
-    return {weights, kColumns};
+    return {weights, kIesColumns};
 }
 
 float IesLight::largestDensity() const {
     double largest = 0;
-    for (std::size_t row = 0; row < kRows; ++row)
-        for (std::size_t column = 0; column < kColumns; ++column)
+    for (std::size_t row = 0; row < kIesRows; ++row)
+        for (std::size_t column = 0; column < kIesColumns; ++column)
             largest = std::max(largest, directions_.probability(column, row) / cellSolidAngle(row));
     return static_cast<float>(largest);
 }
@@ -205,7 +206,7 @@ Vec3 IesLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {
     // Even in the cosine: sin² of half the angle is linear in it, and does not cancel near the axis.
     const double half2 = std::lerp(square(std::sin(upper / 2)), square(std::sin(lower / 2)), share);
     const double sine = 2 * std::sqrt(half2 * (1 - half2)), cosine = 1 - 2 * half2;
-    const double about = 2 * kPiD * (cell.column + static_cast<double>(cell.offset.x)) / kColumns - kPiD;
+    const double about = 2 * kPiD * (cell.column + static_cast<double>(cell.offset.x)) / kIesColumns - kPiD;
     const Vec3 local(Vec3d{sine * std::cos(about), -sine * std::sin(about), cosine});
     return normalize(axes_.toWorld(local));
 }
@@ -215,7 +216,7 @@ float IesLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept {
     const auto cell = [](double share, int count) {
         return static_cast<std::size_t>(std::clamp(static_cast<int>(share * count), 0, count - 1));
     };
-    const std::size_t row = cell(at.fromAxis / kPiD, kRows), column = cell(at.about / (2 * kPiD) + 0.5, kColumns);
+    const std::size_t row = cell(at.fromAxis / kPiD, kIesRows), column = cell(at.about / (2 * kPiD) + 0.5, kIesColumns);
     return static_cast<float>(directions_.probability(column, row) / cellSolidAngle(row));
 }
 

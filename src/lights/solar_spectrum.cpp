@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kOzone = 0.35, kWater = 2; // cm
 constexpr double kSunTemperature = 5778;    // K
-constexpr double kSunHalfAngle = 0.2666 * kPiD / 180;
+constexpr double kMeanHalfAngle = 0.2666 * kPiD / 180;
 
 // Radiance of the sun outside of the atmosphere from 380 to 750 nm in steps of 10 nm, W·cm⁻²·μm⁻¹·sr⁻¹
 // [Preetham1999, table 2].
@@ -73,7 +73,7 @@ double relativeAirMass(double zenithAngle) {
 }
 
 SampledCurve solarIrradiance(double zenithAngle, double turbidity) {
-    const double airMass = relativeAirMass(zenithAngle), projected = kPiD * square(std::sin(kSunHalfAngle));
+    const double airMass = relativeAirMass(zenithAngle), projected = kPiD * square(std::sin(kMeanHalfAngle));
     return SampledCurve(
         [&](double nm) { return extraterrestrial(nm) * projected * transmittance(nm, airMass, turbidity); });
 }

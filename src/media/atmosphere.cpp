@@ -8,7 +8,7 @@ namespace {
 constexpr double kTopInScaleHeights = 46;
 // Pieces in which density changes by a factor of e^(1/2) at most, or of so small an optical depth that next to no ray
 // collides in them, real or not: in clear air steps would cost more than collisions.
-constexpr double kStep = 0.5;
+constexpr double kOpticalStep = 0.5;
 constexpr double kThin = 0.25;
 
 // Heights along the ray are linear in t: h(t) = height + slope t, in scale heights above the ground.
@@ -53,14 +53,14 @@ class AtmosphereWalk final : public MediumWalk {
         if (slope_ > 0) {
             if (here < 0) return at(0);
             if (here >= kTopInScaleHeights) return kNever;
-            const double step = kStep * (std::floor(here / kStep * (1 + kSmallest)) + 1);
+            const double step = kOpticalStep * (std::floor(here / kOpticalStep * (1 + kSmallest)) + 1);
             return at(std::min(std::max(step, here + kThin * std::exp(here) / perHeight_), kTopInScaleHeights));
         }
         if (slope_ < 0) {
             if (here <= 0) return kNever;
             if (here > kTopInScaleHeights) return at(kTopInScaleHeights);
-            double low = kStep * (std::ceil(here / kStep * (1 - kSmallest)) - 1);
-            for (double deep = 2 * kStep; low > 0; deep *= 2) {
+            double low = kOpticalStep * (std::ceil(here / kOpticalStep * (1 - kSmallest)) - 1);
+            for (double deep = 2 * kOpticalStep; low > 0; deep *= 2) {
                 const double lower = std::max(here - deep, 0.0);
                 if (perHeight_ * std::exp(-lower) * (here - lower) > kThin) break;
                 low = std::min(low, lower);

@@ -66,9 +66,9 @@ class BrickPower {
         return static_cast<float>(sum / (kPoints * kPoints * kPoints * times));
     }
     double line(Vec3i brick, int i, float time) const {
-        constexpr double kStep = 8.0 / kPoints;
-        const Vec3d start = Vec3d(brick * 8) + Vec3d(i / kPoints + 0.5, i % kPoints + 0.5, 0.5) * kStep;
-        EmissionAlong along(fields_, toRender_.point(start), toRender_.vector({0, 0, kStep}), time);
+        constexpr double kColumnStep = 8.0 / kPoints;
+        const Vec3d start = Vec3d(brick * 8) + Vec3d(i / kPoints + 0.5, i % kPoints + 0.5, 0.5) * kColumnStep;
+        EmissionAlong along(fields_, toRender_.point(start), toRender_.vector({0, 0, kColumnStep}), time);
         double sum = 0;
         for (int k = 0; k < kPoints; ++k) {
             const auto s = along.state(static_cast<float>(k));

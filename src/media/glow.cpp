@@ -21,9 +21,9 @@ Spectrum Glow::at(float kelvin, const Wavelengths& lambda, const Spectrum& tint)
 
 Glow::Totals Glow::totals(double kelvin) const {
     if (thermal() && !(kelvin > static_cast<double>(kColdest))) return {};
-    constexpr double kStep = 5; // nm
+    constexpr double kGlowStep = 5; // nm
     Totals sum;
-    for (double nm = static_cast<double>(kMinWavelength); nm <= static_cast<double>(kMaxWavelength); nm += kStep) {
+    for (double nm = static_cast<double>(kMinWavelength); nm <= static_cast<double>(kMaxWavelength); nm += kGlowStep) {
         double value = 0;
         if (spectrum_)
             value = spectrum_->at(nm);
@@ -31,8 +31,8 @@ Glow::Totals Glow::totals(double kelvin) const {
             value =
                 extinction_->at(nm) * (albedo_ ? std::max(1 - albedo_->at(nm), 0.0) : 1) * planckRadiance(nm, kelvin);
         const Wavelengths w = Wavelengths::single(static_cast<float>(nm));
-        sum.watts += value * kStep;
-        sum.seen += value * kStep * static_cast<double>(xbar(w)[0] + ybar(w)[0] + zbar(w)[0]);
+        sum.watts += value * kGlowStep;
+        sum.seen += value * kGlowStep * static_cast<double>(xbar(w)[0] + ybar(w)[0] + zbar(w)[0]);
     }
     return sum;
 }

@@ -10,10 +10,10 @@ namespace abbe {
 
 namespace {
 
-constexpr double kShortest = 360e-9, kLongest = 830e-9;                         // m
-constexpr double kStep = (kLongest - kShortest) / (MiePhase::kWavelengths - 1); // m
-constexpr double kWidest = 7e-3;                                                // rad, between angles of the grid
-constexpr double kAccepted = 0.003;                                             // of the integral
+constexpr double kShortest = 360e-9, kLongest = 830e-9;                                   // m
+constexpr double kWavelengthStep = (kLongest - kShortest) / (MiePhase::kWavelengths - 1); // m
+constexpr double kWidest = 7e-3;    // rad, between angles of the grid
+constexpr double kAccepted = 0.003; // of the integral
 
 // Rings around straight on and straight back are 1/size wide; a spread of sizes blurs all but the first few of them,
 // and what is left (bows) is wider than a degree. `finer` divides all steps.
@@ -66,7 +66,7 @@ Tabulated tabulate(const MiePhase::Spheres& spheres, std::span<const double> rad
 
 } // namespace
 
-double MiePhase::wavelength(std::size_t i) { return kShortest + kStep * static_cast<double>(i); }
+double MiePhase::wavelength(std::size_t i) { return kShortest + kWavelengthStep * static_cast<double>(i); }
 
 MiePhase::MiePhase(const Spheres& spheres) {
     const double around = spheres.surroundings ? spheres.surroundings->at(kShortest * 1e9) : 1;
@@ -98,7 +98,8 @@ Spectrum MiePhase::ratio(float cosine, const Wavelengths& lambda) const noexcept
     const AngularTable::Place place = mean_->find(cosine);
     const float whole = mean_->value(place);
     if (!(whole > 0)) return Spectrum(1.f);
-    const Float8 position = (lambda.nm.v - static_cast<float>(kShortest * 1e9)) * static_cast<float>(1e-9 / kStep);
+    const Float8 position =
+        (lambda.nm.v - static_cast<float>(kShortest * 1e9)) * static_cast<float>(1e-9 / kWavelengthStep);
     Int8 cell = __builtin_convertvector(position, Int8);
     cell = cell > n - 2 ? Int8{} + (n - 2) : cell;
     const Spectrum fraction(position - __builtin_convertvector(cell, Float8));

@@ -68,17 +68,17 @@ std::unique_ptr<const Curve> cauchy(const std::vector<double>& v) {
     });
 }
 
-const RgbSpace& rgbSpace(schema::RgbSpace space) {
+const RgbSpace& rgbSpace(schema::RgbSpaceName space) {
     switch (space) {
-    case schema::RgbSpace::linRec709:
+    case schema::RgbSpaceName::linRec709:
         return rgb::rec709;
-    case schema::RgbSpace::linRec2020:
+    case schema::RgbSpaceName::linRec2020:
         return rgb::rec2020;
-    case schema::RgbSpace::linP3D65:
+    case schema::RgbSpaceName::linP3D65:
         return rgb::p3d65;
-    case schema::RgbSpace::linAp1:
+    case schema::RgbSpaceName::linAp1:
         return rgb::ap1;
-    case schema::RgbSpace::linAp0:
+    case schema::RgbSpaceName::linAp0:
         return rgb::ap0;
     }
     return rgb::rec709;

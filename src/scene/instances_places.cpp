@@ -64,7 +64,7 @@ PointLayout layoutOf(const PlyColumns& columns) {
     return layout;
 }
 
-Transform placeOf(const PointLayout& layout, std::span<const double> v, const PlaceContext& context) {
+Transform placementOf(const PointLayout& layout, std::span<const double> v, const PlaceContext& context) {
     Transform place;
     if (layout.sizes) place = Transform::scale({v[sx], v[sy], v[sz]});
     if (layout.size >= 0) {
@@ -84,7 +84,7 @@ bool visitPoints(const InstancesParams& p, const PlaceContext& context, Diagnost
     try {
         visitPlyVertices(readFileBytes(p.points.value), p.points.value, kColumns, begin,
                          [&](std::uint64_t i, std::span<const double> v) {
-                             return visit(i, placeOf(layout, v, context)); // a turn by nothing makes it not finite
+                             return visit(i, placementOf(layout, v, context)); // a turn by nothing makes it not finite
                          });
         return true;
     } catch (const IoError& e) {

@@ -6,23 +6,23 @@ using namespace schema;
 
 namespace {
 
-using P = InstancesParams;
+using IP = InstancesParams;
 
 std::vector<FieldInfo> sources() {
     return {
-        field<P, Text>(FieldType::file, "points", &P::points)
+        field<IP, Text>(FieldType::file, "points", &IP::points)
             .group("places")
             .synonyms({"file", "cloud"})
             .doc("PLY file with a place per vertex: x y z; turned by qx qy qz qw or nx ny nz; sized by scale, sx sy sz "
                  "or radius.")
             .example("points \"pebbles.ply\""),
-        field<P, std::optional<Vec3d>>(FieldType::vector3, "grid", &P::grid)
+        field<IP, std::optional<Vec3d>>(FieldType::vector3, "grid", &IP::grid)
             .group("places")
             .range(1, 1e8)
             .synonyms({"count", "counts", "array"})
             .doc("Counts along the three axes of a grid about the origin.")
             .example("grid 10 1 10"),
-        field<P, std::optional<double>>(FieldType::integer, "scatter", &P::count)
+        field<IP, std::optional<double>>(FieldType::integer, "scatter", &IP::count)
             .group("places")
             .range(1, 1e8)
             .synonyms({"number", "random"})
@@ -36,44 +36,44 @@ std::vector<FieldInfo> sources() {
 TypeInfo instancesType() {
     std::vector<FieldInfo> fields = sources();
     const std::vector<FieldInfo> others = {
-        field<P, Vec3d>(FieldType::vector3, "spacing", &P::spacing)
+        field<IP, Vec3d>(FieldType::vector3, "spacing", &IP::spacing)
             .unit({Dimension::length})
             .byDefault("1 1 1")
             .doc("Distances between the places of a grid.")
             .example("spacing 0.5 0.5 0.5 m"),
-        field<P, Text>(FieldType::text, "over", &P::over)
+        field<IP, Text>(FieldType::text, "over", &IP::over)
             .group("surface")
             .synonyms({"on", "surface"})
             .doc("Name of the shape to scatter on, beside these instances: a quad, a disk or anything of polygons.")
             .example("over ground"),
-        field<P, std::optional<Vec2d>>(FieldType::vector2, "area", &P::area)
+        field<IP, std::optional<Vec2d>>(FieldType::vector2, "area", &IP::area)
             .unit({Dimension::length})
             .range(1e-30, 1e15)
             .group("surface")
             .doc("Width and depth of a level rectangle about the origin to scatter on; 1 1 without `over`.")
             .example("area 20 10 m"),
-        field<P, std::int64_t>(FieldType::integer, "seed", &P::seed)
+        field<IP, std::int64_t>(FieldType::integer, "seed", &IP::seed)
             .range(0, 4294967295)
             .byDefault("0")
             .doc("Another number, other random places.")
             .example("seed 7"),
-        field<P, double>(FieldType::quantity, "turn", &P::turn)
+        field<IP, double>(FieldType::quantity, "turn", &IP::turn)
             .unit({Dimension::angle})
             .range(0, 2 * kPiD)
             .byDefault("360 deg")
             .doc("Scattered instances are turned about up by a random angle up to this.")
             .example("turn 30 deg"),
-        field<P, Vec2d>(FieldType::vector2, "scale", &P::scale)
+        field<IP, Vec2d>(FieldType::vector2, "scale", &IP::scale)
             .range(1e-9, 1e9)
             .byDefault("1 1")
             .synonyms({"size", "scale-range"})
             .doc("Smallest and largest random size of scattered instances.")
             .example("scale 0.7 1.3"),
-        field<P, bool>(FieldType::toggle, "align", &P::align)
+        field<IP, bool>(FieldType::toggle, "align", &IP::align)
             .byDefault("off")
             .doc("Scattered instances stand along the normal of the surface, not upright.")
             .example("align on"),
-        field<P, KeyedTransform>(FieldType::transform, "transform", &P::transform)
+        field<IP, KeyedTransform>(FieldType::transform, "transform", &IP::transform)
             .synonyms({"to_world", "toWorld", "xform"})
             .doc("Moves all places together.")
             .example("transform { translate 0 0.1 0 }"),

@@ -12,7 +12,7 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr std::array kPlain = {Dimension::none};
+constexpr std::array kPlainNumber = {Dimension::none};
 constexpr std::array kLength = {Dimension::length};
 constexpr std::array kAngle = {Dimension::angle};
 constexpr std::array kTime = {Dimension::time};
@@ -99,7 +99,7 @@ class StepReader {
 
     std::optional<TransformStep> scale() {
         const bool three = entry_.count() > 2; // one number and a wrong unit are two values
-        const auto r = row(kPlain, 0, three ? 3 : 1, three ? "scale 1 2 1" : "scale 2");
+        const auto r = row(kPlainNumber, 0, three ? 3 : 1, three ? "scale 1 2 1" : "scale 2");
         if (!r) return std::nullopt;
         const auto& v = r->values;
         const Vec3d factors = three ? Vec3d{v[0], v[1], v[2]} : Vec3d{v[0], v[0], v[0]};
@@ -123,7 +123,7 @@ class StepReader {
     // 16 numbers, in one line or four rows; the last row is 0 0 0 1, and the last column a translation in lengths.
     std::optional<Transform> matrix() {
         std::vector<double> m;
-        const MeasureReader reader({"matrix", kPlain, -HUGE_VAL, HUGE_VAL, {}, {}}, header_, diagnostics_);
+        const MeasureReader reader({"matrix", kPlainNumber, -HUGE_VAL, HUGE_VAL, {}, {}}, header_, diagnostics_);
         if (!reader.append(entry_, 0, m)) return std::nullopt;
         if (entry_.hasBlock())
             for (const Node child : entry_.node()->children()) {

@@ -16,22 +16,22 @@ constexpr int kEdition = 1;
 
 struct SpaceName {
     std::string_view name;
-    RgbSpace space;
+    RgbSpaceName space;
 };
 
 // Ids of the Color Interop Forum first, in the order of the enumeration, then the aliases.
 constexpr auto kSpaces = std::to_array<SpaceName>({
-    {"lin_rec709_scene", RgbSpace::linRec709},
-    {"lin_rec2020_scene", RgbSpace::linRec2020},
-    {"lin_p3d65_scene", RgbSpace::linP3D65},
-    {"lin_ap1_scene", RgbSpace::linAp1},
-    {"lin_ap0_scene", RgbSpace::linAp0},
-    {"srgb-linear", RgbSpace::linRec709},
-    {"rec709", RgbSpace::linRec709},
-    {"rec2020", RgbSpace::linRec2020},
-    {"p3", RgbSpace::linP3D65},
-    {"acescg", RgbSpace::linAp1},
-    {"aces2065-1", RgbSpace::linAp0},
+    {"lin_rec709_scene", RgbSpaceName::linRec709},
+    {"lin_rec2020_scene", RgbSpaceName::linRec2020},
+    {"lin_p3d65_scene", RgbSpaceName::linP3D65},
+    {"lin_ap1_scene", RgbSpaceName::linAp1},
+    {"lin_ap0_scene", RgbSpaceName::linAp0},
+    {"srgb-linear", RgbSpaceName::linRec709},
+    {"rec709", RgbSpaceName::linRec709},
+    {"rec2020", RgbSpaceName::linRec2020},
+    {"p3", RgbSpaceName::linP3D65},
+    {"acescg", RgbSpaceName::linAp1},
+    {"aces2065-1", RgbSpaceName::linAp0},
 });
 
 void readEdition(const Node& node, Diagnostics& diagnostics) {
@@ -83,12 +83,12 @@ void readKey(const Key& key, Header& header, Diagnostics& diagnostics) {
 
 } // namespace
 
-std::optional<RgbSpace> findRgbSpace(std::string_view idOrAlias) {
+std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias) {
     const auto found = std::ranges::find(kSpaces, idOrAlias, &SpaceName::name);
     return found == kSpaces.end() ? std::nullopt : std::optional(found->space);
 }
 
-std::string_view rgbSpaceId(RgbSpace space) { return kSpaces[static_cast<std::size_t>(space)].name; }
+std::string_view rgbSpaceId(RgbSpaceName space) { return kSpaces[static_cast<std::size_t>(space)].name; }
 
 std::string rgbSpaceList() {
     std::vector<std::string_view> names;
@@ -96,7 +96,7 @@ std::string rgbSpaceList() {
     return quotedList(names);
 }
 
-std::optional<RgbSpace> readRgbSpace(const Value& value, Diagnostics& diagnostics) {
+std::optional<RgbSpaceName> readRgbSpace(const Value& value, Diagnostics& diagnostics) {
     if (value.isText())
         if (const auto space = findRgbSpace(value.text)) return space;
     auto& d = report(diagnostics, place(value), "E0315", fmt::format("unknown colour space `{}`", value.text),

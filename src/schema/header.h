@@ -14,6 +14,6 @@ Header readHeader(const Document&, Diagnostics&);
 std::string rgbSpaceList();
 
 // Reads the value of a `space=` or `rgb=` key; nothing after a diagnostic.
-std::optional<RgbSpace> readRgbSpace(const Value&, Diagnostics&);
+std::optional<RgbSpaceName> readRgbSpace(const Value&, Diagnostics&);
 
 } // namespace abbe::schema

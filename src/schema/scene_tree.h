@@ -14,15 +14,15 @@
 namespace abbe::schema {
 
 // Colour space of `rgb` values; ids are those of the Color Interop Forum.
-enum class RgbSpace : std::uint8_t { linRec709, linRec2020, linP3D65, linAp1, linAp0 };
-std::optional<RgbSpace> findRgbSpace(std::string_view idOrAlias);
-std::string_view rgbSpaceId(RgbSpace);
+enum class RgbSpaceName : std::uint8_t { linRec709, linRec2020, linP3D65, linAp1, linAp0 };
+std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias);
+std::string_view rgbSpaceId(RgbSpaceName);
 
 // `scene 1 length=mm rgb=acescg up=y`
 struct Header {
     int edition = 1;
     double length = 1; // metres per unit of a bare length
-    RgbSpace rgb = RgbSpace::linRec709;
+    RgbSpaceName rgb = RgbSpaceName::linRec709;
     bool zUp = false; // rotate the scene so that z is up
     Span span;
 };
@@ -83,7 +83,7 @@ struct SpectrumValue {
     Form form = Form::flat;
     std::vector<double> numbers;
     std::string text;
-    RgbSpace space = RgbSpace::linRec709;
+    RgbSpaceName space = RgbSpaceName::linRec709;
     Span span;
 };
 

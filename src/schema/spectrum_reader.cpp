@@ -243,7 +243,7 @@ class SpectrumReader {
     }
 
     bool srgb() {
-        result_.space = RgbSpace::linRec709;
+        result_.space = RgbSpaceName::linRec709;
         std::array<double, 3> encoded{};
         if (entry_.count() == 2 && entry_.value(1).isText()) {
             const auto hex = parseHex(entry_.value(1).text);

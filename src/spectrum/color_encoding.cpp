@@ -9,8 +9,8 @@ namespace abbe {
 namespace {
 
 // Adobe RGB (1998), section 4.3.
-constexpr Chromaticity kD65{0.3127, 0.3290};
-const RgbSpace kAdobeRgb{"lin_adobergb_scene", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65, "D65"};
+constexpr Chromaticity kD65White{0.3127, 0.3290};
+const RgbSpace kAdobeRgb{"lin_adobergb_scene", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65White, "D65"};
 
 struct Entry {
     ColorEncoding encoding;

@@ -18,9 +18,9 @@ using Int8 = std::int32_t __attribute__((vector_size(32)));
 struct Spectrum {
     Float8 v;
 
-    Spectrum() : v{} {}
-    explicit Spectrum(float s) : v{s, s, s, s, s, s, s, s} {}
-    Spectrum(Float8 w) : v(w) {}
+    constexpr Spectrum() : v{} {}
+    explicit constexpr Spectrum(float s) : v{s, s, s, s, s, s, s, s} {}
+    constexpr Spectrum(Float8 w) : v(w) {}
 
     float operator[](int lane) const { return v[lane]; }
     Spectrum operator+(Spectrum b) const { return v + b.v; }
@@ -34,6 +34,8 @@ struct Spectrum {
     Spectrum& operator*=(Spectrum b) { return *this = *this * b; }
     Spectrum& operator*=(float s) { return *this = *this * s; }
 };
+
+inline constexpr Spectrum kOne(1.f), kNone(0.f);
 
 inline Spectrum operator*(float s, Spectrum a) { return a * s; }
 inline Spectrum fma(Spectrum a, Spectrum b, Spectrum c) { return Spectrum(_mm256_fmadd_ps(a.v, b.v, c.v)); }

@@ -64,7 +64,7 @@ Vec3d shiftOf(std::uint32_t h) {
             static_cast<double>(unitFloat(mix32(h ^ 0x967a889bu)))};
 }
 
-constexpr double kFarthest = 1e15; // in cells: the lattice is counted in 64 bits
+constexpr double kFarthestCell = 1e15; // in cells: the lattice is counted in 64 bits
 
 } // namespace
 
@@ -105,7 +105,7 @@ TextureJet NoiseTexture::sum(Vec3d position, int channels, double radius) const 
     for (std::int64_t k = 0; k < params_.octaves; ++k, frequency *= params_.lacunarity, weight *= params_.gain) {
         const Vec3d cell = position * frequency;
         const double fading = radius > 0 ? kept(radius * frequency) : 1;
-        if (!(maxComponent(abs(cell)) < kFarthest) || !(fading > kUnseen)) break;
+        if (!(maxComponent(abs(cell)) < kFarthestCell) || !(fading > kUnseen)) break;
         const double strength = weight * fading;
         for (int c = 0; c < channels; ++c) {
             const auto seed = static_cast<std::uint32_t>(

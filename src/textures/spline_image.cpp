@@ -56,9 +56,9 @@ struct Taps {
     }
 };
 
-constexpr double kFarthest = 1e12; // texture coordinates beyond have no fraction of a texel left
+constexpr double kFarthestUv = 1e12; // texture coordinates beyond have no fraction of a texel left
 
-double tame(float x) { return std::abs(x) < kFarthest ? static_cast<double>(x) : 0; }
+double tame(float x) { return std::abs(x) < kFarthestUv ? static_cast<double>(x) : 0; }
 
 } // namespace
 

@@ -77,8 +77,8 @@ class Cumulus final : public VolumeRecipe {
 
     Bounds3 bounds() const override { return {bounds_.lower * scale_, bounds_.upper * scale_}; }
     std::span<const RecipeField> fields() const override {
-        static constexpr RecipeField kFields[] = {{"density", "", 1}};
-        return kFields;
+        static constexpr RecipeField kCumulusFields[] = {{"density", "", 1}};
+        return kCumulusFields;
     }
 
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override {

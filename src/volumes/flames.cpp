@@ -6,7 +6,7 @@ namespace abbe {
 
 namespace {
 
-constexpr RecipeField kFields[] = {{"density", "", 1}, {"temperature", "K", 1}, {"flame", "", 1}};
+constexpr RecipeField kFlameFields[] = {{"density", "", 1}, {"temperature", "K", 1}, {"flame", "", 1}};
 
 // Two metres high: sheets of glowing soot that are torn into tongues as they rise, and smoke above.
 class Fire final : public VolumeRecipe {
@@ -14,7 +14,7 @@ class Fire final : public VolumeRecipe {
     explicit Fire(std::uint32_t seed) : seed_(mix32(seed ^ 0xf17eu)) {}
 
     Bounds3 bounds() const override { return {{-0.75f, 0, -0.75f}, {0.75f, 2.2f, 0.75f}}; }
-    std::span<const RecipeField> fields() const override { return kFields; }
+    std::span<const RecipeField> fields() const override { return kFlameFields; }
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override { return eachVoxel(*this, corner, size, out); }
 
     bool voxel(Vec3 p, float* values) const {
@@ -59,7 +59,7 @@ class Candle final : public VolumeRecipe {
     explicit Candle(std::uint32_t seed) : seed_(mix32(seed ^ 0xca17u)) {}
 
     Bounds3 bounds() const override { return {{-0.008f, -0.003f, -0.008f}, {0.008f, 0.034f, 0.008f}}; }
-    std::span<const RecipeField> fields() const override { return kFields; }
+    std::span<const RecipeField> fields() const override { return kFlameFields; }
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override { return eachVoxel(*this, corner, size, out); }
 
     bool voxel(Vec3 p, float* values) const {

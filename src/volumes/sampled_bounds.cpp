@@ -13,7 +13,7 @@ constexpr int kMostPasses = 8;
 // margin, and by the second as a share of what was found.
 constexpr float kQuiet = 0.02f;
 constexpr float kLeastMargin = 1.f / 64;
-constexpr float kMargin = 0.1f;
+constexpr float kSampledMargin = 0.1f;
 
 class BrickPilot {
   public:
@@ -32,7 +32,7 @@ class BrickPilot {
             pass();
             if (i > 0 && high_ - high <= kQuiet * open && low - low_ <= kQuiet * open) break;
         }
-        const float margin = kMargin * (high_ - low_) + kLeastMargin * open;
+        const float margin = kSampledMargin * (high_ - low_) + kLeastMargin * open;
         FieldBounds b;
         b.minimum = std::max(limits.minimum, low_ - margin);
         b.maximum = std::min(limits.maximum, high_ + margin);

@@ -13,8 +13,8 @@ class Smoke final : public VolumeRecipe {
 
     Bounds3 bounds() const override { return {{-1.7f, 0, -1.7f}, {2.9f, 6, 1.7f}}; }
     std::span<const RecipeField> fields() const override {
-        static constexpr RecipeField kFields[] = {{"density", "", 1}, {"velocity", "m/s", 3}};
-        return kFields;
+        static constexpr RecipeField kSmokeFields[] = {{"density", "", 1}, {"velocity", "m/s", 3}};
+        return kSmokeFields;
     }
     bool leaf(Vec3 corner, float size, RecipeLeaf& out) const override {
         const float margin = 8 * size;

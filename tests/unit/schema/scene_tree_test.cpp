@@ -36,13 +36,13 @@ TEST_CASE("kinds and their keywords") {
 }
 
 TEST_CASE("colour spaces by id and alias") {
-    for (const RgbSpace space :
-         {RgbSpace::linRec709, RgbSpace::linRec2020, RgbSpace::linP3D65, RgbSpace::linAp1, RgbSpace::linAp0})
+    for (const RgbSpaceName space :
+         {RgbSpaceName::linRec709, RgbSpaceName::linRec2020, RgbSpaceName::linP3D65, RgbSpaceName::linAp1, RgbSpaceName::linAp0})
         CHECK(findRgbSpace(rgbSpaceId(space)) == space);
-    CHECK(findRgbSpace("srgb-linear") == RgbSpace::linRec709);
-    CHECK(findRgbSpace("acescg") == RgbSpace::linAp1);
-    CHECK(findRgbSpace("aces2065-1") == RgbSpace::linAp0);
-    CHECK(findRgbSpace("p3") == RgbSpace::linP3D65);
+    CHECK(findRgbSpace("srgb-linear") == RgbSpaceName::linRec709);
+    CHECK(findRgbSpace("acescg") == RgbSpaceName::linAp1);
+    CHECK(findRgbSpace("aces2065-1") == RgbSpaceName::linAp0);
+    CHECK(findRgbSpace("p3") == RgbSpaceName::linP3D65);
     CHECK(!findRgbSpace("srgb"));
 }
 
