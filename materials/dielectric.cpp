@@ -73,7 +73,7 @@ schema::TypeInfo dielectricType() {
                     .note("α below 0.0005 (roughness below 0.022) is rendered as polished"),
                 field(FieldType::spectrum, "absorption", &DielectricParams::absorption)
                     .doc("Absorption coefficient of the inside, 1/m: exp(-absorption · distance) is left.")
-                    .example("absorption table { 400 12; 700 1.5 }")
+                    .example("absorption table { - 400 12; - 700 1.5 }")
                     .role(SpectrumRole::unbounded)
                     .unit({Dimension::inverseLength, Dimension::none})
                     .range(0, 1e12)

@@ -88,7 +88,7 @@ std::vector<FieldInfo> pigmentFields() {
             .synonyms({"melanin_redness"}),
         field(FieldType::spectrum, "absorption", &HairParams::absorption)
             .doc("Absorption by a dye, besides pigment: coefficient times the radius of the fibre.")
-            .example("absorption table { 400 0.2; 700 3 }")
+            .example("absorption table { - 400 0.2; - 700 3 }")
             .role(SpectrumRole::unbounded)
             .range(0, 1e6)
             .group("dye")

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,5 +39,7 @@ std::shared_ptr<schema::Document> parse(const SourceMap&, FileId, const ParseOpt
 
 // Adds the file at `path` to the map. Nothing after a diagnostic: missing, unreadable, larger than 4 GiB, not UTF-8.
 std::optional<FileId> readSceneFile(SourceMap&, const std::filesystem::path& path, Diagnostics&);
+// The same for a text that comes from a stream and is called `name`.
+std::optional<FileId> readSceneText(SourceMap&, const std::string& name, std::istream&, Diagnostics&);
 
 } // namespace abbe

@@ -21,6 +21,34 @@ std::optional<FileId> refuse(SourceMap& sources, const std::filesystem::path& pa
     return std::nullopt;
 }
 
+constexpr std::uintmax_t kTooLarge = std::numeric_limits<std::uint32_t>::max();
+
+std::optional<FileId> refuseLarge(SourceMap& sources, const std::filesystem::path& path, Diagnostics& diagnostics) {
+    return refuse(sources, path, diagnostics, "E0411", fmt::format("`{}` is larger than 4 GiB", path.string()),
+                  "keep meshes in PLY or OBJ files");
+}
+
+// All of a stream of that many bytes, as far as it is known: pipes have no size.
+std::optional<FileId> readText(SourceMap& sources, const std::filesystem::path& path, std::istream& stream,
+                               std::size_t size, Diagnostics& diagnostics) {
+    std::string text;
+    if (size > 0) text.reserve(size + 1);
+    constexpr std::size_t step = std::size_t{1} << 20, largestStep = std::size_t{1} << 30;
+    while (stream) {
+        const std::size_t had = text.size();
+        text.resize(had + (had >= size ? step : std::min(size - had, largestStep)));
+        stream.read(text.data() + had, static_cast<std::streamsize>(text.size() - had));
+        text.resize(had + static_cast<std::size_t>(stream.gcount()));
+        if (text.size() >= kTooLarge) return refuseLarge(sources, path, diagnostics);
+    }
+    if (stream.bad())
+        return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
+    const FileId file = sources.add(path.string(), std::move(text));
+    const std::string_view added = sources.text(file);
+    parser::SyntaxErrors errors({file, added.data(), added.data() + added.size()}, diagnostics);
+    return parser::checkUtf8(errors) ? std::optional(file) : std::nullopt;
+}
+
 } // namespace
 
 std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::path& path, Diagnostics& diagnostics) {
@@ -36,28 +64,13 @@ std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::p
         return refuse(sources, path, diagnostics, "E0410",
                       fmt::format("cannot read `{}`: {}", path.string(), std::strerror(errno)));
     const std::uintmax_t size = std::filesystem::file_size(path, error); // pipes have none
-    constexpr std::uintmax_t limit = std::numeric_limits<std::uint32_t>::max();
-    const auto tooLarge = [&] {
-        return refuse(sources, path, diagnostics, "E0411", fmt::format("`{}` is larger than 4 GiB", path.string()),
-                      "keep meshes in PLY or OBJ files");
-    };
-    if (!error && size >= limit) return tooLarge();
-    std::string text;
-    if (!error) text.reserve(size + 1);
-    constexpr std::size_t step = std::size_t{1} << 20;
-    while (stream) {
-        const std::size_t had = text.size();
-        text.resize(had + (error || had >= size ? step : std::min<std::uintmax_t>(size - had, std::size_t{1} << 30)));
-        stream.read(text.data() + had, static_cast<std::streamsize>(text.size() - had));
-        text.resize(had + static_cast<std::size_t>(stream.gcount()));
-        if (text.size() >= limit) return tooLarge();
-    }
-    if (stream.bad())
-        return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
-    const FileId file = sources.add(path.string(), std::move(text));
-    const std::string_view added = sources.text(file);
-    parser::SyntaxErrors errors({file, added.data(), added.data() + added.size()}, diagnostics);
-    return parser::checkUtf8(errors) ? std::optional(file) : std::nullopt;
+    if (!error && size >= kTooLarge) return refuseLarge(sources, path, diagnostics);
+    return readText(sources, path, stream, error ? 0 : static_cast<std::size_t>(size), diagnostics);
+}
+
+std::optional<FileId> readSceneText(SourceMap& sources, const std::string& name, std::istream& stream,
+                                    Diagnostics& diagnostics) {
+    return readText(sources, name, stream, 0, diagnostics);
 }
 
 } // namespace abbe

@@ -34,11 +34,18 @@ std::size_t fixScene(const SceneInput& input) {
     return applied;
 }
 
+constexpr const char* kStandardInput = "-";
+
+SceneInput inputOf(const std::string& path, const CheckOptions& options) {
+    if (path != kStandardInput) return {path, options.defines};
+    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true};
+}
+
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
     const std::size_t fixed = options.fix ? fixScene(input) : 0;
     const auto loaded = checkScene(input, options.textures);
     console.report(loaded->diagnostics, loaded->sources);
-    if (console.format() == MessageFormat::human) {
+    if (console.format() == MessageFormat::human && !options.quiet) {
         if (fixed > 0) console.line(fmt::format("{}: {} repaired", input.path, fixed));
         if (loaded->diagnostics.all().empty()) console.line(fmt::format("{}: no errors, no warnings", input.path));
     }
@@ -59,7 +66,7 @@ ExitCode worse(ExitCode a, ExitCode b) {
 ExitCode run(const CheckOptions& options, const CommonOptions& common) {
     ExitCode result = ExitCode::done;
     for (const std::string& path : options.paths)
-        result = worse(result, checkOne({path, options.defines}, options, common.console));
+        result = worse(result, checkOne(inputOf(path, options), options, common.console));
     return result;
 }
 

@@ -2,13 +2,16 @@
 
 #include "app/argument_values.h"
 #include "app/command_line_certify.h"
+#include "app/command_line_check.h"
 #include "app/command_line_compare.h"
 #include "app/command_line_convert.h"
 #include "app/command_line_denoise.h"
 #include "app/command_line_doctor.h"
 #include "app/command_line_help.h"
+#include "app/command_line_reference.h"
 #include "app/command_line_replay.h"
 #include "app/command_line_study.h"
+#include "app/command_line_tree.h"
 #include "app/command_line_verify.h"
 #include "app/command_line_volume.h"
 #include "app/version.h"
@@ -25,8 +28,15 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr const char* kCommands[] = {"render", "merge",   "check",  "explain", "info",  "convert", "compare",
-                                     "volume", "denoise", "replay", "certify", "study", "verify",  "doctor"};
+constexpr const char* kCommands[] = {"render", "merge",     "convert", "denoise", "check", "explain",
+                                     "info",   "compare",   "certify", "verify",  "study", "replay",
+                                     "volume", "reference", "doctor",  "help"};
+
+// Headings of the list of commands.
+constexpr const char* kPictures = "Pictures";
+constexpr const char* kScenes = "Scenes";
+constexpr const char* kTrust = "How right a picture is, and what it costs";
+constexpr const char* kOther = "Besides";
 
 // One reader per command line: holds the library's parser and what it writes into.
 class Reader {
@@ -37,60 +47,41 @@ class Reader {
         app_.set_help_flag("-h,--help", "Print this help");
         app_.require_subcommand(1);
         app_.get_formatter()->column_width(28);
-        addRender();
-        addMerge();
-        addCheck();
-        addExplain();
-        addInfo();
-        addConvert();
-        addCompareArguments(*add("compare", kCompareHelp), compare_, common_.json);
-        addVolumeActions(*add("volume", kVolumeHelp), volume_, common_.json);
-        addDenoiseArguments(*add("denoise", kDenoiseHelp), denoise_, common_);
-        addReplayArguments(*add("replay", kReplayHelp), replay_, common_);
-        addDoctorArguments(*add("doctor", kDoctorHelp), doctor_, common_);
-        CLI::App* certify = add("certify", kCertifyHelp);
-        addCertifyArguments(*certify, certify_, common_.json);
-        addView(certify, certify_.view);
-        CLI::App* study = add("study", kStudyHelp);
-        addStudyArguments(*study, study_, common_);
-        addDefines(study, study_.input.defines);
-        CLI::App* verify = add("verify", kVerifyHelp);
-        addVerifyArguments(*verify, verify_, common_);
-        addDefines(verify, verify_.input.defines);
+        addPictureCommands();
+        addSceneCommands();
+        addTrustCommands();
+        addOtherCommands();
     }
+
+    CommandInfo describe() const { return describeCommands(app_); }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
         Words reversed(words.rbegin(), words.rend()); // as the library takes them
         try {
             app_.parse(std::move(reversed));
         } catch (const CLI::CallForHelp&) {
-            return EarlyEnd{ExitCode::done, helpText()};
+            const CLI::App& chosen = chosenCommand(app_);
+            return EarlyEnd{ExitCode::done, &chosen == &app_ ? commandListText(describe()) : helpText(chosen)};
         } catch (const CLI::CallForVersion&) {
             return EarlyEnd{ExitCode::done, versionText() + "\n"};
         } catch (const CLI::ParseError& e) {
-            return EarlyEnd{ExitCode::usage, errorText(e)};
+            return EarlyEnd{ExitCode::usage, errorText(app_, e)};
         }
+        if (app_.got_subcommand("help"))
+            if (auto text = commandHelp()) return EarlyEnd{ExitCode::done, std::move(*text)};
         return command(words);
-    }
-
-    std::string helpText() const {
-        const CLI::App* chosen = chosenCommand();
-        std::string text = chosen == &app_ ? app_.help() : chosen->help(fullName(chosen->get_parent()));
-        constexpr std::string_view kInternal = "--png{.}      "; // how the library writes an optional value
-        if (const auto at = text.find(kInternal); at != std::string::npos)
-            text.replace(at, kInternal.size(), "--png[=FILE]  ");
-        return text;
     }
 
   private:
     using Texts = std::vector<std::string>;
 
-    CLI::App* add(const char* name, const char* help) {
+    CLI::App* add(const char* name, const char* help, const char* group) {
         CLI::App* command = app_.add_subcommand(name, help);
+        command->group(group);
         command->set_help_flag("-h,--help", "Print this help");
         command->add_option("--color", color_, "Colours: auto, always or never")
-            ->check(CLI::IsMember({"auto", "always", "never"}))
-            ->type_name("WHEN");
+            ->check(CLI::IsMember({"auto", "always", "never"}).description(""))
+            ->type_name("auto|always|never");
         command->get_formatter()->column_width(28);
         return command;
     }
@@ -120,6 +111,10 @@ class Reader {
     void addFrame(CLI::App* c, BuildOptions& b);
     void addGoals(CLI::App* c);
     void addSaving();
+    void addPictureCommands();
+    void addSceneCommands();
+    void addTrustCommands();
+    void addOtherCommands();
     void addRender();
     void addMerge();
     void addCheck();
@@ -127,19 +122,8 @@ class Reader {
     void addInfo();
     void addConvert();
 
-    // The command, or the action of a command that has some.
-    const CLI::App* chosenCommand() const {
-        const CLI::App* command = &app_;
-        for (auto below = command->get_subcommands(); !below.empty(); below = command->get_subcommands())
-            command = below.front();
-        return command;
-    }
-    // "abbe", "abbe render", "abbe volume info".
-    static std::string fullName(const CLI::App* command) {
-        const CLI::App* above = command->get_parent();
-        return above ? fullName(above) + " " + command->get_name() : command->get_name();
-    }
-    std::string errorText(const CLI::ParseError&) const;
+    // What `abbe help …` prints; nothing if its words are no command: they are words of the language.
+    std::optional<std::string> commandHelp() const;
     Command command(const Words& words);
 
     CLI::App app_{kAbout};
@@ -159,7 +143,45 @@ class Reader {
     StudyOptions study_;
     VerifyOptions verify_;
     DoctorOptions doctor_;
+    ReferenceOptions reference_;
+    Words helpTopic_;
 };
+
+void Reader::addPictureCommands() {
+    addRender();
+    addMerge();
+    addConvert();
+    addDenoiseArguments(*add("denoise", kDenoiseHelp, kPictures), denoise_, common_);
+}
+
+void Reader::addSceneCommands() {
+    addCheck();
+    addExplain();
+    addInfo();
+}
+
+void Reader::addTrustCommands() {
+    addCompareArguments(*add("compare", kCompareHelp, kTrust), compare_, common_.json);
+    CLI::App* certify = add("certify", kCertifyHelp, kTrust);
+    addCertifyArguments(*certify, certify_, common_.json);
+    addView(certify, certify_.view);
+    CLI::App* verify = add("verify", kVerifyHelp, kTrust);
+    addVerifyArguments(*verify, verify_, common_);
+    addDefines(verify, verify_.input.defines);
+    CLI::App* study = add("study", kStudyHelp, kTrust);
+    addStudyArguments(*study, study_, common_);
+    addDefines(study, study_.input.defines);
+    addReplayArguments(*add("replay", kReplayHelp, kTrust), replay_, common_);
+}
+
+void Reader::addOtherCommands() {
+    addVolumeActions(*add("volume", kVolumeHelp, kOther), volume_, common_.json);
+    addReferenceArguments(*add("reference", kReferenceHelp, kOther), reference_);
+    addDoctorArguments(*add("doctor", kDoctorHelp, kOther), doctor_, common_);
+    add("help", kHelpHelp, kOther)
+        ->add_option("topic", helpTopic_, "A command, or words of the scene language")
+        ->type_name("");
+}
 
 // What of the command line a render's picture and plans hang on, beside the scene.
 void Reader::addFrame(CLI::App* c, BuildOptions& b) {
@@ -219,7 +241,7 @@ void Reader::addSaving() {
 }
 
 void Reader::addRender() {
-    CLI::App* c = add("render", kRenderHelp);
+    CLI::App* c = add("render", kRenderHelp, kPictures);
     RenderOptions& r = render_;
     c->add_option("scene", r.input.path, "Scene file")->required()->type_name("");
     c->add_option("-o,--output", r.output, "Image to write (EXR)")->type_name("FILE");
@@ -237,23 +259,23 @@ void Reader::addRender() {
     c->add_flag("--quiet,-q", r.quiet, "Say nothing but warnings and errors");
     c->add_flag("--strict", r.strict, "Exit with 4 when there were warnings");
     const std::string studies = "For studies";
-    c->add_option("--kernel", kernel_, "auto, or all: the path loop with every effect")
+    c->add_option("--kernel", kernel_, "all: the path loop with every effect")
         ->check(CLI::IsMember({"auto", "all"}).description(""))
-        ->type_name("NAME")
+        ->type_name("auto|all")
         ->group(studies);
-    c->add_option("--strategy", r.build.strategy, "mis, lights or bsdf: how light is found")
+    c->add_option("--strategy", r.build.strategy, "How light is found")
         ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
-        ->type_name("NAME")
+        ->type_name("mis|lights|bsdf")
         ->group(studies);
-    c->add_option("--sampler", r.build.sampler, "sobol, stratified or random")
+    c->add_option("--sampler", r.build.sampler, "Where random numbers come from")
         ->check(CLI::IsMember({"sobol", "stratified", "random"}).description(""))
-        ->type_name("NAME")
+        ->type_name("sobol|stratified|random")
         ->group(studies);
     addRead(c, "--pixel", r.pixel, "X,Y", "Render one pixel and print its value", "a pixel such as 12,34", readPixel);
 }
 
 void Reader::addMerge() {
-    CLI::App* c = add("merge", kMergeHelp);
+    CLI::App* c = add("merge", kMergeHelp, kPictures);
     c->add_option("parts", merge_.parts, "Parts of one render (.abbe)")->required()->type_name("");
     c->add_option("-o,--output", merge_.output, "Image to write (EXR)")->required()->type_name("FILE");
     c->add_option("--scene", merge_.scene, "Where the scene is now")->type_name("FILE");
@@ -263,72 +285,46 @@ void Reader::addMerge() {
 }
 
 void Reader::addCheck() {
-    CLI::App* c = add("check", kCheckHelp);
-    c->add_option("scenes", check_.paths, "Scene files")->required()->type_name("");
+    CLI::App* c = add("check", kCheckHelp, kScenes);
+    addCheckArguments(*c, check_, format_);
     addDefines(c, check_.defines);
-    c->add_flag("--fix", check_.fix, "Apply the repairs that are certain, in place");
-    c->add_flag("--strict", check_.strict, "Exit with 4 when there are warnings");
-    c->add_flag("--textures", check_.textures, "Read image textures to their ends, which also makes them ready");
-    c->add_option("--format", format_, "human, short (path:line:column: text) or json")
-        ->check(CLI::IsMember({"human", "short", "json"}).description(""))
-        ->type_name("FORMAT");
-    c->add_flag_callback(
-        "--json", [this] { format_ = "json"; }, "The same as --format=json");
 }
 
 void Reader::addExplain() {
-    CLI::App* c = add("explain", kExplainHelp);
+    CLI::App* c = add("explain", kExplainHelp, kScenes);
     c->add_option_function<Texts>(
          "topic", [this](const Texts& words) { explain_.topic = fmt::format("{}", fmt::join(words, " ")); },
-         "Scene file, or words of the language")
+         "Scene file, or words of the language; without any: how scenes are written")
         ->type_name("");
     c->add_flag("--effects", explain_.effects, "What a scene needs simulated; without one: all effects");
     addFrame(c, explain_.build);
     addDefines(c, explain_.defines);
     addJson(c);
-    c->callback([this] {
-        if (explain_.topic.empty() && !explain_.effects) throw CLI::RequiredError("topic");
-    });
 }
 
 void Reader::addInfo() {
-    CLI::App* c = add("info", kInfoHelp);
+    CLI::App* c = add("info", kInfoHelp, kScenes);
     c->add_option("file", info_.path, "Scene (.scene) or image (.exr)")->required()->type_name("");
     addDefines(c, info_.defines);
     addJson(c);
 }
 
 void Reader::addConvert() {
-    CLI::App* c = add("convert", kConvertHelp);
+    CLI::App* c = add("convert", kConvertHelp, kPictures);
     addConvertArguments(*c, convert_);
     addView(c, convert_.view);
 }
 
-// The flag that an unknown one probably means.
-std::string flagSuggestion(const CLI::App& command, const std::string& flag) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+std::optional<std::string> Reader::commandHelp() const {
+    if (helpTopic_.empty()) return commandListText(describe());
+    const CLI::App* command = &app_;
+    for (const std::string& word : helpTopic_) {
+        command = command->get_subcommand_no_throw(word);
+        if (!command) return std::nullopt;
     }
-    const std::vector<std::string_view> candidates(names.begin(), names.end());
-    return std::string(schema::nearest(flag, candidates));
-}
-
-std::string Reader::errorText(const CLI::ParseError& error) const {
-    const CLI::App* command = chosenCommand();
-    const std::string where = fullName(command);
-    for (const std::string& word : command->remaining()) {
-        if (word.size() < 2 || word[0] != '-') continue;
-        const std::string flag = word.substr(0, word.find('='));
-        const std::string near = flagSuggestion(*command, flag);
-        return fmt::format("abbe: unknown flag `{}`{}\n  `{} --help` lists the flags\n", flag,
-                           near.empty() ? "" : fmt::format("; did you mean `{}`?", near), where);
-    }
-    const Words extra = command->remaining();
-    const std::string message =
-        extra.empty() ? std::string(error.what()) : fmt::format("unexpected argument `{}`", extra.front());
-    return fmt::format("abbe: {}\n  `{} --help` shows how it is used\n", message, where);
+    const std::string text = helpText(*command);
+    if (helpTopic_.size() > 1 || !schema::findKind(helpTopic_[0])) return text;
+    return text + fmt::format("\n`{0}` is a word of scenes, too: `abbe explain {0}`\n", helpTopic_[0]);
 }
 
 Command Reader::command(const Words& words) {
@@ -345,7 +341,7 @@ Command Reader::command(const Words& words) {
     render_.largestKernel = kernel_ == "all";
     if (!png_.empty()) merge_.png = render_.png = png_ == "." ? std::string() : png_;
     if (app_.got_subcommand("volume")) return {volume_, common_};
-    const std::string name = chosenCommand()->get_name();
+    const std::string name = chosenCommand(app_).get_name();
     if (name == "render") return {render_, common_};
     if (name == "merge") return {merge_, common_};
     if (name == "check") return {check_, common_};
@@ -358,11 +354,12 @@ Command Reader::command(const Words& words) {
     if (name == "study") return {study_, common_};
     if (name == "verify") return {verify_, common_};
     if (name == "doctor") return {doctor_, common_};
+    if (name == "reference") return {reference_, common_};
+    if (name == "help") {
+        explain_.topic = fmt::format("{}", fmt::join(helpTopic_, " "));
+        return {explain_, common_};
+    }
     return {compare_, common_};
-}
-
-bool isCommand(const std::string& word) {
-    return std::find(std::begin(kCommands), std::end(kCommands), word) != std::end(kCommands);
 }
 
 // A first word that is neither a command nor a file but looks like a command.
@@ -374,10 +371,14 @@ std::string commandSuggestion(const std::string& word) {
 
 } // namespace
 
+bool isCommand(std::string_view word) { return std::ranges::find(kCommands, word) != std::end(kCommands); }
+
+CommandInfo commandTree() { return Reader().describe(); }
+
 std::variant<Command, EarlyEnd> readCommandLine(std::span<const char* const> arguments) {
     Reader reader;
     Words words(arguments.begin(), arguments.end());
-    if (words.empty()) return EarlyEnd{ExitCode::usage, reader.helpText()};
+    if (words.empty()) return EarlyEnd{ExitCode::usage, kFirstWords};
     const bool global = words[0] == "-h" || words[0] == "--help" || words[0] == "-V" || words[0] == "--version";
     if (!isCommand(words[0]) && !global) {
         if (const std::string near = commandSuggestion(words[0]); !near.empty())

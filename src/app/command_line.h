@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace abbe {
@@ -20,6 +21,9 @@ struct EarlyEnd {
     ExitCode code = ExitCode::done;
     std::string text;
 };
+
+// Whether the word is the name of a command.
+bool isCommand(std::string_view word);
 
 // `arguments` without the program's name.
 std::variant<Command, EarlyEnd> readCommandLine(std::span<const char* const> arguments);

@@ -18,9 +18,9 @@ void addConvertArguments(CLI::App& command, ConvertOptions& options) {
     command.add_option("--layer", options.layer, "A layer, or a channel, instead of the picture: depth, S0.555nm")
         ->type_name("NAME");
     command.add_flag("--overscan", options.overscan, "Show what lies beyond the edges of the picture, too");
-    command.add_option("--bits", options.bits, "8 or 16 bits per component")
+    command.add_option("--bits", options.bits, "Bits per component")
         ->check(CLI::IsMember({8, 16}).description(""))
-        ->type_name("N");
+        ->type_name("8|16");
 }
 
 } // namespace abbe

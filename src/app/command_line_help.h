@@ -3,6 +3,18 @@
 
 namespace abbe {
 
+// All that `abbe` alone says.
+inline constexpr const char* kFirstWords = R"(abbe renders scenes written as text by simulating light.
+
+  abbe render room.scene          a picture of a scene
+  abbe check room.scene           everything that is wrong with it, without rendering
+  abbe explain                    how scenes are written, with a first one
+  abbe explain light              what a word of them means
+  abbe convert room.exr room.png  a picture for the screen
+
+`abbe help` lists all commands, `abbe help render` explains one.
+)";
+
 inline constexpr const char* kAbout = R"(A spectral, physically based film renderer.
 
 Examples:
@@ -31,16 +43,11 @@ Examples:
   abbe merge room.part*.abbe -o room.exr
   abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
 
-inline constexpr const char* kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
-
-Examples:
-  abbe check room.scene
-  abbe check --fix room.scene                  repairs what can be repaired safely
-  abbe check --strict --format=short *.scene   for editors and CI)";
-
 inline constexpr const char* kExplainHelp = R"(Explains a scene, a property, a type, a unit or a diagnostic.
 
 Examples:
+  abbe explain                                 how scenes are written, and what there is
+  abbe explain film                            what a kind takes
   abbe explain room.scene --effects            what it needs simulated and which line asks, and what is not simulated
   abbe explain pool.scene --camera diver       also which light paths a render with these options will take
   abbe explain camera.lens
@@ -60,5 +67,14 @@ Examples:
   abbe volume info cloud.vdb
   abbe volume make cumulus cloud.vdb --resolution 1000
   abbe volume convert bunny.vdb fog.vdb --fog)";
+
+inline constexpr const char* kHelpHelp =
+    R"(Lists all commands, or explains one of them, or a word of the scene language.
+
+Examples:
+  abbe help
+  abbe help render
+  abbe help volume make
+  abbe help camera                             the same as `abbe explain camera`)";
 
 } // namespace abbe

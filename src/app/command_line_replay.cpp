@@ -40,12 +40,12 @@ void addReplayArguments(CLI::App& command, ReplayOptions& options, CommonOptions
     command.add_option("-D", options.render.input.defines, "A parameter of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE");
-    command.add_option("--strategy", b.strategy, "mis, lights or bsdf")
+    command.add_option("--strategy", b.strategy, "How light was found")
         ->check(CLI::IsMember({"mis", "lights", "bsdf"}).description(""))
-        ->type_name("NAME");
-    command.add_option("--sampler", b.sampler, "sobol, stratified or random")
+        ->type_name("mis|lights|bsdf");
+    command.add_option("--sampler", b.sampler, "Where random numbers came from")
         ->check(CLI::IsMember({"sobol", "stratified", "random"}).description(""))
-        ->type_name("NAME");
+        ->type_name("sobol|stratified|random");
     command.add_option("-t,--threads", common.threads, "Threads; without it one per core")
         ->check(CLI::Range(1, 4096).description(""))
         ->type_name("N");

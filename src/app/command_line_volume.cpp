@@ -68,10 +68,10 @@ void addVolumeActions(CLI::App& command, VolumeOptions& v, bool& json) {
     info->add_option("file", v.input, "OpenVDB file")->required()->type_name("");
     info->add_flag("--json", json, "JSON on stdout");
     CLI::App* make = addAction(command, "make", kMakeHelp, v, VolumeOptions::Action::make);
-    make->add_option("kind", v.input, "cumulus, smoke, fire or candle")
+    make->add_option("kind", v.input, "What is made")
         ->required()
         ->check(CLI::IsMember({"cumulus", "smoke", "fire", "candle"}).description(""))
-        ->type_name("");
+        ->type_name("cumulus|smoke|fire|candle");
     make->add_option("output", v.output, "OpenVDB file to write")->required()->type_name("");
     make->add_option("--resolution", v.resolution, "Voxels along the longest side")
         ->check(CLI::Range(8, 4000).description(""))

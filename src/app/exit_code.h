@@ -15,4 +15,20 @@ enum class ExitCode : int {
     terminated = 143,
 };
 
+struct ExitCodeText {
+    ExitCode code;
+    const char* meaning;
+};
+inline constexpr ExitCodeText kExitCodes[] = {
+    {ExitCode::done, "done; also when a time limit or a noise goal ended the render"},
+    {ExitCode::faulty, "the scene or an image has errors"},
+    {ExitCode::usage, "wrong command line"},
+    {ExitCode::system, "a file cannot be read or written"},
+    {ExitCode::threshold, "a threshold was exceeded, a check failed, or there were warnings with --strict"},
+    {ExitCode::memory, "out of memory"},
+    {ExitCode::internal, "a bug of the program"},
+    {ExitCode::interrupted, "interrupted by Ctrl-C, after saving"},
+    {ExitCode::terminated, "ended by SIGTERM, after saving"},
+};
+
 } // namespace abbe

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/explain_effects.h"
 #include "app/light_path_text.h"
 #include "app/options.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 
 namespace abbe {
 
@@ -55,6 +57,30 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
     return ExitCode::done;
 }
 
+// Words that are commands, too: where those are explained.
+std::string commandHint(const std::string& topic) {
+    return isCommand(topic) ? fmt::format("`{0}` is a command: `abbe help {0}`\n", topic) : std::string();
+}
+
+ExitCode explainWords(const std::string& topic, const Console& console) {
+    schema::TypeTable types = makeTypeTable();
+    SourceMap sources;
+    Diagnostics diagnostics;
+    addPresets(types, sources, diagnostics);
+    if (topic.empty()) {
+        console.data(schema::explainLanguage(types));
+        return ExitCode::done;
+    }
+    const schema::Explanation explanation = schema::explain(types, topic);
+    const std::string hint = commandHint(topic);
+    if (explanation.found) {
+        console.data(explanation.text + (hint.empty() ? hint : "\n" + hint));
+        return ExitCode::done;
+    }
+    console.line(hint.empty() ? explanation.text : hint);
+    return ExitCode::faulty;
+}
+
 } // namespace
 
 ExitCode run(const ExplainOptions& options, const CommonOptions& common) {
@@ -68,17 +94,7 @@ ExitCode run(const ExplainOptions& options, const CommonOptions& common) {
         return ExitCode::done;
     }
     if (options.effects || scene) return explainScene(options, common);
-    schema::TypeTable types = makeTypeTable();
-    SourceMap sources;
-    Diagnostics diagnostics;
-    addPresets(types, sources, diagnostics);
-    const schema::Explanation explanation = schema::explain(types, options.topic);
-    if (explanation.found) {
-        common.console.data(explanation.text);
-        return ExitCode::done;
-    }
-    common.console.line(explanation.text);
-    return ExitCode::faulty;
+    return explainWords(options.topic, common.console);
 }
 
 } // namespace abbe

@@ -6,6 +6,8 @@
 #include "parser/presets.h"
 #include "scene/registry.h"
 
+#include <iostream>
+
 namespace abbe {
 
 ExitCode LoadedScene::exitCode() const {
@@ -18,7 +20,9 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     Stopwatch watch;
     const WorkScope work(Work::reading);
     loaded->types = makeTypeTable();
-    const auto file = readSceneFile(loaded->sources, input.path, loaded->diagnostics);
+    const auto file = input.fromStandardInput
+                          ? readSceneText(loaded->sources, input.path, std::cin, loaded->diagnostics)
+                          : readSceneFile(loaded->sources, input.path, loaded->diagnostics);
     if (!file) return loaded;
     loaded->readable = true;
     ParseOptions options;

@@ -16,6 +16,8 @@ namespace abbe {
 struct SceneInput {
     std::string path;
     std::vector<std::string> defines; // "name=value" of -D
+    // The text comes from there; `path` is what it is called, and says where its files are.
+    bool fromStandardInput = false;
 };
 
 // A scene file that was read and resolved. Not movable: the tree refers to sources and types.

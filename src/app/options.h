@@ -60,15 +60,17 @@ struct RenderOptions {
 };
 
 struct CheckOptions {
-    std::vector<std::string> paths;
+    std::vector<std::string> paths; // "-": standard input
+    std::string standsFor;          // the file that standard input is the text of
     std::vector<std::string> defines;
     bool fix = false;
     bool strict = false;
     bool textures = false; // read to their ends
+    bool quiet = false;
 };
 
 struct ExplainOptions {
-    std::string topic;    // a scene file, or words of the language
+    std::string topic;    // a scene file, or words of the language; empty: the language itself
     bool effects = false; // of the scene; without a topic: those that there are
     BuildOptions build;   // camera, size and seed of the render that is explained
     std::vector<std::string> defines;
@@ -119,6 +121,12 @@ struct DoctorOptions {
     bool numerics = false; // measure hard cases, too
 };
 
+// What the program makes of its own tables.
+struct ReferenceOptions {
+    std::string what;   // "pages", "json", "man", "bash", "zsh", "fish", "share"
+    std::string folder; // of "pages" and "share"
+};
+
 struct DenoiseOptions {
     std::string input, output; // no output: the input gets the layer
     DenoiseMethod method = DenoiseMethod::nfor;
@@ -160,7 +168,7 @@ struct MergeOptions {
 
 using Options = std::variant<RenderOptions, MergeOptions, CheckOptions, ExplainOptions, InfoOptions, ConvertOptions,
                              CompareOptions, VolumeOptions, DenoiseOptions, ReplayOptions, CertifyOptions, StudyOptions,
-                             VerifyOptions, DoctorOptions>;
+                             VerifyOptions, DoctorOptions, ReferenceOptions>;
 
 // One function per command, each in its own file. They report what is wrong themselves; exceptions that leave them are
 // system errors (IoError, std::bad_alloc) or bugs.
@@ -178,5 +186,6 @@ ExitCode run(const CertifyOptions&, const CommonOptions&);
 ExitCode run(const StudyOptions&, const CommonOptions&);
 ExitCode run(const VerifyOptions&, const CommonOptions&);
 ExitCode run(const DoctorOptions&, const CommonOptions&);
+ExitCode run(const ReferenceOptions&, const CommonOptions&);
 
 } // namespace abbe

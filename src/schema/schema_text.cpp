@@ -1,7 +1,6 @@
 #include "base/diagnostic_catalogue.h"
 #include "schema/describe.h"
 #include "schema/spectrum_reader.h"
-#include "schema/suggest.h"
 
 #include <array>
 #include <cmath>
@@ -28,30 +27,6 @@ const char* id(Dimension d) { return kDimensionIds[static_cast<std::size_t>(d)];
 std::string cell(std::string text) {
     for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
     return text;
-}
-
-std::string markdownField(const FieldInfo& field) {
-    std::string doc(field.doc);
-    const std::string range = describeRange(field);
-    if (!range.empty()) doc += fmt::format(" Range: {}.", range);
-    if (!field.group.empty()) doc += fmt::format(" At most one way to state the {}.", field.group);
-    for (const FieldKey& key : field.keys) doc += fmt::format(" Key `{}=`: {}", key.name, key.doc);
-    for (const FieldInfo& inner : field.block) doc += fmt::format(" In its block `{}`: {}", inner.name, inner.doc);
-    if (!field.example.empty()) doc += fmt::format(" Example: `{}`.", field.example);
-    const std::string value = field.required              ? "required"
-                              : field.defaultText.empty() ? ""
-                                                          : fmt::format("`{}`", field.defaultText);
-    return fmt::format("| `{}` | {} | {} | {} |\n", field.name, cell(describeField(field)), value, cell(doc));
-}
-
-std::string markdownType(const TypeInfo& type) {
-    std::string text = fmt::format("### `{} {}`{}\n\n{}\n", keyword(type.kind), type.name,
-                                   type.isDefault ? " (default)" : "", type.doc);
-    if (!type.example.empty()) text += fmt::format("\n```kdl\n{}\n```\n", type.example);
-    if (type.fields.empty()) return text + "\n";
-    text += "\n| property | takes | default | |\n|---|---|---|---|\n";
-    for (const FieldInfo& field : type.fields) text += markdownField(field);
-    return text + "\n";
 }
 
 std::string jsonString(std::string_view text) {
@@ -117,26 +92,6 @@ std::string jsonUnits() {
 }
 
 } // namespace
-
-std::string schemaMarkdown(const TypeTable& table) {
-    std::string text =
-        "# Reference\n\nGenerated from the field tables; see `docs/language/values.md` for what the values mean.\n\n";
-    for (int i = 0; i <= static_cast<int>(Kind::render); ++i) {
-        const auto types = table.of(static_cast<Kind>(i));
-        if (types.empty()) continue;
-        text += fmt::format("## {}\n\n", keyword(static_cast<Kind>(i)));
-        for (const TypeInfo* type : types) text += markdownType(*type);
-    }
-    text += "## spectrum\n\nA plain number, a name, or one of these forms.\n\n| form | example | |\n|---|---|---|\n";
-    for (const SpectrumForm& form : spectrumForms())
-        text += fmt::format("| `{}` | `{}` | {} |\n", form.name, form.example, form.doc);
-    text += "\n## Units\n\n| | units |\n|---|---|\n";
-    for (std::size_t i = 1; i < kDimensionIds.size(); ++i) {
-        const auto d = static_cast<Dimension>(i);
-        text += fmt::format("| {} | {} |\n", describe(d), quotedList(spellings(d), "or"));
-    }
-    return text;
-}
 
 std::string diagnosticsMarkdown() {
     std::string text =

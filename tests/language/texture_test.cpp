@@ -1,7 +1,9 @@
 // Textures in the place of spectra and numbers.
 #include "language_fixture.h"
 #include "schema/describe.h"
+#include "schema/reference_pages.h"
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <random>
 
@@ -100,8 +102,11 @@ TEST_CASE("the manual says where a texture may stand") {
     CHECK(schemaListing(types).find("material diffuse gloss number [fraction] min=0 max=1 texturable") !=
           std::string::npos);
     CHECK(schemaJson(types).find("\"texturable\":true") != std::string::npos);
-    CHECK(schemaMarkdown(types).find("a number, or a texture") == std::string::npos); // it is also a fraction
-    CHECK(schemaMarkdown(types).find("a spectrum from 0 to 1, or a texture") != std::string::npos);
+    const auto pages = referencePages(types);
+    const auto page = std::ranges::find(pages, "material.md", &ReferencePage::file);
+    REQUIRE(page != pages.end());
+    CHECK(page->text.find("a number, or a texture") == std::string::npos); // it is also a fraction
+    CHECK(page->text.find("a spectrum from 0 to 1, or a texture") != std::string::npos);
 }
 
 TEST_CASE("anything in the place of a texture is bound or refused, with a place in the file") {

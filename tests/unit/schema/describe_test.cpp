@@ -1,6 +1,8 @@
 #include "schema/describe.h"
+#include "schema/reference_pages.h"
 #include "schema/scene_tree.h"
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <iterator>
@@ -64,6 +66,43 @@ TEST_CASE("explanations by kind, type, property, unit, form and code") {
     CHECK(has(explain(types, "unit klx").text, "1000 lx"));
 }
 
+TEST_CASE("a kind is explained with the properties of its plain type") {
+    const std::string camera = explain(table(), "camera").text;
+    CHECK(has(camera, "camera [NAME] [TYPE] { … }"));
+    CHECK(has(camera, "Focal length. [50 mm]"));
+    CHECK(has(camera, "*filter"));
+    CHECK(has(explain(table(), "transform").text, "rotate"));
+    CHECK(has(explain(table(), "rotate").text, "rotate y 45 deg"));
+    CHECK(has(explain(table(), "length").text, "scene 1 length=cm"));
+    CHECK(has(explain(table(), "param").text, "$NAME"));
+}
+
+TEST_CASE("types that share a property are told together") {
+    const TypeTable types = table();
+    TypeInfo other = types.all()[0];
+    other.name = "spherical";
+    other.isDefault = false;
+    TypeTable two;
+    two.add(types.all()[0]);
+    two.add(other);
+    const std::string lens = explain(two, "lens").text;
+    CHECK(has(lens, "camera perspective, camera spherical: lens"));
+    CHECK(lens.find("Focal length.") == lens.rfind("Focal length."));
+}
+
+TEST_CASE("the language is introduced by a whole scene and its kinds") {
+    const std::string text = explainLanguage(table());
+    CHECK(has(text, "scene 1\n"));
+    CHECK(has(text, "  film        The picture: its size, its layers and its file\n"));
+    const auto words = explainableWords(table());
+    for (const char* word : {"camera", "camera.lens", "camera.perspective", "blackbody", "transform", "units"})
+        CHECK(std::ranges::find(words, word) != words.end());
+    for (const std::string& word : words) {
+        CAPTURE(word);
+        CHECK((word == "presets" || word == "library" || explain(table(), word).found)); // those come with the program
+    }
+}
+
 TEST_CASE("explanations of unknown words suggest near ones") {
     const TypeTable types = table();
     CHECK(!explain(types, "camera.lense").found);
@@ -85,7 +124,10 @@ TEST_CASE("the listing has a line for every field") {
 }
 
 TEST_CASE("Markdown and JSON are escaped") {
-    CHECK(has(schemaMarkdown(table()), "Full angle \\| horizontal."));
+    const auto pages = referencePages(table());
+    const auto camera = std::ranges::find(pages, "camera.md", &ReferencePage::file);
+    REQUIRE(camera != pages.end());
+    CHECK(has(camera->text, "Full angle \\| horizontal."));
     const std::string json = schemaJson(table());
     CHECK(has(json, R"("doc":"Says \"which\".")"));
     CHECK(has(json, R"("default":"50 mm")"));
