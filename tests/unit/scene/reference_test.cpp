@@ -1,6 +1,7 @@
 // docs/reference and what `abbe explain` shows: every property is described, every example is what the program accepts,
 // and the pages in the repository are those that the tables make.
 #include "scene_test_fixture.h"
+#include "schema/describe.h"
 #include "schema/language_words.h"
 #include "schema/reference_pages.h"
 #include "spectrum/sampled_curve.h"
@@ -11,6 +12,8 @@
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
+#include <unistd.h>
 
 namespace abbe::test {
 
@@ -126,6 +129,47 @@ std::string definitionOf(const TypeInfo& type, const std::string& body) {
     return kind + (type.isDefault ? "" : " " + std::string(type.name)) + " { " + body + " }";
 }
 
+// The code in the cells below the heading `Abbe` of a page's tables.
+std::vector<std::string> ourWords(const std::string& page) {
+    std::vector<std::string> words;
+    std::size_t column = 0;
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with('|')) column = 0;
+        std::size_t at = 0;
+        std::string cell;
+        std::istringstream cells(line);
+        for (; std::getline(cells, cell, '|'); ++at) {
+            if (cell == " Abbe ") column = at;
+            if (column == 0 || at != column) continue;
+            for (std::size_t begin = 0; (begin = cell.find('`', begin)) != std::string::npos; ++begin) {
+                const std::size_t end = cell.find('`', begin + 1);
+                words.push_back(cell.substr(begin + 1, end - begin - 1));
+                begin = end;
+            }
+        }
+    }
+    return words;
+}
+
+// Whether a word, or a word with its value, means something: a flag, a kind and its type, a type, or a property of one.
+bool isOurs(const std::string& text, const schema::TypeTable& table, const ExampleFolder& folder) {
+    const std::string word = text.substr(0, text.find(' '));
+    const std::string rest = word.size() < text.size() ? text.substr(word.size() + 1) : "";
+    if (word.starts_with("--") || word == "abbe" || word == "space=data") return true;
+    if (const auto kind = schema::findKind(word); kind && !rest.empty())
+        return table.find(*kind, rest.substr(0, rest.find(' '))) != nullptr;
+    bool named = false;
+    for (const TypeInfo& type : table.all()) {
+        named = named || type.name == word;
+        const FieldInfo* field = type.find(word);
+        if (field &&
+            (rest.empty() || faultsOf(definitionOf(type, withRequired(type.fields, *field, text)), folder) == ""))
+            return true;
+    }
+    return rest.empty() && (named || explain(table, word).found);
+}
+
 std::string contentsOf(const fs::path& path) {
     std::ifstream file(path);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -182,6 +226,22 @@ TEST_CASE("the examples of kinds and words are sound") {
     }
     const auto first = TestScene::parse(std::string(schema::firstScene()));
     CHECK(first.report() == "");
+}
+
+TEST_CASE("what pages for users of other renderers say of Abbe is understood") {
+    const ExampleFolder folder;
+    const schema::TypeTable table = makeTypeTable();
+    std::size_t words = 0;
+    for (const char* page : {"blender.md", "arnold.md", "pbrt.md", "mitsuba.md"}) {
+        for (const std::string& text : ourWords(contentsOf(fs::path(ABBE_SOURCE_DIR) / "docs/coming_from" / page))) {
+            ++words;
+            CHECK_MESSAGE(isOurs(text, table, folder), page, ": ", text);
+        }
+    }
+    CHECK(words > 300);
+    CHECK_FALSE(isOurs("lense", table, folder));
+    CHECK_FALSE(isOurs("lens 50 kg", table, folder));
+    CHECK_FALSE(isOurs("light quod", table, folder));
 }
 
 TEST_CASE("docs/reference is what the tables say") {
