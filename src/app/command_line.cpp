@@ -79,7 +79,7 @@ class Reader {
         CLI::App* command = app_.add_subcommand(name, help);
         command->group(group);
         command->set_help_flag("-h,--help", "Print this help");
-        command->add_option("--color", color_, "Colours: auto, always or never")
+        command->add_option("--color", color_, "When to use colours")
             ->check(CLI::IsMember({"auto", "always", "never"}).description(""))
             ->type_name("auto|always|never");
         command->get_formatter()->column_width(28);
@@ -319,8 +319,9 @@ std::optional<std::string> Reader::commandHelp() const {
     if (helpTopic_.empty()) return commandListText(describe());
     const CLI::App* command = &app_;
     for (const std::string& word : helpTopic_) {
-        command = command->get_subcommand_no_throw(word);
-        if (!command) return std::nullopt;
+        const auto named = command->get_subcommands([&](const CLI::App* c) { return c->get_name() == word; });
+        if (named.empty()) return std::nullopt;
+        command = named.front();
     }
     const std::string text = helpText(*command);
     if (helpTopic_.size() > 1 || !schema::findKind(helpTopic_[0])) return text;
@@ -362,16 +363,15 @@ Command Reader::command(const Words& words) {
     return {compare_, common_};
 }
 
-// A first word that is neither a command nor a file but looks like a command.
+} // namespace
+
+bool isCommand(std::string_view word) { return std::ranges::find(kCommands, word) != std::end(kCommands); }
+
 std::string commandSuggestion(const std::string& word) {
     std::error_code error;
     if (word.find_first_of("./-") != std::string::npos || std::filesystem::exists(word, error)) return {};
     return std::string(schema::nearest(word, {std::begin(kCommands), std::end(kCommands)}));
 }
-
-} // namespace
-
-bool isCommand(std::string_view word) { return std::ranges::find(kCommands, word) != std::end(kCommands); }
 
 CommandInfo commandTree() { return Reader().describe(); }
 

@@ -24,6 +24,8 @@ struct EarlyEnd {
 
 // Whether the word is the name of a command.
 bool isCommand(std::string_view word);
+// The command that is probably meant by a word that is neither one nor a file; or empty.
+std::string commandSuggestion(const std::string& word);
 
 // `arguments` without the program's name.
 std::variant<Command, EarlyEnd> readCommandLine(std::span<const char* const> arguments);

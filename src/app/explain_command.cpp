@@ -19,10 +19,11 @@ namespace abbe {
 
 namespace {
 
+// A word of the language is meant even if there is a file of that name.
 bool looksLikeFile(const std::string& topic) {
     std::error_code error;
-    return topic.ends_with(".scene") || topic.find('/') != std::string::npos ||
-           std::filesystem::is_regular_file(topic, error);
+    if (topic.ends_with(".scene") || topic.find('/') != std::string::npos) return true;
+    return std::filesystem::is_regular_file(topic, error) && !schema::explain(makeTypeTable(), topic).found;
 }
 
 bool hasFrame(const BuildOptions& b) { return !b.camera.empty() || b.size || b.seed; }
@@ -57,9 +58,11 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
     return ExitCode::done;
 }
 
-// Words that are commands, too: where those are explained.
-std::string commandHint(const std::string& topic) {
-    return isCommand(topic) ? fmt::format("`{0}` is a command: `abbe help {0}`\n", topic) : std::string();
+// Where a word is explained that is a command, or nearly the name of one and nothing else.
+std::string commandHint(const std::string& topic, bool found) {
+    if (isCommand(topic)) return fmt::format("`{0}` is a command: `abbe help {0}`", topic);
+    const std::string near = found ? std::string() : commandSuggestion(topic);
+    return near.empty() ? near : fmt::format("the command `{0}` is explained by `abbe help {0}`", near);
 }
 
 ExitCode explainWords(const std::string& topic, const Console& console) {
@@ -72,12 +75,13 @@ ExitCode explainWords(const std::string& topic, const Console& console) {
         return ExitCode::done;
     }
     const schema::Explanation explanation = schema::explain(types, topic);
-    const std::string hint = commandHint(topic);
+    const std::string hint = commandHint(topic, explanation.found);
     if (explanation.found) {
-        console.data(explanation.text + (hint.empty() ? hint : "\n" + hint));
+        console.data(hint.empty() ? explanation.text : explanation.text + "\n" + hint + "\n");
         return ExitCode::done;
     }
-    console.line(hint.empty() ? explanation.text : hint);
+    if (!isCommand(topic)) console.line(std::string_view(explanation.text).substr(0, explanation.text.size() - 1));
+    if (!hint.empty()) console.line(hint);
     return ExitCode::faulty;
 }
 

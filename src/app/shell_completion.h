@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-// Scripts for the shell to read; `topics` are what `abbe explain` knows.
+// Scripts for the shell to read; `topics` are what `abbe explain` knows, sorted.
 std::string bashCompletion(const CommandInfo& root, const std::vector<std::string>& topics);
 std::string zshCompletion(const CommandInfo& root, const std::vector<std::string>& topics);
 std::string fishCompletion(const CommandInfo& root, const std::vector<std::string>& topics);

@@ -1,5 +1,6 @@
 #include "app/shell_completion.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -69,7 +70,7 @@ std::string commandCase(const CommandInfo& command, const std::string& pattern, 
     return text + "        ;;\n";
 }
 
-std::string actionNames(const CommandInfo& command) {
+std::string bashNames(const CommandInfo& command) {
     std::vector<std::string> names;
     for (const CommandInfo& action : command.actions) names.push_back(action.name);
     return fmt::format("{}", fmt::join(names, " "));
@@ -78,15 +79,14 @@ std::string actionNames(const CommandInfo& command) {
 } // namespace
 
 std::string bashCompletion(const CommandInfo& root, const std::vector<std::string>& topics) {
-    const std::string commands = actionNames(root);
+    const std::string commands = bashNames(root);
     std::string text(kBashHead);
     std::string cases, below;
     for (const CommandInfo& command : root.actions) {
         if (!command.actions.empty()) {
             below += fmt::format(
                 "    [[ $command == {0} && $COMP_CWORD -gt 2 ]] && command=\"{0} ${{COMP_WORDS[2]}}\"\n", command.name);
-            cases +=
-                fmt::format("    {}) words='{}' ending=none flags=--help ;;\n", command.name, actionNames(command));
+            cases += fmt::format("    {}) words='{}' ending=none flags=--help ;;\n", command.name, bashNames(command));
             for (const CommandInfo& action : command.actions)
                 cases += commandCase(action, fmt::format("'{} {}'", command.name, action.name), false);
         } else if (command.name != "render") {
@@ -98,7 +98,10 @@ std::string bashCompletion(const CommandInfo& root, const std::vector<std::strin
     text += fmt::format("    '') words='{}' ending=.scene flags='--help --version' ;;\n", commands) + cases;
     text += commandCase(*findCommand(root, {"render"}), "*", false); // also of a scene without a command
     text += "    esac\n" + std::string(kBashTail);
-    return text + fmt::format("_abbe_topics='{} {}'\n", commands, fmt::join(topics, " "));
+    std::vector<std::string> words = topics;
+    for (const CommandInfo& command : root.actions)
+        if (!std::ranges::binary_search(topics, command.name)) words.push_back(command.name);
+    return text + fmt::format("_abbe_topics='{}'\n", fmt::join(words, " "));
 }
 
 } // namespace abbe

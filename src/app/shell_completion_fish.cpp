@@ -56,9 +56,16 @@ std::string fishCommand(const CommandInfo& command, const std::string& condition
     return text;
 }
 
-std::string fishActions(const CommandInfo& command, const std::string& seen) {
-    std::string text, names;
+// " render merge …"
+std::string fishNames(const CommandInfo& command) {
+    std::string names;
     for (const CommandInfo& action : command.actions) names += " " + action.name;
+    return names;
+}
+
+std::string fishActions(const CommandInfo& command, const std::string& seen) {
+    const std::string names = fishNames(command);
+    std::string text;
     for (const CommandInfo& action : command.actions) {
         text += fishLine(fmt::format("{}; and not __fish_seen_subcommand_from{}", seen, names),
                          fmt::format("-a {} -d {}", action.name, fishQuoted(action.summary)));
@@ -77,8 +84,9 @@ std::string fishCompletion(const CommandInfo& root, const std::vector<std::strin
     for (const CommandInfo& command : root.actions) {
         text +=
             fishLine("__fish_use_subcommand", fmt::format("-a {} -d {}", command.name, fishQuoted(command.summary)));
-        // `volume convert` is not `convert`.
         std::string seen = "__fish_seen_subcommand_from " + command.name;
+        if (command.name == "render") seen += "; or not __fish_seen_subcommand_from" + fishNames(root); // a scene alone
+        // `volume convert` is not `convert`.
         for (const CommandInfo& other : root.actions)
             if (findCommand(other, {command.name})) seen += "; and not __fish_seen_subcommand_from " + other.name;
         text += command.actions.empty() ? fishCommand(command, seen) : fishActions(command, seen);

@@ -35,7 +35,7 @@ expect 0 explain "$scenes/glass.scene" --effects --json
 says out '"effect": "dispersion"'
 expect 0 explain --effects
 says out "depth-of-field"
-expect 2 explain
+expect 0 explain # the language itself
 printf 'scene 1\ncamera { from 0 0 5; look-at 0 0 0 }\nlight sky\nrender { forbid { dispersion } }\n%s\n' \
     'shape sphere { material dielectric { ior glass BK7 } }' >forbidden.scene
 expect 1 check forbidden.scene

@@ -1,5 +1,10 @@
 #include "app/command_line.h"
+#include "app/command_tree.h"
+#include "app/man_page.h"
+#include "app/shell_completion.h"
+#include "schema/type.h"
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <initializer_list>
 
@@ -107,4 +112,73 @@ TEST_CASE("the command line is kept as a shell would take it") {
 TEST_CASE("explain takes several words") {
     const auto result = read({"explain", "unit", "nits"});
     CHECK(std::get<ExplainOptions>(std::get<Command>(result).options).topic == "unit nits");
+}
+
+TEST_CASE("the tree of commands is what the program takes") {
+    const CommandInfo tree = commandTree();
+    CHECK(tree.name == "abbe");
+    CHECK(tree.actions.size() == 16);
+    for (const CommandInfo& command : tree.actions) {
+        CAPTURE(command.name);
+        CHECK(isCommand(command.name));
+        CHECK(command.summary.ends_with('.'));
+        CHECK(command.more.starts_with("Examples:") == !(command.name == "reference"));
+        CHECK((command.actions.empty() || command.name == "volume"));
+        for (const FlagInfo& flag : command.flags) {
+            CAPTURE(flag.doc);
+            CHECK(!flag.names.empty());
+            CHECK(!flag.doc.empty());
+            CHECK(!flag.doc.ends_with('.'));
+        }
+    }
+    const CommandInfo* render = findCommand(tree, {"render"});
+    REQUIRE(render);
+    CHECK(render->arguments.size() == 1);
+    CHECK(render->arguments[0].required);
+    const auto sampler =
+        std::ranges::find_if(render->flags, [](const FlagInfo& f) { return f.names[0] == "--sampler"; });
+    REQUIRE(sampler != render->flags.end());
+    CHECK(sampler->choices == std::vector<std::string>{"sobol", "stratified", "random"});
+    const auto checkpoint =
+        std::ranges::find_if(render->flags, [](const FlagInfo& f) { return f.names[0] == "--checkpoint"; });
+    REQUIRE(checkpoint != render->flags.end());
+    CHECK(checkpoint->choices == std::vector<std::string>{"off", "keep"});
+    CHECK(findCommand(tree, {"volume", "make"})->arguments[0].choices.size() == 4);
+    CHECK(findCommand(tree, {"volume", "render"}) == nullptr);
+}
+
+TEST_CASE("help of a command, of an action, of a word of the language") {
+    CHECK(end({"help", "render"}).code == ExitCode::done);
+    CHECK(contains(end({"help", "render"}).text, end({"render", "--help"}).text));
+    CHECK(contains(end({"help", "volume", "make"}).text, "abbe volume make"));
+    CHECK(end({"help"}).text == end({"--help"}).text);
+    const auto word = read({"help", "camera", "lens"});
+    CHECK(std::get<ExplainOptions>(std::get<Command>(word).options).topic == "camera lens");
+    CHECK(contains(end({}).text, "abbe help"));
+}
+
+TEST_CASE("check reads standard input once, and does not repair it") {
+    const auto result = read({"check", "-", "--as", "a.scene", "-q"});
+    const auto& o = std::get<CheckOptions>(std::get<Command>(result).options);
+    CHECK(o.paths == std::vector<std::string>{"-"});
+    CHECK(o.standsFor == "a.scene");
+    CHECK(o.quiet);
+    CHECK(end({"check", "-", "-"}).code == ExitCode::usage);
+    CHECK(end({"check", "--fix", "-"}).code == ExitCode::usage);
+    CHECK(end({"check", "--as", "a.scene", "b.scene"}).code == ExitCode::usage);
+}
+
+TEST_CASE("pages for shells and man are quoted") {
+    CommandInfo tree{"abbe", "", "Renders.", "", {}, {}, {}};
+    tree.actions.push_back(
+        {"render", "Pictures", "Renders [a] scene: it's.", ".TH is no request\n'nor this", {}, {}, {}});
+    tree.actions[0].flags.push_back({{"--x-y"}, "A|b", {"b"}, false, "Bob's [50 %]: so"});
+    tree.actions[0].arguments.push_back({"scene", "A scene", {}, true, false});
+    const std::string man = manPage(tree, "1.2.3");
+    CHECK(contains(man, "\n\\&.TH is no request\n\\&'nor this\n"));
+    CHECK(contains(man, "\\fB\\-\\-x\\-y\\fR"));
+    CHECK(contains(man, "abbe 1.2.3"));
+    CHECK(contains(zshCompletion(tree, {"camera"}), R"('*--x-y=[Bob'\''s \[50 %\]\: so]:A|b:(b)')"));
+    CHECK(contains(fishCompletion(tree, {"camera"}), R"(-l x-y -x -a 'b' -d 'Bob\'s [50 %]: so')"));
+    CHECK(contains(bashCompletion(tree, {"camera"}), "--x-y) value='b' ;;"));
 }
