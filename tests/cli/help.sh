@@ -21,7 +21,7 @@ says out "--samples N"
 says out "abbe explain render"
 cp out render # a file of that name is no scene that `explain render` would mean
 expect 0 render --help
-[[ $(head -n "$(wc -l <out)" render) == $(<out) ]] || fault "help render and render --help differ"
+[[ $(head -n "$(wc -l <out)" render) == "$(<out)" ]] || fault "help render and render --help differ"
 expect 0 help volume make
 says out "cumulus|smoke|fire|candle"
 expect 0 help camera
