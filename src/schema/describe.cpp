@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace abbe::schema {
 
@@ -98,12 +99,15 @@ std::string describeField(const FieldInfo& field) {
 }
 
 std::string describeRange(const FieldInfo& field) {
-    if (!std::isfinite(field.lower) && !std::isfinite(field.upper)) return {};
+    // The largest number there is says nothing.
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    const double upper = field.upper < kLargest ? field.upper : std::numeric_limits<double>::infinity();
+    if (!std::isfinite(field.lower) && !std::isfinite(upper)) return {};
     const Dimension d = field.dimensions.empty() ? Dimension::none : field.dimensions[0];
     const bool angle = d == Dimension::angle;
     // Bounds of several dimensions are the same number in each of their SI units.
     const std::string_view unit = field.dimensions.size() > 1 ? "" : angle ? "deg" : siUnit(d);
-    const std::string text = rangeText(field.lower, field.upper, angle ? findUnit("deg")->scale : 1, unit);
+    const std::string text = rangeText(field.lower, upper, angle ? findUnit("deg")->scale : 1, unit);
     return text.substr(std::string_view("must be ").size());
 }
 
