@@ -36,7 +36,7 @@ std::size_t fixScene(const SceneInput& input) {
 
 constexpr const char* kStandardInput = "-";
 
-SceneInput inputOf(const std::string& path, const CheckOptions& options) {
+SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
     if (path != kStandardInput) return {path, options.defines};
     return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true};
 }
@@ -66,7 +66,7 @@ ExitCode worse(ExitCode a, ExitCode b) {
 ExitCode run(const CheckOptions& options, const CommonOptions& common) {
     ExitCode result = ExitCode::done;
     for (const std::string& path : options.paths)
-        result = worse(result, checkOne(inputOf(path, options), options, common.console));
+        result = worse(result, checkOne(checkedInput(path, options), options, common.console));
     return result;
 }
 
