@@ -100,7 +100,7 @@ completes "sobol stratified" abbe render --sampler s
 completes stratified abbe render --sampler = st
 completes human abbe check --format h
 completes first.scene abbe render fir
-completes first.exr abbe info first.e
+completes first.exr abbe denoise first.e
 completes "make" abbe volume m
 completes cumulus abbe volume make cu
 completes --clean abbe volume convert --cl
