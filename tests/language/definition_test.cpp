@@ -78,7 +78,7 @@ TEST_CASE("the header") {
     const auto l = load("scene 1 length=mm rgb=acescg up=z minor=3\ncamera { from 1 2 3; lens 0.01 m }");
     CHECK(l->codes().empty());
     CHECK(l->tree.header.zUp);
-    CHECK(l->tree.header.rgb == RgbSpace::linAp1);
+    CHECK(l->tree.header.rgb == RgbSpaceName::linAp1);
     CHECK(l->params["camera"].from == Vec3d{1 * 0.001, 2 * 0.001, 3 * 0.001});
     CHECK(l->params["camera"].lens == 0.01);
 }

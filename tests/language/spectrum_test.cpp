@@ -33,8 +33,8 @@ SpectrumValue value(const std::unique_ptr<Loaded>& l) {
 TEST_CASE("forms of a spectrum") {
     CHECK(value(albedo("0.18")).numbers == std::vector<double>{0.18});
     CHECK(value(albedo("rgb 0.8 0.2 0.1")).numbers == std::vector<double>{0.8, 0.2, 0.1});
-    CHECK(value(albedo("rgb 0.8 0.2 0.1")).space == RgbSpace::linRec709);
-    CHECK(value(albedo("rgb 0.8 0.2 0.1 space=acescg")).space == RgbSpace::linAp1);
+    CHECK(value(albedo("rgb 0.8 0.2 0.1")).space == RgbSpaceName::linRec709);
+    CHECK(value(albedo("rgb 0.8 0.2 0.1 space=acescg")).space == RgbSpaceName::linAp1);
     CHECK(value(albedo("table 400 0.1 500 0.2 700 0.3")).numbers == std::vector<double>{400, 0.1, 500, 0.2, 700, 0.3});
     CHECK(value(albedo("table { - 400 0.1; - 700 0.3 }")).numbers == std::vector<double>{400, 0.1, 700, 0.3});
     CHECK(value(albedo("measured cornell-white")).text == "cornell-white");
@@ -52,7 +52,7 @@ TEST_CASE("forms of a spectrum") {
 TEST_CASE("encoded sRGB is decoded") {
     const auto hex = value(albedo("srgb \"#d87040\""));
     CHECK(hex.form == Form::rgb);
-    CHECK(hex.space == RgbSpace::linRec709);
+    CHECK(hex.space == RgbSpaceName::linRec709);
     // By the published curve: 216/255, 112/255, 64/255.
     CHECK(hex.numbers.at(0) == doctest::Approx(0.686685).epsilon(1e-5));
     CHECK(hex.numbers.at(1) == doctest::Approx(0.162029).epsilon(1e-5));
@@ -61,7 +61,7 @@ TEST_CASE("encoded sRGB is decoded") {
     CHECK(value(albedo("srgb \"#f80\"")).numbers.at(2) == 0);
     CHECK(value(albedo("srgb 1 0.5 0")).numbers.at(1) == doctest::Approx(0.214041).epsilon(1e-5));
     CHECK(load("scene 1 rgb=acescg\nlight quad { radiance srgb 1 1 1 }")->resolver.values.at(0).space ==
-          RgbSpace::linRec709);
+          RgbSpaceName::linRec709);
     CHECK(albedo("srgb \"#d8704\"")->codes() == "E0315");
     CHECK(albedo("srgb 1.2 0 0")->codes() == "E0303");
     CHECK(albedo("rgb \"#d87040\"")->get("E0315").help == "write `srgb \"#d87040\"`");
@@ -153,7 +153,7 @@ TEST_CASE("units of spectra") {
 TEST_CASE("named spectra") {
     const auto l = loadBody("spectrum paint rgb 0.8 0.2 0.1 space=acescg\n"
                             "material a diffuse { reflectance paint }\nshape sphere { material a }");
-    CHECK(value(l).space == RgbSpace::linAp1);
+    CHECK(value(l).space == RgbSpaceName::linAp1);
     CHECK(value(albedo("flat\n}\nspectrum flat 0.5\ngroup {")).numbers == std::vector<double>{0.5});
     const auto twice =
         loadBody("spectrum paint rgb 1.8 0.2 0.1\nmaterial a diffuse { reflectance paint }\n"
