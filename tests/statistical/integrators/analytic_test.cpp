@@ -15,7 +15,7 @@ namespace {
 // What lm, lx and cd count of a flat spectrum of radiance (irradiance, intensity) 1 per nm.
 constexpr double kLuminousScale = kLuminousEfficacy * kYIntegral;
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
+constexpr const char* kAnalyticHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 
 // Mean of f(point, direction from the eye) over a pixel, by a grid of rays through the scene's own camera; world space.
 template <typename F> std::function<double(int, int)> overPixel(const TestScene& scene, F f, int grid = 16) {
@@ -51,11 +51,11 @@ TEST_CASE("a lamp inside a matte sphere: all light that is not direct is even") 
     // ρ Φ / (4 π R² (1 - ρ)), wherever the lamp is.
     const double rho = 0.6, radius = 2, intensity = 3;
     const Vec3d lamp{0.5, -0.25, 0.75};
-    const auto scene =
-        TestScene::parse(kHeader + fmt::format("camera {{ from 0 0 1; look-at 0.3 0.2 -1; fov 70 deg }}\n"
-                                               "shape sphere {{ radius {}; material diffuse {{ reflectance {} }} }}\n"
-                                               "light point {{ position {} {} {}; color 1; intensity {} cd }}\n",
-                                               radius, rho, lamp.x, lamp.y, lamp.z, intensity * kLuminousScale));
+    const auto scene = TestScene::parse(
+        kAnalyticHeader + fmt::format("camera {{ from 0 0 1; look-at 0.3 0.2 -1; fov 70 deg }}\n"
+                                      "shape sphere {{ radius {}; material diffuse {{ reflectance {} }} }}\n"
+                                      "light point {{ position {} {} {}; color 1; intensity {} cd }}\n",
+                                      radius, rho, lamp.x, lamp.y, lamp.z, intensity * kLuminousScale));
     const double even = rho * 4 * kPiD * intensity / (4 * kPiD * square(radius) * (1 - rho));
     const auto expected = overPixel(scene, [&](Vec3d p, Vec3d) {
         const Vec3d to = lamp - p;
@@ -68,7 +68,7 @@ TEST_CASE("a lamp inside a matte sphere: all light that is not direct is even") 
 }
 
 TEST_CASE("a quad light over a floor: Lambert's formula") {
-    const auto scene = TestScene::parse(std::string(kHeader) +
+    const auto scene = TestScene::parse(std::string(kAnalyticHeader) +
                                         "camera { from 0 1.5 6; look-at 0 0 1; fov 25 deg }\n"
                                         "shape quad { size 40 40; material diffuse { reflectance 0.7 };"
                                         "             transform { rotate x -90 deg } }\n"
@@ -102,7 +102,8 @@ TEST_CASE("sphere and disk lights over a floor") {
     const std::string floor = "camera { from 0 3 6; look-at 0 0 0; fov 30 deg }\n"
                               "shape plane { material diffuse { reflectance 0.5 } }\n";
     SUBCASE("sphere: π L (r/d)² cos θ") {
-        const auto scene = TestScene::parse(kHeader + floor + "light sphere { center 1 4 -1; radius 0.8; radiance 9 }");
+        const auto scene =
+            TestScene::parse(kAnalyticHeader + floor + "light sphere { center 1 4 -1; radius 0.8; radiance 9 }");
         const auto expected = overPixel(scene, [](Vec3d p, Vec3d) {
             const Vec3d to = Vec3d{1, 4, -1} - p;
             return 0.5 * 9 * square(0.8) * to.y / std::pow(length(to), 3);
@@ -113,8 +114,8 @@ TEST_CASE("sphere and disk lights over a floor") {
         checkSame(compareExpected(render(scene, settings).film, expected), 0.001);
     }
     SUBCASE("disk parallel to the floor") {
-        const auto scene =
-            TestScene::parse(kHeader + floor + "light disk { center 1 4 -1; normal 0 -1 0; radius 0.8; radiance 9 }");
+        const auto scene = TestScene::parse(kAnalyticHeader + floor +
+                                            "light disk { center 1 4 -1; normal 0 -1 0; radius 0.8; radiance 9 }");
         // Form factor of a disk at height h, its axis at distance a [Howell2010, B-13].
         const auto expected = overPixel(scene, [](Vec3d p, Vec3d) {
             const double a2 = square(p.x - 1) + square(p.z + 1), h2 = 16, r2 = square(0.8);
@@ -135,14 +136,14 @@ TEST_CASE("sky and sun over a plane: ρ L and ρ E cos θ / π") {
         for (const char* strategy : {"mis", "lights", "bsdf"}) {
             BuildOptions options;
             options.strategy = strategy;
-            const auto scene = TestScene::parse(kHeader + floor + "light sky { radiance 2.5 }", options);
+            const auto scene = TestScene::parse(kAnalyticHeader + floor + "light sky { radiance 2.5 }", options);
             checkSame(compareExpected(render(scene, 512).film, [](int, int) { return 0.4 * 2.5; }), 0.001);
         }
     }
     SUBCASE("sun") {
         for (const char* diameter : {"0.53", "20", "0"}) {
             const auto scene = TestScene::parse(
-                kHeader + floor +
+                kAnalyticHeader + floor +
                 fmt::format("light sun {{ elevation 40 deg; azimuth 30 deg; irradiance 1e5 lx; color 1; "
                             "angular-diameter {} deg }}",
                             diameter));
@@ -153,12 +154,12 @@ TEST_CASE("sky and sun over a plane: ρ L and ρ E cos θ / π") {
 }
 
 TEST_CASE("a mirror 100 km away shows the sky times its Fresnel reflectance") {
-    const auto scene =
-        TestScene::parse(std::string(kHeader) + "camera { from 0 0 0; look-at 0 0 -1; fov 0.1 deg }\n"
-                                                "material metal conductor { index { n 1.3; k 2.2 } }\n"
-                                                "shape quad { size 1e3 1e3; material metal;"
-                                                "             transform { rotate y 50 deg; translate 0 0 -1e5 } }\n"
-                                                "light sky { radiance 2 }\n");
+    const auto scene = TestScene::parse(std::string(kAnalyticHeader) +
+                                        "camera { from 0 0 0; look-at 0 0 -1; fov 0.1 deg }\n"
+                                        "material metal conductor { index { n 1.3; k 2.2 } }\n"
+                                        "shape quad { size 1e3 1e3; material metal;"
+                                        "             transform { rotate y 50 deg; translate 0 0 -1e5 } }\n"
+                                        "light sky { radiance 2 }\n");
     const auto expected = overPixel(scene, [](Vec3d p, Vec3d direction) {
         CHECK(p.z < -9.9e4);
         const double a = 50 * kPiD / 180;
@@ -172,7 +173,7 @@ TEST_CASE("an absorbing slab of glass in an even sky: every order of reflection 
     // R + (1 - R)² a / (1 - R a): reflected, and out on either side after any number of passes that leave a share a.
     for (const double sigma : {0.0, 0.7, 4.0}) {
         const auto scene = TestScene::parse(
-            std::string(kHeader) + "camera { from 0 0 5; look-at 0 0 0; fov 3 deg }\n" +
+            std::string(kAnalyticHeader) + "camera { from 0 0 5; look-at 0 0 0; fov 3 deg }\n" +
             fmt::format("material glass dielectric {{ ior 1.6; absorption {} }}\n", sigma) +
             "shape mesh { material glass\n"
             "  points { - -9 -9 -0.5; - 9 -9 -0.5; - 9 9 -0.5; - -9 9 -0.5; - -9 -9 0.5; - 9 -9 0.5; - 9 9 0.5;"

@@ -9,8 +9,8 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\nlight sky { radiance 1 }\n"
-                                "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\n";
+constexpr const char* kCurvesHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\nlight sky { radiance 1 }\n"
+                                      "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\n";
 
 // `shape` with a place for "count"-many points and the rest of the block.
 std::string cloud(const std::string& head, int count, double scale) {
@@ -24,7 +24,7 @@ std::string cloud(const std::string& head, int count, double scale) {
 
 void checkEven(const std::string& shape, double expected, std::uint32_t samples, double resolution) {
     INFO(shape.substr(0, 120));
-    const auto scene = TestScene::parse(kHeader + shape);
+    const auto scene = TestScene::parse(kCurvesHeader + shape);
     REQUIRE(scene.report() == "");
     const TestImage image = render(scene, samples);
     checkSame(compareExpected(image.film, [&](int, int) { return expected; }), resolution);

@@ -9,12 +9,12 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
+constexpr const char* kEmissionHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 constexpr const char* kOven = "light sky { radiance blackbody 2000 K }\n";
 
 TestScene seen(const std::string& text) {
-    return TestScene::parse(kHeader + std::string("camera { from 0 0 4; look-at 0 0 0; fov 34 deg; shutter 0.1 s }\n") +
-                            text);
+    return TestScene::parse(kEmissionHeader +
+                            std::string("camera { from 0 0 4; look-at 0 0 0; fov 34 deg; shutter 0.1 s }\n") + text);
 }
 
 void checkInvisible(const std::string& text, double resolution, std::uint32_t samples) {

@@ -8,12 +8,12 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
+constexpr const char* kFurnaceHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 
 // A room whose six walls emit 1 and reflect ρ: radiance 1/(1 - ρ) everywhere, by Russian roulette alone.
 TestScene room(double rho, const std::string& inside) {
     return TestScene::parse(
-        kHeader +
+        kFurnaceHeader +
         fmt::format(
             "camera {{ from 0.3 0.1 0.9; look-at -0.2 -0.1 -1; fov 80 deg }}\n"
             "shape mesh {{ material diffuse {{ reflectance {} }}; emission 1\n"
@@ -62,14 +62,14 @@ TEST_CASE("a lossless object in a closed room changes nothing") {
 
 TEST_CASE("a dispersive glass sphere in white surroundings cannot be seen, in brightness or in colour") {
     const auto scene =
-        TestScene::parse(std::string(kHeader) + "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\n"
-                                                "light sky { radiance 1 }\n"
-                                                "shape sphere { material dielectric { ior glass SF11 } }\n");
+        TestScene::parse(std::string(kFurnaceHeader) + "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\n"
+                                                       "light sky { radiance 1 }\n"
+                                                       "shape sphere { material dielectric { ior glass SF11 } }\n");
     const TestImage image = render(scene, nightly() ? 32768 : 4096);
     CHECK(image.statistics.kernel == "absorption+dispersion");
     checkSame(compareExpected(image.film, [](int, int) { return 1.0; }), 0.002);
     // Equal energy is white: X = Y = Z up to the tables of the observer (x = y = 1/3 within 1e-4).
-    const auto plain = TestScene::parse(std::string(kHeader) +
+    const auto plain = TestScene::parse(std::string(kFurnaceHeader) +
                                         "camera { from 0 0 4; look-at 0 0 0; fov 25 deg }\nlight sky { radiance 1 }\n");
     const TestImage white = render(plain, 1024);
     const auto chromaticity = [](const RecordingFilm& film) {

@@ -12,14 +12,14 @@ namespace abbe::test {
 namespace {
 
 // What lx count of a flat spectrum of 1 per nm.
-constexpr double kLuminousScale = kLuminousEfficacy * kYIntegral;
-constexpr double kIndex = 1.5, kRadius = 0.25 * kPiD / 180; // of the sun
-constexpr int kReplicates = 16;
+constexpr double kGlintLuminousScale = kLuminousEfficacy * kYIntegral;
+constexpr double kGlintIndex = 1.5, kRadius = 0.25 * kPiD / 180; // of the sun
+constexpr int kGlintReplicates = 16;
 
 double fresnel(double cosine) {
-    const double beyond = std::sqrt(1 - (1 - square(cosine)) / square(kIndex));
-    const double s = (cosine - kIndex * beyond) / (cosine + kIndex * beyond);
-    const double p = (kIndex * cosine - beyond) / (kIndex * cosine + beyond);
+    const double beyond = std::sqrt(1 - (1 - square(cosine)) / square(kGlintIndex));
+    const double s = (cosine - kGlintIndex * beyond) / (cosine + kGlintIndex * beyond);
+    const double p = (kGlintIndex * cosine - beyond) / (kGlintIndex * cosine + beyond);
     return (square(s) + square(p)) / 2;
 }
 
@@ -31,12 +31,12 @@ void compare(const std::string& name, double down, const std::string& glass, con
         TestScene::parse(fmt::format("scene 1\nfilm {{ filter box 0.5; size 11 11 }}\nrender {{ max-depth {} }}\n"
                                      "camera {{ from 0 1 0; look-at {} {} 0; fov 20 deg }}\n"
                                      "light sun {{ toward {}; irradiance {} lx; color 1; angular-diameter 0.5 deg }}\n",
-                                     depth, std::cos(down), 1 - std::sin(down), sun, kLuminousScale) +
+                                     depth, std::cos(down), 1 - std::sin(down), sun, kGlintLuminousScale) +
                          glass);
     RenderSettings settings = scene.settings();
-    settings.samples = 2048 * kReplicates;
+    settings.samples = 2048 * kGlintReplicates;
     settings.technique.lightPaths = Technique::LightPaths::always; // level faces focus nothing
-    const TestImage image = renderAsProgram(scene, settings, kReplicates);
+    const TestImage image = renderAsProgram(scene, settings, kGlintReplicates);
     // Its radiance times the share of the pixel that it covers.
     const double radiance = 1 / (kPiD * square(std::sin(kRadius)));
     const double share = kPiD * square(std::tan(kRadius)) / square(2 * std::tan(10 * kPiD / 180) / 11);
@@ -56,7 +56,7 @@ TEST_CASE("glints: the sun in a level face of glass") {
         compare(
             fmt::format("{:.0f} degrees", down * 180 / kPiD), down,
             fmt::format("shape quad {{ points -9 0 9  9 0 9  9 0 -9  -9 0 -9; material dielectric {{ ior {} }} }}\n",
-                        kIndex),
+                        kGlintIndex),
             fmt::format("{} {} 0", -std::cos(down), -std::sin(down)), fresnel(std::sin(down)), 1);
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("glints: the sun in two faces of glass, one after the other") {
     compare("corner", down,
             fmt::format("shape quad {{ points -9 0 9  9 0 9  9 0 -9  -9 0 -9; material dielectric {{ ior {0} }} }}\n"
                         "shape quad {{ points 3 0 -9  3 0 9  3 9 9  3 9 -9; material dielectric {{ ior {0} }} }}\n",
-                        kIndex),
+                        kGlintIndex),
             fmt::format("{} {} 0", std::cos(down), -std::sin(down)), fresnel(std::sin(down)) * fresnel(std::cos(down)),
             2);
 }

@@ -8,7 +8,7 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\nlight sky { radiance 1 }\n";
+constexpr const char* kMediaHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\nlight sky { radiance 1 }\n";
 constexpr const char* kOutside = "camera { from 0 0 4; look-at 0 0 0; fov 34 deg }\n";
 
 std::string ball(const std::string& optics) {
@@ -29,20 +29,21 @@ TEST_CASE("a white ball of fog in a white surrounding cannot be seen, however de
     for (const double g : {-0.9, 0.0, 0.9})
         for (const double depth : {1e-6, 1.0, 30.0})
             checkFurnace(
-                std::string(kHeader) + kOutside +
+                std::string(kMediaHeader) + kOutside +
                     ball(fmt::format("extinction {} per-m; albedo 1; phase henyey-greenstein {}", depth / 2, g)),
                 depth > 10 ? 0.01 : 0.002, depth > 10 ? 256 : 512);
-    if (nightly()) checkFurnace(std::string(kHeader) + kOutside + ball("extinction 500 per-m; albedo 1"), 0.02, 512);
+    if (nightly())
+        checkFurnace(std::string(kMediaHeader) + kOutside + ball("extinction 500 per-m; albedo 1"), 0.02, 512);
 }
 
 TEST_CASE("nor can one far from the camera, where a collision's place is rounded to a good part of a mean free path") {
-    checkFurnace(std::string(kHeader) + "camera { from 0 0 2000; look-at 0 0 0; fov 0.03 deg }\n" +
+    checkFurnace(std::string(kMediaHeader) + "camera { from 0 0 2000; look-at 0 0 0; fov 0.03 deg }\n" +
                      ball("extinction 100 per-m; albedo 1"),
                  0.005, 384);
 }
 
 TEST_CASE("nor can one whose extinction varies sixteenfold over the wavelengths") {
-    checkFurnace(std::string(kHeader) + kOutside + ball("extinction table 400 0.25 700 4 per-m; albedo 1"), 0.004,
+    checkFurnace(std::string(kMediaHeader) + kOutside + ball("extinction table 400 0.25 700 4 per-m; albedo 1"), 0.004,
                  1024);
 }
 
@@ -50,19 +51,19 @@ TEST_CASE("overlapping balls, a glass one in fog, and a camera in the midst") {
     const std::string fog = ball("extinction 0.7 per-m; albedo 1; phase henyey-greenstein 0.5");
     const std::string second = "shape sphere { center 0.5 0 0; radius 0.8; material boundary; interior homogeneous { "
                                "extinction 2 per-m; albedo 1 } }\n";
-    checkFurnace(std::string(kHeader) + kOutside + fog + second, 0.004, 512);
-    checkFurnace(std::string(kHeader) + kOutside + fog + "shape sphere { radius 0.5; material dielectric }\n", 0.006,
-                 512);
-    checkFurnace(std::string(kHeader) + "camera { from 0.1 0.2 0.3; look-at 0 0 -1; fov 60 deg }\n" + fog + second,
+    checkFurnace(std::string(kMediaHeader) + kOutside + fog + second, 0.004, 512);
+    checkFurnace(std::string(kMediaHeader) + kOutside + fog + "shape sphere { radius 0.5; material dielectric }\n",
+                 0.006, 512);
+    checkFurnace(std::string(kMediaHeader) + "camera { from 0.1 0.2 0.3; look-at 0 0 -1; fov 60 deg }\n" + fog + second,
                  0.004, 512);
-    checkFurnace(std::string(kHeader) + kOutside +
+    checkFurnace(std::string(kMediaHeader) + kOutside +
                      "shape sphere { radius 1; material dielectric; interior homogeneous { extinction 3 per-m } }\n",
                  0.008, 512);
 }
 
 TEST_CASE("what comes through an absorbing ball: Beer-Lambert along every chord") {
     // Extinction 0.8 per m, albedo 0: radiance e^(-0.8 chord) of the sky's.
-    const auto scene = TestScene::parse(std::string(kHeader) + kOutside + ball("extinction 0.8 per-m; albedo 0"));
+    const auto scene = TestScene::parse(std::string(kMediaHeader) + kOutside + ball("extinction 0.8 per-m; albedo 0"));
     const TestImage image = render(scene, 512);
     const double half = std::tan(17 * kPiD / 180);
     checkSame(compareExpected(image.film,

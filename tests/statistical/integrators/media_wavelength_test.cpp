@@ -8,16 +8,16 @@
 namespace abbe::test {
 namespace {
 
-const std::string kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n"
-                            "camera { from 0 0 4; look-at 0 0 0; fov 36 deg }\n"
-                            "light sky { radiance table 400 0.05  700 0.3 }\n"
-                            "light quad { points { - 1 2 1; - 2 2 1; - 2 2 0; - 1 2 0 }; two-sided on; "
-                            "radiance table 400 12  550 4  700 8 }\n";
+const std::string kMediaWavelengthHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n"
+                                           "camera { from 0 0 4; look-at 0 0 0; fov 36 deg }\n"
+                                           "light sky { radiance table 400 0.05  700 0.3 }\n"
+                                           "light quad { points { - 1 2 1; - 2 2 1; - 2 2 0; - 1 2 0 }; two-sided on; "
+                                           "radiance table 400 12  550 4  700 8 }\n";
 
 // `resolution`: of the image's mean; the blue of a medium that is thin to red converges more slowly.
 void checkWavelengths(const std::string& text, double resolution) {
     INFO(text);
-    const TestScene scene = TestScene::parse(kHeader + text);
+    const TestScene scene = TestScene::parse(kMediaWavelengthHeader + text);
     const TestImage hero = render(scene, nightly() ? 16384 : 1024);
     CHECK(hero.statistics.kernel == "all");
     constexpr EffectBits kGrey = (Effects(Effect::absorption) | Effect::media | Effect::interfaces).bits();

@@ -16,9 +16,9 @@ namespace abbe::test {
 namespace {
 
 // What cd and lx count of a flat spectrum of 1 per nm.
-constexpr double kLuminousScale = kLuminousEfficacy * kYIntegral;
-constexpr double kReflectance = 0.5, kIndex = 1.5;
-constexpr int kReplicates = 16;
+constexpr double kMergedLuminousScale = kLuminousEfficacy * kYIntegral;
+constexpr double kMergedReflectance = 0.5, kMergedIndex = 1.5;
+constexpr int kMergedReplicates = 16;
 // Of the picture's mean: one per cent is five standard errors or more, and passes in one run of some hundred.
 constexpr double kLevel = 1e-3, kResolution = 0.002;
 
@@ -38,7 +38,7 @@ void compare(const std::string& name, const std::string& film, const std::string
     settings.samples = (nightly() ? 8 : 1) * rounds;
     settings.technique.merging = Technique::Merging::always;
     if (shared) settings.technique.lightPaths = Technique::LightPaths::always;
-    const TestImage image = renderAsProgram(scene, settings, kReplicates);
+    const TestImage image = renderAsProgram(scene, settings, kMergedReplicates);
     const ImageComparison c = compareExpected(image.film, [&](int, int) { return exact; });
     const RenderStatistics& s = image.statistics;
     MESSAGE(fmt::format("{}: {:+.3f} ± {:.3f} %, {} rounds, {:.1f} s", name, 100 * c.difference, 100 * c.error,
@@ -64,10 +64,10 @@ struct Shell {
         const std::string glass =
             fmt::format("    shape sphere {{ radius {}; material dielectric {{ ior {}; priority 1 }} }}\n"
                         "    shape sphere {{ radius {}; material dielectric {{ ior 1; priority 2 }} }}\n",
-                        outer, kIndex, inner);
+                        outer, kMergedIndex, inner);
         return fmt::format("camera spherical {{ from 0 {} 0 }}\n"
                            "shape sphere {{ radius 1; material diffuse {{ reflectance {} }} }}\n",
-                           eye, kReflectance) +
+                           eye, kMergedReflectance) +
                (followed ? glass : "object shell {\n" + glass + "}\ninstance shell\n") + lamp;
     }
     // Share of the light of an even ball of radius a in the middle that gets out, and of light from outside towards
@@ -76,8 +76,8 @@ struct Shell {
         return integrate(
             [&](double part) { // of the ball's disk, in area
                 const double b2 = part * square(a);
-                const double ri = fresnel(std::sqrt(1 - b2 / square(inner)), kIndex);
-                const double ro = fresnel(std::sqrt(1 - b2 / square(outer)), kIndex);
+                const double ri = fresnel(std::sqrt(1 - b2 / square(inner)), kMergedIndex);
+                const double ro = fresnel(std::sqrt(1 - b2 / square(outer)), kMergedIndex);
                 return (1 - ri) * (1 - ro) / (1 - ri * ro); // with all that goes to and fro in the glass
             },
             0, 1, 8);
@@ -90,8 +90,8 @@ TEST_CASE("merged light: a point in an integrating sphere") {
     // Irradiance of the walls: Φ / (4π (1 - ρ)). Nothing else than merging finds any of it.
     const Shell shell{0.5, 0.4, 0.3};
     compare("point", "40 32; crop 0 4 40 28",
-            shell.scene(fmt::format("light point {{ color 1; intensity {} cd }}\n", kLuminousScale)),
-            kReflectance / kPiD / (1 - kReflectance), 128);
+            shell.scene(fmt::format("light point {{ color 1; intensity {} cd }}\n", kMergedLuminousScale)),
+            kMergedReflectance / kPiD / (1 - kMergedReflectance), 128);
 }
 
 TEST_CASE("merged light: a ball that camera paths meet, in an integrating sphere") {
@@ -101,7 +101,7 @@ TEST_CASE("merged light: a ball that camera paths meet, in an integrating sphere
     const Shell shell{0.9, 0.85, 0.75};
     const double brought = square(a) * shell.transmittance(a);
     compare("ball", "40 32; crop 0 8 40 24", shell.scene(fmt::format("light sphere {{ radius {}; radiance 1 }}\n", a)),
-            kReflectance * brought / (1 - kReflectance + kReflectance * brought), 192);
+            kMergedReflectance * brought / (1 - kMergedReflectance + kMergedReflectance * brought), 192);
 }
 
 // In the middle of the ball's disk its image, were all of the ball like there, is 0.03 sr, at the rim nothing.
@@ -111,7 +111,7 @@ TEST_CASE("merged light: a ball of which manifold sampling has the rim and mergi
     const double brought = square(a) * shell.transmittance(a);
     compare("rim and middle", "40 32; crop 0 4 40 28",
             shell.scene(fmt::format("light sphere {{ radius {}; radiance 1 }}\n", a), true),
-            kReflectance * brought / (1 - kReflectance + kReflectance * brought), 1024, true);
+            kMergedReflectance * brought / (1 - kMergedReflectance + kMergedReflectance * brought), 1024, true);
 }
 
 TEST_CASE("merged light: the sun through one glass, seen through another") {
@@ -124,10 +124,10 @@ TEST_CASE("merged light: the sun through one glass, seen through another") {
         std::uint32_t rounds;
     };
     const auto ior = [](const char* glass) {
-        return glass ? std::string("glass ") + glass : fmt::format("{}", kIndex);
+        return glass ? std::string("glass ") + glass : fmt::format("{}", kMergedIndex);
     };
     const auto index = [](const char* glass, double nm) {
-        return glass ? indexCurve(*findGlass(glass))->at(nm) : kIndex;
+        return glass ? indexCurve(*findGlass(glass))->at(nm) : kMergedIndex;
     };
     std::vector<Case> cases{{nullptr, nullptr, 128}};
     if (nightly()) // one wavelength a round: these are noisy
@@ -136,7 +136,7 @@ TEST_CASE("merged light: the sun through one glass, seen through another") {
     for (const Case& c : cases) {
         const SampledCurve radiance([&](double nm) {
             const double n1 = index(c.lit, nm), n2 = index(c.seen, nm);
-            return kReflectance / kPiD * std::cos(sun) * (1 - fresnel(std::cos(sun), n1)) *
+            return kMergedReflectance / kPiD * std::cos(sun) * (1 - fresnel(std::cos(sun), n1)) *
                    (1 - fresnel(std::cos(eye), n2)) / square(n2);
         });
         const auto pane = [&](const char* glass, int side) {
@@ -151,8 +151,8 @@ TEST_CASE("merged light: the sun through one glass, seen through another") {
                             "    material diffuse {{ reflectance {} }} }}\n"
                             "object panes {{\n{}{}}}\ninstance panes\n"
                             "light sun {{ toward {} {} 0; irradiance {} lx; color 1; angular-diameter 0 deg }}\n",
-                            0.2 + 2 * std::tan(eye), kReflectance, pane(c.lit, -1), pane(c.seen, 1), std::sin(sun),
-                            -std::cos(sun), kLuminousScale),
+                            0.2 + 2 * std::tan(eye), kMergedReflectance, pane(c.lit, -1), pane(c.seen, 1),
+                            std::sin(sun), -std::cos(sun), kMergedLuminousScale),
                 integrate(radiance).y, c.rounds);
     }
 }
@@ -162,11 +162,11 @@ TEST_CASE("merged light: the sun in haze under glass, seen through it") {
     // it is gathered stays within the haze. Scattered once, at depths y up to H: T(0)/n² · E cos θ T(θ)/cos θ' · σ_s
     // p(-cos θ') ∫ exp(-σ_t y (1 + 1/cos θ')) dy.
     const double sun = 50 * kPiD / 180, extinction = 3, albedo = 0.9, g = 0.3, height = 0.4;
-    const double in = std::sqrt(1 - square(std::sin(sun) / kIndex)); // cos θ'
+    const double in = std::sqrt(1 - square(std::sin(sun) / kMergedIndex)); // cos θ'
     const double phase = (1 - square(g)) / (4 * kPiD * std::pow(1 + square(g) + 2 * g * in, 1.5));
     const double slope = extinction * (1 + 1 / in);
     const double scattered = extinction * albedo * phase * (1 - std::exp(-slope * height)) / slope;
-    const double arriving = std::cos(sun) * (1 - fresnel(std::cos(sun), kIndex)) / in;
+    const double arriving = std::cos(sun) * (1 - fresnel(std::cos(sun), kMergedIndex)) / in;
     compare("haze", "32 32",
             fmt::format("render {{ max-depth 3 }}\n"
                         "camera orthographic {{ from 0 2 0; look-at 0 0 0; width 0.25; up 0 0 -1 }}\n"
@@ -175,8 +175,9 @@ TEST_CASE("merged light: the sun in haze under glass, seen through it") {
                         "shape box {{ min -0.45 {} -0.2; max 0.3 -0.1 0.2; material boundary\n"
                         "    interior homogeneous {{ extinction {} per-m; albedo {}; phase henyey-greenstein {} }} }}\n"
                         "light sun {{ toward {} {} 0; irradiance {} lx; color 1; angular-diameter 0 deg }}\n",
-                        kIndex, -0.1 - height, extinction, albedo, g, std::sin(sun), -std::cos(sun), kLuminousScale),
-            arriving * scattered * (1 - fresnel(1, kIndex)) / square(kIndex), 256);
+                        kMergedIndex, -0.1 - height, extinction, albedo, g, std::sin(sun), -std::cos(sun),
+                        kMergedLuminousScale),
+            arriving * scattered * (1 - fresnel(1, kMergedIndex)) / square(kMergedIndex), 256);
 }
 
 } // namespace abbe::test

@@ -9,12 +9,12 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
+constexpr const char* kMotionHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 
 TestImage renderWith(const std::string& text, const char* strategy, std::uint32_t samples, std::uint64_t seed) {
     BuildOptions options;
     options.strategy = strategy;
-    const auto scene = TestScene::parse(kHeader + text, options);
+    const auto scene = TestScene::parse(kMotionHeader + text, options);
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     settings.maxDepth = 3;

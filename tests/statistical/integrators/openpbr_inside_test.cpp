@@ -11,7 +11,7 @@ namespace {
 const std::string kBall = "scene 1\nfilm { size 16 16; filter box 0.5 }\n"
                           "camera { from 0 0.6 4; look-at 0 0 0; fov 18 deg }\nlight sky { radiance 1 }\n";
 // Lit from the side, so that it shows how far light spreads.
-const std::string kLit =
+const std::string kLitInside =
     "scene 1\nfilm { size 16 16; filter box 0.5 }\ncamera { from 0 0 4; look-at 0 0 0; fov 36 deg }\n"
     "light sky { radiance 0.2 }\nlight quad { points { - 1 2 1; - 2 2 1; - 2 2 0; - 1 2 0 }; two-sided on; "
     "radiance 8 }\n";
@@ -26,7 +26,7 @@ void checkHealth(const TestImage& image) {
     CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
 }
 
-void checkFurnace(const std::string& scene, std::uint32_t samples, double tolerance) {
+void checkInsideFurnace(const std::string& scene, std::uint32_t samples, double tolerance) {
     INFO(scene);
     const TestImage image = render(TestScene::parse(scene), samples);
     checkHealth(image);
@@ -50,29 +50,31 @@ TEST_CASE("openpbr solids: what is white loses nothing, under every layer") {
     const std::string some = "base-color 1; subsurface-color 1; subsurface-radius 40 cm; "
                              "subsurface-radius-scale table 400 0.2  700 1; ",
                       white = some + "subsurface-weight 1; ";
-    checkFurnace(kBall + openPbr(white), samples, 0.004);
-    checkFurnace(kBall + openPbr(some + "subsurface-weight 0.5"), samples, 0.004);
-    checkFurnace(kBall + openPbr(white + "subsurface-scatter-anisotropy 0.8; specular-roughness 0; coat-weight 1"),
-                 samples, 0.004);
-    checkFurnace(kBall +
-                     openPbr(white + "coat-weight 0.5; coat-roughness 0.3; fuzz-weight 0.5; base-diffuse-roughness 1"),
-                 samples, 0.004);
+    checkInsideFurnace(kBall + openPbr(white), samples, 0.004);
+    checkInsideFurnace(kBall + openPbr(some + "subsurface-weight 0.5"), samples, 0.004);
+    checkInsideFurnace(kBall +
+                           openPbr(white + "subsurface-scatter-anisotropy 0.8; specular-roughness 0; coat-weight 1"),
+                       samples, 0.004);
+    checkInsideFurnace(
+        kBall + openPbr(white + "coat-weight 0.5; coat-roughness 0.3; fuzz-weight 0.5; base-diffuse-roughness 1"),
+        samples, 0.004);
     // Every crossing of rough glass keeps its energy to 0.3 %.
     const std::string milky = "transmission-weight 1; transmission-color 0.5; transmission-depth 1 m; "
                               "transmission-scatter 1; transmission-scatter-anisotropy 0.5; ";
-    checkFurnace(kBall + openPbr(milky + "specular-roughness 0"), samples, 0.002);
-    checkFurnace(kBall + openPbr(milky + "specular-roughness 0.4"), samples, 0.006);
+    checkInsideFurnace(kBall + openPbr(milky + "specular-roughness 0"), samples, 0.002);
+    checkInsideFurnace(kBall + openPbr(milky + "specular-roughness 0.4"), samples, 0.006);
 }
 
 TEST_CASE("openpbr solids: subsurface light is that of the material `subsurface`") {
     const std::uint32_t samples = nightly() ? 8192 : 512;
     const RecordingFilm mine = rendered(
-        kLit + openPbr("specular-ior 1.4; specular-roughness 0.5; subsurface-weight 1; subsurface-radius 60 cm; "
-                       "subsurface-radius-scale table 400 0.1  550 0.2  700 1; subsurface-scatter-anisotropy 0.3; "
-                       "subsurface-color table 400 0.45  600 0.7  700 0.85"),
+        kLitInside +
+            openPbr("specular-ior 1.4; specular-roughness 0.5; subsurface-weight 1; subsurface-radius 60 cm; "
+                    "subsurface-radius-scale table 400 0.1  550 0.2  700 1; subsurface-scatter-anisotropy 0.3; "
+                    "subsurface-color table 400 0.45  600 0.7  700 0.85"),
         samples);
     const RecordingFilm other = rendered(
-        kLit +
+        kLitInside +
             "shape sphere { radius 1; material subsurface { ior 1.4; roughness 0.5; boundary diffuse; anisotropy 0.3; "
             "mean-free-path table 400 6  550 12  700 60 cm; "
             "reflectance table 400 0.45  600 0.7  700 0.85 } }\n",
@@ -85,11 +87,11 @@ TEST_CASE("openpbr solids: scattering glass is the material `dielectric` around 
     const std::uint32_t samples = nightly() ? 8192 : 512;
     // At 400 nm σt = -ln 0.2 / 0.5 m = 3.22/m and σs = 0.8/0.5 m; at 700 nm σs = 1.2/m is more than σt, and all of σt
     // is raised by what is missing.
-    const RecordingFilm mine =
-        rendered(kLit + openPbr("specular-ior 1.4; specular-roughness 0.3; transmission-weight 1; transmission-depth "
-                                "50 cm; transmission-scatter table 400 0.8  700 0.6; transmission-color table 400 0.2 "
-                                " 700 0.8; transmission-scatter-anisotropy 0.4"),
-                 samples);
+    const RecordingFilm mine = rendered(
+        kLitInside + openPbr("specular-ior 1.4; specular-roughness 0.3; transmission-weight 1; transmission-depth "
+                             "50 cm; transmission-scatter table 400 0.8  700 0.6; transmission-color table 400 0.2 "
+                             " 700 0.8; transmission-scatter-anisotropy 0.4"),
+        samples);
     const double raised = 0.6 / 0.5 + std::log(0.8) / 0.5;
     std::string extinction, albedo;
     for (int i = 0; i <= 30; ++i) {
@@ -99,7 +101,7 @@ TEST_CASE("openpbr solids: scattering glass is the material `dielectric` around 
         albedo += fmt::format("- {} {:.9g}; ", nm, scatter / 0.5 / sigma);
     }
     const RecordingFilm other =
-        rendered(kLit +
+        rendered(kLitInside +
                      "shape sphere { radius 1; material dielectric { ior 1.4; roughness 0.3 }; interior homogeneous { "
                      "extinction "
                      "table { " +
@@ -129,10 +131,12 @@ TEST_CASE("openpbr solids: without subsurface light they are matte, and between 
     const std::uint32_t samples = nightly() ? 4096 : 256;
     const std::string look = "base-color 0.2; subsurface-color 0.8; subsurface-radius 30 cm; coat-weight 0.5; "
                              "coat-darkening 0; coat-color 0.6; subsurface-weight ";
-    const auto image = [&](const std::string& weight) { return rendered(kLit + openPbr(look + weight), samples); };
+    const auto image = [&](const std::string& weight) {
+        return rendered(kLitInside + openPbr(look + weight), samples);
+    };
     const RecordingFilm none = image("0"), all = image("1"), some = image("0.3"), little = image("1e-5");
-    checkSame(compareImages(none, rendered(kLit + openPbr("base-color 0.2; coat-weight 0.5; coat-darkening 0; "
-                                                          "coat-color 0.6"),
+    checkSame(compareImages(none, rendered(kLitInside + openPbr("base-color 0.2; coat-weight 0.5; coat-darkening 0; "
+                                                                "coat-color 0.6"),
                                            samples)));
     checkSame(compareImages(little, none), 0.01);
     checkSame(compareTiles(

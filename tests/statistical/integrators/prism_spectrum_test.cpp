@@ -10,7 +10,7 @@ namespace abbe::test {
 namespace {
 
 // Of the scene.
-constexpr double kFrom = 140, kTo = 280, kReflectance = 1e-5;
+constexpr double kFrom = 140, kTo = 280, kPrismReflectance = 1e-5;
 constexpr int kPixels = 28;
 constexpr int kRows = 8; // as far as the screen: all alike, as the prism is ten times as long
 
@@ -18,7 +18,7 @@ std::vector<Xyz> expected(double diameter, int fine = 24) {
     PrismSpectrumScene scene;
     scene.diameter = diameter * kPiD / 180;
     auto pixels = PrismSpectrum(scene).pixels(kFrom, kTo, kPixels, fine);
-    for (Xyz& p : pixels) p = p * (kReflectance / kPiD);
+    for (Xyz& p : pixels) p = p * (kPrismReflectance / kPiD);
     return pixels;
 }
 double value(Xyz v, Channel c) { return c == Channel::x ? v.x : c == Channel::y ? v.y : v.z; }

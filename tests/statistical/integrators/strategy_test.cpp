@@ -19,12 +19,12 @@ struct StrategyScene {
     double resolution = 0.0025;
 };
 
-constexpr const char* kHeader = "scene 1\nfilm { size 32 32; filter box 0.5 }\n";
+constexpr const char* kStrategyHeader = "scene 1\nfilm { size 32 32; filter box 0.5 }\n";
 
 TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t seed) {
     BuildOptions options;
     options.strategy = strategy;
-    const auto scene = TestScene::parse(kHeader + s.text, options);
+    const auto scene = TestScene::parse(kStrategyHeader + s.text, options);
     RenderSettings settings = scene.settings();
     settings.samples = nightly() ? 8 * s.samples : s.samples;
     settings.maxDepth = s.maxDepth;

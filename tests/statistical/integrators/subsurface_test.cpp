@@ -8,12 +8,12 @@
 namespace abbe::test {
 namespace {
 
-const std::string kFilm = "scene 1\nfilm { size 8 8; filter box 0.5 }\n";
+const std::string kSubsurfaceFilm = "scene 1\nfilm { size 8 8; filter box 0.5 }\n";
 
 // The reflectance of a half space in even light.
 Estimate halfSpace(const std::string& material, std::uint32_t samples) {
     const TestScene scene =
-        TestScene::parse(kFilm +
+        TestScene::parse(kSubsurfaceFilm +
                          "camera { from 0 1 2; look-at 0 0 0; fov 10 deg }\nlight sky { radiance 1 }\n"
                          "shape plane { material subsurface { " +
                          material + " } }\n");
@@ -23,11 +23,11 @@ Estimate halfSpace(const std::string& material, std::uint32_t samples) {
     return image.film.image();
 }
 
-void checkFurnace(const std::string& material, std::uint32_t samples, double tolerance) {
+void checkSubsurfaceFurnace(const std::string& material, std::uint32_t samples, double tolerance) {
     INFO(material);
-    const TestScene scene =
-        TestScene::parse(kFilm + "camera { from 0 0.6 4; look-at 0 0 0; fov 18 deg }\nlight sky { radiance 1 }\n" +
-                         fmt::format("shape sphere {{ material subsurface {{ {} }} }}\n", material));
+    const TestScene scene = TestScene::parse(
+        kSubsurfaceFilm + "camera { from 0 0.6 4; look-at 0 0 0; fov 18 deg }\nlight sky { radiance 1 }\n" +
+        fmt::format("shape sphere {{ material subsurface {{ {} }} }}\n", material));
     const TestImage image = render(scene, samples);
     // A path that has leaked never comes back: the medium that it took along has no end.
     CHECK(image.statistics.cappedPaths == 0);
@@ -58,11 +58,11 @@ TEST_CASE("subsurface: what is white loses nothing, and nothing leaks out of clo
     const std::uint32_t samples = nightly() ? 4096 : 256;
     for (const std::string path : {"mean-free-path 10 cm; ", "mean-free-path table 400 5  700 30 cm; "}) {
         const std::string white = "reflectance 1; ior 1.5; " + path;
-        checkFurnace(white + "boundary diffuse; roughness 0.4", samples, 0.002);
-        checkFurnace(white + "boundary diffuse; roughness 0", samples, 0.002);
-        checkFurnace(white + "boundary dielectric; roughness 0", samples, 0.002);
+        checkSubsurfaceFurnace(white + "boundary diffuse; roughness 0.4", samples, 0.002);
+        checkSubsurfaceFurnace(white + "boundary diffuse; roughness 0", samples, 0.002);
+        checkSubsurfaceFurnace(white + "boundary dielectric; roughness 0", samples, 0.002);
         // Rough dielectrics keep their energy to 0.3 % at each crossing (tests of materials).
-        checkFurnace(white + "boundary dielectric; roughness 0.4", samples, 0.006);
+        checkSubsurfaceFurnace(white + "boundary dielectric; roughness 0.4", samples, 0.006);
     }
 }
 

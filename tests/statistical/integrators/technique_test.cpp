@@ -12,9 +12,10 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kHeader = "scene 1\nfilm { size 24 24; filter box 0.5 }\n";
-const std::string kLamp = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n"
-                          "light sphere { center -0.7 -0.3 0.5; radius 0.15; radiance 3 }\n";
+constexpr const char* kTechniqueHeader = "scene 1\nfilm { size 24 24; filter box 0.5 }\n";
+const std::string kTechniqueLamp =
+    "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n"
+    "light sphere { center -0.7 -0.3 0.5; radius 0.15; radiance 3 }\n";
 
 struct TechniqueScene {
     std::string text;
@@ -24,28 +25,28 @@ struct TechniqueScene {
 
 // Matte, rough metal, and gloss over a matte ground: a delta lobe beside others.
 TechniqueScene surfaces() {
-    return {kOpenBox + kLamp +
+    return {kOpenBox + kTechniqueLamp +
             "shape sphere { center -0.4 -0.55 0; radius 0.42; material conductor { index metal Au; roughness 0.6 } }\n"
             "shape sphere { center 0.5 -0.55 0.1; radius 0.42; material openpbr { base-color 0.5; specular-roughness 0 "
             "} }\n"};
 }
 // Rough dispersive glass, whose densities depend on wavelength.
 TechniqueScene roughGlass() {
-    return {kOpenBox + kLamp +
+    return {kOpenBox + kTechniqueLamp +
                 "shape sphere { center 0 -0.45 0; radius 0.5; material dielectric { ior cauchy 1.4 0.03; roughness 0.9;"
                 " absorption table 400 0.5 700 0.1 } }\n",
             512};
 }
 // Polished glass, which ends all wavelengths but one.
 TechniqueScene polishedGlass() {
-    return {kOpenBox + kLamp +
+    return {kOpenBox + kTechniqueLamp +
                 "shape sphere { center 0.3 -0.6 0.2; radius 0.35; material dielectric { ior glass SF11 } }\n",
             512};
 }
 // Fog whose extinction depends on wavelength, a lamp in it, and a diffuse transmitter.
 TechniqueScene fog() {
     return {
-        kOpenBox + kLamp +
+        kOpenBox + kTechniqueLamp +
             "volume atmosphere { scattering table 400 0.5 700 0.2; absorption 0.05; phase henyey-greenstein { g 0.4 "
             "} }\n"
             "shape quad { points -0.5 -0.4 0.2  0.5 -0.4 0.2  0.5 0.3 -0.1  -0.5 0.3 -0.1; material "
@@ -101,7 +102,7 @@ double resolution(const Technique& t) {
 // bounce on average by more than what leaves: inside rough glass, and where caustics fall, their variance is without
 // bound.
 void checkTechniques(const TechniqueScene& s, bool uniform = true) {
-    const auto scene = TestScene::parse(kHeader + s.text);
+    const auto scene = TestScene::parse(kTechniqueHeader + s.text);
     // Longer than what it is compared with, for all the comparisons' sake.
     const TestImage usual = renderWith(scene, {s.text, 4 * s.samples, s.maxDepth}, {}, 1);
     std::uint64_t seed = 2;
@@ -142,7 +143,7 @@ TEST_CASE("techniques: what a light is never asked for is found by scattering") 
                                        "Al; roughness 0.6 }} }}\n",
                                        path.string()),
                            1024};
-    const auto scene = TestScene::parse(kHeader + s.text);
+    const auto scene = TestScene::parse(kTechniqueHeader + s.text);
     const TestImage usual = renderWith(scene, s, {}, 1);
     std::uint64_t seed = 2;
     for (const auto strategy : {Technique::Strategy::lightsOnly, Technique::Strategy::bsdfOnly})

@@ -8,7 +8,7 @@
 namespace abbe::test {
 namespace {
 
-TestScene room(const std::string& color) {
+TestScene litRoom(const std::string& color) {
     return TestScene::parse(
         "scene 1\nfilm { size 16 16; filter box 0.5 }\n"
         "camera { from 0 0.4 3; look-at 0 0 0; fov 40 deg }\n"
@@ -40,7 +40,7 @@ TEST_CASE("an image is the same with either density of wavelengths; lines have l
                                                {"line 632.8", true, 50},
                                                {"illuminant A", false, 0.5}}) {
         CAPTURE(color);
-        const TestScene scene = room(color);
+        const TestScene scene = litRoom(color);
         CHECK(scene.scene().wavelengths.followsLights() == follows);
         const std::uint32_t samples = nightly() ? 512 : 64;
         const RecordingFilm smooth = renderPaths<0>(scene, {.samples = samples, .seed = 5});

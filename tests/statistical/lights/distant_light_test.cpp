@@ -12,8 +12,8 @@
 namespace abbe {
 namespace {
 
-const ConstantCurve kUnit(1);
-const Wavelengths kAt = Wavelengths::single(550);
+const ConstantCurve kDistantUnit(1);
+const Wavelengths kDistantAt = Wavelengths::single(550);
 
 class Grey final : public RgbRadiance {
   public:
@@ -46,7 +46,8 @@ test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int w
     const Transform back = turn.inverse().value();
     test::Random random(seed);
     for (int i = 0; i < samples; ++i) {
-        const Vec3d w = back.vector(Vec3d(light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0)->wi));
+        const Vec3d w =
+            back.vector(Vec3d(light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kDistantAt, 0)->wi));
         const double phi = std::atan2(w.x, -w.z), theta = std::atan2(std::hypot(w.x, w.z), w.y);
         const int c = std::clamp(static_cast<int>((phi / (2 * kPiD) + 0.5) * columns), 0, columns - 1);
         const int r = std::clamp(static_cast<int>(theta / kPiD * rows), 0, rows - 1);
@@ -65,18 +66,18 @@ TEST_CASE("environment images: directions follow the density") {
     }
 }
 
-TEST_CASE("sky: directions are uniform") { CHECK(imageTest(SkyLight({&kUnit, 1}), {}, 16, 8, 6).pValue > 1e-4); }
+TEST_CASE("sky: directions are uniform") { CHECK(imageTest(SkyLight({&kDistantUnit, 1}), {}, 16, 8, 6).pValue > 1e-4); }
 
 TEST_CASE("sun: directions are uniform over the disk") {
     for (const double half : {1e-3, 0.2, 1.5}) {
-        const SunLight sun({0, 0, 1}, half, {&kUnit, 1});
+        const SunLight sun({0, 0, 1}, half, {&kDistantUnit, 1});
         constexpr int n = 16;
         const int samples = test::chiSquareSamples();
         std::vector<double> observed(n * n), expected(n * n, static_cast<double>(samples) / (n * n));
         test::Random random(7);
         int outside = 0;
         for (int i = 0; i < samples; ++i) {
-            const auto s = sun.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0);
+            const auto s = sun.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kDistantAt, 0);
             outside += sun.pdfEscaped(Vec3{}, s->wi, 0) == 0;
             const Vec3d w = normalize(Vec3d(s->wi));
             const double sine = std::hypot(w.x, w.y), h = sine * sine / (1 + w.z); // 1 - cos
@@ -94,24 +95,24 @@ test::Moments irradiance(const Light& light, Vec3 n, std::uint64_t seed) {
     test::Moments result;
     test::Random random(seed);
     for (int i = 0; i < 400000; ++i) {
-        const auto s = light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kAt, 0);
+        const auto s = light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kDistantAt, 0);
         result.add(s->radiance[0] * std::max(0.f, dot(n, s->wi)) / s->pdfSolidAngle);
     }
     return result;
 }
 
 TEST_CASE("irradiance: π L of the sky, what was stated of the sun") {
-    const test::Moments sky = irradiance(SkyLight({&kUnit, 2}), normalize(Vec3{1, 2, -1}), 8);
+    const test::Moments sky = irradiance(SkyLight({&kDistantUnit, 2}), normalize(Vec3{1, 2, -1}), 8);
     CHECK(test::meanTest(sky, 2 * kPiD) > 1e-4);
     CHECK(sky.standardError() < 0.0025 * 2 * kPiD); // a factor of 1.01 would be seen
     for (const double half : {0.004, 0.5, 1.5}) {
-        const SunLight sun({0, 1, 0}, half, {&kUnit, 7});
+        const SunLight sun({0, 1, 0}, half, {&kDistantUnit, 7});
         const test::Moments facing = irradiance(sun, {0, 1, 0}, 9);
         CHECK(test::meanTest(facing, 7) > 1e-4);
         CHECK(facing.standardError() < 0.0025 * 7);
     }
     // All of a small disk above the horizon: the cosine of its middle.
-    const SunLight low({3, 1, 0}, 0.2, {&kUnit, 7});
+    const SunLight low({3, 1, 0}, 0.2, {&kDistantUnit, 7});
     CHECK(test::meanTest(irradiance(low, {0, 1, 0}, 10), 7 / std::sqrt(10.0)) > 1e-4);
 }
 
@@ -122,7 +123,7 @@ TEST_CASE("irradiance of an image, sampled without compensation, is that of esca
     test::Random random(11);
     for (int i = 0; i < 1000000; ++i) {
         const Vec3 w = squareToSphere({random.uniform(), random.uniform()});
-        uniform.add(light.escaped(w, kAt, 0)[0] * std::max(0.f, dot(n, w)) / kSpherePdf);
+        uniform.add(light.escaped(w, kDistantAt, 0)[0] * std::max(0.f, dot(n, w)) / kSpherePdf);
     }
     CHECK(test::sameMeanTest(irradiance(light, n, 12), uniform) > 1e-4);
 }

@@ -41,15 +41,15 @@ bool possible(const std::string& shape, const std::string& texture) {
 }
 
 // What crosses a sphere of radius 40 about the origin, in lumens and watts.
-struct Flux {
+struct TexturedFlux {
     double lumens = 0, watts = 0;
 };
-Flux fluxOf(const Light& light, int samples = 60000) {
+TexturedFlux fluxOf(const Light& light, int samples = 60000) {
     constexpr float radius = 40;
     // An R₅ sequence: far more even than random points.
     constexpr std::array<double, 5> kSteps{0.8812714616335696, 0.7766393890897682, 0.6844301295853426,
                                            0.6031687406857282, 0.5315553977157913};
-    Flux flux;
+    TexturedFlux flux;
     for (int i = 0; i < samples; ++i) {
         std::array<float, 5> u;
         for (std::size_t k = 0; k < 5; ++k)

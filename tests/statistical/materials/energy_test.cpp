@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kSamples = 20000;
+constexpr int kEnergySamples = 20000;
 
 // Twenty cosines from nearly grazing to normal incidence.
 Vec3 furnaceDirection(int i, bool outside = true) {
@@ -20,7 +20,7 @@ Vec3 furnaceDirection(int i, bool outside = true) {
 }
 
 double albedo(const Bsdf& bsdf, Vec3 wo, Transport transport, int lane = 0) {
-    return meanOfSamples(bsdf, wo, transport, kSamples, [lane](const BsdfSample& s) { return s.weight[lane]; });
+    return meanOfSamples(bsdf, wo, transport, kEnergySamples, [lane](const BsdfSample& s) { return s.weight[lane]; });
 }
 
 TEST_CASE("white furnace: a metal that absorbs nothing reflects everything") {
@@ -75,7 +75,7 @@ TEST_CASE("white furnace: a clear interface loses nothing, from both sides and b
                 const Vec3 wo = furnaceDirection(i % 20, i < 20);
                 const double light = albedo(*b.bsdf, wo, Transport::importance);
                 // In equilibrium the radiance inside is n² that outside: what refraction compressed, it makes up for.
-                const double eye = meanOfSamples(*b.bsdf, wo, Transport::radiance, kSamples,
+                const double eye = meanOfSamples(*b.bsdf, wo, Transport::radiance, kEnergySamples,
                                                  [](const BsdfSample& s) { return s.weight[0] * s.eta * s.eta; });
                 CHECK_MESSAGE(std::abs(light - 1) < 2e-3, b.name, " direction ", i, ": ", light);
                 CHECK_MESSAGE(std::abs(eye - 1) < 2e-3, b.name, " direction ", i, ": ", eye);

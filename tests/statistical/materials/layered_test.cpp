@@ -13,10 +13,11 @@ namespace {
 
 using namespace test;
 
-const ConstantCurve kOne(1), kNone(1.00000001), kMiddle(0.4);
+const ConstantCurve kUnitCurve(1), kNoCoat(1.00000001), kMiddle(0.4);
 
 const Material& base(int which) {
-    static const auto white = makeDiffuse({{&kOne, nullptr, {}}}), grey = makeDiffuse({{&flat(0.2), nullptr, {}}});
+    static const auto white = makeDiffuse({{&kUnitCurve, nullptr, {}}}),
+                      grey = makeDiffuse({{&flat(0.2), nullptr, {}}});
     static const BsdfUnderTest metal = conductor(0, 3, 0.5f), copper = conductor(0.2, 3, 0.3f),
                                mirror = conductor(0, 3, 0);
     return *(which == 0   ? white.get()
@@ -47,7 +48,7 @@ BsdfUnderTest coated(const char* name, const LayeredParams& params, int which) {
     return {name, makeLayered(params, base(which)), which < 2 ? 0.3f : 0.15f};
 }
 
-std::vector<BsdfUnderTest> suite() {
+std::vector<BsdfUnderTest> layeredSuite() {
     LayeredParams tinted = coat(flat(1.5), 0.4f);
     tinted.tint.curve = &kMiddle;
     std::vector<BsdfUnderTest> all;
@@ -160,7 +161,7 @@ TEST_CASE("a coat by textures is the coat by the same numbers") {
 
 TEST_CASE("coats: chi-square of the samples") {
     Random random(211);
-    checkChiSquare(suite(), random, chiSquareSamples(), [](const auto&, Vec3 wo, bool upper) {
+    checkChiSquare(layeredSuite(), random, chiSquareSamples(), [](const auto&, Vec3 wo, bool upper) {
         const Vec3 centre = upper == (wo.z > 0) ? wo : mirrored(wo);
         return HemisphereCells(upper, Vec3d{-centre.x, -centre.y, centre.z}, 0.25, 24, 24);
     });
@@ -168,7 +169,7 @@ TEST_CASE("coats: chi-square of the samples") {
 
 TEST_CASE("coats: sample() returns the weight and the density that eval() gives") {
     Random random(212);
-    for (const BsdfUnderTest& b : suite())
+    for (const BsdfUnderTest& b : layeredSuite())
         for (const Vec3 wo : aroundTheSphere()) {
             const double worst = sampleAgainstEval(*b.bsdf, wo, random, 4000);
             CHECK_MESSAGE(worst < 2e-4 + 4e-6 / std::abs(static_cast<double>(wo.z)), b.name, " wo.z ", wo.z, ": ",
@@ -229,7 +230,7 @@ TEST_CASE("a coat without an index is no coat, and as the index falls to 1 it fa
 }
 
 TEST_CASE("the tint is what is left straight in and out, and obliquely less") {
-    LayeredParams tinted = coat(kNone, 0.4f);
+    LayeredParams tinted = coat(kNoCoat, 0.4f);
     tinted.tint.curve = &kMiddle;
     CHECK(albedo(*coated("mirror", tinted, 4).bsdf, {0, 0, 1}) == doctest::Approx(0.4).epsilon(1e-4));
     LayeredParams thick = coat(flat(1.5), 0);
@@ -245,7 +246,7 @@ TEST_CASE("the tint is what is left straight in and out, and obliquely less") {
 }
 
 TEST_CASE("coats at every cosine and number are finite") {
-    for (const BsdfUnderTest& b : suite()) CHECK_MESSAGE(heaviestAtExtremes(*b.bsdf) < kInfinity, b.name);
+    for (const BsdfUnderTest& b : layeredSuite()) CHECK_MESSAGE(heaviestAtExtremes(*b.bsdf) < kInfinity, b.name);
 }
 
 } // namespace abbe

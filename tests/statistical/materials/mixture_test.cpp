@@ -17,7 +17,7 @@ const Material& matte() {
     static const auto m = makeDiffuse({{&flat(0.2), nullptr, {}}});
     return *m;
 }
-const Material& white() {
+const Material& whiteMaterial() {
     static const ConstantCurve one(1);
     static const auto m = makeDiffuse({{&one, nullptr, {}}});
     return *m;
@@ -88,7 +88,7 @@ TEST_CASE("mixtures: the value is the weighted sum of the parts, and the furnace
     }
     for (const double amount : {0.01, 0.5, 0.99})
         for (const double angle : {5.0, 45.0, 80.0}) {
-            const BsdfUnderTest lossless("lossless", makeMix(share(amount), white(), metal(0)), 0.09f);
+            const BsdfUnderTest lossless("lossless", makeMix(share(amount), whiteMaterial(), metal(0)), 0.09f);
             const double e = meanOfSamples(*lossless.bsdf, directionAt(angle), Transport::radiance, 50000,
                                            [](const BsdfSample& s) { return s.weight[0]; });
             CHECK(e == doctest::Approx(1).epsilon(0.003));

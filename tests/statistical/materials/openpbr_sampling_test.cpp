@@ -64,7 +64,7 @@ const Structure kStructures[] = {
      true},
 };
 
-std::vector<BsdfUnderTest> suite() {
+std::vector<BsdfUnderTest> openpbrSuite() {
     std::vector<BsdfUnderTest> result;
     for (const Structure& s : kStructures) {
         OpenPbrParams p;
@@ -81,11 +81,11 @@ HemisphereCells cells(const BsdfUnderTest& b, Vec3 wo, bool upper) {
 
 TEST_CASE("OpenPBR: chi-square") {
     Random random(11);
-    checkChiSquare(suite(), random, chiSquareSamples() / 2, cells);
+    checkChiSquare(openpbrSuite(), random, chiSquareSamples() / 2, cells);
 }
 
 TEST_CASE("OpenPBR: the density integrates to one, with the share of rejected samples") {
-    for (const BsdfUnderTest& b : suite())
+    for (const BsdfUnderTest& b : openpbrSuite())
         for (const Vec3 wo : aroundTheSphere()) {
             const double missing = missingDensity(b, wo, 60000, cells);
             CHECK_MESSAGE(missing < 3e-3, b.name, " wo.z ", wo.z, ": ", missing);
@@ -94,7 +94,7 @@ TEST_CASE("OpenPBR: the density integrates to one, with the share of rejected sa
 
 // The value is what the samples average to: ∫ f cos, by quadrature and by sampling.
 TEST_CASE("OpenPBR: sample() and eval() tell of the same light") {
-    for (const BsdfUnderTest& b : suite())
+    for (const BsdfUnderTest& b : openpbrSuite())
         for (const Vec3 wo : aroundTheSphere()) {
             double integral = 0;
             for (const bool upper : {true, false})
@@ -111,7 +111,7 @@ TEST_CASE("OpenPBR: sample() and eval() tell of the same light") {
 
 TEST_CASE("OpenPBR: samples carry eval's weight and density, and lobes() names them") {
     Random random(12);
-    for (const BsdfUnderTest& b : suite())
+    for (const BsdfUnderTest& b : openpbrSuite())
         for (const Vec3 wo : aroundTheSphere()) {
             double worst = 0;
             bool labels = true;

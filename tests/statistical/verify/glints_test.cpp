@@ -11,7 +11,7 @@ namespace {
 constexpr int kReplicates = 16;
 
 // `samples`: of each replicate.
-SummedPicture render(const TestScene& test, bool probed, std::uint32_t samples) {
+SummedPicture renderProbed(const TestScene& test, bool probed, std::uint32_t samples) {
     RenderSettings settings = test.settings();
     settings.samples = (nightly() ? 8 : 1) * samples * kReplicates;
     settings.technique.lightPaths = probed ? Technique::LightPaths::automatic : Technique::LightPaths::off;
@@ -22,7 +22,7 @@ SummedPicture render(const TestScene& test, bool probed, std::uint32_t samples) 
 
 // `error`: what the standard error of the whole picture's difference must be less than.
 void agree(const std::string& name, const TestScene& scene, double error) {
-    const SummedPicture expected = render(scene, false, 512), found = render(scene, true, 64);
+    const SummedPicture expected = renderProbed(scene, false, 512), found = renderProbed(scene, true, 64);
     const Agreement a = compare(expected.sums, found.sums, 2e-3);
     const GlintFindings& glints = found.statistics.lightPlan.glints;
     MESSAGE(agreementText(name, a) << fmt::format("; {} glints, {:.3g} rays", glints.found, glints.rays));
@@ -76,7 +76,7 @@ TEST_CASE("glints: fog on the way") {
 
 TEST_CASE("glints: a filter with negative parts has none") {
     const TestScene scene = inlineScene(kSun, kGlass, "", "filter mitchell");
-    CHECK(render(scene, true, 1).statistics.lightPlan.glints.found == 0);
+    CHECK(renderProbed(scene, true, 1).statistics.lightPlan.glints.found == 0);
 }
 
 } // namespace abbe::test

@@ -11,7 +11,7 @@
 namespace abbe::test {
 namespace {
 
-constexpr int kReplicates = 32, kWidth = 32, kHeight = 24;
+constexpr int kLoopReplicates = 32, kWidth = 32, kHeight = 24;
 constexpr EffectBits kBits = kTracedFullKernel.bits();
 
 PixelFilter box() { return {FilterShape::box, 0.5}; }
@@ -33,14 +33,15 @@ class TwoWays {
     Parts run(std::uint32_t samples) {
         context_.settings.seed = 11;
         const auto light = traceLight(samples * plan_.paths);
-        PixelFilm camera({0, 0, kWidth, kHeight}, box(), kReplicates);
+        PixelFilm camera({0, 0, kWidth, kHeight}, box(), kLoopReplicates);
         const RouletteReference roulette = RouletteReference::constant(1);
         renderTile<kBits>(context_, camera, {{0, 0, kWidth, kHeight}, 0, samples, &roulette});
-        PixelFilm both({0, 0, kWidth, kHeight}, box(), kReplicates), alone({0, 0, kWidth, kHeight}, box(), kReplicates);
+        PixelFilm both({0, 0, kWidth, kHeight}, box(), kLoopReplicates),
+            alone({0, 0, kWidth, kHeight}, box(), kLoopReplicates);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x)
-                for (int r = 0; r < kReplicates; ++r) {
-                    const Xyz s = light[static_cast<std::size_t>((y * kWidth + x) * kReplicates + r)];
+                for (int r = 0; r < kLoopReplicates; ++r) {
+                    const Xyz s = light[static_cast<std::size_t>((y * kWidth + x) * kLoopReplicates + r)];
                     alone.add(x, y, r, ExactXyz(s), 1);
                     both.add(x, y, r, ExactXyz(s + camera.mean(x, y, r, r + 1)), 1);
                 }
@@ -49,13 +50,13 @@ class TwoWays {
 
   private:
     std::vector<Xyz> traceLight(std::uint32_t paths) {
-        std::vector<Xyz> sums(static_cast<std::size_t>(kWidth * kHeight * kReplicates));
+        std::vector<Xyz> sums(static_cast<std::size_t>(kWidth * kHeight * kLoopReplicates));
         auto media = LightLoop<kBits>::makeMedia(scene_);
         PathCounters counters;
         Sampler sampler;
         Arena arena;
         TracedView view;
-        for (int r = 0; r < kReplicates; ++r) {
+        for (int r = 0; r < kLoopReplicates; ++r) {
             sampler.startPixel(combine64(77, static_cast<std::uint64_t>(r)), Technique::Numbers::sobol, true);
             for (std::uint32_t i = 0; i < paths; ++i) {
                 sampler.start(i);
@@ -70,7 +71,7 @@ class TwoWays {
                 loop.trace(*start, lambda, [&](const LensSplat& s) {
                     const int x = static_cast<int>(std::floor(s.film.x)), y = static_cast<int>(std::floor(s.film.y));
                     if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) return;
-                    Xyz& sum = sums[static_cast<std::size_t>((y * kWidth + x) * kReplicates + r)];
+                    Xyz& sum = sums[static_cast<std::size_t>((y * kWidth + x) * kLoopReplicates + r)];
                     sum += scene_.sensor(s.value, lambda) * (1.0 / paths);
                 });
             }
@@ -87,11 +88,11 @@ class TwoWays {
 
 TileSums seen(const TestScene& test, std::uint32_t samples,
               Technique::LightPaths lightPaths = Technique::LightPaths::off, LightPathFindings* plan = nullptr) {
-    PixelFilm film({0, 0, kWidth, kHeight}, box(), kReplicates);
+    PixelFilm film({0, 0, kWidth, kHeight}, box(), kLoopReplicates);
     RenderSettings settings = test.settings();
     settings.technique.lightPaths = lightPaths;
     if (lightPaths != Technique::LightPaths::off) film.keepSplats();
-    settings.samples = samples * kReplicates;
+    settings.samples = samples * kLoopReplicates;
     settings.seed = 5;
     const auto statistics = makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
     if (plan) *plan = statistics.lightPlan;
@@ -127,7 +128,7 @@ void compareBoth(const std::string& name, const std::string& text, std::uint32_t
 }
 
 // Finite: what has no end may lie before the place where light from far away starts.
-const char* const kFloor =
+const char* const kLoopFloor =
     "shape quad { points { - -6 0 6; - 6 0 6; - 6 0 -6; - -6 0 -6 }; material diffuse { reflectance 0.5 } }\n";
 
 } // namespace
@@ -135,7 +136,7 @@ const char* const kFloor =
 TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
     const std::string camera = "camera { from 0 2.2 4; look-at 0 0.2 0; fov 34 deg }\n";
     const std::string things =
-        std::string(kFloor) +
+        std::string(kLoopFloor) +
         "shape sphere { center -0.7 0.5 0; radius 0.5; material diffuse { reflectance rgb 0.7 0.3 0.2 } }\n"
         "shape sphere { center 0.7 0.5 0; radius 0.5; material conductor { index metal Au; roughness 0.5 } }\n";
     compareBoth("sphere lamp", camera + things + "light sphere { center -1 4 1; radius 0.4; radiance 10 }\n", 24, 48);
@@ -146,7 +147,7 @@ TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
 TEST_CASE("light paths: caustics of glass and of glass that disperses") {
     // The ball is seen, too, with the lamp in it.
     const std::string camera = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n";
-    const std::string floor = kFloor;
+    const std::string floor = kLoopFloor;
     const std::string lamp = "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n";
     EmissionPlan plan;
     plan.targets = {{{-0.35f, 1.8f - 2.3f, -0.3f - 3.5f}, 0.46f}}; // render space has its origin at the camera
@@ -165,7 +166,7 @@ TEST_CASE("light paths: parts of a target, and fewer after light is spread") {
     plan.aim = {1};
     plan.parts.resize(1);
     for (int i = 0; i < 64; ++i) plan.parts[0].push_back(i % 8 < 3 || i / 8 == 4 ? 4 : 0.5);
-    const std::string scene = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+    const std::string scene = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kLoopFloor) +
                               "shape sphere { center -0.35 1.8 -0.3; radius 0.45; material dielectric { ior 1.5 } }\n"
                               "shape sphere { center 0.7 0.5 0; radius 0.5; material diffuse { reflectance 0.7 } }\n";
     compareBoth("lamp, parts", scene + "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n", 24, 200, plan, 1,
@@ -176,7 +177,7 @@ TEST_CASE("light paths: parts of a target, and fewer after light is spread") {
 
 TEST_CASE("light paths: fog") {
     compareBoth("fog",
-                "camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+                "camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kLoopFloor) +
                     "light sphere { center -1 4 1; radius 0.4; radiance 20 }\n"
                     "shape sphere { center 0 1 0; radius 0.9; material boundary\n"
                     "    interior homogeneous { extinction table 400 2.2 700 0.8 per-m; albedo 0.9; phase "
@@ -189,7 +190,7 @@ TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampl
     const auto sceneOf = [](const std::string& view, const std::string& ior, const std::string& lamp) {
         return TestScene::parse("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n"
                                 "camera { from 0 2.3 3.5; " +
-                                view + " }\n" + kFloor +
+                                view + " }\n" + kLoopFloor +
                                 "shape ball sphere { center -0.35 0.9 -0.3; radius 0.45; material dielectric { ior " +
                                 ior +
                                 " } }\n"

@@ -10,17 +10,17 @@ namespace abbe::test {
 namespace {
 
 using Ways = Technique::LightPaths;
-constexpr int kReplicates = 32;
+constexpr int kLightPathReplicates = 32;
 
 using Picture = SummedPicture;
 
 // `samples`: of each replicate.
-Picture render(const TestScene& test, Ways ways, std::uint32_t samples) {
+Picture renderWays(const TestScene& test, Ways ways, std::uint32_t samples) {
     RenderSettings settings = test.settings();
-    settings.samples = samples * kReplicates;
+    settings.samples = samples * kLightPathReplicates;
     settings.technique.lightPaths = ways;
     settings.seed = 3 + static_cast<std::uint64_t>(ways);
-    return renderSummed(test, settings, kReplicates);
+    return renderSummed(test, settings, kLightPathReplicates);
 }
 
 // `error`: what the standard error of the whole picture's difference must be less than, and `unjudged` the share of
@@ -44,8 +44,8 @@ void agree(const std::string& name, const Picture& expected, const Picture& foun
 void compareWays(const std::string& name, const TestScene& test, std::uint32_t samples, double error) {
     const std::uint32_t n = nightly() ? 8 * samples : samples;
     if (nightly()) error /= 2;
-    const Picture off = render(test, Ways::off, 2 * n), both = render(test, Ways::always, n),
-                  alone = render(test, Ways::alone, n);
+    const Picture off = renderWays(test, Ways::off, 2 * n), both = renderWays(test, Ways::always, n),
+                  alone = renderWays(test, Ways::alone, n);
     CHECK(off.statistics.lightPaths == 0);
     agree(name + ", both for camera paths", off, both, error);
     // By themselves light paths find badly what shines in rough metal.
@@ -53,7 +53,7 @@ void compareWays(const std::string& name, const TestScene& test, std::uint32_t s
     agree(name + ", light paths for both", both, alone, 4 * error, 0.5);
 }
 
-TestScene inlineScene(const std::string& text) {
+TestScene lightPathScene(const std::string& text) {
     return TestScene::parse("scene 1\nfilm { size 32 24 }\nrender { max-depth 12 }\n" + text);
 }
 
@@ -64,43 +64,43 @@ const char* const kFloor =
 
 TEST_CASE("light paths: a glass ball through a thin lens") {
     compareWays("ball",
-                inlineScene("camera { from 0 2.3 3.5; look-at 0 0.4 0; fov 34 deg; aperture 250 mm; focus 3.2 }\n" +
-                            std::string(kFloor) +
-                            "shape sphere { center -0.2 1.1 -0.3; radius 0.5; material dielectric { ior 1.5 } }\n"
-                            "light sphere { center -1.5 5 -1; radius 0.7; radiance 10 }\n"),
+                lightPathScene("camera { from 0 2.3 3.5; look-at 0 0.4 0; fov 34 deg; aperture 250 mm; focus 3.2 }\n" +
+                               std::string(kFloor) +
+                               "shape sphere { center -0.2 1.1 -0.3; radius 0.5; material dielectric { ior 1.5 } }\n"
+                               "light sphere { center -1.5 5 -1; radius 0.7; radiance 10 }\n"),
                 64, 0.004); // with fewer a single spark is most of the variance
 }
 
 TEST_CASE("light paths: a gold ring") {
     compareWays("ring",
-                inlineScene("camera { from 0 2.6 2.4; look-at 0 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
-                            "shape subdivision \"scenes/gold-ring/ring.obj\" { dicing 2\n"
-                            "    material conductor { index metal Au; roughness 0.3 }; transform { scale 0.08 } }\n"
-                            "light sphere { center -2 3 -3; radius 0.8; radiance 10 }\n"),
+                lightPathScene("camera { from 0 2.6 2.4; look-at 0 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
+                               "shape subdivision \"scenes/gold-ring/ring.obj\" { dicing 2\n"
+                               "    material conductor { index metal Au; roughness 0.3 }; transform { scale 0.08 } }\n"
+                               "light sphere { center -2 3 -3; radius 0.8; radiance 10 }\n"),
                 32, 0.004);
 }
 
 TEST_CASE("light paths: a prism that disperses") {
     compareWays("prism",
-                inlineScene("camera { from 0.4 1.6 2.6; look-at 0.2 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
-                            "shape mesh { material dielectric { ior glass SF11 }\n"
-                            "    points { - -0.5 -0.2887 -0.7; - 0.5 -0.2887 -0.7; - 0 0.5774 -0.7\n"
-                            "             - -0.5 -0.2887 0.7; - 0.5 -0.2887 0.7; - 0 0.5774 0.7 }\n"
-                            "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 }\n"
-                            "    transform { rotate z -3.17 deg; translate -0.5 0.6 0 } }\n"
-                            "light sphere { center -4 1.2 0; radius 0.8; radiance 10 }\n"),
+                lightPathScene("camera { from 0.4 1.6 2.6; look-at 0.2 0.1 0; fov 40 deg }\n" + std::string(kFloor) +
+                               "shape mesh { material dielectric { ior glass SF11 }\n"
+                               "    points { - -0.5 -0.2887 -0.7; - 0.5 -0.2887 -0.7; - 0 0.5774 -0.7\n"
+                               "             - -0.5 -0.2887 0.7; - 0.5 -0.2887 0.7; - 0 0.5774 0.7 }\n"
+                               "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 }\n"
+                               "    transform { rotate z -3.17 deg; translate -0.5 0.6 0 } }\n"
+                               "light sphere { center -4 1.2 0; radius 0.8; radiance 10 }\n"),
                 128, 0.012);
 }
 
 TEST_CASE("light paths: a glass ball in fog") {
     compareWays(
         "fog",
-        inlineScene("camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
-                    "light sphere { center -1 3.4 0.6; radius 0.5; radiance 20 }\n"
-                    "shape sphere { center -0.1 1.1 0; radius 0.35; material dielectric { ior 1.5; priority 2 } }\n"
-                    "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
-                    "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
-                    "henyey-greenstein 0.4 } }\n"),
+        lightPathScene("camera { from 0 1 4; look-at 0 0.8 0; fov 34 deg }\n" + std::string(kFloor) +
+                       "light sphere { center -1 3.4 0.6; radius 0.5; radiance 20 }\n"
+                       "shape sphere { center -0.1 1.1 0; radius 0.35; material dielectric { ior 1.5; priority 2 } }\n"
+                       "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
+                       "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
+                       "henyey-greenstein 0.4 } }\n"),
         32, 0.004);
 }
 
@@ -108,25 +108,25 @@ TEST_CASE("light paths: a glass ball in fog") {
 // alone may have come that way.
 TEST_CASE("light paths: a lamp in the haze behind a prism") {
     compareWays("haze",
-                inlineScene("camera { from 0.4 1.2 3; look-at 0 0.7 0; fov 40 deg }\n" + std::string(kFloor) +
-                            "light spot { position -1.9 1 0.2; look-at 1 0.7 0; angle 50 deg; inner-angle 30 deg; "
-                            "intensity 100 cd }\n"
-                            "light sphere { center -0.3 1.7 -0.6; radius 0.2; radiance 8 }\n"
-                            "shape mesh { material dielectric { ior glass SF11; priority 2 }\n"
-                            "    points { - -0.4 0.4 -0.5; - 0.4 0.4 -0.5; - 0 1.0928 -0.5\n"
-                            "             - -0.4 0.4 0.5; - 0.4 0.4 0.5; - 0 1.0928 0.5 }\n"
-                            "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 } }\n"
-                            "shape quad { points 1.3 0 -1.2  1.3 0 1.2  1.3 2 1.2  1.3 2 -1.2; material diffuse }\n"
-                            "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
-                            "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
-                            "henyey-greenstein 0.4 } }\n"),
+                lightPathScene("camera { from 0.4 1.2 3; look-at 0 0.7 0; fov 40 deg }\n" + std::string(kFloor) +
+                               "light spot { position -1.9 1 0.2; look-at 1 0.7 0; angle 50 deg; inner-angle 30 deg; "
+                               "intensity 100 cd }\n"
+                               "light sphere { center -0.3 1.7 -0.6; radius 0.2; radiance 8 }\n"
+                               "shape mesh { material dielectric { ior glass SF11; priority 2 }\n"
+                               "    points { - -0.4 0.4 -0.5; - 0.4 0.4 -0.5; - 0 1.0928 -0.5\n"
+                               "             - -0.4 0.4 0.5; - 0.4 0.4 0.5; - 0 1.0928 0.5 }\n"
+                               "    faces { - 0 2 1; - 3 4 5; - 0 1 4 3; - 1 2 5 4; - 2 0 3 5 } }\n"
+                               "shape quad { points 1.3 0 -1.2  1.3 0 1.2  1.3 2 1.2  1.3 2 -1.2; material diffuse }\n"
+                               "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
+                               "    interior homogeneous { extinction table 400 0.7 700 0.4 per-m; albedo 0.95; phase "
+                               "henyey-greenstein 0.4 } }\n"),
                 64, 0.006);
 }
 
 TEST_CASE("light paths: rough glass and rough metal all around the camera") {
     compareWays(
         "rough",
-        inlineScene(
+        lightPathScene(
             "camera spherical { from 0 0.8 0; look-at 0 0.3 -1; width 240 deg; height 120 deg }\n" +
             std::string(kFloor) +
             "shape sphere { center -0.9 0.9 -0.9; radius 0.45; material dielectric { ior 1.5; roughness 0.3 } }\n"
@@ -144,8 +144,8 @@ TEST_CASE("light paths: an array of lenses") {
         for (const double z : {-0.3, 0.0, 0.3})
             lenses += fmt::format("instance lens {{ transform {{ translate {} 0.5 {} }} }}\n", x, z);
     compareWays("lenses",
-                inlineScene("camera { from 0.4 1.8 1.8; look-at 0 0.2 0; fov 40 deg }\n" + std::string(kFloor) +
-                            lenses + "light sphere { center -0.8 3.5 -0.4; radius 0.6; radiance 10 }\n"),
+                lightPathScene("camera { from 0.4 1.8 1.8; look-at 0 0.2 0; fov 40 deg }\n" + std::string(kFloor) +
+                               lenses + "light sphere { center -0.8 3.5 -0.4; radius 0.6; radiance 10 }\n"),
                 24, 0.03);
 }
 

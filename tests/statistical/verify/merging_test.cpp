@@ -9,23 +9,23 @@
 namespace abbe::test {
 namespace {
 
-constexpr int kReplicates = 16;
+constexpr int kMergingReplicates = 16;
 
 using Picture = SummedPicture;
 
 // `samples`: of each replicate.
-Picture render(const TestScene& test, bool merging, std::uint32_t samples,
-               Technique::LightPaths lightPaths = Technique::LightPaths::automatic) {
+Picture renderMerged(const TestScene& test, bool merging, std::uint32_t samples,
+                     Technique::LightPaths lightPaths = Technique::LightPaths::automatic) {
     RenderSettings settings = test.settings();
-    settings.samples = (nightly() ? 8 : 1) * samples * kReplicates;
+    settings.samples = (nightly() ? 8 : 1) * samples * kMergingReplicates;
     settings.technique.lightPaths = merging ? lightPaths : Technique::LightPaths::off;
     settings.technique.merging = merging ? Technique::Merging::always : Technique::Merging::off;
     settings.seed = merging ? 5 : 7;
-    return renderSummed(test, settings, kReplicates);
+    return renderSummed(test, settings, kMergingReplicates);
 }
 
 // `error`: what the standard error of the whole picture's difference must be less than.
-void agree(const std::string& name, const Picture& expected, const Picture& found, double error) {
+void mergedAgree(const std::string& name, const Picture& expected, const Picture& found, double error) {
     const Agreement a = compare(expected.sums, found.sums, 2e-3);
     const std::string text = agreementText(name, a) +
                              fmt::format("; {} rounds, {} splats", found.statistics.rounds, found.statistics.splats);
@@ -67,19 +67,19 @@ const char* const kBallUnderLamp = "shape sphere { center 0 0.9 -1; radius 0.5; 
 
 TEST_CASE("merging: a lamp within four balls of glass, in a mirror") {
     const TestScene scene = inlineScene(shells("ior 1.3"));
-    agree("shells", render(scene, false, 256), render(scene, true, 64), 0.02);
+    mergedAgree("shells", renderMerged(scene, false, 256), renderMerged(scene, true, 64), 0.02);
 }
 
 TEST_CASE("merging: glass that disperses") {
     const TestScene scene = inlineScene(shells("ior glass SF11"));
-    agree("SF11", render(scene, false, 256), render(scene, true, 64), 0.03);
+    mergedAgree("SF11", renderMerged(scene, false, 256), renderMerged(scene, true, 64), 0.03);
 }
 
 TEST_CASE("merging: beside manifold sampling, which has some of the light") {
     const TestScene scene = inlineScene(kBallUnderLamp);
-    const Picture found = render(scene, true, 64, Technique::LightPaths::always);
+    const Picture found = renderMerged(scene, true, 64, Technique::LightPaths::always);
     CHECK(found.statistics.lightPlan.manifold.used);
-    agree("ball", render(scene, false, 256), found, 0.02);
+    mergedAgree("ball", renderMerged(scene, false, 256), found, 0.02);
 }
 
 TEST_CASE("merging: fog and absorbing glass") {
@@ -89,7 +89,7 @@ TEST_CASE("merging: fog and absorbing glass") {
         "shape box { min -1.5 0.1 -2; max 1.5 2 0; material boundary\n"
         "    interior homogeneous { extinction table 400 0.3 700 0.2 per-m; albedo 0.9 } }\n"
         "light sphere { center 0.2 3.4 -0.6; radius 0.7; radiance 10 }\n");
-    agree("fog", render(scene, false, 256), render(scene, true, 128), 0.02);
+    mergedAgree("fog", renderMerged(scene, false, 256), renderMerged(scene, true, 128), 0.02);
 }
 
 // Nothing but haze shows the lamp's light, which comes over four faces.
@@ -102,7 +102,7 @@ TEST_CASE("merging: in haze, in a mirror") {
         "shape box { min -2 -0.5 -1.5; max 2 2.5 2; material boundary\n"
         "    interior homogeneous { extinction table 400 0.5 700 0.3 per-m; albedo 0.9; phase henyey-greenstein 0.5 } "
         "}\n");
-    agree("haze", render(scene, false, 256), render(scene, true, 64), 0.02);
+    mergedAgree("haze", renderMerged(scene, false, 256), renderMerged(scene, true, 64), 0.02);
 }
 
 } // namespace abbe::test

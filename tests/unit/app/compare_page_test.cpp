@@ -27,7 +27,7 @@ std::string pageOf(const ComparePage& page) {
     return text;
 }
 
-bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+bool pageContains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 } // namespace
 
@@ -41,16 +41,16 @@ TEST_CASE("a page holds the very numbers of the images and lets no text through 
     page.figures = {{"relMSE", {"<1>"}}};
     page.verdict = "<i>";
     const std::string text = pageOf(page);
-    CHECK(contains(text, "<title>&lt;a&gt; &amp; &quot;b&quot;</title>"));
-    CHECK_FALSE(contains(text, "<img>"));
-    CHECK_FALSE(contains(text, "<i>"));
-    CHECK_FALSE(contains(text, "<1>"));
-    CHECK(contains(text, "\\u003c/script>\\u003cimg>"));
-    CHECK(contains(text, "id=\"image0\" type=\"application/octet-stream\">AACAPwAAAEAAAAA/<")); // 1, 2, 0.5
-    CHECK(contains(text, "id=\"image1\" type=\"application/octet-stream\">AAAAgGBCog0AAEBA<")); // −0, 1e−30, 3
-    CHECK(contains(text, "id=\"map0\" type=\"application/octet-stream\">gA==<"));               // 128
-    CHECK(contains(text, "\"width\":1,\"height\":1,\"x0\":5,\"y0\":7,\"block\":1"));
-    for (const char* mark : {"@TITLE@", "@FACTS@", "@DATA@", "http:", "https:"}) CHECK_FALSE(contains(text, mark));
+    CHECK(pageContains(text, "<title>&lt;a&gt; &amp; &quot;b&quot;</title>"));
+    CHECK_FALSE(pageContains(text, "<img>"));
+    CHECK_FALSE(pageContains(text, "<i>"));
+    CHECK_FALSE(pageContains(text, "<1>"));
+    CHECK(pageContains(text, "\\u003c/script>\\u003cimg>"));
+    CHECK(pageContains(text, "id=\"image0\" type=\"application/octet-stream\">AACAPwAAAEAAAAA/<")); // 1, 2, 0.5
+    CHECK(pageContains(text, "id=\"image1\" type=\"application/octet-stream\">AAAAgGBCog0AAEBA<")); // −0, 1e−30, 3
+    CHECK(pageContains(text, "id=\"map0\" type=\"application/octet-stream\">gA==<"));               // 128
+    CHECK(pageContains(text, "\"width\":1,\"height\":1,\"x0\":5,\"y0\":7,\"block\":1"));
+    for (const char* mark : {"@TITLE@", "@FACTS@", "@DATA@", "http:", "https:"}) CHECK_FALSE(pageContains(text, mark));
 }
 
 TEST_CASE("images that are too large for a page are shown as means of blocks") {
@@ -63,9 +63,9 @@ TEST_CASE("images that are too large for a page are shown as means of blocks") {
     ComparePage page;
     page.images = {{"a", "a", 'A', &a}, {"b", "b", 'B', &a}};
     const std::string text = pageOf(page);
-    CHECK(contains(text, "\"width\":725,\"height\":725"));
-    CHECK(contains(text, "means of 2×2 pixels"));
-    CHECK(contains(text, "id=\"image0\" type=\"application/octet-stream\">AAAAQAAAAEAAAAA/AACAPwAAAEAAAAA/"));
+    CHECK(pageContains(text, "\"width\":725,\"height\":725"));
+    CHECK(pageContains(text, "means of 2×2 pixels"));
+    CHECK(pageContains(text, "id=\"image0\" type=\"application/octet-stream\">AAAAQAAAAEAAAAA/AACAPwAAAEAAAAA/"));
 }
 
 TEST_CASE("a page that cannot be written is an error") {

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Folder {
+struct LightFolder {
     fs::path path = fs::temp_directory_path() / ("abbe_light_checkpoint_" + std::to_string(getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
+    LightFolder() { fs::create_directories(path); }
+    ~LightFolder() { fs::remove_all(path); }
     std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 
@@ -33,7 +33,7 @@ constexpr std::uint32_t kWhole = 8;
 const int kLamp = 0;
 const SceneNames kNames{{&kLamp, "lamp"}};
 
-PixelFilm makeFilm(PixelBounds bounds) {
+PixelFilm makeLightFilm(PixelBounds bounds) {
     PixelFilm film(bounds, PixelFilter(FilterShape::box, 0.5), 2);
     LayerPlan plan;
     plan.components = true;
@@ -120,7 +120,7 @@ CheckpointHeader headerOf(PixelFilm& film, std::size_t blocks, std::uint32_t fir
 
 void writePart(const std::string& path, PixelBounds bounds, std::uint32_t first, std::uint32_t last,
                std::size_t blocks = kBlocks) {
-    PixelFilm film = makeFilm(bounds);
+    PixelFilm film = makeLightFilm(bounds);
     RenderState state(bounds, first, blocks);
     Renderer(film, state).run(last);
     writeCheckpoint(path, headerOf(film, blocks, first, last), film.planes(), state);
@@ -163,19 +163,19 @@ TEST_CASE("blocks of light paths are entries without pixels behind the tiles") {
 }
 
 TEST_CASE("a render with light paths goes on from a checkpoint of any moment to the same bits") {
-    const Folder folder;
-    PixelFilm whole = makeFilm(kFrame);
+    const LightFolder folder;
+    PixelFilm whole = makeLightFilm(kFrame);
     RenderState wholeState(kFrame, 0, kBlocks);
     Renderer(whole, wholeState).run(kWhole);
     for (const unsigned seed : {1u, 2u, 3u}) {
-        PixelFilm film = makeFilm(kFrame);
+        PixelFilm film = makeLightFilm(kFrame);
         RenderState state(kFrame, 0, kBlocks);
         Renderer renderer(film, state);
         for (std::size_t i = 0; i < state.tileCount(); ++i) // as far as it came, each entry for itself
             for (std::uint64_t n = combine64(seed, i) % kWhole; n > 0; --n) renderer.advance(i);
         writeCheckpoint(folder / "a", headerOf(film, kBlocks, 0, kWhole), film.planes(), state);
 
-        PixelFilm again = makeFilm(kFrame);
+        PixelFilm again = makeLightFilm(kFrame);
         RenderState read = CheckpointReader(folder / "a").addTo(again.planes());
         CHECK(read.lightBlockCount() == kBlocks);
         CHECK(bytesOf(again) == bytesOf(film));
@@ -192,8 +192,8 @@ TEST_CASE("a render with light paths goes on from a checkpoint of any moment to 
 }
 
 TEST_CASE("parts by samples and crops of a render with light paths are the whole to the bit") {
-    const Folder folder;
-    PixelFilm whole = makeFilm(kFrame);
+    const LightFolder folder;
+    PixelFilm whole = makeLightFilm(kFrame);
     RenderState state(kFrame, 0, kBlocks);
     Renderer(whole, state).run(kWhole);
     const PixelBounds left{0, 0, 13, 20}, right{13, 0, 40, 20};
@@ -206,7 +206,7 @@ TEST_CASE("parts by samples and crops of a render with light paths are the whole
         for (std::string& name : names) name = folder / name;
         RenderParts parts(names);
         parts.check({{"seed", "7"}});
-        PixelFilm film = makeFilm(parts.bounds());
+        PixelFilm film = makeLightFilm(parts.bounds());
         const RenderStatistics statistics = parts.addTo(film.planes());
         CHECK(film.lightPaths() == kBlocks * kPaths * kWhole);
         CHECK(statistics.splats == state.tally().splats);
@@ -224,7 +224,7 @@ TEST_CASE("parts by samples and crops of a render with light paths are the whole
 }
 
 TEST_CASE("no damage to what light paths brought goes unnoticed") {
-    const Folder folder;
+    const LightFolder folder;
     const PixelBounds bounds{0, 0, 17, 1};
     const auto film = [&] {
         PixelFilm f(bounds, PixelFilter(FilterShape::box, 0.5), 2);
@@ -274,9 +274,9 @@ TEST_CASE("no damage to what light paths brought goes unnoticed") {
 }
 
 TEST_CASE("checkpoints in the background: every splat in step with the blocks, whoever adds meanwhile") {
-    const Folder folder;
+    const LightFolder folder;
     const std::string path = folder / "live";
-    PixelFilm film = makeFilm(kFrame);
+    PixelFilm film = makeLightFilm(kFrame);
     RenderState state(kFrame, 0, kBlocks);
     CheckpointHeader header = headerOf(film, kBlocks, 0, 4000000);
     header.whole = 4000000;
@@ -294,7 +294,7 @@ TEST_CASE("checkpoints in the background: every splat in step with the blocks, w
     for (int attempt = 0; read < 4 && attempt < 5000; ++attempt) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         if (!checkpoint.exists()) continue;
-        PixelFilm copy = makeFilm(kFrame), expected = makeFilm(kFrame);
+        PixelFilm copy = makeLightFilm(kFrame), expected = makeLightFilm(kFrame);
         const RenderState then = CheckpointReader(path).addTo(copy.planes());
         RenderState state2(kFrame, 0, kBlocks);
         Renderer renderer(expected, state2);

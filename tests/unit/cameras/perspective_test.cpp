@@ -8,16 +8,16 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = kPiD / 180;
+constexpr double kPerspectiveDegree = kPiD / 180;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 CameraContext context(Vec2i size) {
     return {.toWorld = {}, .zUp = false, .filmSize = size, .span = {}, .middleOf = {}};
 }
 
-schema::Location at(double distance) { return {distance, {}, {}}; }
+schema::Location focusAt(double distance) { return {distance, {}, {}}; }
 
-PlacedCamera make(const PerspectiveParams& p, Vec2i size, bool zUp = false) {
+PlacedCamera makePerspectiveCamera(const PerspectiveParams& p, Vec2i size, bool zUp = false) {
     Diagnostics diagnostics;
     CameraContext c = context(size);
     c.zUp = zUp;
@@ -27,22 +27,25 @@ PlacedCamera make(const PerspectiveParams& p, Vec2i size, bool zUp = false) {
     return std::move(*camera);
 }
 
-Ray ray(const PlacedCamera& c, Vec2 film, Vec2 lens = {0.5f, 0.5f}) { return c.camera->ray({film, lens, 0.25f}).ray; }
+Ray perspectiveRay(const PlacedCamera& c, Vec2 film, Vec2 lens = {0.5f, 0.5f}) {
+    return c.camera->ray({film, lens, 0.25f}).ray;
+}
 
 // Where a ray meets the plane at a distance along the axis, relative to the axis: x right and y up.
-Vec2d meets(const Ray& r, double distance) {
+Vec2d meetsPlane(const Ray& r, double distance) {
     const double t = (-distance - r.origin.z) / r.direction.z;
     return {r.origin.x + t * r.direction.x, r.origin.y + t * r.direction.y};
 }
 
 TEST_CASE("without any parameter: 50 mm on 36 mm, from the origin along -z") {
-    const PlacedCamera c = make({}, {360, 240});
+    const PlacedCamera c = makePerspectiveCamera({}, {360, 240});
     CHECK(c.origin == Vec3d{});
-    CHECK(length(ray(c, {180, 120}).direction - Vec3{0, 0, -1}) < 1e-6f);
-    CHECK(meets(ray(c, {360, 120}), 50).x == doctest::Approx(18).epsilon(1e-6));
-    CHECK(meets(ray(c, {180, 0}), 50).y == doctest::Approx(12).epsilon(1e-6));
-    CHECK(ray(c, {10, 10}).time == 0.25f);
-    CHECK(length(ray(make({}, {360, 240}, true), {180, 120}).direction - Vec3{0, 1, 0}) < 1e-6f);
+    CHECK(length(perspectiveRay(c, {180, 120}).direction - Vec3{0, 0, -1}) < 1e-6f);
+    CHECK(meetsPlane(perspectiveRay(c, {360, 120}), 50).x == doctest::Approx(18).epsilon(1e-6));
+    CHECK(meetsPlane(perspectiveRay(c, {180, 0}), 50).y == doctest::Approx(12).epsilon(1e-6));
+    CHECK(perspectiveRay(c, {10, 10}).time == 0.25f);
+    CHECK(length(perspectiveRay(makePerspectiveCamera({}, {360, 240}, true), {180, 120}).direction - Vec3{0, 1, 0}) <
+          1e-6f);
 }
 
 TEST_CASE("known points fall on known pixels") {
@@ -51,7 +54,7 @@ TEST_CASE("known points fall on known pixels") {
     p.lookAt = Vec3d{278, 273, 0};
     p.lens = 0.035;
     p.sensor = {0.025, 0.025};
-    const PlacedCamera c = make(p, {512, 512});
+    const PlacedCamera c = makePerspectiveCamera(p, {512, 512});
     CHECK(c.origin == Vec3d{278, 273, -800});
     // The camera looks along +z, so that +x is on the left.
     const double half = 800 * 12.5 / 35; // of what the picture spans at z = 0
@@ -59,22 +62,23 @@ TEST_CASE("known points fall on known pixels") {
         const Vec3 toPoint = normalize(Vec3(world - c.origin));
         const Vec2 film{static_cast<float>(256 - (world.x - 278) / half * 256),
                         static_cast<float>(256 - (world.y - 273) / half * 256)};
-        return length(ray(c, film).direction - toPoint);
+        return length(perspectiveRay(c, film).direction - toPoint);
     };
     for (const Vec3d world : {Vec3d{278, 273, 0}, {0, 0, 0}, {556, 0, 0}, {100, 500, 0}}) CHECK(seen(world) < 1e-6f);
-    const Vec3 left = ray(c, {0, 256}).direction, right = ray(c, {512, 256}).direction;
-    CHECK(std::acos(dot(left, right)) / kDegree == doctest::Approx(39.31).epsilon(1e-4));
+    const Vec3 left = perspectiveRay(c, {0, 256}).direction, right = perspectiveRay(c, {512, 256}).direction;
+    CHECK(std::acos(dot(left, right)) / kPerspectiveDegree == doctest::Approx(39.31).epsilon(1e-4));
 }
 
 TEST_CASE("the width is kept where the shape of the film differs, and pixels are square") {
     PerspectiveParams p;
-    p.fov = 60 * kDegree;
+    p.fov = 60 * kPerspectiveDegree;
     for (const Vec2i size : {Vec2i{300, 100}, {100, 300}, {1, 1}, {32768, 1}}) {
-        const PlacedCamera c = make(p, size);
+        const PlacedCamera c = makePerspectiveCamera(p, size);
         const float w = static_cast<float>(size.x), h = static_cast<float>(size.y);
-        const Vec2d corner = meets(ray(c, {0, 0}), 1), middle = meets(ray(c, {w / 2, h / 2}), 1);
-        CHECK(corner.x == doctest::Approx(-std::tan(30 * kDegree)).epsilon(1e-6));
-        CHECK(corner.y == doctest::Approx(std::tan(30 * kDegree) * size.y / size.x).epsilon(1e-5));
+        const Vec2d corner = meetsPlane(perspectiveRay(c, {0, 0}), 1),
+                    middle = meetsPlane(perspectiveRay(c, {w / 2, h / 2}), 1);
+        CHECK(corner.x == doctest::Approx(-std::tan(30 * kPerspectiveDegree)).epsilon(1e-6));
+        CHECK(corner.y == doctest::Approx(std::tan(30 * kPerspectiveDegree) * size.y / size.x).epsilon(1e-5));
         CHECK(std::abs(middle.x) + std::abs(middle.y) < 1e-6);
     }
 }
@@ -84,36 +88,36 @@ TEST_CASE("up is up, and right is right") {
     p.from = Vec3d{0, 0, 5};
     p.lookAt = Vec3d{5, 0, 5}; // east
     p.up = Vec3d{0.3, 2, 0};
-    const PlacedCamera c = make(p, {100, 100});
-    CHECK(ray(c, {50, 0}).direction.y > 0);
-    CHECK(ray(c, {100, 50}).direction.z > 0); // south is right of east
+    const PlacedCamera c = makePerspectiveCamera(p, {100, 100});
+    CHECK(perspectiveRay(c, {50, 0}).direction.y > 0);
+    CHECK(perspectiveRay(c, {100, 50}).direction.z > 0); // south is right of east
     PerspectiveParams turned;
     turned.transform = Transform::rotate({0, 1, 0}, -kPiD / 2).then(Transform::translate({0, 0, 5}));
-    const PlacedCamera same = make(turned, {100, 100});
+    const PlacedCamera same = makePerspectiveCamera(turned, {100, 100});
     CHECK(length(same.origin - c.origin) < 1e-12);
-    CHECK(length(ray(same, {13, 77}).direction - ray(c, {13, 77}).direction) < 1e-6f);
+    CHECK(length(perspectiveRay(same, {13, 77}).direction - perspectiveRay(c, {13, 77}).direction) < 1e-6f);
 }
 
 TEST_CASE("all rays of a film point meet in the sharp plane, and only there") {
     PerspectiveParams p;
     p.lens = 0.05;
     p.fStop = 2;
-    p.focus = at(3);
-    const PlacedCamera c = make(p, {360, 240});
+    p.focus = focusAt(3);
+    const PlacedCamera c = makePerspectiveCamera(p, {360, 240});
     test::Random random(1);
     const Vec2 film{70, 200};
-    const Vec2d sharp = meets(ray(c, film), 3);
+    const Vec2d sharp = meetsPlane(perspectiveRay(c, film), 3);
     CHECK(sharp.x == doctest::Approx(3 / 0.05 * 0.036 * (70.0 / 360 - 0.5)).epsilon(1e-5));
     double widest = 0;
     for (int i = 0; i < 1000; ++i) {
-        const Ray r = ray(c, film, {random.uniform(), random.uniform()});
-        const Vec2d at = meets(r, 3);
-        CHECK(std::hypot(at.x - sharp.x, at.y - sharp.y) < 2e-6);
+        const Ray r = perspectiveRay(c, film, {random.uniform(), random.uniform()});
+        const Vec2d focusAt = meetsPlane(r, 3);
+        CHECK(std::hypot(focusAt.x - sharp.x, focusAt.y - sharp.y) < 2e-6);
         const double off = std::hypot(r.origin.x, r.origin.y);
         CHECK(off < 0.0125001); // 50 mm / 2 / 2
         widest = std::max(widest, off);
         // Twice as far the circle of confusion is as large as the lens.
-        CHECK(std::hypot(meets(r, 6).x - 2 * sharp.x, meets(r, 6).y - 2 * sharp.y) ==
+        CHECK(std::hypot(meetsPlane(r, 6).x - 2 * sharp.x, meetsPlane(r, 6).y - 2 * sharp.y) ==
               doctest::Approx(off).epsilon(1e-3));
     }
     CHECK(widest > 0.0124);
@@ -124,13 +128,14 @@ TEST_CASE("the aperture by its diameter or by its f-number; the focus on the poi
     p.from = Vec3d{0, 0, 4};
     p.lookAt = Vec3d{0, 0, 0};
     p.aperture = 0.025;
-    const PlacedCamera c = make(p, {100, 100});
-    CHECK(length(ray(c, {50, 50}, {1, 0.5f}).origin) == doctest::Approx(0.0125).epsilon(1e-5));
-    CHECK(std::abs(meets(ray(c, {50, 50}, {1, 0.5f}), 4).x) < 1e-6);
+    const PlacedCamera c = makePerspectiveCamera(p, {100, 100});
+    CHECK(length(perspectiveRay(c, {50, 50}, {1, 0.5f}).origin) == doctest::Approx(0.0125).epsilon(1e-5));
+    CHECK(std::abs(meetsPlane(perspectiveRay(c, {50, 50}, {1, 0.5f}), 4).x) < 1e-6);
     p.aperture.reset();
     p.fStop = 2;
     p.fov = 2 * std::atan(0.36);
-    CHECK(length(ray(make(p, {100, 100}), {50, 50}, {1, 0.5f}).origin) == doctest::Approx(0.0125).epsilon(1e-5));
+    CHECK(length(perspectiveRay(makePerspectiveCamera(p, {100, 100}), {50, 50}, {1, 0.5f}).origin) ==
+          doctest::Approx(0.0125).epsilon(1e-5));
 }
 
 // Hard case 79.
@@ -144,12 +149,12 @@ TEST_CASE("the ends of all ranges give finite unit directions") {
             for (const double aperture : ends("aperture")) {
                 PerspectiveParams p;
                 p.fov = fov;
-                p.focus = at(focus);
+                p.focus = focusAt(focus);
                 p.aperture = aperture;
-                const PlacedCamera c = make(p, {64, 32});
+                const PlacedCamera c = makePerspectiveCamera(p, {64, 32});
                 for (const Vec2 film : {Vec2{0, 0}, {64, 32}, {31.5f, 0.5f}})
                     for (const Vec2 lens : {Vec2{0, 0}, {0.5f, 0.5f}, {kOneMinusEpsilon, kOneMinusEpsilon}}) {
-                        const Ray r = ray(c, film, lens);
+                        const Ray r = perspectiveRay(c, film, lens);
                         CHECK(isFinite(r.origin));
                         CHECK(length(r.direction) == doctest::Approx(1).epsilon(1e-5));
                     }
@@ -161,20 +166,21 @@ TEST_CASE("the ends of all ranges give finite unit directions") {
                 p.lens = lens;
                 p.fStop = stop;
                 p.sensor = {sensor, sensor};
-                CHECK(length(ray(make(p, {64, 32}), {0, 0}, {0, 0}).direction) == doctest::Approx(1).epsilon(1e-5));
+                CHECK(length(perspectiveRay(makePerspectiveCamera(p, {64, 32}), {0, 0}, {0, 0}).direction) ==
+                      doctest::Approx(1).epsilon(1e-5));
             }
 }
 
 TEST_CASE("a focus at infinity gives parallel rays, an f-number of infinity a pinhole") {
     PerspectiveParams p;
     p.aperture = 0.1;
-    p.focus = at(kInfinite);
-    const PlacedCamera c = make(p, {100, 100});
-    CHECK(length(ray(c, {20, 30}, {0.1f, 0.9f}).direction - ray(c, {20, 30}).direction) < 1e-7f);
-    CHECK(length(ray(c, {20, 30}, {0.1f, 0.9f}).origin) > 0.01f);
+    p.focus = focusAt(kInfinite);
+    const PlacedCamera c = makePerspectiveCamera(p, {100, 100});
+    CHECK(length(perspectiveRay(c, {20, 30}, {0.1f, 0.9f}).direction - perspectiveRay(c, {20, 30}).direction) < 1e-7f);
+    CHECK(length(perspectiveRay(c, {20, 30}, {0.1f, 0.9f}).origin) > 0.01f);
     PerspectiveParams pinhole;
     pinhole.fStop = kInfinite;
-    CHECK(ray(make(pinhole, {100, 100}), {20, 30}, {0.1f, 0.9f}).origin == Vec3{});
+    CHECK(perspectiveRay(makePerspectiveCamera(pinhole, {100, 100}), {20, 30}, {0.1f, 0.9f}).origin == Vec3{});
 }
 
 TEST_CASE("impossible placements are reported") {
@@ -202,9 +208,9 @@ TEST_CASE("a camera far from the origin has the same rays") {
     p.lookAt = Vec3d{1, 2, -3};
     q.from = Vec3d{1e6, -2e6, 3e6};
     q.lookAt = *q.from + *p.lookAt;
-    const PlacedCamera a = make(p, {100, 100}), b = make(q, {100, 100});
+    const PlacedCamera a = makePerspectiveCamera(p, {100, 100}), b = makePerspectiveCamera(q, {100, 100});
     CHECK(b.origin == *q.from);
-    CHECK(length(ray(a, {3, 4}).direction - ray(b, {3, 4}).direction) < 1e-6f);
+    CHECK(length(perspectiveRay(a, {3, 4}).direction - perspectiveRay(b, {3, 4}).direction) < 1e-6f);
 }
 
 } // namespace

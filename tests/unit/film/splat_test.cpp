@@ -16,11 +16,11 @@ namespace {
 
 PixelFilter box() { return {FilterShape::box, 0.5}; }
 
-const Spectrum kDark(0.f);
-const Wavelengths kGreen = Wavelengths::single(555);
+const Spectrum kNoSplat(0.f);
+const Wavelengths kSplatGreen = Wavelengths::single(555);
 
 Splat splatOf(const Xyz& value, const void* light = nullptr, PathComponent component = PathComponent::caustic) {
-    return {value, kDark, kGreen, 1, light, component};
+    return {value, kNoSplat, kSplatGreen, 1, light, component};
 }
 
 std::vector<std::byte> bytesOf(PixelFilm& film) {

@@ -108,7 +108,7 @@ BruteHit bruteCones(const std::vector<SizedPoint>& p, Vec3d o, Vec3d d) {
     return best;
 }
 
-std::unique_ptr<Intersector> intersectorOf(const Shape& shape) {
+std::unique_ptr<Intersector> strandIntersector(const Shape& shape) {
     EmbreeSceneBuilder builder;
     builder.addShape(shape, {});
     return builder.build();
@@ -164,7 +164,7 @@ TEST_CASE("curves: tubes are met where circles at right angles to the curve swee
                 segments.emplace_back(basis, &data.points[i]);
             const std::vector<SizedPoint> points = data.points;
             const Curves curves(std::move(data));
-            const auto scene = intersectorOf(curves);
+            const auto scene = strandIntersector(curves);
             for (int i = 0; i < 200; ++i) {
                 const Vec3 target(segments[std::size_t(i) % segments.size()].position(random.uniform()));
                 const Vec3 o = target + direction(random) * 3;
@@ -219,7 +219,7 @@ TEST_CASE("curves: linear tubes are spheres swept along their segments") {
         if (strand % 4 == 3) data.points[2].radius = 0.2f; // a bulge
         const std::vector<SizedPoint> points = data.points;
         const Curves curves(std::move(data));
-        const auto scene = intersectorOf(curves);
+        const auto scene = strandIntersector(curves);
         for (int i = 0; i < 200; ++i) {
             const std::size_t k = std::size_t(i) % 3;
             const Vec3 target =
@@ -254,7 +254,7 @@ TEST_CASE("curves: ribbons turn to the ray and are as wide as they say") {
         CurveData data{basis, CurveForm::flat, {}, {4}};
         for (int i = 0; i < 4; ++i) data.points.push_back({{static_cast<float>(i), 0, 0}, 0.1f});
         const Curves curves(std::move(data));
-        const auto scene = intersectorOf(curves);
+        const auto scene = strandIntersector(curves);
         Random random(7);
         for (int i = 0; i < 1000; ++i) {
             const float x = 1.3f + 0.4f * float(random.uniform()), angle = 6.28f * float(random.uniform());
@@ -296,7 +296,7 @@ TEST_CASE("curves: no ray that leaves a straight tube meets it again") {
                     for (int i = 0; i < 4; ++i)
                         data.points.push_back({start + axis * (scale * static_cast<float>(i)), width * scale});
                     const Curves curves(std::move(data));
-                    const auto scene = intersectorOf(curves);
+                    const auto scene = strandIntersector(curves);
                     int leaving = 0, again = 0;
                     for (int i = 0; i < 20000; ++i) {
                         const Vec3 target = start + axis * (scale * (1.1f + 0.8f * float(random.uniform())));
@@ -323,7 +323,7 @@ TEST_CASE("curves: tubes seen from inside are met where the ray leaves") {
         CurveData data{basis, CurveForm::round, {}, {4}};
         for (int i = 0; i < 4; ++i) data.points.push_back({{static_cast<float>(i), 0, 0}, 0.1f});
         const Curves curves(std::move(data));
-        const auto scene = intersectorOf(curves);
+        const auto scene = strandIntersector(curves);
         SurfaceHit hit;
         REQUIRE(scene->intersect({{1.5f, 0, 0}, {0, 1, 0}}, hit));
         CHECK(hit.distance == doctest::Approx(0.1).epsilon(1e-4));
@@ -358,7 +358,7 @@ TEST_CASE("curves: a hairball with one bad strand in a hundred gives nothing but
             CHECK(curves.omittedSegments() >= 20 * 4 * 2);
             CHECK(curves.segmentCount() + curves.omittedSegments() == 2000 * 4);
             CHECK(std::isfinite(curves.area()));
-            const auto scene = intersectorOf(curves);
+            const auto scene = strandIntersector(curves);
             int met = 0, unsound = 0;
             for (int i = 0; i < 20000; ++i) {
                 SurfaceHit hit;
@@ -387,7 +387,7 @@ TEST_CASE("curves: instances mirror, turn and stretch tubes as they would their 
                 const Curves baked(moved);
                 EmbreeSceneBuilder builder;
                 builder.addInstance(builder.addObject({{&object, {}}}), map);
-                const auto direct = intersectorOf(baked), instanced = builder.build();
+                const auto direct = strandIntersector(baked), instanced = builder.build();
                 CAPTURE(int(basis));
                 CAPTURE(int(form));
                 int met = 0, differing = 0;
@@ -436,7 +436,7 @@ TEST_CASE("curves: hits name their strand, and u runs along all of it") {
     data.points[4].position = data.points[3].position; // an empty segment counts: the points are where they are
     const Curves curves(std::move(data));
     CHECK(curves.omittedSegments() == 1);
-    const auto scene = intersectorOf(curves);
+    const auto scene = strandIntersector(curves);
     SurfaceHit hit;
     REQUIRE(scene->intersect({{0.5f, 0, 3}, {0, 0, -1}}, hit));
     CHECK(hit.primitive == 0);
@@ -455,7 +455,7 @@ TEST_CASE("curves: bounds hold every hit") {
     for (CurveBasis basis : kBases) {
         const std::uint32_t count = pointsFor(basis, 6);
         const Curves curves({basis, CurveForm::round, wander(random, {}, int(count), 0.3f, 0.05f), {count}});
-        const auto scene = intersectorOf(curves);
+        const auto scene = strandIntersector(curves);
         const Bounds3 b = curves.bounds();
         for (int i = 0; i < 5000; ++i) {
             const Vec3 o = b.centre() + direction(random) * (2 * b.radius());

@@ -32,7 +32,7 @@ std::unique_ptr<Intersector> sceneOf(const Shape& shape) {
     return builder.build();
 }
 
-Vec3 direction(Random& random) { return squareToSphere({random.uniform(), random.uniform()}); }
+Vec3 anyDirection(Random& random) { return squareToSphere({random.uniform(), random.uniform()}); }
 
 struct Comparison {
     int hits = 0, differing = 0, outside = 0;
@@ -52,7 +52,7 @@ template <typename Still> Comparison compare(const Intersector& of, Still still,
         for (int i = 0; i < rays; ++i) {
             const Vec3 target = middle + Vec3(half.x * (2 * random.uniform() - 1), half.y * (2 * random.uniform() - 1),
                                               half.z * (2 * random.uniform() - 1));
-            const Vec3 d = direction(random);
+            const Vec3 d = anyDirection(random);
             const Ray ray{target - d * reach * length(half), d, kInfinity, time};
             SurfaceHit a, b;
             const bool ma = of.intersect(ray, a), mb = expected->intersect(ray, b);
@@ -84,7 +84,7 @@ void check(const Comparison& c, int leastHits, double tolerance, double normalTo
 }
 
 // The unit square in the plane z = 0.
-MeshData square(bool quad) {
+MeshData squareMesh(bool quad) {
     MeshData m;
     m.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     if (quad)
@@ -129,7 +129,7 @@ std::unique_ptr<const Shape> frozen(const std::vector<MeshData>& keys, double ti
 
 TEST_CASE("deformation: a square that rises, tilts and grows is met where the formula says") {
     for (const bool quad : {false, true}) {
-        const MeshData begin = square(quad);
+        const MeshData begin = squareMesh(quad);
         MeshData end = begin;
         // Corner (x, y) goes to (2x, y, 3 + x): at time t the surface is z = 3 t + x t / (1 + t).
         for (Vec3& p : end.positions) p = {2 * p.x, p.y, 3 + p.x};
@@ -227,7 +227,7 @@ TEST_CASE("deformation: closed surfaces let no ray out at any time") {
         std::size_t escaped = 0;
         for (std::size_t i = 0; i < rays; ++i) {
             SurfaceHit hit;
-            const Ray ray{inside, direction(random), kInfinity, random.uniform()};
+            const Ray ray{inside, anyDirection(random), kInfinity, random.uniform()};
             escaped += !scene->intersect(ray, hit) || !scene->occluded(ray);
         }
         CHECK(escaped == 0);
@@ -242,10 +242,10 @@ TEST_CASE("deformation: a ray that leaves the surface does not meet it again whe
     int left = 0, again = 0;
     for (int i = 0; i < 20000; ++i) {
         const float time = random.uniform();
-        const Vec3 d = direction(random);
+        const Vec3 d = anyDirection(random);
         SurfaceHit hit;
         if (!scene->intersect({Vec3(0.8f, 0.5f, 0) - d * 6, d, kInfinity, time}, hit)) continue;
-        Vec3 out = direction(random);
+        Vec3 out = anyDirection(random);
         if (dot(out, hit.ng) < 0) out = -out; // the ball is convex
         if (dot(out, hit.ng) < 1e-3f) continue;
         ++left;

@@ -30,13 +30,14 @@ Transform randomMap(Random& random, int i) {
         .then(Transform::translate(around(random) * 5));
 }
 
-struct Comparison {
+struct InstanceComparison {
     int met = 0, differing = 0;
 };
 
 // Rays at the box about `centre` against two scenes that ought to be the same. Silhouettes and edges may differ.
-Comparison compare(const Intersector& a, const Intersector& b, Vec3d centre, double size, int rays, Random& random) {
-    Comparison result;
+InstanceComparison compare(const Intersector& a, const Intersector& b, Vec3d centre, double size, int rays,
+                           Random& random) {
+    InstanceComparison result;
     for (int i = 0; i < rays; ++i) {
         const Vec3d target = centre + around(random) * size, origin = centre + normalize(around(random)) * (3 * size);
         Ray ray{Vec3(origin), Vec3(normalize(target - origin))};
@@ -104,7 +105,7 @@ TEST_CASE("instance: random maps give the hits of the baked mesh") {
     const MeshData data = icosphere(3, {0.2, 0, -0.1}, 1);
     const Mesh mesh(data);
     Random random(11);
-    Comparison all;
+    InstanceComparison all;
     for (int i = 0; i < 50; ++i) {
         const Transform map = Placement(randomMap(random, i)).map();
         const Mesh baked(moved(data, map));
@@ -113,8 +114,8 @@ TEST_CASE("instance: random maps give the hits of the baked mesh") {
         b.addInstance(b.addObject({{&mesh, {material(1), nullptr}}}), map);
         const auto direct = a.build(), instanced = b.build();
         const Bounds3 box = direct->bounds();
-        const Comparison c = compare(*direct, *instanced, Vec3d(box.centre()),
-                                     0.6 * static_cast<double>(maxComponent(box.diagonal())), 2000, random);
+        const InstanceComparison c = compare(*direct, *instanced, Vec3d(box.centre()),
+                                             0.6 * static_cast<double>(maxComponent(box.diagonal())), 2000, random);
         all.met += c.met;
         all.differing += c.differing;
         for (int axis = 0; axis < 3; ++axis) { // of the box's box: never smaller
@@ -153,7 +154,7 @@ TEST_CASE("instance: objects in objects are what they would be side by side") {
         }
     }
     const auto a = flat.build(), b = nested.build();
-    const Comparison c = compare(*a, *b, {0, 0, 0}, 8, 100000, random);
+    const InstanceComparison c = compare(*a, *b, {0, 0, 0}, 8, 100000, random);
     CHECK(c.met > 5000);
     CHECK(c.differing < c.met / 200);
     CHECK(b->rejectedRays() == 0);

@@ -29,13 +29,13 @@ MeshData blade() {
 constexpr int kCopies = 50;
 Transform offset(int k) { return Transform::translate({0, 0, 30.0 * k}); }
 
-struct Comparison {
+struct MovingComparison {
     int hits = 0, differing = 0;
     double worst = 0;
 };
 
 // Rays at random times against scenes in which the object stands where it is at that time.
-Comparison compare(const Motion& motion, double open, double duration) {
+MovingComparison compare(const Motion& motion, double open, double duration) {
     const Mesh mesh(blade());
     EmbreeSceneBuilder moving;
     moving.setShutter(open, duration);
@@ -44,7 +44,7 @@ Comparison compare(const Motion& motion, double open, double duration) {
     for (int k = 0; k < kCopies; ++k) moving.addMoving(object, motion.then(offset(k)));
     const auto scene = moving.build();
     Random random(11);
-    Comparison result;
+    MovingComparison result;
     for (int t = 0; t <= 40; ++t) {
         const float time = t == 40 ? 1.f : random.uniform();
         EmbreeSceneBuilder still;
@@ -69,7 +69,7 @@ Comparison compare(const Motion& motion, double open, double duration) {
     return result;
 }
 
-void check(const Comparison& c) {
+void check(const MovingComparison& c) {
     CHECK(c.hits > 10'000);
     CHECK(c.differing <= 2); // a ray along an edge may fall to either side
     CHECK(c.worst < 1e-3);

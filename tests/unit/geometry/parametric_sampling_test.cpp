@@ -15,15 +15,15 @@ using namespace abbe::test;
 
 namespace {
 
-struct Case {
+struct ParametricCase {
     std::string name;
     std::unique_ptr<const Shape> shape;
 };
 
-std::vector<Case> cases() {
+std::vector<ParametricCase> parametricCases() {
     const Transform squash =
         Transform::scale({1, 0.3, -2}).then(Transform::rotate({1, 1, 0}, 0.7)).then(Transform::translate({0.2, 0, 1}));
-    std::vector<Case> list;
+    std::vector<ParametricCase> list;
     const auto add = [&](const char* name, auto make) {
         list.push_back({name, make(Transform{})});
         list.push_back({name, make(squash)});
@@ -105,7 +105,7 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
 } // namespace
 
 TEST_CASE("parametric shapes: samples follow the density that rays find") {
-    for (const Case& c : cases())
+    for (const ParametricCase& c : parametricCases())
         for (Vec3 from : {Vec3(3, 2, 1), Vec3(-1.5f, 3, -2.5f), Vec3(0.1f, -4, 6)}) {
             INFO(c.name << " from " << from.x << " " << from.y << " " << from.z);
             const WeightedReport r = examineWeighted(*c.shape, from);
@@ -119,7 +119,7 @@ TEST_CASE("parametric shapes: samples follow the density that rays find") {
 }
 
 TEST_CASE("parametric shapes: density is one over the Jacobian of the map") {
-    for (const Case& c : cases()) {
+    for (const ParametricCase& c : parametricCases()) {
         if (c.name == "box") continue;
         const Vec3 from(3, 2, 1);
         Random random(5);
@@ -146,7 +146,7 @@ TEST_CASE("parametric shapes: density is one over the Jacobian of the map") {
 }
 
 TEST_CASE("parametric shapes: irradiance by samples of the lamp and by rays agree") {
-    for (const Case& c : cases()) {
+    for (const ParametricCase& c : parametricCases()) {
         const Vec3 from(1, 0.5f, 3.5f), n = normalize(Vec3(-0.3f, -0.1f, -1));
         const auto scene = intersectorOf(*c.shape);
         const DirectionSquare directions(c.shape->bounds(), from);
@@ -180,7 +180,7 @@ TEST_CASE("parametric shapes: irradiance by samples of the lamp and by rays agre
 
 TEST_CASE("parametric shapes: no point of view breaks a sampler") {
     Random random(11);
-    for (const Case& c : cases()) {
+    for (const ParametricCase& c : parametricCases()) {
         const Bounds3 b = c.shape->bounds();
         std::vector<Vec3> points{b.lower, b.upper, b.centre(), {0, 0, 0}, {1e6f, -1e6f, 1e6f}, {1e15f, 0, 0}};
         for (int i = 0; i < 100; ++i)

@@ -31,7 +31,7 @@ struct Textured final : Material {
 };
 const Textured kTextured;
 
-Vec3d around(Random& random) {
+Vec3d aroundPoint(Random& random) {
     return Vec3d(random.uniformDouble(), random.uniformDouble(), random.uniformDouble()) * 2 - Vec3d(1, 1, 1);
 }
 
@@ -69,7 +69,7 @@ Differences differences(const Shape& shape, const Transform* instance, bool acro
     Differences result;
     int counts[2] = {};
     for (int i = 0; i < 3000; ++i) {
-        const Vec3d target = around(random) * (0.5 * reach), origin = normalize(around(random)) * (4 * reach);
+        const Vec3d target = aroundPoint(random) * (0.5 * reach), origin = normalize(aroundPoint(random)) * (4 * reach);
         const Ray ray{Vec3(origin), Vec3(normalize(target - origin)), kInfinity, 0.4f};
         SurfaceHit hit;
         if (!scene->intersect(ray, hit)) continue;
@@ -215,7 +215,7 @@ TEST_CASE("a turned shape keeps its texture") {
             Random random(5);
             int met = 0;
             for (int i = 0; i < 500; ++i) {
-                const Vec3d target = around(random) * 0.7, origin = normalize(around(random)) * 5;
+                const Vec3d target = aroundPoint(random) * 0.7, origin = normalize(aroundPoint(random)) * 5;
                 SurfaceHit a, b;
                 const Ray ray{Vec3(origin), Vec3(normalize(target - origin))};
                 const Ray there{Vec3(place.point(origin)), Vec3(normalize(place.vector(target - origin)))};

@@ -12,17 +12,19 @@ namespace {
 
 constexpr PointForm kForms[] = {PointForm::sphere, PointForm::disk, PointForm::orientedDisk};
 
-Vec3 inCube(Random& random) { return Vec3(random.uniform(), random.uniform(), random.uniform()) * 2 - Vec3(1, 1, 1); }
-Vec3 direction(Random& random) {
+Vec3 inPointsCube(Random& random) {
+    return Vec3(random.uniform(), random.uniform(), random.uniform()) * 2 - Vec3(1, 1, 1);
+}
+Vec3 pointsDirection(Random& random) {
     for (;;)
-        if (const Vec3 v = inCube(random); lengthSquared(v) < 1 && lengthSquared(v) > 0.01f) return normalize(v);
+        if (const Vec3 v = inPointsCube(random); lengthSquared(v) < 1 && lengthSquared(v) > 0.01f) return normalize(v);
 }
 
 PointData cloud(PointForm form, int count, float radius, Random& random) {
     PointData data{form, {}, {}};
     for (int i = 0; i < count; ++i) {
-        data.points.push_back({inCube(random), radius * (0.5f + float(random.uniform()))});
-        if (form == PointForm::orientedDisk) data.normals.push_back(direction(random));
+        data.points.push_back({inPointsCube(random), radius * (0.5f + float(random.uniform()))});
+        if (form == PointForm::orientedDisk) data.normals.push_back(pointsDirection(random));
     }
     return data;
 }
@@ -41,7 +43,7 @@ double meet(const PointData& data, std::size_t i, Vec3d o, Vec3d d) {
     return lengthSquared(o + d * t - c) <= r * r ? t : infinite;
 }
 
-std::unique_ptr<Intersector> intersectorOf(const Shape& shape) {
+std::unique_ptr<Intersector> pointsIntersector(const Shape& shape) {
     EmbreeSceneBuilder builder;
     builder.addShape(shape, {});
     return builder.build();
@@ -56,11 +58,11 @@ TEST_CASE("points: met where their spheres and disks are") {
         const PointData data = cloud(form, 200, 0.1f, random);
         const Points points(data);
         CHECK(points.omitted() == 0);
-        const auto scene = intersectorOf(points);
+        const auto scene = pointsIntersector(points);
         int met = 0, differing = 0;
         constexpr int rays = 5000;
         for (int i = 0; i < rays; ++i) {
-            const Vec3 o = direction(random) * 4, d = normalize(inCube(random) - o);
+            const Vec3 o = pointsDirection(random) * 4, d = normalize(inPointsCube(random) - o);
             double nearest = std::numeric_limits<double>::infinity();
             std::size_t which = 0;
             for (std::size_t k = 0; k < data.points.size(); ++k)
@@ -107,15 +109,15 @@ TEST_CASE("points: no ray that leaves a point meets it again") {
                 Random random(4);
                 PointData data{form, {{Vec3(offset, -offset, 0.7f * offset) * scale, 0.3f * scale}}, {}};
                 const Vec3 c = data.points[0].position;
-                if (form == PointForm::orientedDisk) data.normals.push_back(direction(random));
+                if (form == PointForm::orientedDisk) data.normals.push_back(pointsDirection(random));
                 const Points points(std::move(data));
-                const auto scene = intersectorOf(points);
+                const auto scene = pointsIntersector(points);
                 int leaving = 0, again = 0;
                 for (int i = 0; i < 20000; ++i) {
-                    const Vec3 o = c + direction(random) * (3 * scale);
+                    const Vec3 o = c + pointsDirection(random) * (3 * scale);
                     SurfaceHit hit;
-                    if (!scene->intersect({o, normalize(c + inCube(random) * (0.2f * scale) - o)}, hit)) continue;
-                    Vec3 w = direction(random);
+                    if (!scene->intersect({o, normalize(c + inPointsCube(random) * (0.2f * scale) - o)}, hit)) continue;
+                    Vec3 w = pointsDirection(random);
                     if (i % 2)
                         w = normalize(hit.ng * (0.01f * float(random.uniform())) + hit.shading.toWorld({w.x, w.y, 0}));
                     const bool outwards = form == PointForm::sphere || i % 4 < 2;
@@ -138,7 +140,7 @@ TEST_CASE("points: those without width are left out and counted") {
         const Points points(std::move(data));
         CHECK(points.omitted() == 10);
         CHECK(points.count() == 90);
-        const auto scene = intersectorOf(points);
+        const auto scene = pointsIntersector(points);
         SurfaceHit hit;
         REQUIRE(scene->intersect({{9.1f, 9, 12}, {0, 0, -1}}, hit));
         CHECK(hit.primitive == 89);
@@ -147,7 +149,7 @@ TEST_CASE("points: those without width are left out and counted") {
     }
     const Points none({PointForm::sphere, {{{0, 0, 0}, 0}}, {}});
     SurfaceHit hit;
-    CHECK_FALSE(intersectorOf(none)->intersect({{0, 0, 3}, {0, 0, -1}}, hit));
+    CHECK_FALSE(pointsIntersector(none)->intersect({{0, 0, 3}, {0, 0, -1}}, hit));
 }
 
 TEST_CASE("points: instances stretch spheres to ellipsoids") {

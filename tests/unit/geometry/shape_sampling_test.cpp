@@ -15,7 +15,7 @@ using namespace abbe::test;
 
 namespace {
 
-struct Case {
+struct SampledShape {
     const char* name;
     std::unique_ptr<const Shape> shape;
     std::vector<Vec3> from;
@@ -29,8 +29,8 @@ MeshData roof() { // two quads and two triangles that meet at angles
     return m;
 }
 
-std::vector<Case> cases() {
-    std::vector<Case> list;
+std::vector<SampledShape> sampledShapes() {
+    std::vector<SampledShape> list;
     const auto add = [&](const char* name, std::unique_ptr<const Shape> shape, std::vector<Vec3> from) {
         list.push_back({name, std::move(shape), std::move(from)});
     };
@@ -77,7 +77,7 @@ template <typename Map> std::optional<double> smoothJacobian(Map&& map, Vec2 u) 
 } // namespace
 
 TEST_CASE("shapes: samples follow the density that rays find") {
-    for (const Case& c : cases())
+    for (const SampledShape& c : sampledShapes())
         for (Vec3 from : c.from) {
             INFO(c.name << " from " << from.x << " " << from.y << " " << from.z);
             const bool hidden = std::string(c.name) == "mesh"; // faces of a roof hide one another
@@ -93,7 +93,7 @@ TEST_CASE("shapes: samples follow the density that rays find") {
 }
 
 TEST_CASE("shapes: density is one over the Jacobian of the map") {
-    for (const Case& c : cases())
+    for (const SampledShape& c : sampledShapes())
         for (Vec3 from : c.from) {
             INFO(c.name << " from " << from.x << " " << from.y << " " << from.z);
             Random random(5);
@@ -166,7 +166,7 @@ TEST_CASE("quad: irradiance under a rectangle") {
 TEST_CASE("shapes: no point of view breaks a sampler") {
     // docs/hard_cases.md, cases 30 and 32: on the surface, at corners, on edges, in the plane, behind, inside, far.
     Random random(11);
-    for (const Case& c : cases()) {
+    for (const SampledShape& c : sampledShapes()) {
         const Bounds3 b = c.shape->bounds();
         std::vector<Vec3> points{b.lower, b.upper, b.centre(), {1e6f, -1e6f, 1e6f}, {1e15f, 0, 0}, {1e-20f, 0, 0}};
         for (int i = 0; i < 200; ++i) { // on the surface itself, and just off it

@@ -13,14 +13,14 @@ using namespace abbe::test;
 
 namespace {
 
-constexpr std::uint64_t kPlenty = 1ull << 33;
+constexpr std::uint64_t kPlentyOfMemory = 1ull << 33;
 
 bool nightly() { return std::getenv("ABBE_NIGHTLY") != nullptr; }
 
 DicedSurface diceLevel(const SubdivisionCage& cage, double level) {
     REQUIRE(findFault(cage) == std::nullopt);
     const SubdivisionSurface surface(cage);
-    return surface.dice(surface.plan({Dicing::Mode::level, level, {}}, kPlenty));
+    return surface.dice(surface.plan({Dicing::Mode::level, level, {}}, kPlentyOfMemory));
 }
 
 void checkSound(const MeshData& m) {
@@ -64,11 +64,11 @@ TEST_CASE("subdivision: closed cages dice into closed meshes at every rate") {
         for (const int level : {0, 2, 4}) CHECK(openEdges(diceLevel(cage, level).mesh) == 0);
         // Every edge its own rate, and odd ones.
         for (const double length : {0.7, 0.21, 0.083})
-            CHECK(openEdges(surface.dice(surface.plan({Dicing::Mode::length, length, {}}, kPlenty)).mesh) == 0);
+            CHECK(openEdges(surface.dice(surface.plan({Dicing::Mode::length, length, {}}, kPlentyOfMemory)).mesh) == 0);
         const auto pixelSize = [](Vec3 p) { return 0.002 * static_cast<double>(length(p - Vec3(2, 1, 3))); };
-        CHECK(openEdges(surface.dice(surface.plan({Dicing::Mode::pixels, 7, pixelSize}, kPlenty)).mesh) == 0);
+        CHECK(openEdges(surface.dice(surface.plan({Dicing::Mode::pixels, 7, pixelSize}, kPlentyOfMemory)).mesh) == 0);
         Random random(7);
-        DicingPlan plan = surface.plan({Dicing::Mode::level, 0, {}}, kPlenty);
+        DicingPlan plan = surface.plan({Dicing::Mode::level, 0, {}}, kPlentyOfMemory);
         for (int& rate : plan.edgeRates) rate = 1 + static_cast<int>(random.bits() % 13);
         const DicedSurface any = surface.dice(plan);
         checkSound(any.mesh);
@@ -144,7 +144,7 @@ TEST_CASE("subdivision: a deformed cage is diced like the cage at rest") {
         SubdivisionCage bent = cage;
         for (Vec3& p : bent.positions) p = {p.x + 0.3f * p.z * p.z, 1.7f * p.y + 5, p.z - 0.2f * p.x};
         const SubdivisionSurface surface(cage), other(bent);
-        const DicingPlan plan = surface.plan({Dicing::Mode::length, 0.2, {}}, kPlenty);
+        const DicingPlan plan = surface.plan({Dicing::Mode::length, 0.2, {}}, kPlentyOfMemory);
         const DicedSurface rest = surface.dice(plan), moved = surface.dice(plan, bent.positions);
         const DicedSurface expected = other.dice(plan);
         CHECK(moved.mesh.positions == expected.mesh.positions);
@@ -168,13 +168,13 @@ TEST_CASE("subdivision: edges are cut to the length asked for") {
         return l;
     };
     for (const double wanted : {0.5, 0.1, 0.04}) {
-        const float l = longest(surface.dice(surface.plan({Dicing::Mode::length, wanted, {}}, kPlenty)).mesh);
+        const float l = longest(surface.dice(surface.plan({Dicing::Mode::length, wanted, {}}, kPlentyOfMemory)).mesh);
         CHECK(l < 1.5 * wanted);
         CHECK(l > 0.5 * wanted);
     }
     // Pixels twice as large at x = 4 as at x = 0.
     const auto pixelSize = [](Vec3 p) { return 0.01 * (1 + static_cast<double>(p.x) / 4); };
-    const MeshData m = surface.dice(surface.plan({Dicing::Mode::pixels, 4, pixelSize}, kPlenty)).mesh;
+    const MeshData m = surface.dice(surface.plan({Dicing::Mode::pixels, 4, pixelSize}, kPlentyOfMemory)).mesh;
     for (const auto& q : m.quads)
         for (std::size_t i = 0; i < 4; ++i) {
             const Vec3 a = m.positions[q[i]], b = m.positions[q[(i + 1) % 4]];
@@ -187,7 +187,7 @@ TEST_CASE("subdivision: edges are cut to the length asked for") {
 
 TEST_CASE("subdivision: the budget lowers the rates before anything is made") {
     const SubdivisionSurface surface(cubeCage());
-    const DicingPlan free = surface.plan({Dicing::Mode::level, 6, {}}, kPlenty);
+    const DicingPlan free = surface.plan({Dicing::Mode::level, 6, {}}, kPlentyOfMemory);
     CHECK(free.coarser == 1);
     CHECK(free.triangles == 6 * 2 * 64 * 64);
     const DicingPlan tight = surface.plan({Dicing::Mode::level, 6, {}}, free.bytes / 5);
@@ -205,7 +205,7 @@ TEST_CASE("subdivision: the estimate of triangles is near the truth") {
     for (const auto& [name, cage, closed] : namedCages()) {
         CAPTURE(name);
         const SubdivisionSurface surface(cage);
-        const DicingPlan plan = surface.plan({Dicing::Mode::length, 0.03, {}}, kPlenty);
+        const DicingPlan plan = surface.plan({Dicing::Mode::length, 0.03, {}}, kPlentyOfMemory);
         const MeshData m = surface.dice(plan).mesh;
         const double truth = static_cast<double>(m.triangles.size() + 2 * m.quads.size());
         CHECK(static_cast<double>(plan.triangles) > 0.9 * truth);
@@ -284,7 +284,7 @@ TEST_CASE("subdivision: random cages, sound or not, do no harm") {
         if (findFault(cage)) continue;
         ++sound;
         const SubdivisionSurface surface(cage);
-        const DicedSurface diced = surface.dice(surface.plan({Dicing::Mode::level, 2, {}}, kPlenty));
+        const DicedSurface diced = surface.dice(surface.plan({Dicing::Mode::level, 2, {}}, kPlentyOfMemory));
         checkSound(diced.mesh);
         checkSound(surface.dice(surface.plan({Dicing::Mode::length, 0.1, {}}, 1 << 20)).mesh);
     }

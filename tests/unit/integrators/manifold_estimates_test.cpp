@@ -9,7 +9,7 @@ namespace abbe::test {
 namespace {
 
 constexpr int kWidth = 16, kHeight = 12;
-constexpr std::uint32_t kSamples = 64;
+constexpr std::uint32_t kEstimateSamples = 64;
 
 class Sum final : public ManifoldListener {
   public:
@@ -47,10 +47,10 @@ Told renderedWith(std::uint32_t estimates, const TestScene& test) {
     context.hears = &heard;
     PixelFilm film({0, 0, kWidth, kHeight}, {FilterShape::box, 0.5}, 1);
     const RouletteReference roulette = RouletteReference::constant(1);
-    renderTile<kTracedFullKernel.bits()>(context, film, {film.bounds(), 0, kSamples, &roulette});
+    renderTile<kTracedFullKernel.bits()>(context, film, {film.bounds(), 0, kEstimateSamples, &roulette});
     Told told{0, heard.sum, heard.calls, heard.with};
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) told.picture += film.mean(x, y).y * kSamples;
+        for (int x = 0; x < kWidth; ++x) told.picture += film.mean(x, y).y * kEstimateSamples;
     return told;
 }
 

@@ -66,7 +66,7 @@ Worth worthOf(const SamplingPlan& plan, PixelBounds frame, const Truth& truth) {
     return {cost / evenCost, error / evenError};
 }
 
-const PixelBounds kFrame{0, 0, 320, 200};
+const PixelBounds kPlanFrame{0, 0, 320, 200};
 
 } // namespace
 
@@ -107,25 +107,25 @@ TEST_CASE("plan: the ranges of passes and of parts hold each sample once, and po
 }
 
 TEST_CASE("plan: an even frame is sampled evenly, however noisy the looks at it are") {
-    CHECK(SamplingPlan(pilotOf(kFrame, {})).even());
+    CHECK(SamplingPlan(pilotOf(kPlanFrame, {})).even());
     Truth specks; // one look in a hundred has nearly all of the variance
     specks.error = [](Random& r) { return r.uniform() < 0.01f ? 100.0 : 0.01; };
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
-        const SamplingPlan plan(pilotOf(kFrame, specks, seed));
-        if (!plan.even()) CHECK(worthOf(plan, kFrame, {}).error < 1.1);
+        const SamplingPlan plan(pilotOf(kPlanFrame, specks, seed));
+        if (!plan.even()) CHECK(worthOf(plan, kPlanFrame, {}).error < 1.1);
     }
     Truth dark;
     dark.variance = dark.luminance = [](double, double) { return 0.0; };
-    CHECK(SamplingPlan(pilotOf(kFrame, dark)).even());
+    CHECK(SamplingPlan(pilotOf(kPlanFrame, dark)).even());
     CHECK(SamplingPlan(pilotOf({0, 0, 1, 1}, {})).exponent(0, 0) == 0);
 }
 
 TEST_CASE("plan: where noise is uneven, an equal cost makes less of it, about as little as can be") {
     Truth truth; // a tenth of the frame has a hundred times the variance
     truth.variance = [](double u, double v) { return u < 0.3 && v < 0.33 ? 100.0 : 1.0; };
-    const SamplingPlan plan(pilotOf(kFrame, truth));
+    const SamplingPlan plan(pilotOf(kPlanFrame, truth));
     REQUIRE_FALSE(plan.even());
-    const Worth worth = worthOf(plan, kFrame, truth);
+    const Worth worth = worthOf(plan, kPlanFrame, truth);
     CHECK(worth.cost == doctest::Approx(1).epsilon(0.03));
     // (Σ √v)² / Σ v without limits of the factor and powers of two: (0.1·10 + 0.9)²/(0.1·100 + 0.9) = 0.33.
     CHECK(worth.error < 0.45);
@@ -138,14 +138,14 @@ TEST_CASE("plan: where noise is uneven, an equal cost makes less of it, about as
 TEST_CASE("plan: dear samples are taken less often, and dark places count as much as bright ones") {
     Truth dear;
     dear.rays = [](double u, double) { return u < 0.5 ? 2.0 : 64.0; };
-    const SamplingPlan plan(pilotOf(kFrame, dear));
+    const SamplingPlan plan(pilotOf(kPlanFrame, dear));
     REQUIRE_FALSE(plan.even());
     CHECK(plan.exponent(40, 100) >= plan.exponent(280, 100) + 2);
-    CHECK(worthOf(plan, kFrame, dear).cost == doctest::Approx(1).epsilon(0.05));
+    CHECK(worthOf(plan, kPlanFrame, dear).cost == doctest::Approx(1).epsilon(0.05));
     Truth shaded; // the same relative noise
     shaded.luminance = [](double u, double) { return u < 0.5 ? 1.0 : 4.0; };
     shaded.variance = [](double u, double) { return u < 0.5 ? 1.0 : 16.0; };
-    const SamplingPlan alike(pilotOf(kFrame, shaded));
+    const SamplingPlan alike(pilotOf(kPlanFrame, shaded));
     CHECK(alike.exponent(40, 100) == alike.exponent(280, 100));
 }
 

@@ -16,7 +16,7 @@ using namespace abbe;
 
 namespace {
 
-constexpr int kWidth = 38, kHeight = 22, kLeft = 6, kTop = -4;
+constexpr int kChannelWidth = 38, kChannelHeight = 22, kLeft = 6, kTop = -4;
 
 // One channel of each type over a window whose corner is not the origin; scan lines or tiles.
 struct MixedFile {
@@ -25,7 +25,7 @@ struct MixedFile {
     std::vector<unsigned> integers;
 
     MixedFile() {
-        for (int i = 0; i < kWidth * kHeight; ++i) {
+        for (int i = 0; i < kChannelWidth * kChannelHeight; ++i) {
             floats.push_back(0.1f * static_cast<float>(i) - 7);
             halves.emplace_back(0.25f * static_cast<float>(i));
             integers.push_back(static_cast<unsigned>(i * 1001));
@@ -34,12 +34,13 @@ struct MixedFile {
     }
 
     void write(const std::string& path, bool tiles, int sampling = 1) {
-        const Imath::Box2i window{{kLeft, kTop}, {kLeft + kWidth - 1, kTop + kHeight - 1}};
+        const Imath::Box2i window{{kLeft, kTop}, {kLeft + kChannelWidth - 1, kTop + kChannelHeight - 1}};
         Imf::Header header(Imath::Box2i{{0, 0}, {99, 49}}, window);
         Imf::FrameBuffer buffer;
         const auto add = [&](const char* name, Imf::PixelType type, const void* values, std::size_t bytes) {
             header.channels().insert(name, Imf::Channel(type, sampling, sampling));
-            buffer.insert(name, Imf::Slice::Make(type, values, window, bytes, bytes * kWidth, sampling, sampling));
+            buffer.insert(name,
+                          Imf::Slice::Make(type, values, window, bytes, bytes * kChannelWidth, sampling, sampling));
         };
         add("depth.Z", Imf::FLOAT, floats.data(), 4);
         add("half.albedo.R", Imf::HALF, halves.data(), 2);
@@ -52,7 +53,7 @@ struct MixedFile {
         } else {
             Imf::OutputFile file(path.c_str(), header);
             file.setFrameBuffer(buffer);
-            file.writePixels(kHeight);
+            file.writePixels(kChannelHeight);
         }
     }
 };
@@ -66,7 +67,7 @@ TEST_CASE("every channel of an EXR is read by its name, whatever its type") {
     for (const bool tiles : {false, true}) {
         file.write(path, tiles);
         const ExrPlanes planes = readExrChannels(path);
-        CHECK(planes.info.window == PixelWindow{kLeft, kTop, kLeft + kWidth, kTop + kHeight});
+        CHECK(planes.info.window == PixelWindow{kLeft, kTop, kLeft + kChannelWidth, kTop + kChannelHeight});
         CHECK(planes.info.display == PixelWindow{0, 0, 100, 50});
         CHECK(planes.info.parts == 1);
         CHECK(planes.info.channelNames() == "depth.Z half.albedo.R object.id");
@@ -92,7 +93,7 @@ TEST_CASE("channels that are not wanted are not read") {
     CHECK(!planes.find("object.id"));
     CHECK(planes.info.channels.size() == 3);
     CHECK(!readExrChannels(path, [](std::string_view) { return false; }).find("depth.Z"));
-    CHECK(readExrChannel(path, "object.id").size() == kWidth * kHeight);
+    CHECK(readExrChannel(path, "object.id").size() == kChannelWidth * kChannelHeight);
     CHECK_THROWS_WITH_AS(readExrChannel(path, "R"), doctest::Contains("only depth.Z half.albedo.R object.id"), IoError);
 }
 

@@ -11,11 +11,11 @@ using test::Random;
 
 namespace {
 
-MeshFile parse(std::string_view text) { return parseObj(text, "t.obj"); }
+MeshFile meshOfObj(std::string_view text) { return parseObj(text, "t.obj"); }
 
-std::string errorOf(std::string_view text) {
+std::string objError(std::string_view text) {
     try {
-        parse(text);
+        meshOfObj(text);
     } catch (const IoError& e) {
         return e.what();
     }
@@ -25,7 +25,7 @@ std::string errorOf(std::string_view text) {
 using Triangle = std::array<std::uint32_t, 3>;
 using QuadIndices = std::array<std::uint32_t, 4>;
 
-constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr std::string_view kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 double areaOf(const MeshData& m) {
     double sum = 0;
@@ -44,7 +44,7 @@ double areaOf(const MeshData& m) {
 } // namespace
 
 TEST_CASE("obj: positions, triangles and quads") {
-    const MeshFile f = parse(std::string(kSquare) + "f 1 2 3\nf 1 2 3 4\n");
+    const MeshFile f = meshOfObj(std::string(kObjSquare) + "f 1 2 3\nf 1 2 3 4\n");
     CHECK(f.mesh.positions.size() == 4);
     CHECK(f.mesh.positions[2] == Vec3(1, 1, 0));
     CHECK(f.mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
@@ -54,9 +54,9 @@ TEST_CASE("obj: positions, triangles and quads") {
 }
 
 TEST_CASE("obj: all ways to write a line") {
-    const MeshFile f = parse("# comment \\\r\nv  0 0\t0  # after\r\n"
-                             "v +1 -0.0 1e-50 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\n\r\n"
-                             "f 1 \\\r\n 2 \\\n3\r\n   f -3 -2 -1   \rf 1 2 3");
+    const MeshFile f = meshOfObj("# comment \\\r\nv  0 0\t0  # after\r\n"
+                                 "v +1 -0.0 1e-50 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\n\r\n"
+                                 "f 1 \\\r\n 2 \\\n3\r\n   f -3 -2 -1   \rf 1 2 3");
     CHECK(f.mesh.triangles.size() == 3);
     for (const auto& t : f.mesh.triangles) CHECK(t == Triangle{0, 1, 2});
     CHECK(f.mesh.positions[1] == Vec3(1, 0, 0));
@@ -64,26 +64,27 @@ TEST_CASE("obj: all ways to write a line") {
 
 TEST_CASE("obj: numbers are exact") {
     const MeshFile f =
-        parse("v 0.1 1.17549435e-38 3.4028234e38\nv 16777217 -0.30000001192092896 1E2\nv 0 0 0\nf 1 2 3\n");
+        meshOfObj("v 0.1 1.17549435e-38 3.4028234e38\nv 16777217 -0.30000001192092896 1E2\nv 0 0 0\nf 1 2 3\n");
     CHECK(f.mesh.positions[0] == Vec3(0.1f, 1.17549435e-38f, 3.4028234e38f));
     CHECK(f.mesh.positions[1] == Vec3(16777216.f, -0.3f, 100.f));
 }
 
 TEST_CASE("obj: negative numbers count back from the line they stand on") {
-    const MeshFile f = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -1\n");
+    const MeshFile f = meshOfObj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -1\n");
     CHECK(f.mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}});
 }
 
 TEST_CASE("obj: faces may come before their vertices") {
-    const MeshFile f = parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    const MeshFile f = meshOfObj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
     CHECK(f.mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
-    CHECK(errorOf("f 1 2 3\nv 0 0 0\nv 1 0 0\n").find("line 1: vertex 3 of only 2") != std::string::npos);
+    CHECK(objError("f 1 2 3\nv 0 0 0\nv 1 0 0\n").find("line 1: vertex 3 of only 2") != std::string::npos);
 }
 
 TEST_CASE("obj: vertices are split where texture or normal differ, and only there") {
-    const std::string text = std::string(kSquare) + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25 0\nvn 0 0 1\nvn 0 1 0\n"
-                                                    "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\nf 1/2/1 2/2/1 3/3/2\n";
-    const MeshFile f = parse(text);
+    const std::string text = std::string(kObjSquare) +
+                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25 0\nvn 0 0 1\nvn 0 1 0\n"
+                             "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\nf 1/2/1 2/2/1 3/3/2\n";
+    const MeshFile f = meshOfObj(text);
     CHECK(f.mesh.positions.size() == 6);
     CHECK(f.mesh.normals.size() == 6);
     CHECK(f.mesh.uvs.size() == 6);
@@ -93,7 +94,7 @@ TEST_CASE("obj: vertices are split where texture or normal differ, and only ther
     CHECK(f.mesh.uvs[4] == Vec2{1, 0});
     CHECK(f.mesh.normals[5] == Vec3(0, 1, 0));
     // Forms mixed in one file: what is left out is 0.
-    const MeshFile g = parse(std::string(kSquare) + "vt 0.5 0.5\nvn 0 0 2\nf 1//1 2//-1 3\nf 1/1 2/1 3/-1\n");
+    const MeshFile g = meshOfObj(std::string(kObjSquare) + "vt 0.5 0.5\nvn 0 0 2\nf 1//1 2//-1 3\nf 1/1 2/1 3/-1\n");
     CHECK(g.mesh.positions.size() == 6);
     CHECK(g.mesh.normals[0] == Vec3(0, 0, 2));
     CHECK(g.mesh.normals[2] == Vec3(0, 0, 0));
@@ -103,8 +104,8 @@ TEST_CASE("obj: vertices are split where texture or normal differ, and only ther
 
 TEST_CASE("obj: groups") {
     const MeshFile f =
-        parse(std::string(kSquare) + "o box\nusemtl red paint\nf 1 2 3\ng left  \nf 1 2 3 4\nf 2 3 4\n"
-                                     "g empty\nusemtl blue\nf 1 3 4\no other\ns off\nmtllib a.mtl\nf 1 2 4\n");
+        meshOfObj(std::string(kObjSquare) + "o box\nusemtl red paint\nf 1 2 3\ng left  \nf 1 2 3 4\nf 2 3 4\n"
+                                            "g empty\nusemtl blue\nf 1 3 4\no other\ns off\nmtllib a.mtl\nf 1 2 4\n");
     REQUIRE(f.groups.size() == 4);
     CHECK(f.groups[0].name == "box");
     CHECK(f.groups[0].material == "red paint");
@@ -126,8 +127,8 @@ TEST_CASE("obj: groups") {
 TEST_CASE("obj: polygons of any shape keep their area") {
     // An L, both ways round, and a comb: concave. A hexagon: convex.
     const std::string_view l = "v 0 0 3\nv 2 0 3\nv 2 1 3\nv 1 1 3\nv 1 2 3\nv 0 2 3\n";
-    CHECK(areaOf(parse(std::string(l) + "f 1 2 3 4 5 6\n").mesh) == doctest::Approx(3));
-    CHECK(areaOf(parse(std::string(l) + "f 6 5 4 3 2 1\n").mesh) == doctest::Approx(3));
+    CHECK(areaOf(meshOfObj(std::string(l) + "f 1 2 3 4 5 6\n").mesh) == doctest::Approx(3));
+    CHECK(areaOf(meshOfObj(std::string(l) + "f 6 5 4 3 2 1\n").mesh) == doctest::Approx(3));
     std::string comb, face = "f";
     double expected = 0;
     for (int i = 0; i < 20; ++i) { // teeth of height 1 on a bar of height 1, tilted in space
@@ -136,7 +137,7 @@ TEST_CASE("obj: polygons of any shape keep their area") {
     }
     comb += "v 19 0 19\nv 0 0 0\n";
     for (int i = 22; i >= 1; --i) face += " " + std::to_string(i);
-    const MeshFile f = parse(comb + face + "\n");
+    const MeshFile f = meshOfObj(comb + face + "\n");
     CHECK(f.mesh.triangles.size() == 20);
     CHECK(areaOf(f.mesh) == doctest::Approx(expected * std::sqrt(2.0)));
     // Normals of all parts agree.
@@ -148,7 +149,7 @@ TEST_CASE("obj: polygons of any shape keep their area") {
     for (int turn = 0; turn < 4; ++turn) {
         std::string arrow = "v 0 0 0\nv 2 -2 0\nv 1 0 0\nv 2 2 0\nf";
         for (int i = 0; i < 4; ++i) arrow += " " + std::to_string((i + turn) % 4 + 1);
-        const MeshFile a = parse(arrow + "\n");
+        const MeshFile a = meshOfObj(arrow + "\n");
         CHECK(a.mesh.quads.size() == 1);
         CHECK(areaOf(a.mesh) == doctest::Approx(2));
     }
@@ -156,13 +157,13 @@ TEST_CASE("obj: polygons of any shape keep their area") {
     for (int i = 0; i < 5; ++i)
         star +=
             "v " + std::to_string(std::cos(i * 0.8 * kPiD)) + " " + std::to_string(std::sin(i * 0.8 * kPiD)) + " 0\n";
-    CHECK(parse(star + "f 1 2 3 4 5\n").mesh.triangles.size() == 3);
+    CHECK(meshOfObj(star + "f 1 2 3 4 5\n").mesh.triangles.size() == 3);
 }
 
 TEST_CASE("obj: faults are named with their line") {
     const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     const auto has = [](const std::string& text, const std::string& part) {
-        const std::string e = errorOf(text);
+        const std::string e = objError(text);
         INFO(e);
         CHECK(e.find(part) != std::string::npos);
     };
@@ -188,11 +189,11 @@ TEST_CASE("obj: faults are named with their line") {
     has("", "there is no mesh in it");
     has(v, "it has vertices but no faces");
     has(v + "l 1 2\np 1\nf 1 2\n", "no faces");
-    CHECK(parse(v + "f 1 2\nf 1 2 3\n").ignoredFaces == 1);
+    CHECK(meshOfObj(v + "f 1 2\nf 1 2 3\n").ignoredFaces == 1);
 }
 
 TEST_CASE("obj: damaged files end in an error or a mesh that is in range") {
-    const std::string good = std::string(kSquare) +
+    const std::string good = std::string(kObjSquare) +
                              "v 0.5 0.5 2\nvt 0 0\nvt 1 1\nvn 0 0 1\no a\ng b\nusemtl c\n"
                              "f 1/1/1 2/2/1 3/1/1 4/2/1\nf -1 -2 \\\n -3\nf 1//1 2//1 5//1\nf 1 2 3 4 5\ns 1\n# end\n";
     Random random(1);
@@ -218,7 +219,7 @@ TEST_CASE("obj: damaged files end in an error or a mesh that is in range") {
             }
         }
         try {
-            const MeshFile f = parse(text);
+            const MeshFile f = meshOfObj(text);
             const std::size_t n = f.mesh.positions.size();
             for (const auto& t : f.mesh.triangles)
                 for (std::uint32_t v : t) REQUIRE(v < n);
@@ -241,7 +242,7 @@ TEST_CASE("obj: large polygons take no forever") {
         text += "v " + std::to_string(i) + " " + std::to_string(i % 2) + " 0\n";
         face += " " + std::to_string(i + 1);
     }
-    const std::string concave = errorOf(text + "v 1500 900 0\n" + face + " 3001\n");
+    const std::string concave = objError(text + "v 1500 900 0\n" + face + " 3001\n");
     CHECK(concave.find("line 3002: a concave polygon with more than 1024 corners") != std::string::npos);
     std::string circle, all = "f";
     for (int i = 0; i < 3000; ++i) {
@@ -249,13 +250,13 @@ TEST_CASE("obj: large polygons take no forever") {
                   std::to_string(1e3 * std::sin(i * 2 * kPiD / 3000)) + " 0\n";
         all += " " + std::to_string(i + 1);
     }
-    CHECK(parse(circle + all + "\n").mesh.triangles.size() == 2998);
+    CHECK(meshOfObj(circle + all + "\n").mesh.triangles.size() == 2998);
 }
 
 TEST_CASE("obj: files") {
     const TemporaryFolder folder;
     const std::string path = folder / "a.obj";
-    std::ofstream(path) << kSquare << "f 1 2 3 4\n";
+    std::ofstream(path) << kObjSquare << "f 1 2 3 4\n";
     CHECK(readObj(path).mesh.quads.size() == 1);
     CHECK(readMesh(path).mesh.quads.size() == 1);
     CHECK_THROWS_AS(readObj(folder / "absent.obj"), IoError);
@@ -276,7 +277,7 @@ TEST_CASE("obj: speed") {
     double best = 1e9;
     for (int k = 0; k < 5; ++k) {
         const auto start = std::chrono::steady_clock::now();
-        const MeshFile f = parse(text);
+        const MeshFile f = meshOfObj(text);
         best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         REQUIRE(f.mesh.quads.size() == n * n);
     }

@@ -9,7 +9,7 @@ using namespace abbe;
 
 namespace {
 
-std::string failure(const std::string& bytes) {
+std::string pointsFailure(const std::string& bytes) {
     try {
         parsePlyPoints(bytes, "t");
     } catch (const IoError& e) {
@@ -73,7 +73,7 @@ TEST_CASE("ply points: binary files of both byte orders") {
         const PointFile f = parsePlyPoints(bytes, "t");
         CHECK(f.positions.at(0) == Vec3(1.5f, -2, -300));
         CHECK(f.radii.at(0) == 0.125f);
-        CHECK(failure(bytes.substr(0, bytes.size() - 1)).find("ends too early") != std::string::npos);
+        CHECK(pointsFailure(bytes.substr(0, bytes.size() - 1)).find("ends too early") != std::string::npos);
     }
 }
 
@@ -99,10 +99,10 @@ TEST_CASE("ply points: damage is reported with its byte") {
     };
     for (const auto& [bytes, message] : cases) {
         CAPTURE(message);
-        const std::string what = failure(bytes);
+        const std::string what = pointsFailure(bytes);
         CAPTURE(what);
         CHECK(what.find(message) != std::string::npos);
         CHECK(what.find("byte ") != std::string::npos);
     }
-    CHECK(failure(cases[0].first).find(fmt::format("byte {}:", cases[0].first.find("-2"))) != std::string::npos);
+    CHECK(pointsFailure(cases[0].first).find(fmt::format("byte {}:", cases[0].first.find("-2"))) != std::string::npos);
 }

@@ -12,11 +12,11 @@ using test::Random;
 
 namespace {
 
-MeshFile parse(std::string_view bytes) { return parsePly(bytes, "t.ply"); }
+MeshFile meshOfPly(std::string_view bytes) { return parsePly(bytes, "t.ply"); }
 
-std::string errorOf(std::string_view bytes) {
+std::string plyError(std::string_view bytes) {
     try {
-        parse(bytes);
+        meshOfPly(bytes);
     } catch (const IoError& e) {
         return e.what();
     }
@@ -83,7 +83,7 @@ std::string rich(bool big) {
 } // namespace
 
 TEST_CASE("ply: text") {
-    const MeshFile f = parse(kTextSquare);
+    const MeshFile f = meshOfPly(kTextSquare);
     CHECK(f.mesh.positions.size() == 4);
     CHECK(f.mesh.positions[2] == Vec3(1, 1, 0.5f));
     CHECK(f.mesh.quads == std::vector<QuadIndices>{{0, 1, 2, 3}});
@@ -92,12 +92,12 @@ TEST_CASE("ply: text") {
     CHECK(f.groups[0].quadCount == 1);
     std::string noEnd(kTextSquare);
     noEnd.pop_back(); // the last line need not end
-    CHECK(parse(noEnd).mesh.triangles.size() == 1);
+    CHECK(meshOfPly(noEnd).mesh.triangles.size() == 1);
 }
 
 TEST_CASE("ply: binary of both byte orders, with all that can be there") {
     for (bool big : {false, true}) {
-        const MeshFile f = parse(rich(big));
+        const MeshFile f = meshOfPly(rich(big));
         CHECK(f.mesh.positions == std::vector<Vec3>{{0, 0, 0.25f}, {1, 0, 0.25f}, {0, 1, 0.25f}});
         CHECK(f.mesh.normals == std::vector<Vec3>(3, Vec3(0, 0, 1)));
         CHECK(f.mesh.uvs == std::vector<Vec2>{{0, 0.75f}, {0.5f, 0.75f}, {1, 0.75f}});
@@ -107,9 +107,9 @@ TEST_CASE("ply: binary of both byte orders, with all that can be there") {
 }
 
 TEST_CASE("ply: faces before vertices, and polygons") {
-    const MeshFile f = parse("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
-                             "element vertex 6\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-                             "6 0 1 2 3 4 5\n0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0\n");
+    const MeshFile f = meshOfPly("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                 "element vertex 6\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+                                 "6 0 1 2 3 4 5\n0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0\n");
     CHECK(f.mesh.triangles.size() == 4); // an L
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("ply: faults are named with their byte") {
     const auto has = [](std::string text, const std::string& from, const std::string& to, const std::string& part) {
         const std::size_t at = text.find(from);
         REQUIRE(at != std::string::npos);
-        const std::string e = errorOf(text.replace(at, from.size(), to));
+        const std::string e = plyError(text.replace(at, from.size(), to));
         INFO(e);
         CHECK(e.find(part) != std::string::npos);
     };
@@ -150,14 +150,14 @@ TEST_CASE("ply: faults are named with their byte") {
     has(square, "0.5", "nan", "byte " + bytes("0.5") + ": `z` of vertex 2 is not finite");
     has(square, "0.5", "1e99", "`z` of vertex 2 is not finite");
     has(square, "0.5", "0.5x", "byte " + bytes("0.5") + ": this is not a number");
-    CHECK(errorOf("").find("the header does not end") != std::string::npos);
-    CHECK(errorOf("ply\nformat ascii 1.0\n").find("the header does not end") != std::string::npos);
+    CHECK(plyError("").find("the header does not end") != std::string::npos);
+    CHECK(plyError("ply\nformat ascii 1.0\n").find("the header does not end") != std::string::npos);
 }
 
 TEST_CASE("ply: a file cut anywhere is an error, never a crash") {
     for (bool big : {false, true}) {
         const std::string whole = rich(big);
-        for (std::size_t size = 0; size < whole.size(); ++size) CHECK_FALSE(errorOf(whole.substr(0, size)).empty());
+        for (std::size_t size = 0; size < whole.size(); ++size) CHECK_FALSE(plyError(whole.substr(0, size)).empty());
     }
 }
 
@@ -186,7 +186,7 @@ TEST_CASE("ply: damaged files end in an error or a mesh that is in range") {
             if (bytes.empty()) bytes = " ";
         }
         try {
-            const MeshFile f = parse(bytes);
+            const MeshFile f = meshOfPly(bytes);
             const std::size_t n = f.mesh.positions.size();
             for (const auto& t : f.mesh.triangles)
                 for (std::uint32_t v : t) REQUIRE(v < n);

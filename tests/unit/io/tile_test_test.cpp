@@ -10,7 +10,7 @@ using namespace abbe;
 
 namespace {
 
-constexpr int kWidth = 256, kHeight = 192;
+constexpr int kTestedWidth = 256, kTestedHeight = 192;
 constexpr double kFloat = 0x1p-22;
 
 // A rendered image: the mean and the variance of the mean of R replicates, whose distribution and noise vary over it.
@@ -21,8 +21,9 @@ struct Render {
     Render(unsigned seed, int r, double bias = 1, bool skewed = false) : replicates(r) {
         std::mt19937 random(seed);
         std::normal_distribution<double> normal;
-        for (int i = 0; i < kWidth * kHeight; ++i) {
-            const double level = 0.2 + (i % kWidth) / 300.0, sigma = 0.05 + 0.2 * (i / kWidth) / kHeight;
+        for (int i = 0; i < kTestedWidth * kTestedHeight; ++i) {
+            const double level = 0.2 + (i % kTestedWidth) / 300.0,
+                         sigma = 0.05 + 0.2 * (i / kTestedWidth) / kTestedHeight;
             double sum = 0, squares = 0;
             for (int k = 0; k < r; ++k) {
                 const double z = normal(random);
@@ -37,14 +38,16 @@ struct Render {
     NoisyPlane plane() const { return {values, variances, replicates, kFloat}; }
 };
 
-TileTest test(const Render& a, const Render& b) { return tileTest(a.plane(), b.plane(), kWidth, kHeight); }
+TileTest tested(const Render& a, const Render& b) {
+    return tileTest(a.plane(), b.plane(), kTestedWidth, kTestedHeight);
+}
 
 } // namespace
 
 TEST_CASE("scores of images that agree are normal") {
     for (const int replicates : {2, 8}) {
-        const TileTest t = test(Render(1, replicates), Render(2, replicates));
-        CHECK(t.tiles == kWidth * kHeight / 64);
+        const TileTest t = tested(Render(1, replicates), Render(2, replicates));
+        CHECK(t.tiles == kTestedWidth * kTestedHeight / 64);
         CHECK(std::abs(t.mean) < 0.12);
         CHECK(std::abs(t.deviation - 1) < 0.08); // three standard errors
         CHECK(t.probability() > 0.01);
@@ -53,15 +56,15 @@ TEST_CASE("scores of images that agree are normal") {
 }
 
 TEST_CASE("a bias of 1 % is found, over the image and in one tile") {
-    const TileTest all = test(Render(3, 4, 1.01), Render(4, 4));
+    const TileTest all = tested(Render(3, 4, 1.01), Render(4, 4));
     CHECK(all.probability() < 1e-6);
     CHECK(all.verdict().find("brighter") != std::string::npos);
-    CHECK(test(Render(5, 4, 0.99), Render(6, 4)).verdict().find("darker") != std::string::npos);
+    CHECK(tested(Render(5, 4, 0.99), Render(6, 4)).verdict().find("darker") != std::string::npos);
 
     Render local(7, 4);
     for (int y = 40; y < 48; ++y)
-        for (int x = 80; x < 88; ++x) local.values[static_cast<std::size_t>(y * kWidth + x)] *= 1.1f;
-    const TileTest one = test(local, Render(8, 4));
+        for (int x = 80; x < 88; ++x) local.values[static_cast<std::size_t>(y * kTestedWidth + x)] *= 1.1f;
+    const TileTest one = tested(local, Render(8, 4));
     CHECK(one.largestProbability < 0.01);
     CHECK(one.largestX == 80);
     CHECK(one.largestY == 40);
@@ -71,10 +74,10 @@ TEST_CASE("a bias of 1 % is found, over the image and in one tile") {
 TEST_CASE("variances that are wrong, and seeds in common, are found") {
     Render a(9, 4);
     for (float& v : a.variances) v *= 2;
-    CHECK(test(a, Render(10, 4)).kolmogorovProbability < 0.01);
+    CHECK(tested(a, Render(10, 4)).kolmogorovProbability < 0.01);
     const Render same(11, 4);
-    CHECK(test(same, same).verdict() == "the images are equal, noise included");
-    CHECK(test(same, same).probability() < 1e-6);
+    CHECK(tested(same, same).verdict() == "the images are equal, noise included");
+    CHECK(tested(same, same).probability() < 1e-6);
 }
 
 TEST_CASE("tiles without noise are compared up to rounding; what is not finite is left out") {

@@ -8,14 +8,14 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = kPiD / 180;
+constexpr double kIesDegree = kPiD / 180;
 
 // Intensities f(vertical, horizontal) every `step` degrees.
 template <typename F> IntensityTable table(double lastPlane, PlaneSymmetry symmetry, F f, double firstPlane = 0) {
     IntensityTable t;
     t.symmetry = symmetry;
-    for (int v = 0; v <= 180; v += 1) t.vertical.push_back(v * kDegree);
-    for (double h = firstPlane; h <= lastPlane; h += 5) t.horizontal.push_back(h * kDegree);
+    for (int v = 0; v <= 180; v += 1) t.vertical.push_back(v * kIesDegree);
+    for (double h = firstPlane; h <= lastPlane; h += 5) t.horizontal.push_back(h * kIesDegree);
     for (const double h : t.horizontal)
         for (const double v : t.vertical) t.candela.push_back(f(v, h));
     return t;
@@ -50,8 +50,8 @@ TEST_CASE("planes are mirrored as the file says") {
     for (const auto& [profile, f] : profiles)
         for (double h = -355; h < 720; h += 5)
             for (const double v : {0., 20., 90., 133., 180.})
-                CHECK(profile.candela(v * kDegree, h * kDegree) ==
-                      doctest::Approx(f(v * kDegree, h * kDegree)).epsilon(1e-6).scale(1));
+                CHECK(profile.candela(v * kIesDegree, h * kIesDegree) ==
+                      doctest::Approx(f(v * kIesDegree, h * kIesDegree)).epsilon(1e-6).scale(1));
 }
 
 TEST_CASE("there is no light beyond the measured angles, and all of it at their ends") {

@@ -18,12 +18,12 @@ namespace {
 using schema::Dimension;
 using schema::Quantity;
 
-constexpr double kDegree = kPiD / 180;
-const SampledCurve kLamp([](double nm) { return 37 * std::exp((nm - 360) / 200); });
+constexpr double kLightsDegree = kPiD / 180;
+const SampledCurve kLightsLamp([](double nm) { return 37 * std::exp((nm - 360) / 200); });
 
 LightContext context() {
     LightContext c;
-    c.defaultColor = &kLamp;
+    c.defaultColor = &kLightsLamp;
     return c;
 }
 
@@ -63,13 +63,13 @@ TEST_CASE("a spot arrives nowhere on a ray outside of its reach, which is not mu
     std::uniform_real_distribution<float> unit(-1, 1);
     const auto vector = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
     for (const double angle : {0.01, 1.0, 20.0, 70.0, 120.0}) {
-        const SpotLight light({0.2f, 0.1f, 0}, normalize(Vec3{1, 2, 3}), 0, angle * kDegree, {&kLamp, 1});
+        const SpotLight light({0.2f, 0.1f, 0}, normalize(Vec3{1, 2, 3}), 0, angle * kLightsDegree, {&kLightsLamp, 1});
         int lit = 0, within = 0;
         for (int i = 0; i < 2000; ++i) {
             // Rays that come by near the cone, and some of its own directions.
             const Vec3 target = Vec3{0.2f, 0.1f, 0} + normalize(Vec3{1, 2, 3}) * (2 * unit(random));
             const Vec3 origin = vector() * 3.f;
-            const Vec3 nudge = vector() * static_cast<float>(angle * kDegree);
+            const Vec3 nudge = vector() * static_cast<float>(angle * kLightsDegree);
             const Ray ray{origin, i % 2 ? normalize(target - origin + nudge) : normalize(Vec3{1, 2, 3} + nudge)};
             const auto reach = light.reach(ray, 10);
             for (int k = 0; k < 200; ++k) {
@@ -97,9 +97,9 @@ TEST_CASE("the power of a point light is what was asked for") {
 TEST_CASE("the solid angle of a spot is the integral of its falloff") {
     for (const auto& [inner, outer] :
          {std::pair{20.0, 30.0}, {0.0, 90.0}, {40.0, 40.0}, {100.0, 180.0}, {0.001, 0.002}}) {
-        const SpotLight light({}, {0, 1, 0}, inner * kDegree, outer * kDegree, {&kLamp, 1});
+        const SpotLight light({}, {0, 1, 0}, inner * kLightsDegree, outer * kLightsDegree, {&kLightsLamp, 1});
         const float at = Wavelengths::single(555).nm[0];
-        const double onAxis = kLamp.at(at);
+        const double onAxis = kLightsLamp.at(at);
         const auto falloff = [&](double theta) {
             const auto s = light.sample(direction(theta, 0.3), 0, {}, Wavelengths::single(at), 0);
             return s ? s->radiance[0] / onAxis : 0.0;
@@ -107,9 +107,11 @@ TEST_CASE("the solid angle of a spot is the integral of its falloff") {
         const auto part = [&](double a, double b) {
             return test::integrate([&](double t) { return falloff(t) * 2 * kPiD * std::sin(t); }, a, b, 200);
         };
-        const double integral = part(0, inner * kDegree) + part(inner * kDegree, outer * kDegree);
-        CHECK(SpotLight::solidAngle(inner * kDegree, outer * kDegree) == doctest::Approx(integral).epsilon(2e-4));
-        if (outer < 180) CHECK_FALSE(light.sample(direction(1.001 * outer * kDegree, 1), 0, {}, {}, 0).has_value());
+        const double integral = part(0, inner * kLightsDegree) + part(inner * kLightsDegree, outer * kLightsDegree);
+        CHECK(SpotLight::solidAngle(inner * kLightsDegree, outer * kLightsDegree) ==
+              doctest::Approx(integral).epsilon(2e-4));
+        if (outer < 180)
+            CHECK_FALSE(light.sample(direction(1.001 * outer * kLightsDegree, 1), 0, {}, {}, 0).has_value());
     }
 }
 
@@ -117,7 +119,7 @@ TEST_CASE("a spot aims at its look-at point, and states cd on its axis") {
     SpotLightParams p;
     p.position = {0, 3, 0};
     p.lookAt = Vec3d{0, 0, 0};
-    p.angle = 40 * kDegree;
+    p.angle = 40 * kLightsDegree;
     p.intensity = Quantity{900, Dimension::luminousIntensity, {}};
     Diagnostics diagnostics;
     const auto light = makeSpotLight(p, context(), diagnostics);
@@ -125,14 +127,15 @@ TEST_CASE("a spot aims at its look-at point, and states cd on its axis") {
     CHECK(luminous([&](const Wavelengths& w) { return light->sample(Vec3(), 0, {}, w, 0)->radiance; }) ==
           doctest::Approx(100).epsilon(1e-5));
     const auto lit = [&](double degrees) {
-        return light->sample(Vec3{static_cast<float>(3 * std::tan(degrees * kDegree)), 0, 0}, 0, {}, {}, 0).has_value();
+        return light->sample(Vec3{static_cast<float>(3 * std::tan(degrees * kLightsDegree)), 0, 0}, 0, {}, {}, 0)
+            .has_value();
     };
     CHECK(lit(19.9));
     CHECK_FALSE(lit(20.1)); // `angle` is the full angle
     p.lookAt = p.position;
     CHECK(makeSpotLight(p, context(), diagnostics) == nullptr);
     p.lookAt.reset();
-    p.innerAngle = 50 * kDegree;
+    p.innerAngle = 50 * kLightsDegree;
     CHECK(makeSpotLight(p, context(), diagnostics) == nullptr);
     REQUIRE(diagnostics.all().size() == 2);
     CHECK(diagnostics.all()[0].code == "E0344");
@@ -153,7 +156,7 @@ TEST_CASE("the sun gives the irradiance that was stated, whatever its size") {
     for (const double degrees : {0.05, 0.53, 10.0, 120.0, 180.0}) {
         SunLightParams p;
         p.toward = Vec3d{0, -2, 0};
-        p.angularDiameter = degrees * kDegree;
+        p.angularDiameter = degrees * kLightsDegree;
         p.irradiance = Quantity{100000, Dimension::illuminance, {}};
         Diagnostics diagnostics;
         const auto sun = makeSunLight(p, context(), diagnostics);
@@ -170,8 +173,8 @@ TEST_CASE("the sun's luminance and its irradiance agree") {
     Diagnostics diagnostics;
     const auto sun = makeSunLight(p, context(), diagnostics);
     REQUIRE(sun);
-    CHECK(sunIrradiance(*sun, 0.265 * kDegree) ==
-          doctest::Approx(1.6e9 * kPiD * square(std::sin(0.265 * kDegree))).epsilon(1e-4));
+    CHECK(sunIrradiance(*sun, 0.265 * kLightsDegree) ==
+          doctest::Approx(1.6e9 * kPiD * square(std::sin(0.265 * kLightsDegree))).epsilon(1e-4));
     p.angularDiameter = 0;
     CHECK(makeSunLight(p, context(), diagnostics) == nullptr);
     CHECK(diagnostics.all()[0].code == "E0347");
@@ -180,15 +183,15 @@ TEST_CASE("the sun's luminance and its irradiance agree") {
 // Hard case 30.
 TEST_CASE("the solid angle of small suns does not cancel") {
     for (const double half : {2e-5, 1e-4, 1e-3, 0.1, 1.0, kPiD / 2}) {
-        const SunLight sun({0, 1, 0}, half, {&kLamp, 1});
+        const SunLight sun({0, 1, 0}, half, {&kLightsLamp, 1});
         const double exact = 4 * kPiD * square(std::sin(half / 2));
         CHECK(1 / sun.sample(Vec3(), 0, {0.5f, 0.5f}, {}, 0)->pdfSolidAngle == doctest::Approx(exact).epsilon(1e-6));
     }
 }
 
 TEST_CASE("sampled directions of the sun lie in its disk with its radiance") {
-    const double half = 0.265 * kDegree;
-    const SunLight sun({1, 2, 3}, half, {&kLamp, 1});
+    const double half = 0.265 * kLightsDegree;
+    const SunLight sun({1, 2, 3}, half, {&kLightsLamp, 1});
     const Wavelengths w = Wavelengths::sample(0.3f);
     test::Random random(4);
     Vec3d sum;
@@ -205,7 +208,7 @@ TEST_CASE("sampled directions of the sun lie in its disk with its radiance") {
 
 TEST_CASE("a sun without diameter is a direction") {
     SunLightParams p;
-    p.elevation = 90 * kDegree;
+    p.elevation = 90 * kLightsDegree;
     p.angularDiameter = 0;
     p.irradiance = Quantity{5, Dimension::illuminance, {}};
     Diagnostics diagnostics;
@@ -219,8 +222,8 @@ TEST_CASE("a sun without diameter is a direction") {
 
 TEST_CASE("elevation and azimuth: clockwise from north, which is -z, or +y where z is up") {
     SunLightParams p;
-    p.elevation = 30 * kDegree;
-    p.azimuth = 90 * kDegree;
+    p.elevation = 30 * kLightsDegree;
+    p.azimuth = 90 * kLightsDegree;
     p.angularDiameter = 0;
     Diagnostics diagnostics;
     const float c = std::sqrt(0.75f);
@@ -255,15 +258,15 @@ TEST_CASE("a sky of L gives an open surface π L") {
 }
 
 TEST_CASE("distant lights send their power through the disk around the scene") {
-    SkyLight sky({&kLamp, 1});
-    SunLight sun({0, 1, 0}, 0.01, {&kLamp, 1});
+    SkyLight sky({&kLightsLamp, 1});
+    SunLight sun({0, 1, 0}, 0.01, {&kLightsLamp, 1});
     Bounds3 bounds;
     bounds.add(Vec3{-1, -2, -2});
     bounds.add(Vec3{1, 2, 2});
     sky.commit(bounds);
     sun.commit(bounds);
-    CHECK(sky.power() == doctest::Approx(4 * kPiD * kPiD * 9 * radiantIntegral(kLamp)));
-    CHECK(sun.power() == doctest::Approx(kPiD * 9 * radiantIntegral(kLamp)));
+    CHECK(sky.power() == doctest::Approx(4 * kPiD * kPiD * 9 * radiantIntegral(kLightsLamp)));
+    CHECK(sun.power() == doctest::Approx(kPiD * 9 * radiantIntegral(kLightsLamp)));
     sky.commit({});
     CHECK(sky.power() > 0); // planes alone
 }

@@ -10,11 +10,11 @@ namespace {
 
 const ConstantCurve kOne(1), kHalf(0.5);
 
-MediumOptics optics() { return opticsOf(kOne, kHalf); }
+MediumOptics motionOptics() { return opticsOf(kOne, kHalf); }
 
 const Transform kPlace = Transform::scale({0.1, 0.1, 0.1}).then(Transform::rotate({0, 0, 1}, 0.4));
 const Transform kCoarse = Transform::scale({0.4, 0.4, 0.4}).then(Transform::translate({0.1, 0, 0}));
-const Transform kWorld =
+const Transform kMotionWorld =
     Transform::scale({2, 2, 2}).then(Transform::rotate({1, 1, 0}, 1)).then(Transform::translate({1, 2, 3}));
 
 VoxelGrid speckles(std::uint64_t seed) {
@@ -39,7 +39,7 @@ VectorGrid winds(float fastest) {
 GridMedium moving(double first, double duration, double scale = 1) {
     GridExtras extras;
     extras.velocity = GridVelocity{winds(1), scale, first, duration};
-    return GridMedium(optics(), speckles(3), 1, kWorld, std::move(extras));
+    return GridMedium(motionOptics(), speckles(3), 1, kMotionWorld, std::move(extras));
 }
 
 } // namespace
@@ -48,7 +48,7 @@ TEST_CASE("a drifting volume is where its velocity has carried it, and within it
     const GridMedium medium = moving(-0.3, 4);
     const VoxelGrid density = speckles(3);
     const VectorGrid wind = winds(1);
-    const Transform toWorld = *kWorld.inverse();
+    const Transform toWorld = *kMotionWorld.inverse();
     CHECK(medium.drift() > 30);
     Random random(8);
     int found = 0;
@@ -86,7 +86,7 @@ TEST_CASE("a drifting volume is where its velocity has carried it, and within it
 }
 
 TEST_CASE("what does not move costs nothing: the same as without velocity") {
-    const GridMedium still(optics(), speckles(3), 1, kWorld);
+    const GridMedium still(motionOptics(), speckles(3), 1, kMotionWorld);
     for (const GridMedium& medium : {moving(0, 0), moving(0, 1, 0)}) {
         CHECK(medium.drift() == 0);
         WalkSpace a, b;
@@ -109,7 +109,7 @@ TEST_CASE("emission drifts along") {
     GridExtras extras;
     extras.velocity = GridVelocity{winds(1), 1, 0, 1};
     extras.glow = Glow::ofSpectrum(kHalf);
-    const GridMedium medium(optics(), speckles(3), 1, kWorld, std::move(extras));
+    const GridMedium medium(motionOptics(), speckles(3), 1, kMotionWorld, std::move(extras));
     Random random(12);
     int found = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -140,9 +140,9 @@ TEST_CASE("colour is a factor of the albedo, smooth between voxels") {
     extras.color = GridExtras::Color{makeVectorGrid(voxels, fogAt({})),
                                      std::make_unique<UpsamplingTable>(UpsamplingTable::build(rgb::rec709, 16))};
     const std::vector<Voxel> dense{{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 1}};
-    const GridMedium medium(optics(), makeVoxelGrid(dense, fogAt({})), 1, {}, std::move(extras));
+    const GridMedium medium(motionOptics(), makeVoxelGrid(dense, fogAt({})), 1, {}, std::move(extras));
     CHECK(medium.albedoVaries());
-    CHECK_FALSE(GridMedium(optics(), speckles(3), 1, {}).albedoVaries());
+    CHECK_FALSE(GridMedium(motionOptics(), speckles(3), 1, {}).albedoVaries());
     WalkSpace space;
     MediumWalk* walk = medium.walk({{-4, 0, 0}, {1, 0, 0}, 10, 0}, 10, space);
     const auto at = [&](float x, float nm) {

@@ -14,7 +14,7 @@ namespace {
 
 const ConstantCurve kBlack(0), kExtinction(1.6);
 
-MediumOptics optics() { return opticsOf(kExtinction, kBlack); }
+MediumOptics noiseOptics() { return opticsOf(kExtinction, kBlack); }
 
 NoiseBox box() {
     NoiseBox b;
@@ -33,7 +33,7 @@ NoisePattern pattern(NoiseKind kind) {
 }
 
 // Both estimators of the transmittance of a ray against e^(-extinction · integral).
-void check(const Medium& medium, const Ray& ray, float tMax, double integral) {
+void checkNoise(const Medium& medium, const Ray& ray, float tMax, double integral) {
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);
     const Wavelengths lambda = Wavelengths::sample(0.37f);
@@ -56,7 +56,7 @@ void check(const Medium& medium, const Ray& ray, float tMax, double integral) {
 TEST_CASE("a box of noise without contrast, edge or falloff is a homogeneous one, without a lookup") {
     NoisePattern flat;
     flat.contrast = 0;
-    const NoiseVolume medium(optics(), flat, box(), Transform::translate({0, 0, 3}));
+    const NoiseVolume medium(noiseOptics(), flat, box(), Transform::translate({0, 0, 3}));
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);
     const Wavelengths lambda = Wavelengths::sample(0.1f);
@@ -81,7 +81,7 @@ TEST_CASE("noise volumes: both estimators against quadrature, thinned or not, wh
                 NoiseBox where = box();
                 where.edge = thin ? 0.4 : 0;
                 if (thin) where.scaleHeight = 0.5;
-                const NoiseVolume medium(optics(), pattern(kind), where, place);
+                const NoiseVolume medium(noiseOptics(), pattern(kind), where, place);
                 const Transform toBox = *place.inverse();
                 const Ray ray{{0.05f, 0.03f, -2}, normalize(Vec3{0.13f, 0.06f, 1})};
                 constexpr int steps = 200'000;
@@ -92,7 +92,7 @@ TEST_CASE("noise volumes: both estimators against quadrature, thinned or not, wh
                     if (inside) integral += 4.0 / steps * static_cast<double>(medium.density(p));
                 }
                 filled += integral > 0.1;
-                check(medium, ray, 4, integral);
+                checkNoise(medium, ray, 4, integral);
             }
     CHECK(filled >= 9);
 }
@@ -100,18 +100,18 @@ TEST_CASE("noise volumes: both estimators against quadrature, thinned or not, wh
 TEST_CASE("noise ends at the faces of its box, also in cells of the walk that reach beyond") {
     NoisePattern faint = pattern(NoiseKind::gradient);
     faint.contrast = 1e-6;
-    const NoiseVolume medium(optics(), faint, box(), {});
+    const NoiseVolume medium(noiseOptics(), faint, box(), {});
     // Bricks of 2.5/21 and 2/17 m, cells of eight: out of the box at y = 1, close to an edge of a cell.
     const Vec3d leaves{-1 + 16 * 2.5 / 21 + 0.025, 1, -1 + 8 * 2.0 / 17 + 0.025};
     const Vec3d direction = normalize(Vec3d{-1, 0.3, 1});
-    check(medium, {Vec3(leaves - direction * 0.5), Vec3(direction)}, 2, 0.5);
+    checkNoise(medium, {Vec3(leaves - direction * 0.5), Vec3(direction)}, 2, 0.5);
 }
 
 TEST_CASE("noise without an end: against quadrature") {
     NoisePattern soft = pattern(NoiseKind::gradient);
     soft.contrast = 0.8;
     const Transform place = Transform::rotate({1, 2, 3}, 0.7);
-    NoiseMedium medium(optics(), soft, place);
+    NoiseMedium medium(noiseOptics(), soft, place);
     medium.setOrigin({100, -20, 7});
     const NoiseField field(soft);
     const Ray ray{{0.05f, 0.03f, -2}, normalize(Vec3{0.13f, 0.06f, 1})};
@@ -121,7 +121,7 @@ TEST_CASE("noise without an end: against quadrature") {
         integral += 2.0 / steps *
                     static_cast<double>(field.at(place.inverse()->point(
                         Vec3d(ray.origin) + Vec3d{100, -20, 7} + Vec3d(ray.direction) * (2.0 * (i + 0.5) / steps))));
-    check(medium, ray, 2, integral);
+    checkNoise(medium, ray, 2, integral);
 }
 
 TEST_CASE("bounds of noise: hardly ever exceeded, and not much wider than need be") {
@@ -129,7 +129,7 @@ TEST_CASE("bounds of noise: hardly ever exceeded, and not much wider than need b
         NoiseBox where = box();
         where.edge = 0.3;
         where.scaleHeight = 0.8;
-        const NoiseVolume medium(optics(), pattern(kind), where, {});
+        const NoiseVolume medium(noiseOptics(), pattern(kind), where, {});
         const Vec3d size = where.upper - where.lower;
         std::mt19937 random(3);
         std::uniform_real_distribution<double> within(0, 1);

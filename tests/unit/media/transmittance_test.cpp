@@ -11,12 +11,12 @@
 namespace abbe::test {
 namespace {
 
-const SlopeCurve kBlack(0, 0);
+const SlopeCurve kBlackSlope(0, 0);
 
-MediumOptics optics(const Curve& extinction) { return opticsOf(extinction, kBlack); }
+MediumOptics optics(const Curve& extinction) { return opticsOf(extinction, kBlackSlope); }
 
 // Mean of both estimators over many rays of the same way, lane by lane, against e^(-extinction · integral).
-void check(const Medium& medium, const Ray& ray, float tMax, double integral) {
+void checkTransmittance(const Medium& medium, const Ray& ray, float tMax, double integral) {
     const Medium* const list[] = {&medium};
     MediumTracker tracker(list);
     const Wavelengths lambda = Wavelengths::sample(0.37f);
@@ -84,11 +84,11 @@ TEST_CASE("atmosphere: up, down, level and without an end") {
     for (const Curve* extinction : {static_cast<const Curve*>(&grey), static_cast<const Curve*>(&slope)}) {
         const Atmosphere medium(optics(*extinction), {0, 1, 0}, -1, 2);      // ground 1 m below, e-folding in 2 m
         const auto up = [](double h) { return 2 * (1 - std::exp(-h / 2)); }; // from the ground to height h
-        check(medium, {{}, {0, 1, 0}}, 3, up(4) - up(1));
-        check(medium, {{}, {0, 1, 0}}, kInfinity, 2 - up(1));
-        check(medium, {{}, {0, -1, 0}}, 2, up(1) + 1);
-        check(medium, {{}, {1, 0, 0}}, 2, 2 * std::exp(-0.5));
-        check(medium, {{}, {0.6f, 0.8f, 0}}, 5, (up(5) - up(1)) / 0.8);
+        checkTransmittance(medium, {{}, {0, 1, 0}}, 3, up(4) - up(1));
+        checkTransmittance(medium, {{}, {0, 1, 0}}, kInfinity, 2 - up(1));
+        checkTransmittance(medium, {{}, {0, -1, 0}}, 2, up(1) + 1);
+        checkTransmittance(medium, {{}, {1, 0, 0}}, 2, 2 * std::exp(-0.5));
+        checkTransmittance(medium, {{}, {0.6f, 0.8f, 0}}, 5, (up(5) - up(1)) / 0.8);
     }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("voxels: both estimators against quadrature, whichever way the grid is
                                     sampler.at(Vec3(toIndex.point(Vec3d(ray.origin) + Vec3d(ray.direction) * t))));
                 }
                 REQUIRE(integral > 0.5);
-                check(medium, ray, 4, integral);
+                checkTransmittance(medium, ray, 4, integral);
             }
         }
 }

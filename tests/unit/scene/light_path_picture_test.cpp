@@ -10,9 +10,9 @@
 namespace abbe::test {
 namespace {
 
-constexpr int kWidth = 24, kHeight = 16;
+constexpr int kPictureWidth = 24, kPictureHeight = 16;
 
-std::string sceneText(const std::string& render, const std::string& more = "") {
+std::string lightPathScene(const std::string& render, const std::string& more = "") {
     return "scene 1\nfilm { size 24 16; output \"x.exr\" space=acescg; "
            "layers { components; light-group lamp; light-group fill } }\nrender { samples 64; " +
            render + R"( }
@@ -55,7 +55,7 @@ struct Picture {
     double mean(const std::string& name) const {
         double sum = 0;
         for (const float x : plane(name)) sum += static_cast<double>(x);
-        return sum / (kWidth * kHeight);
+        return sum / (kPictureWidth * kPictureHeight);
     }
 };
 
@@ -67,7 +67,7 @@ LightPathFindings findingsOf(const std::string& text) { return findingsOf(TestSc
 
 TEST_CASE("light paths: components and light groups add up to the picture with all light of the splats") {
     for (const char* choice : {"always", "alone"}) {
-        const Picture image(sceneText(std::string("light-paths ") + choice));
+        const Picture image(lightPathScene(std::string("light-paths ") + choice));
         REQUIRE(image.statistics.splats > 1000);
         const auto sum = [&](std::initializer_list<const char*> names, std::size_t i) {
             float total = 0;
@@ -78,7 +78,7 @@ TEST_CASE("light paths: components and light groups add up to the picture with a
         for (std::size_t i = 0; i < image.picture.g.size(); ++i) {
             CHECK(sum({"direct", "indirect", "caustic"}, i) == image.picture.g[i]);
             CHECK(sum({"group_lamp", "group_fill"}, i) == image.picture.g[i]);
-            const int x = static_cast<int>(i) % kWidth, y = static_cast<int>(i) / kWidth;
+            const int x = static_cast<int>(i) % kPictureWidth, y = static_cast<int>(i) / kPictureWidth;
             splatted += image.film.splatMean(SplatKind::lightPath, x, y, 0, 2).y > 0;
         }
         CHECK(splatted > image.picture.g.size() / 2);
@@ -87,7 +87,7 @@ TEST_CASE("light paths: components and light groups add up to the picture with a
 }
 
 TEST_CASE("light paths: a sample taken again is what camera paths bring, and together they are the picture's") {
-    const Picture image(sceneText("light-paths always"));
+    const Picture image(lightPathScene("light-paths always"));
     const auto tracer = makePathTracer(image.scene.scene().effects);
     for (const Vec2i at : {Vec2i{12, 8}, Vec2i{3, 12}}) {
         PixelFilm film = Picture::makeFilm(image.scene);
@@ -118,7 +118,7 @@ light lamp sphere { center 0 3 8; radius 0.1; radiance 1 }
 
 TEST_CASE("light paths: findings name lights and targets, are those of the render, and say why there are none") {
     using enum LightPathVerdict;
-    const std::string text = sceneText("");
+    const std::string text = lightPathScene("");
     const Picture image(text);
     const LightPathFindings& found = image.statistics.lightPlan;
     CHECK(found.verdict == used);
@@ -146,9 +146,9 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     REQUIRE(alone.shares.size() == found.shares.size());
     for (std::size_t i = 0; i < alone.shares.size(); ++i) CHECK(alone.shares[i].share == found.shares[i].share);
 
-    CHECK(findingsOf(sceneText("light-paths off")).verdict == off);
-    CHECK(findingsOf(sceneText("light-paths always")).verdict == asked);
-    CHECK(findingsOf(sceneText("strategy lights")).verdict == otherTechnique);
+    CHECK(findingsOf(lightPathScene("light-paths off")).verdict == off);
+    CHECK(findingsOf(lightPathScene("light-paths always")).verdict == asked);
+    CHECK(findingsOf(lightPathScene("strategy lights")).verdict == otherTechnique);
     std::string plain = text;
     plain.replace(plain.find("dielectric { ior glass BK7 }"), 28, "diffuse { reflectance 0.5 }");
     CHECK(findingsOf(plain).verdict == nothingFocuses);
@@ -166,12 +166,12 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
 // Hardly anything that has been spread comes back to what the camera sees: for the mean of all pixels it would be best
 // to end nine of ten of these paths. What ends them saves next to nothing, though.
 TEST_CASE("light paths: going on past a rough surface is left off only as far as it saves time") {
-    const LightPathFindings open = findingsOf(sceneText(""));
+    const LightPathFindings open = findingsOf(lightPathScene(""));
     CHECK(open.afterSpread > 0.5);
     // Within white walls paths that go on are long, and a camera that looks at the caustic sees little of what they
     // bring.
-    std::string text = sceneText("light-paths always",
-                                 "shape room box { min -3 -1 -3; max 3 4 6; material diffuse { reflectance 0.97 } }\n");
+    std::string text = lightPathScene(
+        "light-paths always", "shape room box { min -3 -1 -3; max 3 4 6; material diffuse { reflectance 0.97 } }\n");
     text.replace(text.find("look-at 0 0.3 0; fov 45 deg"), 27, "look-at -0.45 0 0; fov 4 deg");
     const LightPathFindings closed = findingsOf(text);
     CHECK(closed.afterSpread < 0.5);

@@ -7,7 +7,7 @@ namespace abbe::test {
 namespace {
 
 const std::string kEyeWithShutter = "scene 1\ncamera { from 0 0 5; look-at 0 0 0; shutter \"1/2\" s }\n" + kSky;
-const std::string kBall = "object ball { shape sphere { radius 0.1 } }\n";
+const std::string kMovingBall = "object ball { shape sphere { radius 0.1 } }\n";
 
 // Where a vertical ray at x meets something, at a position in the shutter interval.
 bool metAt(const TestScene& scene, double x, double y, float time) {
@@ -17,7 +17,7 @@ bool metAt(const TestScene& scene, double x, double y, float time) {
 }
 
 TEST_CASE("motion: an instance goes where its keys say while the shutter is open") {
-    const auto scene = TestScene::parse(kEyeWithShutter + kBall +
+    const auto scene = TestScene::parse(kEyeWithShutter + kMovingBall +
                                         "instance ball { transform { at 0 s { translate -1 0 0 }\n"
                                         "at 1 s { translate 1 0 0 } } }\n");
     CHECK(codes(scene) == "");
@@ -30,7 +30,7 @@ TEST_CASE("motion: an instance goes where its keys say while the shutter is open
 }
 
 TEST_CASE("motion: a full turn is one, in a group that stands still") {
-    const auto scene = TestScene::parse(kEyeWithShutter + kBall +
+    const auto scene = TestScene::parse(kEyeWithShutter + kMovingBall +
                                         "group { transform { translate 0 1 0 }\n"
                                         "instance ball { transform {\n"
                                         "at 0 s { translate 1 0 0; rotate z 0 deg }\n"
@@ -43,8 +43,8 @@ TEST_CASE("motion: a full turn is one, in a group that stands still") {
 }
 
 TEST_CASE("motion: without a shutter everything stands where it is at time 0") {
-    const auto scene = build(kBall + "instance ball { transform { at -1 s { translate -1 0 0 }\n"
-                                     "at 1 s { translate 1 0 0 } } }\n");
+    const auto scene = build(kMovingBall + "instance ball { transform { at -1 s { translate -1 0 0 }\n"
+                                           "at 1 s { translate 1 0 0 } } }\n");
     CHECK(codes(scene) == "");
     for (const float time : {0.f, 0.4f, 1.f}) CHECK(metAt(scene, 0, 0, time));
 }
@@ -78,8 +78,8 @@ TEST_CASE("motion: shapes, groups, placements and what nests in them") {
              "object moving { group { " + kSlide +
                  "\ninstance ball } }\nobject outer { instance moving }\ninstance outer",
          })
-        checkSlide(
-            TestScene::parse(kEyeWithShutter + kBall + "instance ball { transform { translate 0 9 0 } }\n" + body));
+        checkSlide(TestScene::parse(kEyeWithShutter + kMovingBall +
+                                    "instance ball { transform { translate 0 9 0 } }\n" + body));
 }
 
 TEST_CASE("motion: what moves in something that moves has both motions") {
@@ -99,8 +99,8 @@ TEST_CASE("motion: what moves in something that moves has both motions") {
                  "object moving { instance lit { " +
                  rise + " } }\ninstance moving",
          }) {
-        const auto scene =
-            TestScene::parse(kEyeWithShutter + kBall + "instance ball { transform { translate 0 9 0 } }\n" + body);
+        const auto scene = TestScene::parse(kEyeWithShutter + kMovingBall +
+                                            "instance ball { transform { translate 0 9 0 } }\n" + body);
         INFO(body << scene.report());
         CHECK(codes(scene) == "");
         CHECK(metAt(scene, -1, 0, 0));
@@ -191,7 +191,7 @@ TEST_CASE("motion: cameras move by `at` and by `transform`") {
 
 TEST_CASE("motion: what cannot move, and keys that make no sense") {
     const auto with = [](const std::string& body) {
-        return codes(TestScene::parse(kEyeWithShutter + kBall + "instance ball\n" + body));
+        return codes(TestScene::parse(kEyeWithShutter + kMovingBall + "instance ball\n" + body));
     };
     const std::string stretch = "transform { at 0 s { scale 1 1 1 }\nat 1 s { scale 1 2 1 } }";
     CHECK(with("shape plane { " + kSlide + " }") == "E0634");

@@ -12,7 +12,7 @@ std::string surface(const std::string& properties) {
 }
 
 // The diagnostics with the line and column of each. The properties begin in line 5.
-std::string faults(const std::string& properties) {
+std::string openpbrFaults(const std::string& properties) {
     std::string text;
     const TestScene scene = build(surface(properties));
     for (const Diagnostic& d : scene.diagnostics().all()) CHECK(!d.help.empty());
@@ -53,22 +53,23 @@ TEST_CASE("openpbr solids: what is filled, and with what") {
 }
 
 TEST_CASE("openpbr: contradictions are shown where they are written") {
-    CHECK(faults("subsurface-weight 1") == "");
-    CHECK(faults("subsurface-weight 1\ntransmission-weight 0.5") == "6:1 E0700");
-    CHECK(faults("subsurface-weight 1\n  transmission-weight checker") == "6:3 E0700");
-    CHECK(faults("subsurface-weight 1; geometry-thin-walled on\ntransmission-weight 0.5") == "");
-    CHECK(faults("specular-ior glass BK7\ntransmission-weight 1\ntransmission-dispersion-scale 1") == "7:1 E0701");
-    CHECK(faults("transmission-weight 1; transmission-depth 1 m\ntransmission-color checker") == "6:1 E0702");
-    CHECK(faults("subsurface-weight 1\nsubsurface-color checker") == "6:1 E0702");
-    CHECK(faults("subsurface-color checker\ngeometry-thin-walled on; subsurface-weight 1") == "");
-    CHECK(faults("subsurface-weight 1\nsubsurface-scatter-anisotropy 1") == "6:1 E0703");
-    CHECK(faults("geometry-thin-walled on; subsurface-weight 1; subsurface-scatter-anisotropy 1") == "");
-    CHECK(faults("transmission-weight 1; specular-roughness checker\nspecular-roughness-anisotropy 0.5") ==
+    CHECK(openpbrFaults("subsurface-weight 1") == "");
+    CHECK(openpbrFaults("subsurface-weight 1\ntransmission-weight 0.5") == "6:1 E0700");
+    CHECK(openpbrFaults("subsurface-weight 1\n  transmission-weight checker") == "6:3 E0700");
+    CHECK(openpbrFaults("subsurface-weight 1; geometry-thin-walled on\ntransmission-weight 0.5") == "");
+    CHECK(openpbrFaults("specular-ior glass BK7\ntransmission-weight 1\ntransmission-dispersion-scale 1") ==
+          "7:1 E0701");
+    CHECK(openpbrFaults("transmission-weight 1; transmission-depth 1 m\ntransmission-color checker") == "6:1 E0702");
+    CHECK(openpbrFaults("subsurface-weight 1\nsubsurface-color checker") == "6:1 E0702");
+    CHECK(openpbrFaults("subsurface-color checker\ngeometry-thin-walled on; subsurface-weight 1") == "");
+    CHECK(openpbrFaults("subsurface-weight 1\nsubsurface-scatter-anisotropy 1") == "6:1 E0703");
+    CHECK(openpbrFaults("geometry-thin-walled on; subsurface-weight 1; subsurface-scatter-anisotropy 1") == "");
+    CHECK(openpbrFaults("transmission-weight 1; specular-roughness checker\nspecular-roughness-anisotropy 0.5") ==
           "6:1 E0704");
-    CHECK(faults("transmission-weight checker\nspecular-roughness-anisotropy checker") == "6:1 E0704");
-    CHECK(faults("transmission-weight 1; specular-roughness checker") == "");
-    CHECK(faults("specular-roughness checker; specular-roughness-anisotropy 0.5") == "");
-    CHECK(faults("coat-weight 1; geometry-coat-normal 0; geometry-coat-tangent 0.25") == "");
+    CHECK(openpbrFaults("transmission-weight checker\nspecular-roughness-anisotropy checker") == "6:1 E0704");
+    CHECK(openpbrFaults("transmission-weight 1; specular-roughness checker") == "");
+    CHECK(openpbrFaults("specular-roughness checker; specular-roughness-anisotropy 0.5") == "");
+    CHECK(openpbrFaults("coat-weight 1; geometry-coat-normal 0; geometry-coat-tangent 0.25") == "");
 }
 
 } // namespace abbe::test

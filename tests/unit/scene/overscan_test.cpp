@@ -7,7 +7,7 @@
 namespace abbe::test {
 namespace {
 
-std::string sceneText(const std::string& film, const std::string& camera) {
+std::string overscanScene(const std::string& film, const std::string& camera) {
     return "scene 1\nfilm { size 20 14; filter mitchell 2; layers { depth; motion; deep 4 }; " + film + " }\n" +
            camera +
            R"(
@@ -29,8 +29,9 @@ TEST_CASE("pixels inside the frame are the same bits with any overscan, and a cr
           "camera orthographic { from 0 1 4; look-at 0 0.5 0; width 4 m; shutter 1 s }",
           "camera lens-system { prescription double-gauss; lens 30 mm; f-stop 2.8; from 0 1 4; look-at 0 0.5 0 }"}) {
         INFO(camera);
-        const LayeredFilm plain(sceneText("", camera), 8, 5), wide(sceneText("overscan 3 17 6 2", camera), 8, 5);
-        const LayeredFilm corner(sceneText("overscan 3 17 6 2; crop -3 -17 4 5", camera), 8, 5);
+        const LayeredFilm plain(overscanScene("", camera), 8, 5),
+            wide(overscanScene("overscan 3 17 6 2", camera), 8, 5);
+        const LayeredFilm corner(overscanScene("overscan 3 17 6 2; crop -3 -17 4 5", camera), 8, 5);
         CHECK(wide.film.bounds().x0 == -3);
         CHECK(wide.film.bounds().y1 == 16);
         const DeepImage deep = plain.deep(), wideDeep = wide.deep();

@@ -20,7 +20,7 @@ std::pair<double, double> ends(const std::string& phases) {
 }
 
 // Codes of the diagnostics.
-std::string faults(const std::string& phases) {
+std::string phaseFaults(const std::string& phases) {
     const TestScene s = scene(phases);
     std::string all;
     for (const Diagnostic& d : s.diagnostics().all()) all += (all.empty() ? "" : " ") + d.code;
@@ -46,7 +46,7 @@ TEST_CASE("a table in rows or in a file, relative values") {
 }
 
 TEST_CASE("what is wrong with a table is said where it stands") {
-    const auto table = [](const std::string& rows) { return faults("phase p table { values { " + rows + " } }"); };
+    const auto table = [](const std::string& rows) { return phaseFaults("phase p table { values { " + rows + " } }"); };
     CHECK(table("- 0 1; - 90 2; - 180 1") == "");
     CHECK(table("- 0 1; - 90 2; - 90 3; - 180 1") == "E0648");
     CHECK(table("- 0 1; - 120 2; - 90 3; - 180 1") == "E0648");
@@ -60,9 +60,9 @@ TEST_CASE("what is wrong with a table is said where it stands") {
     CHECK(table("- 0 1") == "E0648");
     CHECK(table("- 0 1 2; - 180 1") == "E0648");
     CHECK(table("- 0 high; - 180 1") == "E0648");
-    CHECK(faults("phase p table") == "E0207");
-    CHECK(faults("phase p table \"nothing-there.csv\"") == "E0401");
-    CHECK(faults("phase p table \"README.md\"") == "E0402");
+    CHECK(phaseFaults("phase p table") == "E0207");
+    CHECK(phaseFaults("phase p table \"nothing-there.csv\"") == "E0401");
+    CHECK(phaseFaults("phase p table \"README.md\"") == "E0402");
     CHECK(has(report("phase p table { values { - 0 1\n- 90 -2\n- 180 1 } }"), ":3:"));
 }
 
@@ -74,31 +74,32 @@ TEST_CASE("a mix of named and inline parts, nested") {
     const auto nested = ends("phase p mix { part q; part isotropic }\n"
                              "phase q mix { part table weight=0.5 { values { - 0 2; - 180 0 } } }");
     CHECK(nested.first == doctest::Approx(1.5));
-    CHECK(faults("phase p mix { part henyey-greenstein 0.5 weight=0.3; part henyey-greenstein g=0.1 weight=0.3 }") ==
-          "");
+    CHECK(phaseFaults(
+              "phase p mix { part henyey-greenstein 0.5 weight=0.3; part henyey-greenstein g=0.1 weight=0.3 }") == "");
 }
 
 TEST_CASE("what is wrong with a mix") {
-    CHECK(faults("phase p mix") == "E0207");
-    CHECK(faults("phase p mix { part p }") == "E0649");
-    CHECK(faults("phase p mix { part q; part isotropic }\nphase q mix { part r }\nphase r mix { part p }") == "E0649");
-    CHECK(faults("phase p mix { part isotropic weight=0 }") == "E0649");
-    CHECK(faults("phase p mix { part isotropic weight=-1 }") == "E0303");
-    CHECK(faults("phase p mix { part isotropic weight=much }") == "E0303");
-    CHECK(faults("phase p mix { part isotropic wieght=1 }") == "E0210");
-    CHECK(faults("phase p mix { part nothing weight=1 }") == "E0202");
-    CHECK(faults("phase p mix { part }") == "E0306");
+    CHECK(phaseFaults("phase p mix") == "E0207");
+    CHECK(phaseFaults("phase p mix { part p }") == "E0649");
+    CHECK(phaseFaults("phase p mix { part q; part isotropic }\nphase q mix { part r }\nphase r mix { part p }") ==
+          "E0649");
+    CHECK(phaseFaults("phase p mix { part isotropic weight=0 }") == "E0649");
+    CHECK(phaseFaults("phase p mix { part isotropic weight=-1 }") == "E0303");
+    CHECK(phaseFaults("phase p mix { part isotropic weight=much }") == "E0303");
+    CHECK(phaseFaults("phase p mix { part isotropic wieght=1 }") == "E0210");
+    CHECK(phaseFaults("phase p mix { part nothing weight=1 }") == "E0202");
+    CHECK(phaseFaults("phase p mix { part }") == "E0306");
 }
 
 TEST_CASE("drops: defaults, an argument, limits with advice") {
-    CHECK(faults("phase p mie") == "");
-    CHECK(faults("phase p mie 2 um") == "");
-    CHECK(faults("phase p mie { radius 300 nm; spread 50 %; ior 1.46; k 0.01; surroundings glass water }") == "");
+    CHECK(phaseFaults("phase p mie") == "");
+    CHECK(phaseFaults("phase p mie 2 um") == "");
+    CHECK(phaseFaults("phase p mie { radius 300 nm; spread 50 %; ior 1.46; k 0.01; surroundings glass water }") == "");
     CHECK(scene("phase p mie 2 um").scene().media.at(0)->phase().spectral());
     CHECK(has(report("phase p mie 2"), "E0303"));
     CHECK(has(report("phase p mie { radius 2 mm }"), "E0303"));
-    CHECK(faults("phase p mie { spread -0.1 }") == "E0303");
-    CHECK(faults("phase p mie { ior rgb 1 1 1 }") == "E0311");
+    CHECK(phaseFaults("phase p mie { spread -0.1 }") == "E0303");
+    CHECK(phaseFaults("phase p mie { ior rgb 1 1 1 }") == "E0311");
 }
 
 TEST_CASE("properties on the line of a definition: key=value") {
@@ -110,11 +111,11 @@ TEST_CASE("properties on the line of a definition: key=value") {
         "interior homogeneous extinction=2 { phase henyey-greenstein g=0.5 } }\n");
     CHECK(4 * kPiD * static_cast<double>(inlined.scene().media.at(0)->phase().value(1)) == doctest::Approx(6));
     CHECK(inlined.scene().media.at(0)->extinction().at(550.0) == doctest::Approx(2));
-    CHECK(faults("phase p henyey-greenstein h=0.5") == "E0210");
-    CHECK(faults("phase p henyey-greenstein g=1.5") == "E0303");
-    CHECK(faults("phase p henyey-greenstein g=much") == "E0314");
-    CHECK(faults("phase p henyey-greenstein 0.5 g=0.5") == "E0208");
-    CHECK(faults("phase p henyey-greenstein g=0.5 { g 0.6 }") == "E0208");
+    CHECK(phaseFaults("phase p henyey-greenstein h=0.5") == "E0210");
+    CHECK(phaseFaults("phase p henyey-greenstein g=1.5") == "E0303");
+    CHECK(phaseFaults("phase p henyey-greenstein g=much") == "E0314");
+    CHECK(phaseFaults("phase p henyey-greenstein 0.5 g=0.5") == "E0208");
+    CHECK(phaseFaults("phase p henyey-greenstein g=0.5 { g 0.6 }") == "E0208");
 }
 
 } // namespace abbe::test

@@ -13,7 +13,7 @@ using namespace abbe::test;
 
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(ABBE_SOURCE_DIR) / "../shared/data/subdivision";
+const std::filesystem::path kCageFolder = std::filesystem::path(ABBE_SOURCE_DIR) / "../shared/data/subdivision";
 
 // Refused with a located error: quads that name a vertex twice, and a crease between two faces back to back, where the
 // library writes past its tables.
@@ -88,10 +88,10 @@ FaceAgreement compareFaces(const SubdivisionCage& cage, const DicedSurface& dice
 } // namespace
 
 TEST_CASE("subdivision: reference cages agree with a refinement to level 10") {
-    if (!std::filesystem::exists(kFolder)) return;
+    if (!std::filesystem::exists(kCageFolder)) return;
     const bool nightly = std::getenv("ABBE_NIGHTLY") != nullptr;
     std::size_t cages = 0, refused = 0, points = 0, normals = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(kCageFolder)) {
         const std::string name = entry.path().stem().string();
         if (entry.path().extension() != ".obj") continue;
         CAPTURE(name);

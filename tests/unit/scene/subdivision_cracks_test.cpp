@@ -16,7 +16,7 @@ using namespace abbe::test;
 
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(ABBE_SOURCE_DIR) / "../shared/data/subdivision";
+const std::filesystem::path kCrackFolder = std::filesystem::path(ABBE_SOURCE_DIR) / "../shared/data/subdivision";
 
 // Every edge joins two faces that run against each other, and no face is left out.
 bool isClosed(const SubdivisionCage& cage) {
@@ -82,10 +82,10 @@ std::size_t escapes(MeshData diced, std::size_t rays, std::uint64_t seed) {
 } // namespace
 
 TEST_CASE("subdivision: no ray leaves a closed reference cage") {
-    if (!std::filesystem::exists(kFolder)) return;
+    if (!std::filesystem::exists(kCrackFolder)) return;
     const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 1000;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(kFolder))
+    for (const auto& entry : std::filesystem::directory_iterator(kCrackFolder))
         if (entry.path().extension() == ".obj") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::size_t closed = 0, all = 0;

@@ -14,11 +14,11 @@ using namespace abbe::test;
 
 namespace {
 
-const std::string kCube =
+const std::string kViewCube =
     "points { - -1 -1 -1; - 1 -1 -1; - -1 1 -1; - 1 1 -1; - -1 -1 1; - 1 -1 1; - -1 1 1; - 1 1 1 }\n"
     "faces { - 0 2 3 1; - 4 5 7 6; - 0 1 5 4; - 2 6 7 3; - 0 4 6 2; - 1 3 7 5 }\n";
 
-std::string shape(const std::string& more) { return "shape subdivision {\n" + kCube + more + "}\n"; }
+std::string viewedShape(const std::string& more) { return "shape subdivision {\n" + kViewCube + more + "}\n"; }
 
 const MeshData& meshOf(const TestScene& scene) {
     const Shape* s = scene.scene().shapes.at(0).get();
@@ -43,28 +43,29 @@ TEST_CASE("subdivision scene: pixels are those of the named camera") {
     const std::string near = "camera near { from 0 0 2.25; look-at 0 0 0 }\n";
     const auto everywhere = [](Vec3) { return true; };
     const std::string plain = "dicing 8 px\noffscreen 1\n", named = "dicing 8 px camera=near\noffscreen 1\n";
-    const auto far = build(near + shape(plain)), close = build(near + shape(named));
+    const auto far = build(near + viewedShape(plain)), close = build(near + viewedShape(named));
     REQUIRE(codes(far) == "");
     REQUIRE(codes(close) == "");
     CHECK(longestEdge(meshOf(far), everywhere) > 1.5 * longestEdge(meshOf(close), everywhere));
     // The same as if the named camera rendered: distances are its own.
     BuildOptions options;
     options.camera = "near";
-    const auto same = build(near + shape(plain), options);
+    const auto same = build(near + viewedShape(plain), options);
     REQUIRE(codes(same) == "");
     CHECK(meshOf(same).positions.size() == meshOf(close).positions.size());
-    CHECK(openEdges(meshOf(close)) == 0);
+    CHECK(test::openEdges(meshOf(close)) == 0);
 }
 
 TEST_CASE("subdivision scene: an unknown camera is named, with those that there are") {
-    const auto wrong = build("camera near { from 0 0 2; look-at 0 0 0 }\n" + shape("dicing 8 px camera=naer\n"));
+    const auto wrong = build("camera near { from 0 0 2; look-at 0 0 0 }\n" + viewedShape("dicing 8 px camera=naer\n"));
     CHECK(codes(wrong) == "E0202");
     CHECK(wrong.report().find("did you mean `near`?") != std::string::npos);
     CHECK(wrong.advice().find("the cameras are `near`") != std::string::npos);
-    CHECK(codes(build("camera near { from 0 0 2; look-at 0 0 0 }\n" + shape("dicing 3 camera=near\n"))) == "E0210");
-    CHECK(codes(build(shape("dicing 8 px view=near\n"))) == "E0210");
+    CHECK(codes(build("camera near { from 0 0 2; look-at 0 0 0 }\n" + viewedShape("dicing 3 camera=near\n"))) ==
+          "E0210");
+    CHECK(codes(build(viewedShape("dicing 8 px view=near\n"))) == "E0210");
     // A camera that measures to the shape that is diced for it makes no circle.
-    CHECK(codes(build("camera near { from 0 0 2; focus on=s }\nshape s subdivision {\n" + kCube +
+    CHECK(codes(build("camera near { from 0 0 2; focus on=s }\nshape s subdivision {\n" + kViewCube +
                       "dicing 8 px camera=near\n}\n")) == "");
 }
 
@@ -96,14 +97,14 @@ TEST_CASE("subdivision scene: what the camera does not see is coarser, and close
     CHECK(longestEdge(meshOf(uneven), behind) > 4 * longestEdge(meshOf(uneven), ahead));
     CHECK(longestEdge(meshOf(usual), behind) > 2 * longestEdge(meshOf(usual), ahead));
     CHECK(longestEdge(meshOf(usual), behind) < 6 * longestEdge(meshOf(usual), ahead));
-    CHECK(openEdges(meshOf(uneven)) == 0);
+    CHECK(test::openEdges(meshOf(uneven)) == 0);
     CHECK(meshOf(uneven).quads.size() < meshOf(even).quads.size());
 }
 
 TEST_CASE("subdivision scene: texture coordinates in place") {
     const std::string corners = "uvs { - 0 0; - 1 0; - 1 1; - 0 1 }\nuv-faces { - 0 1 2 3; - 0 1 2 3; - 0 1 2 3; "
                                 "- 0 1 2 3; - 0 1 2 3; - 0 1 2 3 }\n";
-    const auto scene = build(shape(corners + "dicing 3\n"));
+    const auto scene = build(viewedShape(corners + "dicing 3\n"));
     REQUIRE(codes(scene) == "");
     const MeshData& m = meshOf(scene);
     REQUIRE(m.uvs.size() == m.positions.size());
@@ -115,16 +116,17 @@ TEST_CASE("subdivision scene: texture coordinates in place") {
     const Vec2 middle = trace(scene, {0, 0, 4}, {0, 0, -1}).hit.uv;
     CHECK(middle.x == doctest::Approx(0.5));
     CHECK(middle.y == doctest::Approx(0.5));
-    const auto perPoint = build(shape("uvs { - 0 0; - 1 0; - 2 0; - 3 0; - 4 0; - 5 0; - 6 0; - 7 0 }\n"));
+    const auto perPoint = build(viewedShape("uvs { - 0 0; - 1 0; - 2 0; - 3 0; - 4 0; - 5 0; - 6 0; - 7 0 }\n"));
     REQUIRE(codes(perPoint) == "");
     CHECK(meshOf(perPoint).uvs.size() == meshOf(perPoint).positions.size());
-    CHECK(codes(build(shape("uvs 0 0 1\n"))) == "E0660");
-    CHECK(codes(build(shape("uvs 0 0 1 1\n"))) == "E0660");
-    CHECK(codes(build(shape("uvs { - 0 0 }\nuv-faces { - 0 0 0 0 }\n"))) == "E0660");
-    CHECK(codes(build(shape("uvs { - 0 0 }\nuv-faces { - 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0 "
-                            "}\n"))) == "E0660");
-    CHECK(codes(build(shape("uvs { - 0 0 }\nuv-faces { - 0 0 0 1; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; "
-                            "- 0 0 0 0 }\n"))) == "E0660");
+    CHECK(codes(build(viewedShape("uvs 0 0 1\n"))) == "E0660");
+    CHECK(codes(build(viewedShape("uvs 0 0 1 1\n"))) == "E0660");
+    CHECK(codes(build(viewedShape("uvs { - 0 0 }\nuv-faces { - 0 0 0 0 }\n"))) == "E0660");
+    CHECK(codes(build(
+              viewedShape("uvs { - 0 0 }\nuv-faces { - 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0 "
+                          "}\n"))) == "E0660");
+    CHECK(codes(build(viewedShape("uvs { - 0 0 }\nuv-faces { - 0 0 0 1; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; - 0 0 0 0; "
+                                  "- 0 0 0 0 }\n"))) == "E0660");
 }
 
 TEST_CASE("groups of faces have their own materials, on meshes and subdivision surfaces") {
@@ -169,8 +171,8 @@ TEST_CASE("groups of faces have their own materials, on meshes and subdivision s
         CHECK(codes(build(materials + kind + "material red group=shiny\n}\n")).find('E') == std::string::npos);
     }
     CHECK(codes(build(materials + "shape sphere { material red group=front }\n")).find("E0210") != std::string::npos);
-    CHECK(codes(build(materials + shape("material red part=front\n"))).find("E0210") != std::string::npos);
+    CHECK(codes(build(materials + viewedShape("material red part=front\n"))).find("E0210") != std::string::npos);
     // In place there are no groups.
-    CHECK(codes(build(materials + shape("material red group=front\n"))).find("E0615") != std::string::npos);
+    CHECK(codes(build(materials + viewedShape("material red group=front\n"))).find("E0615") != std::string::npos);
     std::filesystem::remove_all(folder);
 }

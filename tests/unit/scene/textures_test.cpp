@@ -24,11 +24,11 @@ float reflectanceAt(const WorldHit& hit) {
     return sample ? sample->weight[0] : -1;
 }
 
-struct PlyFile {
+struct TexturedPly {
     std::filesystem::path path =
         std::filesystem::temp_directory_path() / fmt::format("abbe_textures_{}.ply", ::getpid());
-    explicit PlyFile(std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
-    ~PlyFile() { std::filesystem::remove(path); }
+    explicit TexturedPly(std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
+    ~TexturedPly() { std::filesystem::remove(path); }
 };
 
 } // namespace
@@ -101,11 +101,12 @@ TEST_CASE("patterns stick to their shapes, whatever places these") {
 }
 
 TEST_CASE("attributes: properties of PLY vertices, interpolated, as colours and as numbers") {
-    const PlyFile file("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float wear\n"
-                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                       "-1 -1 0 51 51 51 0\n1 -1 0 255 255 255 0.25\n1 1 0 255 255 255 1\n-1 1 0 51 51 51 0.5\n"
-                       "4 0 1 2 3\n");
+    const TexturedPly file(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float wear\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "-1 -1 0 51 51 51 0\n1 -1 0 255 255 255 0.25\n1 1 0 255 255 255 1\n-1 1 0 51 51 51 0.5\n"
+        "4 0 1 2 3\n");
     const std::string mesh = fmt::format("shape mesh \"{}\" {{ material m }}\n", file.path.string());
     const auto at = [&](const std::string& texture, double x, double y) {
         const TestScene scene = build("material m diffuse { reflectance " + texture + " }\n" + mesh);
@@ -212,9 +213,10 @@ TEST_CASE("attributes of subdivision surfaces are smoothed as the points are: a 
     REQUIRE(moved.met);
     const Vec3d there(moved.hit.shape->attribute("color", moved.hit).value_or(Vec3{}));
     CHECK(length(there - (moved.p - Vec3d(0, 0, 0.25))) < 2e-5); // a quarter of the way at the start of the shutter
-    const PlyFile file("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                       "property float wear\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                       "0 0 0 0\n1 0 0 1\n1 1 0 1\n0 1 0 0\n4 0 1 2 3\n");
+    const TexturedPly file(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float wear\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 0\n1 0 0 1\n1 1 0 1\n0 1 0 0\n4 0 1 2 3\n");
     const TestScene flat =
         build(fmt::format("shape subdivision \"{}\" {{ scheme bilinear; dicing 2; material diffuse {{ "
                           "reflectance attribute \"wear\" }} }}\n",
