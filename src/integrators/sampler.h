@@ -50,7 +50,12 @@ class Sampler final {
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[7], joint_[8]}; }
-    float wavelength() const { return joint_[6]; }
+    // 53 bits, those beyond the sequence's 24 at random: a table of wavelengths has cells less likely than 2^-20
+    // (spectrum/wavelength_density.h).
+    double wavelength() const {
+        const auto finer = static_cast<double>(combine64(stream_ ^ 0x3c6ef372u, index_) >> 35);
+        return static_cast<double>(static_cast<std::int32_t>(joint_[6] * 0x1p24f)) * 0x1p-24 + finer * 0x1p-53;
+    }
     float time() const { return joint_[15]; }
     Vec2 lens() const { return {joint_[16], joint_[17]}; }
 

@@ -156,7 +156,9 @@ void SceneBuilder::finish(BuiltScene& built) {
     if (!(emitted > 0) && !diagnostics_.hasErrors())
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";
-    built.scene.wavelengths = WavelengthDensity::bestFor(emittedSpectrum(lights_));
+    std::optional<WavelengthDensity::Shown> shown;
+    if (const auto& bins = built.layers.spectral) shown = {bins->first, bins->last};
+    built.scene.wavelengths = WavelengthDensity::bestFor(emittedSpectrum(lights_), shown);
     noteEffects();
     noteMedia(built.scene);
     checkForbidden();

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kCells = WavelengthDensity::kNodes - 1;
 constexpr double kLightShare = 0.9;
+constexpr double kShownShare = 0.5;
 // Weights of single lanes stay bounded where the eye sees next to nothing.
 constexpr double kLeastSensitivity = 1e-3; // of the largest
 constexpr double kWorthATable = 0.7;       // half the variance
@@ -74,6 +75,13 @@ Spectrum lookup(const Nodes& nodes, const Wavelengths& w) {
     return fma(b - a, w.fraction, a);
 }
 
+// To an integral of 1, linear between the nodes.
+void normalize(std::span<double> density) {
+    double total = 0;
+    for (std::size_t i = 0; i < kCells; ++i) total += 0.5 * (density[i] + density[i + 1]);
+    for (double& d : density) d /= total;
+}
+
 // Variance of a vector over its squared mean.
 class RelativeVariance {
   public:
@@ -95,58 +103,70 @@ class RelativeVariance {
 
 } // namespace
 
-WavelengthDensity WavelengthDensity::following(std::span<const double> power) {
+WavelengthDensity WavelengthDensity::following(std::span<const double> power, std::optional<Shown> shown) {
     ABBE_CHECK(power.size() == kNodes);
     double mean = 0;
     for (const double p : power) mean += p / kNodes;
     ABBE_CHECK(mean > 0 && std::isfinite(mean));
     std::vector<double> weight = sensitivity();
-    double total = 0;
     for (std::size_t i = 0; i < kNodes; ++i) weight[i] *= kLightShare * power[i] / mean + (1 - kLightShare);
-    for (std::size_t i = 0; i < kCells; ++i) total += 0.5 * (weight[i] + weight[i + 1]);
+    normalize(weight);
+    if (shown) {
+        std::vector<double> even(kNodes, 0.0);
+        for (int i = 0; i < kNodes; ++i)
+            if (nanometres(i) > shown->first - 1 && nanometres(i) < shown->last + 1)
+                even[static_cast<std::size_t>(i)] = 1;
+        normalize(even);
+        for (std::size_t i = 0; i < kNodes; ++i) weight[i] = std::lerp(weight[i], even[i], kShownShare);
+    }
+    WavelengthDensity result;
+    result.table_ = tableOf(weight);
+    return result;
+}
+
+std::shared_ptr<const WavelengthDensity::Table> WavelengthDensity::tableOf(std::span<const double> density) {
     auto table = std::make_shared<Table>();
     double below = 0;
     for (std::size_t i = 0; i < kNodes; ++i) {
-        table->density[i] = static_cast<float>(weight[i] / total);
-        table->cumulative[i] = static_cast<float>(below / total);
-        if (i + 1 < kNodes) below += 0.5 * (weight[i] + weight[i + 1]);
+        table->density[i] = density[i];
+        table->rounded[i] = static_cast<float>(density[i]);
+        table->cumulative[i] = below;
+        if (i + 1 < kNodes) below += 0.5 * (density[i] + density[i + 1]);
     }
     table->cumulative.back() = 1;
     for (std::size_t i = 0; i < table->guide.size(); ++i) {
         const auto above = std::upper_bound(table->cumulative.begin(), table->cumulative.end() - 1,
-                                            static_cast<float>(i) / static_cast<float>(table->guide.size() - 1));
+                                            static_cast<double>(i) / static_cast<double>(table->guide.size() - 1));
         table->guide[i] = static_cast<std::uint16_t>(above - table->cumulative.begin() - 1);
     }
-    WavelengthDensity result;
-    result.table_ = std::move(table);
-    return result;
+    return table;
 }
 
-WavelengthDensity WavelengthDensity::bestFor(std::span<const double> power) {
+WavelengthDensity WavelengthDensity::bestFor(std::span<const double> power, std::optional<Shown> shown) {
     if (std::all_of(power.begin(), power.end(), [](double p) { return p == 0; })) return {};
-    WavelengthDensity table = following(power);
+    WavelengthDensity table = following(power, shown);
     const WavelengthDensity smooth;
     return table.noise(power) < kWorthATable * smooth.noise(power) ? table : smooth;
 }
 
-Wavelengths WavelengthDensity::tabulated(float u) const {
+Wavelengths WavelengthDensity::tabulated(double u) const {
     const Table& t = *table_;
     Spectrum nm;
     for (int lane = 0; lane < kLanes; ++lane) {
-        float q = u + 0.125f * static_cast<float>(lane);
+        double q = u + 0.125 * lane;
         q = q >= 1 ? q - 1 : q;
-        std::size_t i = t.guide[static_cast<std::size_t>(q * static_cast<float>(t.guide.size() - 1))];
+        std::size_t i = t.guide[static_cast<std::size_t>(q * static_cast<double>(t.guide.size() - 1))];
         while (i + 1 < kCells && t.cumulative[i + 1] <= q) ++i;
         // Within the cell a t + (b - a) t² / 2 = r, in the form that survives a = b.
-        const float a = t.density[i], b = t.density[i + 1], r = std::max(q - t.cumulative[i], 0.f);
-        const float x = 2 * r / (a + std::sqrt(std::max(a * a + 2 * (b - a) * r, 0.f)));
-        nm.v[lane] = kMinWavelength + static_cast<float>(i) + std::min(x, 1.f);
+        const double a = t.density[i], b = t.density[i + 1], r = q - t.cumulative[i];
+        const double x = 2 * r / (a + std::sqrt(std::max(a * a + 2 * (b - a) * r, 0.0)));
+        nm.v[lane] = static_cast<float>(nanometres(static_cast<int>(i)) + std::min(x, 1.0));
     }
     Wavelengths w = Wavelengths::at(min(nm, Spectrum(kMaxWavelength)), Spectrum(1.f));
     // At the wavelength as it was rounded, so that light and density are read at the same place.
     const Int8 next = w.cell + 1;
-    const Spectrum a(_mm256_i32gather_ps(t.density.data(), reinterpret_cast<__m256i>(w.cell), 4));
-    const Spectrum b(_mm256_i32gather_ps(t.density.data(), reinterpret_cast<__m256i>(next), 4));
+    const Spectrum a(_mm256_i32gather_ps(t.rounded.data(), reinterpret_cast<__m256i>(w.cell), 4));
+    const Spectrum b(_mm256_i32gather_ps(t.rounded.data(), reinterpret_cast<__m256i>(next), 4));
     w.pdf = fma(b - a, w.fraction, a);
     return w;
 }
@@ -155,8 +175,7 @@ double WavelengthDensity::pdf(double nm) const {
     const double x = std::clamp(nm - static_cast<double>(kMinWavelength), 0.0, static_cast<double>(kCells));
     if (!table_) return 0.0039398042 / std::pow(std::cosh(0.0072 * (nm - 538)), 2);
     const auto i = std::min(static_cast<std::size_t>(x), static_cast<std::size_t>(kCells) - 1);
-    return std::lerp(static_cast<double>(table_->density[i]), static_cast<double>(table_->density[i + 1]),
-                     x - static_cast<double>(i));
+    return std::lerp(table_->density[i], table_->density[i + 1], x - static_cast<double>(i));
 }
 
 double WavelengthDensity::noise(std::span<const double> power) const {
@@ -175,7 +194,7 @@ double WavelengthDensity::noise(std::span<const double> power) const {
     std::array<RelativeVariance, kReflectances> variance;
     for (int s = 0; s < samples; ++s) {
         // The rotations make the set of wavelengths periodic.
-        const Wavelengths w = sample((static_cast<float>(s) + 0.5f) / static_cast<float>(kLanes * samples));
+        const Wavelengths w = sample((s + 0.5) / (kLanes * samples));
         // What light of 1 in a lane adds to each channel, up to a factor.
         const Spectrum x = xbar(w) / w.pdf, y = ybar(w) / w.pdf, z = zbar(w) / w.pdf;
         const auto channel = [&](double fx, double fy, double fz) {

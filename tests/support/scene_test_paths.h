@@ -16,13 +16,13 @@ struct PathTestSettings {
     std::uint32_t maxDepth = 0;
     int replicates = 8;
     float rouletteScale = 1; // see RouletteReference
-    std::function<Wavelengths(float u)> wavelengths = Wavelengths::sample;
+    std::function<Wavelengths(double u)> wavelengths = [](double u) { return WavelengthDensity().sample(u); };
 };
 
 // One wavelength in all lanes, uniform over the film's range: no hero, no rotations.
-inline Wavelengths oneWavelength(float u) {
+inline Wavelengths oneWavelength(double u) {
     const float range = kMaxWavelength - kMinWavelength;
-    return Wavelengths::at(Spectrum(kMinWavelength + range * u), Spectrum(1 / range));
+    return Wavelengths::at(Spectrum(kMinWavelength + range * static_cast<float>(u)), Spectrum(1 / range));
 }
 
 template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const PathTestSettings& s) {

@@ -113,8 +113,9 @@ TEST_CASE("case 76: a random number of 1") {
                 sampler.startPixel(mix64(i), random ? Technique::Numbers::random : Technique::Numbers::sobol, true);
             sampler.start(i * 40503u);
             const VertexSample v = sampler.vertex(i % 9);
-            for (const float u : {sampler.wavelength(), sampler.film().x, sampler.lens().y, v.light.x, v.bsdf.y, v.pick,
-                                  v.lobe, sampler.roulette(3)})
+            ones += !(sampler.wavelength() >= 0 && sampler.wavelength() < 1);
+            for (const float u :
+                 {sampler.film().x, sampler.lens().y, v.light.x, v.bsdf.y, v.pick, v.lobe, sampler.roulette(3)})
                 ones += !(u >= 0 && u < 1);
         }
     // Every value that a scramble can give: the 24 upper bits.

@@ -44,7 +44,7 @@ TEST_CASE("an image is the same with either density of wavelengths; lines have l
         CHECK(scene.scene().wavelengths.followsLights() == follows);
         const std::uint32_t samples = nightly() ? 512 : 64;
         const RecordingFilm smooth = renderPaths<0>(scene, {.samples = samples, .seed = 5});
-        const RecordingFilm best = renderPaths<0>(scene, {.samples = samples, .seed = 6, .wavelengths = [&](float u) {
+        const RecordingFilm best = renderPaths<0>(scene, {.samples = samples, .seed = 6, .wavelengths = [&](double u) {
                                                               return scene.scene().wavelengths.sample(u);
                                                           }});
         for (const Channel channel : {Channel::x, Channel::y, Channel::z})

@@ -70,7 +70,7 @@ TEST_CASE("technique: strata of a whole replicate in places, directions and choi
                 s.start(i);
                 film.insert(cell(s.film()));
                 bsdf.insert(cell(s.vertex(1).bsdf));
-                wavelength.insert(static_cast<std::uint32_t>(s.wavelength() * static_cast<float>(n)));
+                wavelength.insert(static_cast<std::uint32_t>(s.wavelength() * n));
                 lobe.insert(static_cast<std::uint32_t>(s.vertex(2).lobe * static_cast<float>(n)));
                 late.insert(cell(s.vertex(7).light));
             }

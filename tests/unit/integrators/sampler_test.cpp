@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <doctest/doctest.h>
 #include <set>
 
@@ -28,9 +29,10 @@ Point plainPoint(std::uint32_t index, std::uint32_t seed) {
 // All 24 joint dimensions as the sampler hands them out, in the documented order.
 Point jointPoint(Sampler& s) {
     const VertexSample a = s.vertex(0), b = s.vertex(1), c = s.vertex(2);
-    return {a.bsdf.x,   a.bsdf.y,   b.light.x, b.light.y, a.light.x, a.light.y, s.wavelength(), s.film().x,
-            s.film().y, b.bsdf.x,   b.bsdf.y,  c.light.x, c.light.y, c.bsdf.x,  c.bsdf.y,       s.time(),
-            s.lens().x, s.lens().y, a.pick,    a.lobe,    b.pick,    b.lobe,    c.pick,         c.lobe};
+    const float wavelength = static_cast<float>(std::floor(s.wavelength() * 0x1p24)) * 0x1p-24f;
+    return {a.bsdf.x,   a.bsdf.y,   b.light.x, b.light.y, a.light.x, a.light.y, wavelength, s.film().x,
+            s.film().y, b.bsdf.x,   b.bsdf.y,  c.light.x, c.light.y, c.bsdf.x,  c.bsdf.y,   s.time(),
+            s.lens().x, s.lens().y, a.pick,    a.lobe,    b.pick,    b.lobe,    c.pick,     c.lobe};
 }
 
 Sampler pixelSampler(std::uint64_t seed, bool random = false) {
@@ -286,6 +288,22 @@ TEST_CASE("sampler: numbers belong to a purpose, not to an order of use") {
             CHECK(with.vertex(d).light == without.vertex(d).light);
             CHECK(with.vertex(d).bsdf == without.vertex(d).bsdf);
         }
+    }
+}
+
+TEST_CASE("sampler: the number of the wavelengths has even bits beyond the 24 of the sequence") {
+    for (const bool random : {false, true}) {
+        Sampler s = pixelSampler(6, random);
+        constexpr std::uint32_t n = 1 << 16;
+        std::vector<double> coarse(256), fine(256);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            s.start(i);
+            const double below = s.wavelength() * 0x1p24 - std::floor(s.wavelength() * 0x1p24);
+            ++coarse[static_cast<std::size_t>(below * 256)];
+            ++fine[static_cast<std::size_t>(below * 0x1p29) % 256];
+        }
+        CHECK(evenness(coarse, n) > 1e-4);
+        CHECK(evenness(fine, n) > 1e-4);
     }
 }
 

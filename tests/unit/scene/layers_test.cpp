@@ -200,6 +200,31 @@ TEST_CASE("spectral layers integrate to the picture, also behind glass that disp
     }
 }
 
+// The lines of the tube, which stays out of sight, draw nearly all wavelengths of paths to themselves.
+TEST_CASE("spectral layers of a white sky beside a fluorescent tube are right at both ends of the spectrum") {
+    const Layered image(R"(scene 1
+film { size 24 16; filter box 0.5; output "x.exr"; layers { spectral 360 830 10 } }
+camera { from 0 0 4; look-at 0 0 0 }
+light quad { points -1 0 9  1 0 9  1 1 9  -1 1 9; luminance 20000 nits; color illuminant FL11 }
+light sky { luminance 1 nits; color illuminant E }
+)",
+                        512);
+    REQUIRE(image.scene.scene().wavelengths.followsLights());
+    for (int nm = 360; nm < 830; nm += 10) {
+        const std::vector<float>& bin = image.plane(fmt::format("S0.{}nm", nm + 5));
+        double sum = 0, squares = 0;
+        for (const float v : bin) {
+            const double radiance = static_cast<double>(v) * 72983;
+            sum += radiance;
+            squares += radiance * radiance;
+        }
+        const double count = 24 * 16, mean = sum / count, error = std::sqrt((squares / count - mean * mean) / count);
+        CAPTURE(nm);
+        CHECK(error < 0.02);
+        CHECK(std::abs(mean - 1) < 4 * error + 1e-3);
+    }
+}
+
 TEST_CASE("layers of two halves of the samples, put together, have the bits of the whole") {
     const std::string text =
         sceneText("albedo; normal; uv; light-group key; components; cryptomatte; spectral; denoise");

@@ -53,7 +53,7 @@ TEST_CASE("tabulated wavelengths are quantiles of their density, and carry it") 
         for (int i = 0; i < 470; ++i)
             cumulative.push_back(cumulative.back() + 0.5 * (density.pdf(360 + i) + density.pdf(361 + i)));
         for (int i = 0; i < 4000; ++i) {
-            const float u = (static_cast<float>(i) + 0.37f) / 4000;
+            const double u = (i + 0.37) / 4000;
             const Wavelengths w = density.sample(u);
             for (int lane = 0; lane < kLanes; ++lane) {
                 REQUIRE(w.nm[lane] >= 360);
@@ -61,9 +61,9 @@ TEST_CASE("tabulated wavelengths are quantiles of their density, and carry it") 
                 const auto cell = static_cast<std::size_t>(w.cell[lane]);
                 const double f = w.fraction[lane], a = density.pdf(360.0 + w.cell[lane]);
                 const double below = cumulative[cell] + f * 0.5 * (a + density.pdf(w.nm[lane]));
-                const double gap = std::abs(below - std::fmod(static_cast<double>(u) + lane / 8.0, 1.0));
-                // A wavelength is rounded to 6e-5 nm, a quantile to 6e-8.
-                REQUIRE(std::min(gap, 1 - gap) < 3e-7 + 1e-4 * density.pdf(w.nm[lane]));
+                const double gap = std::abs(below - std::fmod(u + lane / 8.0, 1.0));
+                // A wavelength is rounded to 6e-5 nm.
+                REQUIRE(std::min(gap, 1 - gap) < 1e-12 + 1e-4 * density.pdf(w.nm[lane]));
                 REQUIRE(w.pdf[lane] == doctest::Approx(density.pdf(w.nm[lane])).epsilon(1e-5));
             }
         }
@@ -85,6 +85,38 @@ TEST_CASE("tabulated wavelengths follow their density: χ² over tenths of nanom
             ++observed[static_cast<std::size_t>(std::min(bin, 4699))];
         }
         CHECK(test::chiSquareTest(observed, expected).pValue > 1e-4);
+    }
+}
+
+// A bin of a spectral layer is a sum of 1/p over the wavelengths within it, and some nanometres are less likely than
+// one number in a million: neither numbers of 24 bits nor a cumulative in float know where they begin.
+TEST_CASE("tabulated wavelengths: the mean of 1/p over the numbers of every nanometre is its width") {
+    for (const auto& power : lights()) {
+        const WavelengthDensity density = WavelengthDensity::following(power);
+        constexpr int n = 1000;
+        double below = 0, worst = 0;
+        for (int cell = 0; cell < 470; ++cell) {
+            const double share = 0.5 * (density.pdf(360 + cell) + density.pdf(361 + cell));
+            double width = 0;
+            for (int i = 0; i < n; ++i) { // closer together at both ends, where 1/p may be steep
+                const double s = (i + 0.5) / n, at = below + s * s * (3 - 2 * s) * share;
+                const Wavelengths w = density.sample(std::min(at, 1 - 0x1p-53));
+                if (w.cell[0] == cell) width += 6 * s * (1 - s) * share / n / static_cast<double>(w.pdf[0]);
+            }
+            worst = std::max(worst, std::abs(width - 1));
+            below += share;
+        }
+        CHECK(worst < 1e-3);
+    }
+}
+
+TEST_CASE("tabulated wavelengths of which bins are shown starve none of them") {
+    for (const auto& power : lights()) {
+        const WavelengthDensity plain = WavelengthDensity::following(power),
+                                shown = WavelengthDensity::following(power, WavelengthDensity::Shown{370.5, 780});
+        for (double nm = 370.5; nm <= 780; nm += 0.25) REQUIRE(shown.pdf(nm) > 0.5 / 411);
+        for (double nm = 360; nm <= 830; nm += 0.25) REQUIRE(shown.pdf(nm) >= 0.4999 * plain.pdf(nm));
+        CHECK(shown.pdf(800) == doctest::Approx(0.5 * plain.pdf(800)));
     }
 }
 
@@ -111,9 +143,9 @@ TEST_CASE("colours are the same whatever the density") {
 
 TEST_CASE("the smooth density stays that of Wavelengths::sample, bit for bit") {
     const WavelengthDensity density = WavelengthDensity::bestFor(illuminant("D65"));
-    for (int i = 0; i < 1000; ++i) {
-        const float u = static_cast<float>(i) / 1000;
-        const Wavelengths a = density.sample(u), b = Wavelengths::sample(u);
+    for (int i = 0; i < 1024; ++i) {
+        const float u = static_cast<float>(i) / 1024; // of 24 bits, as the sampler's; finer ones are left out
+        const Wavelengths a = density.sample(static_cast<double>(u) + 0x1p-25), b = Wavelengths::sample(u);
         for (int lane = 0; lane < kLanes; ++lane) {
             REQUIRE(a.nm[lane] == b.nm[lane]);
             REQUIRE(a.pdf[lane] == b.pdf[lane]);
