@@ -205,7 +205,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0737", "an attribute that does not fit", "`attribute` gives each of `points` a number, or three of them for a colour. It stands beside points that are written in place; those of a file have the attributes of the file."},
     {"E0738", "a state of another study", "`abbe study --resume` goes on with what an interrupted study of the same scene, at the same size and with the same ladder of samples, has saved. The message says what differs. More seeds and other variants are no difference."},
     {"E0739", "a damaged state of a study", "A file in the folder of an unfinished study is none, or its bytes are not those that were written."},
-    {"E0750", "the sun is not above the horizon", "`light daylight` is a model of the day: it has no twilight and no night. Give the sun an `elevation` above 0 deg, or a `toward` that points down."},
+    {"E0750", "the sun is too far below the horizon", "`light daylight` computes day and twilight, down to an `elevation` of -12 deg: below that, stars, moon and airglow outshine what is left of the sun's light. Give the sun a higher `elevation` (or a `toward` that points less upwards), or take `light sky` for a night."},
     {"E0751", "a dark lamp with a power", "The photometric file says that the lamp sends no light in any direction; nothing scales that to a power."},
     {"E0752", "the photometric file cannot be used", "An IES file (LM-63) of photometric type C is needed: `TILT=NONE` or `INCLUDE`, then its numbers. The message names the line of the file."},
     {"E0753", "a portal is no rectangle", "`portals` of an environment lists the four corners of each window in order around it, counter-clockwise seen from inside the room; a window is a flat rectangle."},

@@ -1,13 +1,13 @@
-// The light of a clear or hazy day, in absolute units: sky, ground below it, and the sun.
+// The light of a cloudless day or its twilight, in absolute units: sky, ground below it, and the sun.
 #pragma once
 
 #include "lights/amount.h"
+#include "lights/clear_sky.h"
 #include "lights/light_context.h"
-#include "lights/preetham_sky.h"
 #include "lights/sun_direction.h"
 #include "math/distribution_2d.h"
 #include "render/light.h"
-#include "spectrum/daylight_basis.h"
+#include "spectrum/sampled_curve.h"
 
 #include <memory>
 
@@ -15,6 +15,7 @@ namespace abbe {
 
 struct DaylightParams : SunPlace {
     double turbidity = 3;
+    double ozone = 300;                  // Dobson units
     const Curve* groundAlbedo = nullptr; // null: 0.2
     bool sun = true;                     // whether the disk shines; the sky is the same without
     KeyedTransform transform;            // light to parent; only its rotation matters
@@ -22,39 +23,17 @@ struct DaylightParams : SunPlace {
 
 schema::TypeInfo daylightType();
 
-// Radiance above the horizon: the luminance and chromaticity of the model with the spectrum of CIE daylight of that
-// chromaticity. Directions are unit vectors with z to the zenith.
-class DaylightModel {
-  public:
-    DaylightModel(Vec3 sun, double turbidity);
-
-    // Factors of the daylight basis, W·m⁻²·sr⁻¹·nm⁻¹. Requires w.z > 0.
-    struct Mix {
-        double s0 = 0, s1 = 0, s2 = 0;
-    };
-    Mix mix(Vec3 w) const noexcept;
-    double luminance(Vec3 w) const noexcept { return at(w).luminance; }
-    Spectrum radiance(Vec3 w, const Wavelengths&) const noexcept;
-    SampledCurve curve(const Mix&) const;
-
-  private:
-    PreethamSky::Value at(Vec3 w) const noexcept;
-    Vec3 sun_;
-    PreethamSky sky_;
-    DaylightBasis basis_;
-    double luminous_[3]; // of the basis, lm per W of each
-};
-
-// The sky [Preetham1999], and the light that an even ground reflects below it.
+// The sky of ClearSky, and the light that an even ground reflects below it.
 class DaylightSky final : public Light {
   public:
-    // `axes`: z is the zenith. `sun` points to the sun, unit length, above the horizon. `sunlight` is the sun's
-    // spectral irradiance on a surface that faces it, W·m⁻²·nm⁻¹; the ground gets it if `sunOnGround`. The albedo is
-    // only read here.
-    DaylightSky(const Frame& axes, Vec3 sun, double turbidity, const Curve& groundAlbedo,
-                std::unique_ptr<const Curve> sunlight, bool sunOnGround);
+    // The lowest sun, rad: what is left of its light below that is less than the night's own.
+    static constexpr double kLowestSun = -12 * kPiD / 180;
 
-    const Curve& sunlight() const { return *sunlight_; }
+    // `axes`: z is the zenith, x lies on the sun's side. `sunElevation` in rad, from kLowestSun. The ground gets
+    // sunlight if `sunOnGround`. The albedo is only read here.
+    DaylightSky(const Frame& axes, double sunElevation, const AirParams&, const Curve& groundAlbedo, bool sunOnGround);
+
+    const Curve& sunlight() const { return *sunlight_; } // irradiance on a surface that faces the sun, W·m⁻²·nm⁻¹
 
     void commit(const Bounds3&) override;
     double power() const override { return power_; }
@@ -73,14 +52,19 @@ class DaylightSky final : public Light {
         std::unique_ptr<const Curve> ground;  // radiance of the ground
         std::unique_ptr<const Curve> fluence; // ∫ L dω over all directions, W·m⁻²·nm⁻¹
     };
-    static Totals totals(const DaylightModel&, const Curve& groundAlbedo, const Curve* sunlight, double sunHeight);
-    Distribution2D density() const;
+    Totals totals(const Curve& groundAlbedo, double sunHeight) const;
+    Distribution2D tabulate() const;
+    // Of all samples, those that go below the horizon, where a receiver has no say and where it has one.
+    double groundShare(const Receiver&) const noexcept;
+    float density(Vec3 w, double ground) const noexcept;
 
     Frame axes_;
-    DaylightModel model_;
+    ClearSky sky_;
+    SampledCurve source_; // what values of sky_ are times of
     std::unique_ptr<const Curve> sunlight_;
     Totals totals_;
     Distribution2D distribution_; // cells of equal solid angle: columns turn about the zenith, rows are even in height
+    double groundShare_;          // of its probability: the rows below the horizon
     double radiant_;              // ∫∫ L dω dλ, W/m²
     double power_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include "lights/amount_fields.h"
 #include "lights/scene_disk.h"
+#include "math/frame.h"
 #include "math/warp.h"
 
 #include <fmt/format.h>
@@ -33,13 +34,19 @@ SkyLight::SkyLight(ScaledCurve radiance)
 
 void SkyLight::commit(const Bounds3& bounds) { power_ = 4 * kPiD * radiant_ * sceneDiskArea(bounds); }
 
-std::optional<LightSample> SkyLight::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+std::optional<LightSample> SkyLight::sample(const Receiver& from, std::uint32_t, Vec2 u, const Wavelengths& lambda,
                                             float) const noexcept {
-    return std::optional<LightSample>(std::in_place, squareToSphere(u), Vec3{}, kInfinity, radiance_.at(lambda),
-                                      kSpherePdf);
+    const Vec3 wi =
+        from.oneSided() ? normalize(Frame::fromNormal(from.n).toWorld(squareToCosineHemisphere(u))) : squareToSphere(u);
+    const float pdf = pdfEscaped(from, wi, 0);
+    if (!(pdf > 0)) return std::nullopt; // along the surface
+    return std::optional<LightSample>(std::in_place, wi, Vec3{}, kInfinity, radiance_.at(lambda), pdf);
 }
 
-float SkyLight::pdfEscaped(const Receiver&, Vec3, float) const noexcept { return kSpherePdf; }
+// An opaque surface gets light in proportion to the cosine; what lies behind it counts for nothing.
+float SkyLight::pdfEscaped(const Receiver& from, Vec3 w, float) const noexcept {
+    return from.oneSided() ? cosineHemispherePdf(dot(w, from.n)) : kSpherePdf;
+}
 
 std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightContext& context,
                                     Diagnostics& diagnostics) {

@@ -31,7 +31,8 @@ EnvironmentImage noise(int width, int height) {
 }
 
 // χ² over the texels of an image, each cut in four: the density is constant in each part, which its middle tells.
-test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int width, int height, std::uint64_t seed) {
+test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int width, int height, std::uint64_t seed,
+                                const Receiver& from = Vec3{}) {
     const int columns = 2 * width, rows = 2 * height, samples = test::chiSquareSamples();
     const auto solidAngle = [&](int r) {
         return 2 * kPiD / columns * (std::cos(kPiD * r / rows) - std::cos(kPiD * (r + 1) / rows));
@@ -41,13 +42,14 @@ test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int w
         for (int c = 0; c < columns; ++c) {
             const double theta = kPiD * (r + 0.5) / rows, phi = 2 * kPiD * (c + 0.5) / columns - kPiD;
             const Vec3d local{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-            expected.push_back(light.pdfEscaped(Vec3{}, Vec3(turn.vector(local)), 0) * solidAngle(r) * samples);
+            expected.push_back(light.pdfEscaped(from, Vec3(turn.vector(local)), 0) * solidAngle(r) * samples);
         }
     const Transform back = turn.inverse().value();
     test::Random random(seed);
     for (int i = 0; i < samples; ++i) {
-        const Vec3d w =
-            back.vector(Vec3d(light.sample(Vec3(), 0, {random.uniform(), random.uniform()}, kDistantAt, 0)->wi));
+        const auto s = light.sample(from, 0, {random.uniform(), random.uniform()}, kDistantAt, 0);
+        if (!s) continue;
+        const Vec3d w = back.vector(Vec3d(s->wi));
         const double phi = std::atan2(w.x, -w.z), theta = std::atan2(std::hypot(w.x, w.z), w.y);
         const int c = std::clamp(static_cast<int>((phi / (2 * kPiD) + 0.5) * columns), 0, columns - 1);
         const int r = std::clamp(static_cast<int>(theta / kPiD * rows), 0, rows - 1);
@@ -66,7 +68,31 @@ TEST_CASE("environment images: directions follow the density") {
     }
 }
 
-TEST_CASE("sky: directions are uniform") { CHECK(imageTest(SkyLight({&kDistantUnit, 1}), {}, 16, 8, 6).pValue > 1e-4); }
+TEST_CASE("sky: directions are uniform, and by the cosine over an opaque surface") {
+    const SkyLight sky({&kDistantUnit, 1});
+    CHECK(imageTest(sky, {}, 16, 8, 6).pValue > 1e-4);
+    CHECK(imageTest(sky, {}, 16, 8, 6, {{}, {0, 1, 0}, true}).pValue > 1e-4); // it lets light through
+    // Small cells, whose middles tell the density.
+    CHECK(imageTest(sky, {}, 96, 48, 6, {{}, {0, 1, 0}, false}).pValue > 1e-4);
+    CHECK(imageTest(sky, {}, 96, 48, 6, {{}, {1, 0, 0}, false}).pValue > 1e-4);
+}
+
+TEST_CASE("sky: no noise is left on an opaque surface without neighbours") {
+    const SkyLight sky({&kDistantUnit, 2});
+    for (const Vec3 n : {Vec3{0, 1, 0}, Vec3{0, 0, -1}, normalize(Vec3{0.3f, -1, 2})}) {
+        test::Random random(4);
+        test::Moments m;
+        for (int i = 0; i < 10000; ++i) {
+            const auto s = sky.sample({{}, n, false}, 0, {random.uniform(), random.uniform()}, kDistantAt, 0);
+            REQUIRE(s);
+            CHECK(s->pdfSolidAngle == sky.pdfEscaped({{}, n, false}, s->wi, 0));
+            m.add(s->radiance[0] * dot(n, s->wi) / s->pdfSolidAngle);
+        }
+        CHECK(m.mean() == doctest::Approx(2 * kPiD).epsilon(1e-4));
+        CHECK(m.variance() < 1e-6);
+    }
+    CHECK(sky.pdfEscaped({{}, {0, 1, 0}, false}, {0, -1, 0}, 0) == 0);
+}
 
 TEST_CASE("sun: directions are uniform over the disk") {
     for (const double half : {1e-3, 0.2, 1.5}) {
