@@ -178,7 +178,7 @@ std::string furtherReading(Kind kind) {
 std::string kindPage(const TypeTable& table, Kind kind) {
     const KindText& about = kindText(kind);
     const auto types = table.of(kind);
-    std::string text = fmt::format("# {}\n\n{}{}\n\n    {}\n\n", keyword(kind), kMade, about.doc, about.head);
+    std::string text = fmt::format("# {}\n\n{}{} Written `{}`.\n\n", keyword(kind), kMade, about.doc, about.head);
     if (types.size() == 1) return text + furtherReading(kind) + typeTable(*types[0]);
     text += kdlBlock(about.example) + furtherReading(kind);
     if (kind == Kind::spectrum) return text + spectrumSection();
