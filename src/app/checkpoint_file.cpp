@@ -18,7 +18,7 @@ namespace abbe {
 namespace {
 
 constexpr char kCheckpointMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kCheckpointVersion = 4;
+constexpr std::uint32_t kCheckpointVersion = 5;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
@@ -106,6 +106,7 @@ std::vector<std::byte> bytesOf(const CheckpointHeader& h) {
     ByteWriter out(bytes);
     for (const int v : {h.bounds.x0, h.bounds.y0, h.bounds.x1, h.bounds.y1, h.replicates}) out.number(v);
     for (const std::uint32_t v : {h.first, h.last, h.whole, h.lightBlocks}) out.number(v);
+    out.number(h.pilot);
     out.number(h.seconds);
     writeWork(h.work, out);
     out.texts(h.planes);
@@ -123,6 +124,7 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
     ByteReader in(bytes);
     for (int* v : {&h.bounds.x0, &h.bounds.y0, &h.bounds.x1, &h.bounds.y1, &h.replicates}) *v = in.number<int>();
     for (std::uint32_t* v : {&h.first, &h.last, &h.whole, &h.lightBlocks}) *v = in.number<std::uint32_t>();
+    h.pilot = in.number<std::int32_t>();
     h.seconds = in.number<double>();
     if (!readWork(in, h.work)) return false;
     h.planes = in.texts();
@@ -138,7 +140,8 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
         return from >= -65536 && from < to && to <= 2 * 65536;
     };
     return in.sound() && in.atEnd() && sideOk(h.bounds.x0, h.bounds.x1) && sideOk(h.bounds.y0, h.bounds.y1) &&
-           h.replicates >= 1 && h.first <= h.last && h.last <= h.whole;
+           h.replicates >= 1 && h.first <= h.last && h.last <= h.whole && h.pilot >= -1 &&
+           h.pilot <= RenderSettings::kFullPilot;
 }
 
 void writeTile(const TileState& tile, ByteWriter& out) {
@@ -262,7 +265,7 @@ bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, co
     std::vector<std::byte> bytes;
     ByteWriter(bytes).number(static_cast<std::uint64_t>(state.tileCount()));
     writeBlock(file, endBlock, bytes);
-    if (sound && !sound()) return false;
+    if ((sound && !sound()) || header.pilot != state.pilot()) return false;
     file.commit();
     return true;
 }
@@ -367,6 +370,7 @@ RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
     if (const Block& end = next(); end.kind != endBlock || position_ != size_) damaged(end.begin, "no end");
     state.seconds = header_.seconds;
     state.work = header_.work;
+    state.setPilot(header_.pilot);
     return state;
 }
 

@@ -31,6 +31,7 @@ struct CheckpointHeader {
     int replicates = 1;
     std::uint32_t first = 0, last = 0; // samples of each replicate that are meant to be in it
     std::uint32_t lightBlocks = 0;     // RenderState::lightBlockCount()
+    std::int32_t pilot = -1;           // RenderState::pilot()
     std::uint32_t whole = 0;           // samples of each replicate of the render that this is a part of
     double seconds = 0;                // wall clock so far
     WorkReading work;                  // where it went
@@ -46,9 +47,9 @@ struct CheckpointFault : std::runtime_error {
 
 // Writes the film's planes and the tiles in step with them; a render may go on meanwhile and is held up for one tile at
 // a time, while that is copied. Light paths alone wait until all that they add to is written. The file is complete and
-// on disk when it appears under its name, which it does only if `sound` still says so after the last tile; returns
-// whether it did. Throws IoError, and then an older file is as it was. Requires the header's lightBlocks to be the
-// state's.
+// on disk when it appears under its name, which it does only if `sound` still says so after the last tile, and if no
+// plan was made meanwhile that the header does not know; returns whether it did. Throws IoError, and then an older file
+// is as it was. Requires the header's lightBlocks to be the state's.
 bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&,
                      const std::function<bool()>& sound = {});
 

@@ -183,12 +183,19 @@ void Reader::addOtherCommands() {
         ->type_name("");
 }
 
+std::optional<bool> readSwitch(const std::string& text) {
+    return text == "on" || text == "off" ? std::optional(text == "on") : std::nullopt;
+}
+
 // What of the command line a render's picture and plans hang on, beside the scene.
 void Reader::addFrame(CLI::App* c, BuildOptions& b) {
     c->add_option("--camera", b.camera, "Camera to render; without it the first one")->type_name("NAME");
     addRead(c, "--size", b.size, "WxH", "Size of the image in pixels", "a size such as 640x480", readSize);
     c->add_option("--seed", b.seed, "Choose other random numbers")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
+        ->type_name("N");
+    c->add_option("--pilot", b.pilot, "Size of the pilots that plan for caustics, 0 (none) to 4; else by the work")
+        ->check(CLI::Range(0, RenderSettings::kFullPilot).description(""))
         ->type_name("N");
 }
 
@@ -212,9 +219,7 @@ void Reader::addGoals(CLI::App* c) {
                 return value && *value >= 0 && *value <= 1e9 ? value : std::nullopt;
             });
     addRead(c, "--adaptive", b.adaptive, "on|off", "More samples where there is more noise, at the same cost",
-            "on or off", [](const std::string& text) -> std::optional<bool> {
-                return text == "on" || text == "off" ? std::optional(text == "on") : std::nullopt;
-            });
+            "on or off", readSwitch);
 }
 
 void Reader::addSaving() {
@@ -253,6 +258,8 @@ void Reader::addRender() {
         ->check(CLI::Range(1, 4096).description(""))
         ->type_name("N");
     c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
+    addRead(c, "--preview", r.preview, "on|off", "A PNG of what there is so far, until the image is written",
+            "on or off", readSwitch);
     addView(c, r.view);
     c->add_flag("--json", common_.json, "Progress as JSON lines on stdout");
     c->add_flag("--bill", r.bill, "Print what the time was spent on");

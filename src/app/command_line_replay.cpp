@@ -37,6 +37,9 @@ void addReplayArguments(CLI::App& command, ReplayOptions& options, CommonOptions
     command.add_option("--seed", b.seed, "Seed of the render")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53).description(""))
         ->type_name("N");
+    command.add_option("--pilot", b.pilot, "Size of its pilots, `abbe.pilot` of the image's header; else by the work")
+        ->check(CLI::Range(0, RenderSettings::kFullPilot).description(""))
+        ->type_name("N");
     command.add_option("-D", options.render.input.defines, "A parameter of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE");

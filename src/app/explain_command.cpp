@@ -26,11 +26,12 @@ bool looksLikeFile(const std::string& topic) {
     return std::filesystem::is_regular_file(topic, error) && !schema::explain(makeTypeTable(), topic).found;
 }
 
-bool hasFrame(const BuildOptions& b) { return !b.camera.empty() || b.size || b.seed; }
+bool hasFrame(const BuildOptions& b) { return !b.camera.empty() || b.size || b.seed || b.pilot; }
 
 // Decided by a look at the scene if need be, which takes its geometry. Undecided if that is at fault.
 LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& described, const BuildOptions& build) {
-    const RenderSettings settings = renderSettings(described.render);
+    RenderSettings settings = renderSettings(described.render);
+    settings.pilot = build.pilot.value_or(RenderSettings::kPilotByWork);
     LightPathFindings found;
     found.verdict = lightPathVerdict(described.scene, settings.technique);
     if (found.verdict != LightPathVerdict::undecided) return found;
@@ -90,7 +91,8 @@ ExitCode explainWords(const std::string& topic, const Console& console) {
 ExitCode run(const ExplainOptions& options, const CommonOptions& common) {
     const bool scene = looksLikeFile(options.topic);
     if (!scene && hasFrame(options.build)) {
-        common.console.line("`--camera`, `--size` and `--seed` are for a scene: `abbe explain x.scene --camera NAME`");
+        common.console.line(
+            "`--camera`, `--size`, `--seed` and `--pilot` are for a scene: `abbe explain x.scene --camera NAME`");
         return ExitCode::usage;
     }
     if (options.effects && options.topic.empty()) {

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -37,6 +38,12 @@ class HumanReport final : public RenderReport {
     void image(const std::string& path, bool partial) override {
         clearBar();
         if (!quiet_ && partial) console_.line(fmt::format("{} holds the image so far", path));
+    }
+
+    void preview(const std::string& path) override {
+        if (quiet_ || std::exchange(previewTold_, true)) return;
+        clearBar();
+        console_.line(fmt::format("{} shows what there is so far", path));
     }
 
     void diagnostics(const Diagnostics& d, const SourceMap& sources) override {
@@ -79,6 +86,7 @@ class HumanReport final : public RenderReport {
     int lastTenth_ = 0;
     bool started_ = false; // rendering
     bool barShown_ = false;
+    bool previewTold_ = false;
 };
 
 void HumanReport::done(const RenderSummary& s) {

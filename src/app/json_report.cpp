@@ -56,6 +56,10 @@ class JsonReport final : public RenderReport {
         emit(Json::object({{"event", "image"}, {"path", path}, {"partial", partial}}));
     }
 
+    void preview(const std::string& path) override {
+        emit(Json::object({{"event", "image"}, {"path", path}, {"partial", true}, {"preview", true}}));
+    }
+
     void diagnostics(const Diagnostics&, const SourceMap&) override;
 
     void done(const RenderSummary& s) override {
@@ -71,6 +75,8 @@ class JsonReport final : public RenderReport {
                                    {"spp", r.samplesPerPixel},
                                    {"paths", r.paths},
                                    {"rays", r.rays()},
+                                   {"pilot_rays", r.pilotRays},
+                                   {"pilot_seconds", r.pilotSeconds},
                                    {"noise", positiveOrNull(s.noise)},
                                    {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
                                    {"kernel", r.kernel},

@@ -33,6 +33,8 @@ constexpr std::string_view wordOf(LightPathVerdict v) {
         return "nothing-found";
     case noGain:
         return "no-gain";
+    case noPilot:
+        return "no-pilot";
     case undecided:
         break;
     }
@@ -76,6 +78,8 @@ std::string reason(const LightPathFindings& f) {
                            f.before);
     case noGain:
         return fmt::format("{}, with {:.3g} per camera path", forecast(f), f.bestShare);
+    case noPilot:
+        return "nobody looked for caustics: `--pilot 0`, or `--time` is too short for it";
     default:
         return "nobody looked";
     }
@@ -196,8 +200,8 @@ std::string lightPathText(const LightPathFindings& f) {
     if (f.used())
         text += fmt::format("  {:.3g} % of them go on past what first spreads them, a rough surface or a medium\n",
                             100 * f.afterSpread);
-    text += fmt::format("  {} light{}, {} target{}; a pilot took {} rays\n", f.lights, f.lights == 1 ? "" : "s",
-                        f.targets, f.targets == 1 ? "" : "s", f.rays);
+    text += fmt::format("  {} light{}, {} target{}; a pilot of size {} took {} rays\n", f.lights,
+                        f.lights == 1 ? "" : "s", f.targets, f.targets == 1 ? "" : "s", f.pilot, f.rays);
     if (f.bestShare > 0)
         text += fmt::format("  {} as camera paths alone with {:.3g} light paths for each of them\n", forecast(f),
                             f.bestShare);
@@ -209,6 +213,7 @@ std::string lightPathText(const LightPathFindings& f) {
 
 Json lightPathJson(const LightPathFindings& f) {
     Json json = Json::object({{"verdict", std::string(wordOf(f.verdict))}, {"text", lightPathLine(f)}});
+    json.set("pilot", f.pilot);
     if (!f.measured) return json;
     json.set("per_camera_path", f.share).set("go_on_after_spread", f.afterSpread);
     json.set("judged_per_camera_path", f.bestShare).set("gain", f.gain);

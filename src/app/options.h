@@ -51,6 +51,7 @@ struct RenderOptions {
     bool quiet = false;
     bool strict = false;
     bool bill = false;            // printed at the end
+    std::optional<bool> preview;  // while it goes on; unless off
     std::optional<Vec2i> pixel;   // render this one alone and print it
     std::optional<double> memory; // MiB, the most that may be taken
     CheckpointOptions checkpoint;
@@ -72,7 +73,7 @@ struct CheckOptions {
 struct ExplainOptions {
     std::string topic;    // a scene file, or words of the language; empty: the language itself
     bool effects = false; // of the scene; without a topic: those that there are
-    BuildOptions build;   // camera, size and seed of the render that is explained
+    BuildOptions build;   // camera, size, seed and pilot of the render that is explained
     std::vector<std::string> defines;
 };
 

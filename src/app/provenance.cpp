@@ -58,6 +58,8 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.mergingTechnique", std::string(word(technique.merging)));
     const LightPathFindings& found = statistics.lightPlan;
     if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
+    if (found.measured || found.verdict == LightPathVerdict::noPilot)
+        whole("abbe.pilot", static_cast<std::uint64_t>(found.pilot));
     if (found.measured) {
         real("abbe.lightPathShare", found.share);
         real("abbe.lightPathGain", found.gain);

@@ -38,6 +38,7 @@ void RenderCheckpoint::check(const CheckpointHeader& theirs) const {
         list.push_back({"samples", samples(h)});
         list.push_back({"layers", fmt::format("{}", fmt::join(h.planes, " "))});
         list.push_back({"blocks of light paths", fmt::format("{}", h.lightBlocks)});
+        if (theirs.pilot >= 0 && header_.pilot >= 0) list.push_back({"pilot", fmt::format("{}", h.pilot)});
         return list;
     };
     const auto lines = differences(facts(theirs), facts(header_), "the checkpoint", "this render");
@@ -97,6 +98,7 @@ void RenderCheckpoint::write() {
     CheckpointHeader header = header_;
     header.seconds = state_->seconds + watch_.seconds();
     header.work = state_->work;
+    header.pilot = state_->pilot();
     if (work_) header.work.add(work_());
     if (!writeCheckpoint(path_, header, planes_, *state_, sound_)) return;
     ours_ = true;

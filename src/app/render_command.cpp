@@ -103,6 +103,8 @@ ExitCode RenderRun::checkOutputs() {
 
 ExitCode RenderRun::prepare() {
     settings_ = renderSettings(built_.render);
+    settings_.pilot = options_.build.pilot.value_or(RenderSettings::kPilotByWork);
+    if (alone()) settings_.timeLimit = 0;
     integrator_ = makePathTracer(options_.largestKernel ? kLoopEffects : built_.scene.effects);
     if (const ExitCode code = checkFilm(); code != ExitCode::done) return code;
     if (!alone())
@@ -161,10 +163,19 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
         report_->progress(p);
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
-    const RenderControl control{&interrupt.stop(), progress, &state, &interrupt.snapshot(), onSnapshot};
+    RenderControl control{&interrupt.stop(), progress, &state, &interrupt.snapshot(), onSnapshot};
+    control.firstLook = [this](const FirstLook& look) {
+        look_ = look;
+        if (preview_ && preview_->show(look)) report_->preview(preview_->path());
+    };
+    control.passEnded = [&] {
+        const bool last = state.reached() >= settings_.range(film.replicates()).last;
+        if (preview_ && !last && preview_->show(film)) report_->preview(preview_->path());
+    };
     try {
         const WorkScope work(Work::none);
         summary_.statistics = integrator_->render(built_.scene, film, settings_, control);
+        settings_.pilot = state.pilot(); // for samples that are taken again
     } catch (const std::bad_alloc&) {
         // A tile in hand may be in the film in part: good enough for the image, which says that it is partial, but not
         // to go on from. The checkpoint stays as it was written last.
@@ -196,6 +207,7 @@ ExitCode RenderRun::merge() {
         RenderParts parts(options_.parts);
         parts.check(identity());
         film_.crop = parts.bounds();
+        settings_.pilot = parts.pilot();
         PixelFilm film = makeFilm(film_.crop);
         watch_.lap();
         const WorkScope work(Work::merging);
@@ -231,6 +243,7 @@ ExitCode RenderRun::finish(int signal) {
         tellHowToResume();
     else if (checkpoint_ && !options_.part && !options_.checkpoint.keep)
         checkpoint_->remove();
+    preview_.reset();
     for (const auto& phase : summary_.phases) summary_.totalSeconds += phase.second;
     summary_.width = film_.crop.width();
     summary_.height = film_.crop.height();

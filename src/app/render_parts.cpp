@@ -43,6 +43,9 @@ void RenderParts::check(const std::vector<Fact>& identity) const {
         if (header.lightBlocks != first.lightBlocks)
             lines.push_back(fmt::format("blocks of light paths: {} in the part, {} in `{}`", header.lightBlocks,
                                         first.lightBlocks, readers_[0].path()));
+        if (header.pilot != first.pilot)
+            lines.push_back(
+                fmt::format("pilot: {} in the part, {} in `{}`", header.pilot, first.pilot, readers_[0].path()));
         if (!lines.empty())
             throw CheckpointFault("E0663",
                                   fmt::format("`{}` is of another render: {}", reader.path(), fmt::join(lines, "; ")),

@@ -23,6 +23,8 @@ class RenderParts {
     PixelBounds bounds() const;
     // Adds all of them to an empty film of these bounds. Requires check().
     RenderStatistics addTo(const FilmPlanes&);
+    // RenderSettings::pilot of all of them. Requires check().
+    int pilot() const { return readers_[0].header().pilot; }
     // Where the time of all parts went. After addTo().
     const WorkReading& work() const { return work_; }
 

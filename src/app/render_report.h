@@ -54,6 +54,7 @@ class RenderReport {
     virtual void phase(const std::string& name, double seconds) = 0; // after it ended
     virtual void progress(const Progress&) = 0;
     virtual void image(const std::string& path, bool partial) = 0; // after it was written
+    virtual void preview(const std::string& path) = 0;             // likewise; it goes when the image is there
     virtual void diagnostics(const Diagnostics&, const SourceMap&) = 0;
     virtual void done(const RenderSummary&) = 0;
 };

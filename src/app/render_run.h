@@ -5,6 +5,7 @@
 #include "app/interrupt.h"
 #include "app/options.h"
 #include "app/render_checkpoint.h"
+#include "app/render_preview.h"
 #include "app/render_report.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -41,6 +42,7 @@ class RenderRun {
         RenderState state(film.bounds(), settings_.range(film.replicates()).first,
                           integrator_->lightBlocks(built_.scene, settings_));
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
+        openPreview();
         render(film, state, interrupt);
         if (!options_.part) writeInMemory(film);
         return finish(interrupt.signal());
@@ -93,9 +95,8 @@ class RenderRun {
     Bill bill();
     void writePng(const ResolvedImage&);
     void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
-    FilmPicture pictureOf(const PixelFilm& film) const {
-        return resolvePicture(film, film_, built_.exposure, built_.scene.origin);
-    }
+    FilmPicture pictureOf(const PixelFilm&);
+    void openPreview();
     ExitCode finish(int signal);
 
     void endPhase(const char* name, double seconds) {
@@ -114,10 +115,13 @@ class RenderRun {
     WorkClock clock_{threadCount()}; // outlives whoever reads it: the checkpoint
     WorkReading earlier_;            // of runs and parts before this one
     std::optional<RenderCheckpoint> checkpoint_;
-    bool outOfMemory_ = false;    // while rendering or writing
-    bool imageWritten_ = false;   // in the end
-    std::string olderCheckpoint_; // which stays when memory ran out
-    double beyondBudget_ = 0;     // bytes that were taken when that was too much
+    std::optional<RenderPreview> preview_;
+    std::optional<FirstLook> look_; // of this run
+    std::size_t lookedAt_ = 0;      // pixels that were written without a sample, as they looked at first
+    bool outOfMemory_ = false;      // while rendering or writing
+    bool imageWritten_ = false;     // in the end
+    std::string olderCheckpoint_;   // which stays when memory ran out
+    double beyondBudget_ = 0;       // bytes that were taken when that was too much
     bool lostTexture_ = false;
     double watchedUntil_ = 0; // s, textures and memory
     RenderSummary summary_;

@@ -28,6 +28,7 @@ CheckpointHeader RenderRun::checkpointHeader() const {
     header.first = range.first;
     header.last = range.last;
     header.whole = settings_.samplesPerReplicate(header.replicates);
+    header.pilot = options_.build.pilot.value_or(-1); // one that is asked for must be that of the checkpoint
     return header;
 }
 
@@ -137,6 +138,7 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
     list.push_back(billAttribute(bill()));
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
+    if (lookedAt_ > 0) list.push_back({"abbe.pixelsOfFirstLook", static_cast<int>(lookedAt_)});
     if (settings_.adaptive) list.push_back({"abbe.adaptive", std::string("frozen plan (unbiased)")});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
     return list;
@@ -200,6 +202,7 @@ void RenderRun::write(const PixelFilm& film) {
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
+    if (!summary_.partial) warnOfMissingSamples(lookedAt_, film.bounds(), warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     warnOfBlackImage(picture.image, warnings);
     report_->diagnostics(warnings, loaded_->sources);

@@ -47,6 +47,16 @@ void warnOfDensities(const DensityExcess& excess, Diagnostics& diagnostics) {
                                     excess.above, excess.lookups, excess.most));
 }
 
+void warnOfMissingSamples(std::size_t pixels, PixelBounds bounds, Diagnostics& diagnostics) {
+    if (pixels == 0) return;
+    diagnostics
+        .warning("W0668", {},
+                 fmt::format("the time ended before every pixel had a sample; {:.2g} % of the image show a rough first "
+                             "look",
+                             100 * static_cast<double>(pixels) / static_cast<double>(bounds.area())))
+        .help = "give it more `--time`, or a smaller `--size`";
+}
+
 void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {
     const auto black = [](const std::vector<float>& plane) {
         return std::all_of(plane.begin(), plane.end(), [](float v) { return v == 0; });

@@ -14,6 +14,8 @@ void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> f
                           Diagnostics&);
 // That bounds of procedural density are too low to be of use.
 void warnOfDensities(const DensityExcess&, Diagnostics&);
+// Of pixels that show the first look, in an image of these bounds, because the time was too short for a sample of them.
+void warnOfMissingSamples(std::size_t pixels, PixelBounds, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
 
 } // namespace abbe

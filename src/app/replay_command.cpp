@@ -41,6 +41,8 @@ std::optional<RenderOptions> renderOf(const std::string& path, const ExrInfo& in
     const auto* render = command ? std::get_if<RenderOptions>(&command->options) : nullptr;
     if (!render) return std::nullopt;
     RenderOptions options = *render;
+    for (const ImageAttribute& a : info.attributes)
+        if (const auto* size = std::get_if<int>(&a.value); size && a.name == "abbe.pilot") options.build.pilot = *size;
     std::error_code error;
     if (!std::filesystem::exists(options.input.path,
                                  error)) // relative to where it was rendered; perhaps beside the image
@@ -71,6 +73,8 @@ std::string RenderRun::replayCommand() const {
     if (!b.camera.empty()) add("--camera", b.camera);
     if (b.size) add("--size", fmt::format("{}x{}", b.size->x, b.size->y));
     if (b.seed) add("--seed", std::to_string(*b.seed));
+    if (settings_.pilot >= 0 && integrator_->lightBlocks(built_.scene, settings_) > 0)
+        add("--pilot", std::to_string(settings_.pilot));
     if (!b.strategy.empty()) add("--strategy", b.strategy);
     if (!b.sampler.empty()) add("--sampler", b.sampler);
     return command;

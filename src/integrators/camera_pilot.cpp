@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/work.h"
 #include "integrators/pilot_pixel.h"
+#include "integrators/pilot_size.h"
 
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace abbe {
 
 namespace {
 
-constexpr int kCells = 12; // of a row
+constexpr int kCells = 12, kLeastCells = 3; // of a row
 constexpr int kReplicates = 2;
 
 using Samples = std::array<std::array<double, CameraVariance::kMany>, kReplicates>;
@@ -61,7 +62,7 @@ void add(CameraVariance& to, const CameraVariance& v, double share) {
 
 CameraNoise cameraNoise(const PathContext& context, TileFunction render, const RouletteReference& roulette,
                         const LightPathPlan& plan, const NoiseMeasure& measure) {
-    const PilotPixel::Grid grid(context.scene.frame, kCells);
+    const PilotPixel::Grid grid(context.scene.frame, PilotSize(context.settings).side(kCells, kLeastCells));
     LightPathPlan all = plan; // leaves to light paths what they can bring
     all.alone = true;
     PathContext without = context;

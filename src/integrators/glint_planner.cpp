@@ -4,6 +4,7 @@
 #include "base/work.h"
 #include "integrators/glint_lamps.h"
 #include "integrators/light_path_planner.h"
+#include "integrators/pilot_size.h"
 
 #include <algorithm>
 #include <array>
@@ -18,11 +19,11 @@ namespace {
 
 constexpr std::uint64_t kKey = 0x676c696e74; // "glint"
 constexpr std::size_t kMostLamps = 8;
-constexpr int kStep = 4, kWalks = 36;          // pixels between places from which so many walks start
-constexpr double kMostSeeds = 16384;           // such places; larger frames have wider steps
-constexpr float kNear = 1.2f;                  // of the lamp's direction: from where Newton's method starts
-constexpr int kPixelBlock = 4;                 // pixels; of candidates that are alike and this near one is taken
-constexpr std::size_t kMostCandidates = 16384; // of which Newton's method starts
+constexpr int kStep = 4, kWalks = 36; // pixels between places from which so many walks start
+constexpr double kMostSeeds = 16384;  // such places; larger frames and smaller pilots have wider steps
+constexpr float kNear = 1.2f;         // of the lamp's direction: from where Newton's method starts
+constexpr int kPixelBlock = 4;        // pixels; of candidates that are alike and this near one is taken
+constexpr std::uint32_t kMostCandidates = 16384, kLeastCandidates = 64; // of which Newton's method starts
 constexpr int kIterations = 32;
 constexpr float kDifference = 0.05f, kFinestStep = 0.002f, kLongestPixelStep = 6; // pixels
 constexpr float kMargin = 1.3f;                                                   // of boxes
@@ -102,8 +103,10 @@ class GlintPlanner {
     }
 
     std::vector<GlintQuery> seeds() const {
-        const double scale = std::sqrt(static_cast<double>(frame_.area()) / kMostSeeds);
-        const int step = std::max(kStep, static_cast<int>(std::ceil(scale)));
+        const double effort = PilotSize(context_.settings).effort();
+        const double scale = std::sqrt(static_cast<double>(frame_.area()) / (kMostSeeds * effort));
+        const int most = std::max(kStep, std::min(frame_.width(), frame_.height()));
+        const int step = std::min(static_cast<int>(std::ceil(std::max(kStep / std::sqrt(effort), scale))), most);
         std::vector<GlintQuery> queries;
         for (int y = frame_.y0; y < frame_.y1; y += step)
             for (int x = frame_.x0; x < frame_.x1; x += step)
@@ -149,7 +152,8 @@ class GlintPlanner {
         std::vector<Candidate> list;
         for (const auto& [key, c] : nearest) list.push_back(c);
         std::ranges::stable_sort(list, {}, &Candidate::miss);
-        if (list.size() > kMostCandidates) list.resize(kMostCandidates);
+        const std::size_t number = PilotSize(context_.settings).count(kMostCandidates, kLeastCandidates);
+        if (list.size() > number) list.resize(number);
         return list;
     }
 

@@ -8,6 +8,7 @@
 #include "integrators/light_path_forecast.h"
 #include "integrators/light_path_shares.h"
 #include "integrators/pilot_pixel.h"
+#include "integrators/pilot_size.h"
 
 #include <algorithm>
 #include <array>
@@ -20,11 +21,10 @@ namespace abbe {
 
 namespace {
 
-// Of pilot paths: half as many as the frame has pixels, whatever the number of samples, but within these.
-constexpr std::uint32_t kBlock = 1024, kLeastBlocks = 8, kMostBlocks = 32;
+// Of pilot paths: half as many as the frame has pixels, but within these for the full pilot, and no fewer than the last
+// for any.
+constexpr std::uint32_t kBlock = 1024, kLeastPilotPaths = 8 * kBlock, kMostPilotPaths = 32 * kBlock, kLeastOfAny = 512;
 constexpr std::uint64_t kLearnLightPaths = 0x6c6561726e, kJudgeLightPaths = 0x6a75646765; // "learn", "judge"
-// Per camera ray: what asking for the densities of light paths costs, in rays.
-constexpr double kTracedCost = 1.4;
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
 constexpr double kLightCost = 2.5;
 // Of all that a picture takes, what is spent against light that comes too seldom for a pilot to see it, and shines the
@@ -56,6 +56,7 @@ class LightPathPlanner {
         findings_.verdict = LightPathVerdict::noLights;
         if (!first.emission.empty()) findings_.verdict = decide(emission, first, result.plan);
         result.findings = std::move(findings_);
+        result.raysBeside = raysBeside_;
         return result;
     }
 
@@ -90,6 +91,7 @@ class LightPathPlanner {
         findings_.share = findings_.bestShare;
         if (alone()) findings_.share = std::max(findings_.share, 1.0); // the gain is that of both together
         learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
+        raysBeside_ = findings_.share * costs_.light;
         learned.afterSpread = insured(learned.afterSpread);
         findings_.afterSpread = static_cast<double>(learned.afterSpread);
         learned.alone = alone();
@@ -128,8 +130,9 @@ class LightPathPlanner {
     Listened listen(const LightPathPlan& plan, std::uint64_t key) {
         targets_ = plan.emission.targetCount() + 1;
         const PathContext context = withPlan(plan, key);
-        std::vector<Listened> parts(
-            std::clamp(static_cast<std::uint32_t>(frame_.area() / (2 * kBlock)), kLeastBlocks, kMostBlocks));
+        const auto full = std::clamp(static_cast<std::uint32_t>(frame_.area() / 2), kLeastPilotPaths, kMostPilotPaths);
+        const std::uint32_t paths = PilotSize(context_.settings).count(full / kBlock * kBlock, kLeastOfAny);
+        std::vector<Listened> parts((paths + kBlock - 1) / kBlock);
         parallelFor(parts.size(), [&](std::size_t i) {
             if (stop_()) return;
             Listened& part = parts[i];
@@ -137,9 +140,10 @@ class LightPathPlanner {
             Darkroom film(frame_);
             const auto begin = static_cast<std::uint32_t>(i) * kBlock;
             addWorkFlag(WorkFlag::pilot);
-            const TileResult r = kernel_.listen(context, film, {begin, begin + kBlock, 0, 1}, listener);
+            const std::uint32_t end = std::min(begin + kBlock, paths);
+            const TileResult r = kernel_.listen(context, film, {begin, end, 0, 1}, listener);
             removeWorkFlag(WorkFlag::pilot);
-            part.paths = kBlock;
+            part.paths = end - begin;
             part.rays = r.counters.vertices + r.counters.shadowRays;
             part.raysAfterSpread = r.raysAfterSpread;
         });
@@ -252,6 +256,7 @@ class LightPathPlanner {
         double camera = 0, light = 0, afterSpread = 0; // of a path, in rays; the last is a part of light
     };
     Costs costs_;
+    double raysBeside_ = 0;
     LightPathFindings findings_;
 };
 

@@ -10,9 +10,13 @@
 
 namespace abbe {
 
+// Per camera ray: what asking for the densities of light paths costs, in rays.
+inline constexpr double kTracedCost = 1.4;
+
 struct PlannedLightPaths {
     std::unique_ptr<const LightPathPlan> plan; // null: none
     LightPathFindings findings;
+    double raysBeside = 0; // that its light paths take beside each camera path, in those of camera paths
 };
 
 // What scene and technique decide without a look: `undecided` leaves it to planLightPaths().

@@ -1,6 +1,7 @@
 #include "integrators/look_ahead.h"
 
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "base/work.h"
 #include "render/render_state.h"
 
@@ -27,7 +28,9 @@ class Looker {
         const Technique::Roulette roulette = context_.settings.technique.roulette;
         if (roulette == Technique::Roulette::throughput) result_.roulette = RouletteReference::constant(1);
         if (roulette == Technique::Roulette::off) result_.roulette = RouletteReference::constant(kNoRoulette);
+        const Stopwatch watch;
         PilotFilm pilot = look();
+        describe(pilot, watch.seconds());
         if (roulette == Technique::Roulette::pilot) result_.roulette = RouletteReference(pilot);
         if (context_.settings.adaptive && !stop_()) result_.plan = plan();
         for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
@@ -67,6 +70,19 @@ class Looker {
                 pilot.noteRays(column, row, trace(context, pilot, pilot.pixelOf(column, row), PilotFilm::kSamples));
         });
         return pilot;
+    }
+
+    void describe(const PilotFilm& pilot, double seconds) {
+        FirstLook& first = result_.first;
+        first = {frame_, pilot.cellSize(), pilot.columns(), pilot.rows(), {}, 0};
+        for (int row = 0; row < pilot.rows(); ++row)
+            for (int column = 0; column < pilot.columns(); ++column) {
+                const PixelBounds pixel = pilot.pixelOf(column, row);
+                first.cells.push_back(pilot.mean(pixel.x0, pixel.y0));
+            }
+        const double paths = static_cast<double>(first.cells.size()) * PilotFilm::kSamples;
+        first.secondsForSample = seconds / paths * static_cast<double>(frame_.area());
+        result_.raysOfPath = static_cast<double>(rays_) / paths;
     }
 
     // With the roulette of the image.

@@ -4,6 +4,7 @@
 #include "integrators/roulette.h"
 #include "integrators/sampling_plan.h"
 #include "integrators/tile_kernel.h"
+#include "render/first_look.h"
 
 #include <functional>
 #include <vector>
@@ -19,6 +20,8 @@ struct LookAhead {
     SamplingPlan plan;             // even unless the settings ask for more
     std::vector<double> tileCosts; // of a sample in each tile of the state, in rays
     std::uint64_t rays = 0;        // that it took
+    FirstLook first;
+    double raysOfPath = 0; // of a camera path, in the mean over the frame
 };
 
 // Rough, and no longer the same from one run to the next, if `stop` says so on the way.

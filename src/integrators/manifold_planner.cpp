@@ -6,6 +6,7 @@
 #include "integrators/light_path_planner.h"
 #include "integrators/manifold_pilot.h"
 #include "integrators/pilot_pixel.h"
+#include "integrators/pilot_size.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +17,9 @@ namespace abbe {
 namespace {
 
 constexpr std::uint64_t kLearnChains = 0x6368616973, kJudgeChains = 0x636861696e; // "chais", "chain"
-constexpr int kPilotCells = 40;                                                   // of a row of the pilot
+constexpr int kPilotCells = 40, kLeastPilotCells = 4;                             // of a row of the pilot
 constexpr int kPilotReplicates = PilotPixel::kMostReplicates;
-constexpr std::size_t kLooks = 256; // of ManifoldPilot, each at all kinds of chains
+constexpr std::uint32_t kLooks = 256, kLeastLooks = 8; // of ManifoldPilot, each at all kinds of chains
 constexpr std::uint32_t kMostEstimates = 16;
 // A lamp that fills more than this everywhere has no small images.
 constexpr double kLargeLight = 0.5; // sr
@@ -117,6 +118,7 @@ class ManifoldPlanner {
         }
         findings_.used = result.sampler != nullptr;
         result.findings = findings_;
+        if (findings_.used) result.raysBeside = raysBeside_;
         return result;
     }
 
@@ -148,7 +150,7 @@ class ManifoldPlanner {
         PathContext base = context_;
         base.settings.seed = combine64(context_.settings.seed, key);
         base.manifold = &sampler;
-        const PilotPixel::Grid grid(frame_, kPilotCells);
+        const PilotPixel::Grid grid(frame_, PilotSize(context_.settings).side(kPilotCells, kLeastPilotCells));
         std::vector<Cell> cells(grid.size());
         parallelFor(cells.size(), [&](std::size_t i) {
             if (stop_()) return;
@@ -180,7 +182,7 @@ class ManifoldPlanner {
         std::vector<const Cell::Look*> looks;
         for (const Cell& c : cells)
             if (!c.looks.empty()) looks.push_back(&c.looks.front());
-        const std::size_t step = looks.size() / kLooks + 1;
+        const std::size_t step = looks.size() / PilotSize(context_.settings).count(kLooks, kLeastLooks) + 1;
         for (std::size_t i = 0; i < looks.size() && !stop_(); i += step)
             pilot.look(looks[i]->start, looks[i]->importance, looks[i]->lambda, random);
         findings_.rays += pilot.counts().rays;
@@ -213,6 +215,7 @@ class ManifoldPlanner {
             findings_.gain = plain / cost;
             findings_.after = after;
             findings_.estimates = k;
+            raysBeside_ = k * own;
         }
     }
 
@@ -222,6 +225,7 @@ class ManifoldPlanner {
     const std::function<bool()>& stop_;
     PixelBounds frame_;
     ManifoldFindings findings_;
+    double raysBeside_ = 0;
 };
 
 } // namespace

@@ -12,6 +12,7 @@ namespace abbe {
 struct PlannedManifold {
     std::unique_ptr<const ManifoldSampler> sampler; // null: none
     ManifoldFindings findings;
+    double raysBeside = 0; // that estimates take beside each camera path
 
     // Leaves large images of lamps whose light is merged to merging, and rare kinds of chains if all of it is. Requires
     // a sampler; may leave none.
@@ -19,7 +20,8 @@ struct PlannedManifold {
 };
 
 // A context with the plan of light paths, if any; the reference is that of the frame. `stop` cuts it short, without a
-// plan. Depends on the scene, the frame and the seed alone.
+// plan. Depends on the scene, the frame, the seed and the
+// size of the pilots alone.
 PlannedManifold planManifold(const PathContext&, const TracedKernel&, const RouletteReference&,
                              const std::function<bool()>& stop);
 

@@ -4,6 +4,7 @@
 #include "base/work.h"
 #include "integrators/aim_grid.h"
 #include "integrators/darkroom.h"
+#include "integrators/pilot_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,8 @@ namespace abbe {
 namespace {
 
 constexpr std::uint32_t kRounds = 8;
-constexpr int kRow = 48; // pixels
+constexpr std::uint32_t kPhotons = 16384, kLeastPhotons = 256;
+constexpr int kRow = 48, kLeastRow = 6; // pixels
 
 } // namespace
 
@@ -76,7 +78,9 @@ std::vector<LightDeposit> MergePilot::Heard::shown() const {
 
 MergePilot::MergePilot(const PathContext& context, const TracedKernel& kernel, const std::function<bool()>& stop)
     : context_(context), kernel_(kernel), stop_(stop),
-      step_(std::max(1, std::max(context.scene.frame.width(), context.scene.frame.height()) / kRow)) {
+      photons_(PilotSize(context.settings).count(kPhotons, kLeastPhotons)),
+      step_(std::max(1, std::max(context.scene.frame.width(), context.scene.frame.height()) /
+                            PilotSize(context.settings).side(kRow, kLeastRow))) {
     for (const auto& light : context.scene.lights)
         numbers_.emplace(light.get(), static_cast<std::uint32_t>(numbers_.size()));
 }
@@ -108,8 +112,8 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         all.deposits.insert(all.deposits.end(), part.deposits.begin(), part.deposits.end());
         all.looks += part.looks;
         all.rays += part.rays;
-        all.photonRays += static_cast<double>(photonRays[i]) / (kRounds * static_cast<double>(kPhotons));
-        all.photons += static_cast<double>(photons[i]) / (kRounds * static_cast<double>(kPhotons));
+        all.photonRays += static_cast<double>(photonRays[i]) / (kRounds * static_cast<double>(photons_));
+        all.photons += static_cast<double>(photons[i]) / (kRounds * static_cast<double>(photons_));
         all.gatherRays += static_cast<double>(part.rays - photonRays[i]);
     }
     all.looks = std::max(all.looks, 1.0);

@@ -13,8 +13,6 @@ namespace abbe {
 // Some rounds with few light paths, gathered by an even part of the pixels.
 class MergePilot {
   public:
-    static constexpr std::uint32_t kPhotons = 16384;
-
     // Light of one lamp in one pixel of one round; luminance.
     struct Pixel {
         std::uint32_t light = 0; // place in the scene
@@ -38,7 +36,9 @@ class MergePilot {
     };
 
     MergePilot(const PathContext& context, const TracedKernel& kernel, const std::function<bool()>& stop);
-    // Depends on the scene, the frame, the seed of the context and the key alone, unless `stop` cuts it short.
+    // Light paths of a round.
+    std::uint32_t photons() const { return photons_; }
+    // Depends on the scene, the frame, the settings of the context and the key alone, unless `stop` cuts it short.
     Heard listen(const MergePlan&, std::uint64_t key) const;
 
   private:
@@ -47,6 +47,7 @@ class MergePilot {
     const PathContext& context_;
     const TracedKernel& kernel_;
     const std::function<bool()>& stop_;
+    std::uint32_t photons_;
     int step_;
     std::unordered_map<const Light*, std::uint32_t> numbers_;
 };

@@ -6,6 +6,7 @@
 #include "integrators/emission_learning.h"
 #include "integrators/merge_pilot.h"
 #include "integrators/pilot_pixel.h"
+#include "integrators/pilot_size.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,7 @@ constexpr double kLeastMergeGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
 constexpr double kRoundCost = 2;
 constexpr std::array kEvery{1u, 2u, 4u};
-constexpr int kCameraRow = 24; // pixels in which rays of camera paths are counted
+constexpr int kCameraRow = 24, kLeastCameraRow = 6; // pixels in which rays of camera paths are counted
 
 // Light of one lamp: relative second moments of a sample of every pixel, in the mean over pixels.
 struct Moments {
@@ -48,7 +49,7 @@ class MergePlanner {
         EmissionPlan even;
         even.targets = aimTargets(context_.scene.focusing, bounds, boxesOfBalls(context_.scene.surfaces)).balls;
         MergePlan plan{
-            AimedEmission(context_.scene.lights, bounds, even), {}, MergePilot::kPhotons, 1, 1e-5f * bounds.radius()};
+            AimedEmission(context_.scene.lights, bounds, even), {}, pilot_.photons(), 1, 1e-5f * bounds.radius()};
         for (const auto& light : context_.scene.lights)
             if (light->paths() != LightPaths::none) plan.lights.insert(light.get());
         if (plan.emission.empty()) return result;
@@ -67,6 +68,7 @@ class MergePlanner {
                 result.plan = std::make_unique<const MergePlan>(std::move(plan));
         }
         findings_.used = result.plan != nullptr;
+        if (findings_.used) result.raysBeside = raysBeside_;
         result.findings = std::move(findings_);
         return result;
     }
@@ -76,7 +78,7 @@ class MergePlanner {
     std::map<std::uint32_t, Moments> moments(const MergePilot::Heard& heard, const NoiseMeasure& measure,
                                              std::uint32_t photons) const {
         // What single photons bring is noise in proportion to 1 / photons; the rest is not.
-        const double fewer = static_cast<double>(MergePilot::kPhotons) / photons;
+        const double fewer = static_cast<double>(pilot_.photons()) / photons;
         std::map<std::uint32_t, Moments> result;
         for (const MergePilot::Pixel& p : heard.pixels) {
             const double weight = measure.weight(p.x, p.y) / heard.looks;
@@ -95,7 +97,7 @@ class MergePlanner {
     double cameraRays() {
         PathContext context = context_;
         context.settings.seed = combine64(context_.settings.seed, kJudgeMerging);
-        const PilotPixel::Grid grid(frame_, kCameraRow);
+        const PilotPixel::Grid grid(frame_, PilotSize(context_.settings).side(kCameraRow, kLeastCameraRow));
         std::vector<double> rays(grid.size());
         parallelFor(rays.size(), [&](std::size_t i) {
             PilotPixel film(grid.pixel(i), 1);
@@ -144,6 +146,7 @@ class MergePlanner {
             least = cost;
             findings_.after = own * every;
             findings_.every = plan.every = every;
+            raysBeside_ = round / every;
         }
         findings_.gain = (findings_.rest + findings_.before) * rays / least;
         return forced || findings_.gain >= kLeastMergeGain;
@@ -157,6 +160,7 @@ class MergePlanner {
     PixelBounds frame_;
     MergePilot pilot_;
     MergeFindings findings_;
+    double raysBeside_ = 0;
 };
 
 } // namespace

@@ -12,6 +12,7 @@ namespace abbe {
 struct PlannedMerging {
     std::unique_ptr<const MergePlan> plan; // null: none
     MergeFindings findings;
+    double raysBeside = 0; // that rounds take beside each camera path, in those of camera paths
 };
 
 // A context with the plans of light paths and of manifold sampling, if any, and what was found about the first; the

@@ -2,13 +2,9 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "integrators/glint_planner.h"
-#include "integrators/light_path_planner.h"
-#include "integrators/look_ahead.h"
-#include "integrators/manifold_planner.h"
-#include "integrators/merge_planner.h"
 #include "integrators/pass_schedule.h"
 #include "integrators/plan_film.h"
+#include "integrators/render_plans.h"
 #include "integrators/time_left.h"
 #include "render/render_state.h"
 
@@ -25,6 +21,8 @@ namespace {
 
 // At most about this long is a tile in one thread's hands, so that a render ends soon when it is told to.
 constexpr double kPortionSeconds = 0.4;
+// s: a portion that is foretold to go on for longer than this after the time limit is not begun.
+constexpr double kOvertime = 0.1;
 
 struct Kernel {
     Effects effects;
@@ -94,11 +92,12 @@ class RenderJob {
     }
 
     RenderStatistics run() {
-        look(context_);
+        plan(context_);
         beginTiming();
+        rendering_ = true;
         if (pass_ > 0 && state_.even()) endPass();
         while (state_.reached() < range_.last && !ended()) {
-            runPass(std::min(endOfPassWith(state_.reached()), range_.last));
+            runPass(std::min(nextEnd(), range_.last));
             if (unfinished_) break;
             ++pass_;
             endPass();
@@ -111,51 +110,31 @@ class RenderJob {
     }
 
     LightPathFindings lightPaths() {
-        look(context_);
-        return light_.findings;
+        plan(context_);
+        return statistics_.lightPlan;
     }
 
     void repeat(std::span<const SampleId> samples) {
         PathContext even = context_; // a sample is named by its place in the sequence, whatever the plan
         even.settings.adaptive = false;
-        look(even);
+        even.settings.timeLimit = 0;
+        plan(even);
         for (const SampleId& s : samples)
-            render_(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &ahead_.roulette});
+            render_(context_, film_, {{s.x, s.y, s.x + 1, s.y + 1}, s.index, s.index + 1, &plans_.ahead.roulette});
     }
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    void planCaustics(const std::function<bool()>& stop) {
-        light_ = planLightPaths(context_, kernel_.traced(), ahead_.roulette, stop);
-        context_.traced = light_.plan.get();
-        manifold_ = planManifold(context_, kernel_.traced(), ahead_.roulette, stop);
-        context_.manifold = manifold_.sampler.get();
-        if (film_.takesMerged()) {
-            merging_ = planMerging(context_, kernel_.traced(), ahead_.roulette, light_.findings, stop);
-            context_.merging = merging_.plan.get();
-            light_.findings.merging = merging_.findings;
-            if (manifold_.sampler && merging_.plan) manifold_.besideMerging(context_.scene, *merging_.plan);
-            context_.manifold = manifold_.sampler.get();
-        }
-        light_.findings.manifold = manifold_.findings;
-        glints_ = planGlints(context_, film_, kernel_.traced(), ahead_.roulette, stop);
-        context_.glints = glints_.plan.get();
-        light_.findings.glints = glints_.findings;
-        if (context_.traced || context_.manifold || context_.merging || context_.glints)
-            render_ = kernel_.traced().render;
-    }
-
-    void look(const PathContext& context) {
-        const auto stop = [this] { return stopRequested(); };
-        ahead_ = lookAhead(context, kernel_.render, film_, state_, stop);
-        if (film_.takesSplats() && state_.lightBlockCount() > 0)
-            planCaustics(stop);
-        else
-            light_.findings.verdict = lightPathVerdict(context_.scene, settings_.technique);
-        statistics_.lightPlan = light_.findings;
-        statistics_.pilotRays = ahead_.rays + light_.findings.rays + manifold_.findings.rays + merging_.findings.rays +
-                                glints_.findings.pilotRays;
+    void plan(const PathContext& context) {
+        const std::function<double()> left = [this] { return timeLeft(); };
+        const std::function<bool()> stop = [this] { return stopRequested(); };
+        plans_ = planRender({context, kernel_.render, kernel_.traced(), film_, state_, control_.firstLook, left, stop});
+        statistics_.lightPlan = plans_.findings;
+        statistics_.pilotRays = plans_.rays;
+        statistics_.pilotSeconds = plans_.seconds;
+        plans_.caustics.giveTo(context_);
+        if (plans_.caustics.any()) render_ = kernel_.traced().render;
     }
 
     static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
@@ -175,15 +154,19 @@ class RenderJob {
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     bool stopRequested() const {
         if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return true;
-        return settings_.timeLimit > 0 && pass_ > 0 && elapsed() > settings_.timeLimit;
+        return mayEndInTime() && timeLeft() < 0;
     }
+    double timeLeft() const { return settings_.timeLimit - elapsed(); } // s, if there is a limit
+    // Whether the time limit counts by now.
+    bool mayEndInTime() const { return settings_.timeLimit > 0 && rendering_ && (pass_ > 0 || !plans_.caustics.any()); }
     bool quietEnough() const {
-        return settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget;
+        return settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget &&
+               state_.reached() >= state_.first() + 2; // two samples alike are chance
     }
     bool ended() const { return quietEnough() || stopRequested(); }
 
     void beginTiming() {
-        timeLeft_.emplace(TimeLeft::Goals{range_, settings_.noiseTarget, settings_.timeLimit}, ahead_.tileCosts);
+        timeLeft_.emplace(TimeLeft::Goals{range_, settings_.noiseTarget, settings_.timeLimit}, plans_.ahead.tileCosts);
         for (std::size_t i = 0; i < state_.tileCount(); ++i) {
             const TileState& tile = state_.tile(i);
             timeLeft_->alreadyDone(i, tile.reached - state_.first(), tile.tally.coreSeconds);
@@ -192,16 +175,25 @@ class RenderJob {
         timeLeft_->begin(elapsed());
     }
 
+    // Where time is short, the first pass has but one sample of each replicate.
+    std::uint32_t nextEnd() const {
+        const std::uint32_t reached = state_.reached();
+        return settings_.timeLimit > 0 && reached == state_.first() ? reached + 1 : endOfPassWith(reached);
+    }
+
     // All tiles up to sample `last`, as far as nobody ends it.
     void runPass(std::uint32_t last) {
         std::vector<std::size_t> open;
         for (std::size_t i = 0; i < state_.tileCount(); ++i)
             if (state_.tile(i).reached < last) open.push_back(i);
+        bool goesOn = true; // else what is left of the pass would end after the time limit
         do {
+            advanced_ = false;
             parallelFor(open.size(), [&](std::size_t i) { advance(open[i], last); });
+            goesOn = advanced_ || snapshotRequested();
             if (snapshotRequested()) takeSnapshot();
             std::erase_if(open, [&](std::size_t i) { return state_.tile(i).reached >= last; });
-        } while (!open.empty() && !stopRequested());
+        } while (!open.empty() && goesOn && !stopRequested());
         unfinished_ = !open.empty();
     }
 
@@ -214,6 +206,8 @@ class RenderJob {
             {
                 const auto hold = state_.hold(i);
                 const std::uint32_t end = std::min(last, tile.reached + portion(tile));
+                if (end == tile.reached) return;
+                advanced_ = true;
                 const double before = threadSeconds();
                 const TileResult result = work(i, first, end);
                 tally = tallyOf(result, threadSeconds() - before);
@@ -236,7 +230,7 @@ class RenderJob {
 
     TileResult work(std::size_t i, std::uint32_t first, std::uint32_t end) {
         if (!state_.isLightBlock(i))
-            return render_(context_, film_, {state_.pixels(i), first, end, &ahead_.roulette, plan()});
+            return render_(context_, film_, {state_.pixels(i), first, end, &plans_.ahead.roulette, samplePlan()});
         return workOnBlock(static_cast<std::uint32_t>(state_.lightBlock(i)), first, end);
     }
 
@@ -244,24 +238,30 @@ class RenderJob {
     TileResult workOnBlock(std::uint32_t block, std::uint32_t first, std::uint32_t end) {
         const auto blocks = static_cast<std::uint32_t>(state_.lightBlockCount());
         TileResult result;
-        if (light_.plan) {
-            const std::uint64_t paths = light_.plan->paths;
+        if (plans_.caustics.light.plan) {
+            const std::uint64_t paths = plans_.caustics.light.plan->paths;
             result = kernel_.traced().trace(context_, film_,
                                             {static_cast<std::uint32_t>(paths * block / blocks),
                                              static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end});
         }
-        if (merging_.plan) result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks}, nullptr));
+        if (plans_.caustics.merging.plan)
+            result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks}, nullptr));
         return result;
     }
 
-    const SamplingPlan* plan() const { return ahead_.plan.even() ? nullptr : &ahead_.plan; }
+    const SamplingPlan* samplePlan() const { return plans_.ahead.plan.even() ? nullptr : &plans_.ahead.plan; }
 
-    // How many samples of each replicate are taken in one go.
+    // How many samples of each replicate are taken in one go; none if even one would end after the time limit.
     std::uint32_t portion(const TileState& tile) const {
         const std::uint32_t done = tile.reached - state_.first();
-        if (done == 0) return 2;
-        const double samples = kPortionSeconds * done / std::max(tile.tally.coreSeconds, 1e-6);
-        return static_cast<std::uint32_t>(std::clamp(samples, 1.0, 1e6));
+        if (done == 0) return settings_.timeLimit > 0 ? 1 : 2;
+        const double each = std::max(tile.tally.coreSeconds, 1e-6) / done;
+        double seconds = kPortionSeconds;
+        if (mayEndInTime()) {
+            if (each > timeLeft() + kOvertime) return 0;
+            seconds = std::min(seconds, timeLeft());
+        }
+        return static_cast<std::uint32_t>(std::clamp(seconds / each, 1.0, 1e6));
     }
 
     void takeSnapshot() {
@@ -288,6 +288,7 @@ class RenderJob {
         statistics_.samplesPerPixel = finishedSamples();
         statistics_.noise = film_.relativeNoise();
         timeLeft_->passEnded(state_.reached(), statistics_.noise);
+        if (control_.passEnded) control_.passEnded();
     }
 
     void count(const PathTally& t) {
@@ -336,11 +337,7 @@ class RenderJob {
     const RenderControl& control_;
     LightSampler lights_;
     PathContext context_;
-    LookAhead ahead_;
-    PlannedLightPaths light_;
-    PlannedManifold manifold_;
-    PlannedMerging merging_;
-    PlannedGlints glints_;
+    RenderPlans plans_;
     TileFunction render_ = kernel_.render; // of pixels
     SampleRange range_;
     std::optional<RenderState> ownState_; // unless the caller has one
@@ -354,6 +351,8 @@ class RenderJob {
     double lastReport_ = 0;
     std::uint64_t pathsBefore_ = state_.tally().paths; // of earlier runs
     bool unfinished_ = false;                          // the last pass was cut short
+    bool rendering_ = false;                           // samples are taken
+    std::atomic<bool> advanced_ = false;               // any tile, since asked last
 };
 
 class PathTracer final : public Integrator {
@@ -380,6 +379,7 @@ class PathTracer final : public Integrator {
         if (lightBlocks(scene, settings) == 0) return known;
         RenderSettings even = settings; // a plan of the samples changes nothing
         even.adaptive = false;
+        even.timeLimit = 0; // nor the size of its pilots, which a render's clock may lessen
         PlanFilm film(like, scene.frame);
         return RenderJob(kernel_, scene, film, even, {}).lightPaths();
     }

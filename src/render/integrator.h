@@ -3,6 +3,7 @@
 
 #include "render/effect_counts.h"
 #include "render/film.h"
+#include "render/first_look.h"
 #include "render/light_path_findings.h"
 #include "render/technique.h"
 
@@ -27,6 +28,8 @@ struct SampleRange {
 
 // The numbers a render is asked for. Defaults are documented in the schema of `render`.
 struct RenderSettings {
+    static constexpr int kFullPilot = 4, kPilotByWork = -1;
+
     std::uint32_t samples = 64; // per pixel, all replicates together; rounded up to a multiple of the replicates
     std::uint64_t seed = 0;
     std::uint32_t maxDepth = 0;        // 0: no limit
@@ -34,6 +37,10 @@ struct RenderSettings {
     double timeLimit = 0;              // s; 0: none
     std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken
     bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
+    // How large the pilots are by which light paths, merging and what else serves caustics are planned: 0 (none, and no
+    // such plan) to kFullPilot, each four times the work of the one before. kPilotByWork: the largest that take no more
+    // than a tenth of the rays of the whole render, and of the time limit; but for that size 1 at least.
+    int pilot = kFullPilot;
     Technique technique = {};
 
     // Of the whole render.
@@ -88,6 +95,7 @@ struct RenderStatistics {
     LightPathFindings lightPlan;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
+    double pilotSeconds = 0;                // wall clock of these
     std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
     std::vector<DroppedSample> examples;    // the first few
@@ -122,6 +130,10 @@ struct RenderControl {
     // render then goes on. Both or neither.
     std::atomic<bool>* snapshot = nullptr;
     std::function<void(const RenderStatistics&)> takeSnapshot = {};
+    // From the calling thread: once, before the first sample and before anything is planned; and after each pass, with
+    // no thread at work on the film.
+    std::function<void(const FirstLook&)> firstLook = {};
+    std::function<void()> passEnded = {};
 };
 
 class Integrator {

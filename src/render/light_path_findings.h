@@ -22,6 +22,7 @@ enum class LightPathVerdict : std::uint8_t {
     nothingFocuses, // no shape focuses light
     nothingFound,   // what light paths could bring has next to no noise in camera paths
     noGain,         // forecast to cost more than they bring
+    noPilot,        // no pilot was sent, or there is no time for a first pass with what one found
 };
 
 // Light paths of one light towards one target.
@@ -34,11 +35,12 @@ struct LightPathShare {
     double before = 0, after = 0;
 };
 
-// All of it depends on the scene, the frame and the seed alone.
+// All of it depends on the scene, the frame, the seed and the size of the pilots alone.
 struct LightPathFindings {
     static constexpr std::size_t kShares = 8;
 
     LightPathVerdict verdict = LightPathVerdict::undecided;
+    int pilot = 0; // the size of the pilots: RenderSettings::pilot
     // A pilot has run: whether what follows has been measured.
     bool measured = false;
     // In the mean over pixels, as the shown noise is relative: variance of the light that light paths could bring, as

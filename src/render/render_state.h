@@ -7,6 +7,7 @@
 #include "render/light_gate.h"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -129,6 +130,10 @@ class RenderState {
     double seconds = 0; // wall clock of the runs before this one
     WorkReading work;   // where it went
 
+    // RenderSettings::pilot of the plan that its samples follow; below 0: nothing is planned yet. From any thread.
+    int pilot() const { return pilot_->load(); }
+    void setPilot(int size) { pilot_->store(size); }
+
   private:
     PixelBounds bounds_;
     std::uint32_t first_;
@@ -137,6 +142,7 @@ class RenderState {
     std::vector<TileState> tiles_;
     std::vector<std::mutex> mutexes_;
     std::unique_ptr<LightGate> lightGate_ = std::make_unique<LightGate>();
+    std::unique_ptr<std::atomic<int>> pilot_ = std::make_unique<std::atomic<int>>(-1);
 };
 
 } // namespace abbe

@@ -26,6 +26,7 @@ struct BuildOptions {
     std::optional<double> timeLimit;    // s
     std::optional<double> textureCache; // MiB
     std::optional<bool> adaptive;
+    std::optional<int> pilot;      // RenderSettings::pilot; else by work
     std::string strategy, sampler; // words of `render`; empty: the scene's
     bool geometry = true;          // false: check only; no acceleration structure is built
     EffectSwitches without;        // what is left out of the scene

@@ -9,7 +9,7 @@ expect 0 "$scenes/room.scene" --json -o room.exr --png
 is_empty err
 json event
 order=$(uniq keys | tr '\n' ' ')
-pattern='^("phase" )+"start" ("progress" )?("phase" )?("image" )+("phase" )?"done" $'
+pattern='^("phase" )+"start" ("image" )?("progress" |"image" )*("phase" )?("image" )+("phase" )?"done" $'
 [[ $order =~ $pattern ]] ||
     fault "events in the order $order"
 for event in phase start progress image "done"; do says keys "\"$event\""; done
