@@ -103,7 +103,8 @@ void HumanReport::done(const RenderSummary& s) {
     if (r.lightPaths > 0)
         console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
                                   countText(static_cast<double>(r.splats))));
-    if (r.lightPlan.measured) console_.line("  " + lightPathLine(r.lightPlan));
+    if (r.lightPlan.measured || r.lightPlan.verdict == LightPathVerdict::noPilot)
+        console_.line("  " + lightPathLine(r.lightPlan));
     if (const std::string line = manifoldLine(r.lightPlan); !line.empty()) console_.line("  " + line);
     if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
     if (const std::string line = glintLine(r.lightPlan.glints); !line.empty()) console_.line("  " + line);

@@ -50,7 +50,7 @@ TEST_CASE("light paths in a line") {
 TEST_CASE("light paths: each reason why there are none has words and a word of its own") {
     using enum LightPathVerdict;
     std::vector<std::string> texts, words;
-    for (const auto v : {off, otherTechnique, noLights, nothingFocuses, nothingFound, noGain}) {
+    for (const auto v : {off, otherTechnique, noLights, nothingFocuses, nothingFound, noGain, noPilot}) {
         LightPathFindings f;
         f.verdict = v;
         const std::string line = lightPathLine(f);
