@@ -223,6 +223,40 @@ TEST_CASE("parts by samples and crops of a render with light paths are the whole
     CHECK(fault.find("blocks of light paths: 6 in the part, 5 in") != std::string::npos);
 }
 
+TEST_CASE("the size of the pilots is kept, and parts with plans of different sizes do not fit") {
+    const Folder folder;
+    const auto write = [&](const std::string& name, std::uint32_t first, std::uint32_t last, int pilot) {
+        PixelFilm film = makeFilm(kFrame);
+        RenderState state(kFrame, first, kBlocks);
+        state.setPilot(pilot);
+        Renderer(film, state).run(last);
+        CheckpointHeader header = headerOf(film, kBlocks, first, last);
+        CHECK_FALSE(writeCheckpoint(folder / name, header, film.planes(), state)); // planned since the header was made
+        header.pilot = pilot;
+        CHECK(writeCheckpoint(folder / name, header, film.planes(), state));
+        return header;
+    };
+    CheckpointHeader header = write("1of2", 0, 4, 3);
+    write("2of2", 4, 8, 3);
+    write("other", 4, 8, 2);
+    RenderParts parts({folder / "1of2", folder / "2of2"});
+    parts.check({{"seed", "7"}});
+    CHECK(parts.pilot() == 3);
+    CHECK(faultOf([&] {
+              RenderParts({folder / "1of2", folder / "other"}).check({{"seed", "7"}});
+          }).find("pilot: 2 in the part, 3 in") != std::string::npos);
+    for (const int asked : {-1, 3, 4}) { // -1: whatever the checkpoint has
+        header.pilot = asked;
+        RenderCheckpoint checkpoint(folder / "1of2", header, [] { return std::vector<Fact>{{"seed", "7"}}; });
+        PixelFilm film = makeFilm(kFrame);
+        RenderState state(kFrame, 0, kBlocks);
+        const std::string fault = faultOf([&] { checkpoint.resume(film.planes(), state); });
+        CHECK(fault.empty() == (asked != 4));
+        if (asked == 4) CHECK(fault.find("pilot: `3` in the checkpoint, `4` in this render") != std::string::npos);
+        if (asked != 4) CHECK(state.pilot() == 3);
+    }
+}
+
 TEST_CASE("no damage to what light paths brought goes unnoticed") {
     const LightFolder folder;
     const PixelBounds bounds{0, 0, 17, 1};
