@@ -30,6 +30,10 @@ void addFigure(std::vector<ImageAttribute>& list, const std::string& name, const
     list.push_back({name + "Pixels", std::to_string(f.pixels)});
     list.push_back({name + "WorstTile", text(f.worst.pixels)});
     list.push_back({name + "Worst", f.worst.value});
+    list.push_back({name + "Tail", f.tail});
+    list.push_back({name + "Unseen", f.unseen});
+    list.push_back({name + "Tiles", std::to_string(f.tiles)});
+    list.push_back({name + "TilesUntrusted", std::to_string(f.untrustedTiles)});
 }
 
 // Values of a header by name.
@@ -60,6 +64,10 @@ class Header {
             while (next != end && *next == ' ') ++next;
             next = std::from_chars(next, end, *edge).ptr;
         }
+        f.tail = get<double>(name + "Tail").value_or(0);
+        f.unseen = get<double>(name + "Unseen").value_or(0);
+        f.tiles = static_cast<std::int64_t>(whole(name + "Tiles"));
+        f.untrustedTiles = static_cast<std::int64_t>(whole(name + "TilesUntrusted"));
         return f;
     }
 
@@ -74,6 +82,10 @@ Json json(const ErrorFigure& f) {
          {"low", f.low},
          {"high", f.high},
          {"pixels", f.pixels},
+         {"pareto_k", f.tail},
+         {"unseen", f.unseen},
+         {"tiles", f.tiles},
+         {"tiles_untrusted", f.untrustedTiles},
          {"worst_tile",
           Json::object({{"x0", b.x0}, {"y0", b.y0}, {"x1", b.x1}, {"y1", b.y1}, {"value", f.worst.value}})}});
 }
@@ -161,6 +173,17 @@ std::string mergedLine(const MergedLight& m) {
     return fmt::format("merged light {:.3g} % of the picture, in {} rounds: consistent, not unbiased; its blur changes "
                        "tiles of 8×8 by at most about {:.2g} %, the whole by {:+.2g} %",
                        100 * m.share, m.rounds, 100 * m.biasOfTiles, 100 * m.bias);
+}
+
+std::string tailLine(const ErrorFigure& f) {
+    std::string line =
+        fmt::format("variance.Y cannot be trusted in {} of {} tiles of 16×16 pixels: few samples carry it",
+                    f.untrustedTiles, f.tiles);
+    if (f.unseen > 0)
+        line += fmt::format("; what is too rare to have been met adds about {:.2g} % to the squared error (Pareto k "
+                            "{:.2g})",
+                            100 * f.unseen, f.tail);
+    return line;
 }
 
 Json certificateJson(const ErrorCertificate& c) {

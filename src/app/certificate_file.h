@@ -19,6 +19,8 @@ std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute>)
 
 // "error 0.52 % (95 %: 0.49 to 0.56 %)   display 0.81 of 255 (0.77 to 0.86)", or why there is no certificate.
 std::string certificateLine(const ErrorCertificate&);
+// In how many tiles error bars cannot be trusted, and what the figure lacks for the same reason.
+std::string tailLine(const ErrorFigure&);
 // The figures: members relative and display; null where there is none, and then `reason`.
 Json certificateJson(const ErrorCertificate&);
 // How much of the picture is merged light, and the bias of that.

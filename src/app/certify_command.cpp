@@ -1,61 +1,47 @@
 #include "app/certificate_file.h"
+#include "app/certify_references.h"
 #include "app/display_view.h"
 #include "app/options.h"
-#include "film/measured_error.h"
 #include "io/exr_channels.h"
 #include "io/image_compare.h"
-#include "io/io_error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
 
 namespace {
 
+// What is stated about an image, and what was measured.
 struct Row {
     const char* name;
     const char* unit;
     ErrorFigure stated;
-    std::optional<double> measured; // of the image; nothing without references
-    bool holds() const { return !measured || stated.holds(*measured); }
+    std::optional<ErrorFigure> measured; // nothing without references
+
+    // Beyond doubt, for all that the references' own noise leaves open.
+    bool outside() const { return measured && (measured->high < stated.low || measured->low > stated.high); }
+    // A measurement that would have agreed with anything in the interval, and more, tells nothing.
+    bool undecided() const {
+        const bool blind = measured && measured->low < stated.low && measured->high > stated.high;
+        return measured && !outside() && (blind || !stated.holds(measured->value));
+    }
+    const char* verdict() const { return outside() ? "outside" : undecided() ? "undecided" : "inside"; }
 };
 
-// Luminance and, if `showView`, display values of an image.
-MeasuredError::Planes planesOf(RgbImage image, const ViewOptions* showView) {
-    MeasuredError::Planes planes{image.width(), image.height(), {}, {}};
-    const Matrix3 toXyz = image.chromaticities->space().toXyz();
-    planes.luminance.reserve(image.rgb.size() / 3);
-    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
-        planes.luminance.push_back(
-            static_cast<float>(toXyz.apply<Xyz>(Xyz{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]}).y));
-    if (!showView) return planes;
-    const OutputSpace space = makeViewable(image);
-    DisplayView(space, *showView).apply(image.rgb);
-    planes.display = std::move(image.rgb);
-    return planes;
-}
-
-std::optional<std::string> faultOf(const CertifyOptions& options, const RgbImage& image,
-                                   const std::vector<RgbImage>& references) {
-    if (!image.chromaticities) return fmt::format("`{}` has no chromaticities", options.image);
-    for (std::size_t i = 0; i < references.size(); ++i) {
-        if (!references[i].chromaticities) return fmt::format("`{}` has no chromaticities", options.references[i]);
-        if (const auto fault = comparisonFault(image, references[i]))
-            return fmt::format("`{}` and `{}` cannot be compared: {}", options.image, options.references[i], *fault);
+std::optional<std::string> faultOf(const CertifyImage& image, const std::vector<CertifyImage>& references) {
+    if (!image.image.chromaticities) return fmt::format("`{}` has no chromaticities", image.path);
+    for (const CertifyImage& r : references) {
+        if (!r.image.chromaticities) return fmt::format("`{}` has no chromaticities", r.path);
+        if (const auto fault = comparisonFault(image.image, r.image))
+            return fmt::format("`{}` and `{}` cannot be compared: {}", image.path, r.path, *fault);
     }
     return std::nullopt;
 }
 
-std::vector<Row> rowsOf(const ErrorCertificate& c, const std::optional<MeasuredError>& m) {
-    const auto root = [&m](auto MeasuredError::*squared) -> std::optional<double> {
-        if (!m) return std::nullopt;
-        const std::optional<double> value = (*m).*squared;
-        return value ? std::optional(std::sqrt(std::max(*value, 0.0))) : std::nullopt;
-    };
-    std::vector<Row> rows{{"relative", "", c.relative, root(&MeasuredError::relative)}};
-    if (c.display) rows.push_back({"display", " of 255", *c.display, root(&MeasuredError::display)});
+std::vector<Row> rowsOf(const ErrorCertificate& c, const std::optional<MeasuredFigures>& m) {
+    std::vector<Row> rows{{"relative", "", c.relative, m ? std::optional(m->relative) : std::nullopt}};
+    if (c.display) rows.push_back({"display", " of 255", *c.display, m ? m->display : std::nullopt});
     return rows;
 }
 
@@ -64,20 +50,29 @@ std::string text(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
         s += fmt::format("{:<10} {:.4g}{} (95 %: {:.4g} to {:.4g})", row.name, row.stated.value, row.unit,
                          row.stated.low, row.stated.high);
-        if (row.measured) s += fmt::format("   measured {:.4g}: {}", *row.measured, row.holds() ? "inside" : "outside");
+        if (const auto& m = row.measured)
+            s += fmt::format("   measured {:.4g} ({:.4g} to {:.4g}): {}", m->value, m->low, m->high, row.verdict());
         s += '\n';
     }
     return s;
 }
 
-std::string json(const ErrorCertificate& c, const std::vector<Row>& rows) {
-    Json measured = Json::object(), holds = Json::object();
+std::string json(const ErrorCertificate& c, const std::vector<Row>& rows, const std::vector<std::string>& notes) {
+    Json measured = Json::object(), intervals = Json::object(), holds = Json::object(), remarks = Json::list();
     for (const Row& row : rows) {
         if (!row.measured) continue;
-        measured.set(row.name, *row.measured);
-        holds.set(row.name, row.holds());
+        measured.set(row.name, row.measured->value);
+        intervals.set(row.name, Json::object({{"low", row.measured->low}, {"high", row.measured->high}}));
+        holds.set(row.name, row.undecided() ? Json() : Json(!row.outside()));
     }
-    return Json::object({{"error", certificateJson(c)}, {"measured", measured}, {"holds", holds}}).text() + "\n";
+    for (const std::string& note : notes) remarks.push(note);
+    return Json::object({{"error", certificateJson(c)},
+                         {"measured", measured},
+                         {"measured_interval", intervals},
+                         {"holds", holds},
+                         {"notes", remarks}})
+               .text() +
+           "\n";
 }
 
 // The view that the image was certified with, or nothing if `view` is another one or cannot be made.
@@ -99,23 +94,24 @@ ExitCode run(const CertifyOptions& options, const CommonOptions& common) {
             fmt::format("`{}` has no certificate{}", options.image, certificate ? ": " + certificate->reason : ""));
         return ExitCode::faulty;
     }
-    std::optional<MeasuredError> measured;
+    std::optional<MeasuredFigures> measured;
     if (!options.references.empty()) {
-        RgbImage image = readImage(options.image);
-        std::vector<RgbImage> references;
-        for (const std::string& path : options.references) references.push_back(readImage(path));
-        if (const auto fault = faultOf(options, image, references)) {
+        const CertifyImage image = CertifyImage::read(options.image);
+        std::vector<CertifyImage> references;
+        for (const std::string& path : options.references) references.push_back(CertifyImage::read(path));
+        if (const auto fault = faultOf(image, references)) {
             common.console.error(*fault);
             return ExitCode::faulty;
         }
         const ViewOptions* view = certifiedView(*certificate, options.view, common.console);
-        const auto a = planesOf(references.front(), view), b = planesOf(references.back(), view);
-        measured = MeasuredError::of(planesOf(std::move(image), view), a, b);
+        measured = measureAgainst(image, std::move(references), view);
+        for (const std::string& note : measured->notes) common.console.line("note: " + note);
     }
     const std::vector<Row> rows = rowsOf(*certificate, measured);
-    common.console.data(common.json ? json(*certificate, rows) : text(rows));
-    const bool holds = std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.holds(); });
-    return holds ? ExitCode::done : ExitCode::threshold;
+    const auto notes = measured ? measured->notes : std::vector<std::string>();
+    common.console.data(common.json ? json(*certificate, rows, notes) : text(rows));
+    const bool outside = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.outside(); });
+    return outside ? ExitCode::threshold : ExitCode::done;
 }
 
 } // namespace abbe

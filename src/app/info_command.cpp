@@ -203,6 +203,8 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
     s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
     if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
+    if (certificate && certificate->relative.untrustedTiles > 0)
+        s += fmt::format("error bars   {}\n", tailLine(certificate->relative));
     if (certificate && certificate->merged) s += fmt::format("bias         {}\n", mergedLine(*certificate->merged));
     if (bill) s += billTable(*bill);
     for (const ImageAttribute& a : info.attributes)

@@ -1,6 +1,9 @@
 #include "app/render_warnings.h"
 
+#include "film/tail_estimate.h"
+
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -55,6 +58,25 @@ void warnOfMissingSamples(std::size_t pixels, PixelBounds bounds, Diagnostics& d
                              "look",
                              100 * static_cast<double>(pixels) / static_cast<double>(bounds.area())))
         .help = "give it more `--time`, or a smaller `--size`";
+}
+
+void warnOfEmptyImage(const std::string& image, Diagnostics& diagnostics) {
+    diagnostics.warning("W0648", {}, fmt::format("`{}` is empty: the render was ended before its first sample", image))
+        .help = "let it render a little longer; `--time` ends a render with an image";
+}
+
+void warnOfHeavyTail(const ErrorFigure& error, Diagnostics& diagnostics) {
+    if (error.unseen <= TailEstimate::kTrusted) return;
+    Diagnostic& d = diagnostics.warning(
+        "W0649", {},
+        fmt::format(
+            "few samples carry the noise (Pareto k {:.2g}): the error may be {:.2g} times what the samples show, "
+            "and error bars of {} of {} tiles cannot be trusted",
+            error.tail, std::sqrt(1 + error.unseen), error.untrustedTiles, error.tiles));
+    const PixelBounds& b = error.worst.pixels;
+    d.notes.push_back(fmt::format("most noise is at {},{} to {},{}", b.x0, b.y0, b.x1, b.y1));
+    d.help = "light of a small lamp that glossy surfaces or glass gather or mirror does this: more samples, a larger "
+             "lamp or a rougher surface, or `render { light-paths always }`";
 }
 
 void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {

@@ -3,6 +3,7 @@
 
 #include "app/found_fault.h"
 #include "base/diagnostic.h"
+#include "film/error_figure.h"
 #include "film/pixel_film.h"
 #include "render/integrator.h"
 
@@ -16,6 +17,10 @@ void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> f
 void warnOfDensities(const DensityExcess&, Diagnostics&);
 // Of pixels that show the first look, in an image of these bounds, because the time was too short for a sample of them.
 void warnOfMissingSamples(std::size_t pixels, PixelBounds, Diagnostics&);
+// Of a render that was ended before any pixel had a sample. `image`: its path.
+void warnOfEmptyImage(const std::string& image, Diagnostics&);
+// Of an image whose error is mostly carried by samples that are too rare.
+void warnOfHeavyTail(const ErrorFigure&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
 
 } // namespace abbe

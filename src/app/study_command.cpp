@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "io/atomic_file.h"
 #include "study/study_run.h"
+#include "study/time_model.h"
 
 #include <algorithm>
 #include <charconv>
@@ -90,8 +91,8 @@ class StudyCommand {
     }
     // Of all renders, at the speed of the probe.
     double expectedSeconds(double samples) const {
-        const double renders = static_cast<double>(plan_.chosen.variants.size()) * plan_.seeds + 2 * kUsualReference;
-        return secondsPerSample_ * samples * renders;
+        const double curves = static_cast<double>(plan_.chosen.variants.size()) * plan_.seeds;
+        return time_.fixed * (curves + 2) + time_.perSample * samples * (curves + 2 * kUsualReference);
     }
 
     const StudyOptions& options_;
@@ -102,7 +103,7 @@ class StudyCommand {
     BuiltScene built_;
     StudySubject subject_;
     StudyPlan plan_;
-    double secondsPerSample_ = 0; // of the whole picture
+    TimeModel time_; // of one render
 };
 
 ExitCode StudyCommand::load() {
@@ -141,9 +142,14 @@ ExitCode StudyCommand::checkOutputs() {
 bool StudyCommand::probe(InterruptGuard& interrupt) {
     LadderRender render(subject_, plan_.chosen.variants[0], plan_.referenceSeed(2), &interrupt.stop());
     const auto replicates = static_cast<std::uint32_t>(subject_.replicates);
-    const auto rung = render.advance(std::max(1u, kProbeSamples / replicates));
-    if (!rung) return false;
-    secondsPerSample_ = rung->cost.seconds / rung->samples;
+    std::vector<double> samples, seconds;
+    for (const std::uint32_t n : {kProbeSamples / 2, kProbeSamples}) {
+        const auto rung = render.advance(std::max(n / replicates, samples.empty() ? 1u : 2u));
+        if (!rung) return false;
+        samples.push_back(rung->samples);
+        seconds.push_back(rung->cost.seconds);
+    }
+    time_ = TimeModel::fit(samples, seconds).value_or(TimeModel{0, seconds.back() / samples.back()});
     if (options_.samples || plan_.timeLimit == 0) return true;
     if (const auto known = options_.resume ? StudyState::fact(outputBase() + ".state", "rungs") : std::nullopt) {
         std::from_chars(known->data() + known->rfind(' ') + 1, known->data() + known->size(), plan_.samples);

@@ -61,13 +61,26 @@ Json timesJson(const CurveStatistics& s, const std::vector<double>& errors, cons
     return list;
 }
 
+Json timeJson(const std::optional<TimeModel>& time) {
+    return time ? Json::object({{"fixed", time->fixed}, {"perSample", time->perSample}}) : Json();
+}
+
+// `high` is null beside a number in `low` where there is no upper bound.
+Json efficiencyJson(const StudyCurve& curve, const StudyCurve& main, TimeBasis basis) {
+    const Estimate ratio =
+        &curve == &main ? Estimate{1, 1, 1} : curve.statistics.efficiencyAgainst(main.statistics, basis);
+    return Json::object({{"ratio", ratio.value},
+                         {"low", ratio.low},
+                         {"high", ratio.high},
+                         {"seconds", curve.statistics.commonSeconds(main.statistics, basis)}});
+}
+
 Json curveJson(const StudyCurve& curve, const StudyCurve& main, const StudyFacts& facts) {
     const StudyVariant& v = curve.variant;
     const CurveStatistics& s = curve.statistics;
     Json points = Json::list();
     for (std::size_t k = 0; k < s.rungs(); ++k) points.push(pointJson(curve, k));
     const Estimate slope = s.slope(), cost = s.halfNoiseCost(), floor = curve.floor();
-    const Estimate ratio = &curve == &main ? Estimate{1, 1, 1} : s.efficiencyAgainst(main.statistics);
     return Json::object({{"id", v.id},
                          {"label", v.label},
                          {"group", v.group},
@@ -82,10 +95,9 @@ Json curveJson(const StudyCurve& curve, const StudyCurve& main, const StudyFacts
                                                {"halfNoiseCostLow", cost.low},
                                                {"halfNoiseCostHigh", cost.high}})},
                          {"floor", Json::object({{"relMse", floor.value}, {"low", floor.low}, {"high", floor.high}})},
-                         {"efficiency", Json::object({{"ratio", ratio.value},
-                                                      {"low", ratio.low},
-                                                      {"high", ratio.high},
-                                                      {"seconds", s.commonSeconds(main.statistics)}})},
+                         {"time", timeJson(s.time())},
+                         {"efficiency", efficiencyJson(curve, main, TimeBasis::sampling)},
+                         {"efficiencyOfWhole", efficiencyJson(curve, main, TimeBasis::whole)},
                          {"timeTo", timesJson(s, facts.errors, floor)}});
 }
 
@@ -169,34 +181,43 @@ std::string studyCsv(const StudyReport& report, const StudyFacts& facts) {
     return text;
 }
 
-std::string studyTable(const StudyReport& report, const StudyFacts& facts) {
-    const auto range = [](const Estimate& e, const char* form) {
-        if (!e.known()) return std::string("-");
-        std::string text = fmt::format(fmt::runtime(form), e.value);
-        if (e.bounded())
-            text += fmt::format(" [{}, {}]", fmt::format(fmt::runtime(form), e.low),
-                                fmt::format(fmt::runtime(form), e.high));
-        return text;
+namespace {
+
+std::string rangeText(const Estimate& e, const char* form) {
+    if (!e.known()) return "-";
+    const auto number = [form](double v) {
+        return std::isinf(v) ? std::string("no upper bound") : fmt::format(fmt::runtime(form), v);
     };
+    if (!e.bounded()) return number(e.value) + " [no interval]";
+    return fmt::format("{} [{}, {}]", number(e.value), number(e.low), number(e.high));
+}
+
+// Fixed: seconds of pilots and plans, which the slope and the efficiency leave out.
+std::string rowText(const StudyCurve& curve, const StudyCurve& main, double wanted) {
+    const CurveStatistics& s = curve.statistics;
+    const std::size_t last = s.rungs() - 1;
+    const double error = s.error(last).value;
+    const TimeToError time = s.timeTo(wanted, curve.floor());
+    const std::string seconds = !time.reachable         ? "never"
+                                : !time.seconds.known() ? "-"
+                                                        : fmt::format("{:.3g} s", time.seconds.value);
+    return fmt::format(
+        "{:<22} {:>8} {:>9.3g} {:>7} {:>8}  {:<22} {:<28} {}{}\n", curve.variant.label, s.samples()[last],
+        s.seconds(last), s.time() ? fmt::format("{:.2g}", s.time()->fixed) : "-",
+        error > 0 ? fmt::format("{:.3g} %", 100 * std::sqrt(error)) : "-", rangeText(s.slope(), "{:.2f}"),
+        &curve == &main ? "1" : rangeText(s.efficiencyAgainst(main.statistics, TimeBasis::sampling), "{:.3g}"), seconds,
+        time.extrapolated && time.seconds.known() ? " (extrapolated)" : "");
+}
+
+} // namespace
+
+std::string studyTable(const StudyReport& report, const StudyFacts& facts) {
+    const double wanted = facts.errors[0];
     std::string text =
-        fmt::format("{:<22} {:>8} {:>9} {:>8}  {:<22} {:<24} {}\n", "", "samples", "seconds", "error",
-                    "slope of relMSE", "efficiency", fmt::format("time to {:g} %", 100 * facts.errors[0]));
-    for (const StudyCurve& curve : report.curves) {
-        const CurveStatistics& s = curve.statistics;
-        const std::size_t last = s.rungs() - 1;
-        const double error = s.error(last).value;
-        const TimeToError time = s.timeTo(facts.errors[0], curve.floor());
-        const std::string seconds = !time.reachable         ? "never"
-                                    : !time.seconds.known() ? "-"
-                                                            : fmt::format("{:.3g} s", time.seconds.value);
-        text += fmt::format(
-            "{:<22} {:>8} {:>9.3g} {:>8}  {:<22} {:<24} {}{}\n", curve.variant.label, s.samples()[last],
-            s.seconds(last), error > 0 ? fmt::format("{:.3g} %", 100 * std::sqrt(error)) : "-",
-            range(s.slope(), "{:.2f}"),
-            &curve == &report.curves[0] ? "1" : range(s.efficiencyAgainst(report.curves[0].statistics), "{:.3g}"),
-            seconds, time.extrapolated && time.seconds.known() ? " (extrapolated)" : "");
-    }
-    return text;
+        fmt::format("{:<22} {:>8} {:>9} {:>7} {:>8}  {:<22} {:<28} {}\n", "", "samples", "seconds", "fixed", "error",
+                    "slope of relMSE", "efficiency of samples", fmt::format("time to {:g} %", 100 * wanted));
+    for (const StudyCurve& curve : report.curves) text += rowText(curve, report.curves[0], wanted);
+    return text + "fixed: seconds of pilots and plans, which more samples do not need; the efficiency is of the rest\n";
 }
 
 } // namespace abbe

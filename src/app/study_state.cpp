@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kStudyMagic[8] = {'A', 'B', 'B', 'E', 'S', 'T', 'D', 'Y'};
-constexpr std::uint32_t kStudyVersion = 1;
+constexpr std::uint32_t kStudyVersion = 2;
 constexpr const char* kExtension = ".abbe";
 
 // Magic, version, size of the bytes, the bytes, their hash.
@@ -94,7 +94,7 @@ std::vector<std::byte> bytesOf(const CurveRecord& record) {
     for (const SeedRun& run : record.runs) {
         out.number(run.seed);
         for (const RungRun& r : run.rungs) {
-            for (const double v : {r.relMse, r.trimmed, r.seconds, r.coreSeconds}) out.number(v);
+            for (const double v : {r.relMse, r.trimmed, r.seconds, r.coreSeconds, r.sampleSeconds}) out.number(v);
             out.number(r.rays);
         }
     }
@@ -119,7 +119,8 @@ CurveRecord curveOf(std::span<const std::byte> bytes, const std::string& path) {
         run.seed = in.number<std::uint64_t>();
         for (std::size_t k = 0; k < record.rungs.size(); ++k) {
             RungRun& r = run.rungs.emplace_back();
-            for (double* v : {&r.relMse, &r.trimmed, &r.seconds, &r.coreSeconds}) *v = in.number<double>();
+            for (double* v : {&r.relMse, &r.trimmed, &r.seconds, &r.coreSeconds, &r.sampleSeconds})
+                *v = in.number<double>();
             r.rays = in.number<std::uint64_t>();
         }
     }

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "film/error_sum.h"
 #include "film/relative_error.h"
+#include "film/tail_estimate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,31 +18,61 @@ namespace {
 constexpr int kTile = 16;
 
 // A measure in both cases: the samples are distributed evenly about their mean, or few of them carry it all.
-struct Sums {
-    ErrorSum even, skewed;
-
+class Sums {
+  public:
     void beginTile(PixelBounds tile) {
-        even.beginTile(tile);
-        skewed.beginTile(tile);
+        judgeTile();
+        even_.beginTile(tile);
+        skewed_.beginTile(tile);
     }
     // Squared differences of the pixel from its darker and its brighter half.
     void add(double dark, double bright) {
-        even.add((dark + bright) / 2);
-        skewed.add(dark);
+        const double mean = (dark + bright) / 2;
+        even_.add(mean);
+        skewed_.add(dark);
+        sizes_.push_back(static_cast<float>(std::sqrt(mean)));
     }
-    void append(const Sums& next) {
-        even.append(next.even);
-        skewed.append(next.skewed);
+    void append(Sums next) {
+        judgeTile();
+        next.judgeTile();
+        even_.append(next.even_);
+        skewed_.append(next.skewed_);
+        sizes_.insert(sizes_.end(), next.sizes_.begin(), next.sizes_.end());
+        judged_ = sizes_.size();
+        tiles_ += next.tiles_;
+        untrusted_ += next.untrusted_;
     }
-    // Between both cases; the interval has room for either.
+    // Between both cases; the interval has room for either, and for what is too rare to have been met.
     ErrorFigure figure() const {
-        const ErrorFigure a = even.figure(), b = skewed.figure();
+        const ErrorFigure a = even_.figure(), b = skewed_.figure();
         ErrorFigure figure = a;
         figure.value = std::sqrt(a.value * b.value);
         figure.low = std::min(a.low, b.low);
         figure.high = std::max(a.high, b.high);
+        figure.tiles = tiles_;
+        figure.untrustedTiles = untrusted_;
+        std::vector<float> sizes = sizes_;
+        if (const auto tail = TailEstimate::of(sizes)) {
+            figure.tail = tail->shape;
+            figure.unseen = tail->unseen;
+            figure.high = std::sqrt(square(figure.high) + square(figure.value) * tail->unseen);
+        }
         return figure;
     }
+
+  private:
+    void judgeTile() {
+        std::vector<float> own(sizes_.begin() + static_cast<std::ptrdiff_t>(judged_), sizes_.end());
+        judged_ = sizes_.size();
+        const auto tail = TailEstimate::of(own);
+        tiles_ += tail ? 1 : 0;
+        untrusted_ += tail && tail->unseen > TailEstimate::kTrusted ? 1 : 0;
+    }
+
+    ErrorSum even_, skewed_;
+    std::vector<float> sizes_; // of the even estimates, roots
+    std::size_t judged_ = 0;   // of them, tile by tile
+    std::int64_t tiles_ = 0, untrusted_ = 0;
 };
 
 // Mean square of the difference of two colours on the display.
@@ -176,9 +207,9 @@ void Certifier::run(ErrorCertificate& certificate) const {
         addBand(parts[i].first, parts[i].second, {bounds_.x0, top, bounds_.x1, std::min(top + kTile, bounds_.y1)});
     });
     Sums relative, display;
-    for (const auto& part : parts) {
-        relative.append(part.first);
-        display.append(part.second);
+    for (auto& part : parts) {
+        relative.append(std::move(part.first));
+        display.append(std::move(part.second));
     }
     certificate.relative = relative.figure();
     if (picture_.display) certificate.display = display.figure();

@@ -16,6 +16,11 @@ struct ErrorFigure {
         PixelBounds pixels;
         double value = 0;
     } worst;
+    // How heavy the tail of the pixels' estimates is (TailEstimate): k of the Pareto distribution, and what is expected
+    // of the squared error that no sample has met, over the squared error. `high` has room for it.
+    double tail = 0, unseen = 0;
+    // That were judged by themselves, and of them those whose own estimate lacks much.
+    std::int64_t tiles = 0, untrustedTiles = 0;
 
     bool holds(double error) const { return low <= error && error <= high; }
 };

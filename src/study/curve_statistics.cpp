@@ -16,6 +16,8 @@ namespace {
 constexpr double kPriorSeeds = 4;
 constexpr double kLeastRelativeError = 1e-6; // rounding
 constexpr double kFarthest = 20;             // octaves beyond the ladder that anything is said about
+constexpr double kFarthestCompared = 4;      // octaves beyond a ladder that it is compared at
+constexpr double kMostHalfNoiseCost = 1000;  // a larger factor cannot be told from one without bound
 
 // Of values that count as often as their weights say, whole numbers: the middle one, or the mean of the two.
 double weightedMedian(std::vector<std::pair<double, double>> valuesAndWeights) {
@@ -59,6 +61,7 @@ CurveStatistics::CurveStatistics(std::vector<std::uint32_t> samples, std::vector
         variances.push_back(n > 1 && mean != 0 ? squares / (n * (n - 1) * mean * mean) : 0);
     }
     seconds_ = weightedMedians(runs_, std::vector<double>(runs_.size(), 1.0), &RungRun::seconds);
+    time_ = TimeModel::fit(ladder_, seconds_);
     const double pooled = std::accumulate(variances.begin(), variances.end(), 0.0) / static_cast<double>(rungs());
     for (const double v : variances) {
         const double drawn = ((n - 1) * v + kPriorSeeds * pooled) / (n - 1 + kPriorSeeds);
@@ -101,8 +104,13 @@ Estimate CurveStatistics::slope() const {
 
 Estimate CurveStatistics::halfNoiseCost() const {
     const Estimate s = slope();
-    const auto cost = [](double v) { return v < 0 ? std::pow(4, -1 / v) : Estimate::kUnknown; };
-    return {cost(s.value), cost(s.low), cost(s.high)};
+    const auto cost = [](double v) {
+        if (std::isnan(v)) return Estimate::kUnknown;
+        const double factor = v < 0 ? std::pow(4, -1 / v) : Estimate::kUnbounded;
+        return factor < kMostHalfNoiseCost ? factor : Estimate::kUnbounded;
+    };
+    const double value = cost(s.value);
+    return std::isinf(value) ? Estimate{} : Estimate{value, cost(s.low), cost(s.high)};
 }
 
 Estimate CurveStatistics::floor() const {
@@ -137,10 +145,26 @@ std::optional<CurveStatistics::Crossing> CurveStatistics::crossing(std::span<con
     return Crossing{static_cast<double>(end) + octaves};
 }
 
-double CurveStatistics::at(Crossing c, std::span<const double> ladder) const {
+// Beyond the ends rungs go on as octaves of samples.
+double CurveStatistics::samplesAt(Crossing c) const {
     const auto last = static_cast<double>(rungs() - 1);
-    if (c.position <= 0) return ladder.front() * std::exp2(c.position);
-    if (c.position >= last) return ladder.back() * std::exp2(c.position - last);
+    if (c.position <= 0) return ladder_.front() * std::exp2(c.position);
+    if (c.position >= last) return ladder_.back() * std::exp2(c.position - last);
+    return between(c, ladder_);
+}
+
+// Beyond the ends with the time that a sample takes, so that what is fixed stays so; in proportion to the samples where
+// that is unknown.
+double CurveStatistics::secondsAt(Crossing c, std::span<const double> seconds) const {
+    const auto last = static_cast<double>(rungs() - 1);
+    if (c.position > 0 && c.position < last) return between(c, seconds);
+    const std::size_t end = c.position <= 0 ? 0 : rungs() - 1;
+    const auto model = TimeModel::fit(ladder_, seconds);
+    if (!model) return seconds[end] * samplesAt(c) / ladder_[end];
+    return std::max(0.0, seconds[end] + model->perSample * (samplesAt(c) - ladder_[end]));
+}
+
+double CurveStatistics::between(Crossing c, std::span<const double> ladder) const {
     const auto below = static_cast<std::size_t>(c.position);
     const double step = c.position - static_cast<double>(below);
     return ladder[below] * std::pow(ladder[below + 1] / ladder[below], step);
@@ -154,26 +178,47 @@ TimeToError CurveStatistics::timeTo(double error, const Estimate& floor) const {
     result.extrapolated = !found || found->position < 0 || found->position > static_cast<double>(rungs() - 1);
     result.reachable = !result.extrapolated || !floor.bounded() || floor.low <= target;
     if (!found || !result.reachable) return result;
-    result.samples = at(*found, ladder_);
+    result.samples = samplesAt(*found);
     result.seconds = bootstrap_.estimate([&](Weights w) -> std::optional<double> {
         const auto where = crossing(errors(w), target);
-        return where ? std::optional(at(*where, weightedMedians(runs_, w, &RungRun::seconds))) : std::nullopt;
+        return where ? std::optional(secondsAt(*where, weightedMedians(runs_, w, &RungRun::seconds))) : std::nullopt;
     });
     return result;
 }
 
-double CurveStatistics::commonSeconds(const CurveStatistics& other) const {
-    const double end = std::min(seconds_.back(), other.seconds_.back());
-    return std::max({end, seconds_.front(), other.seconds_.front()});
+// The time of samples alone is measured, on each core; a fit to times on the wall would have to find it beside pilots
+// that took a hundred times as long.
+std::vector<double> CurveStatistics::ladderSeconds(std::span<const SeedRun> runs, Weights w, TimeBasis basis) {
+    return weightedMedians(runs, w, basis == TimeBasis::whole ? &RungRun::seconds : &RungRun::sampleSeconds);
+}
+
+std::vector<double> CurveStatistics::ladderSeconds(TimeBasis basis) const {
+    return ladderSeconds(runs_, std::vector<double>(runs_.size(), 1.0), basis);
+}
+
+double CurveStatistics::commonSeconds(const CurveStatistics& other, TimeBasis basis) const {
+    const auto mine = ladderSeconds(basis), its = other.ladderSeconds(basis);
+    const double end = std::min(mine.back(), its.back());
+    return std::max({end, mine.front(), its.front()});
+}
+
+bool CurveStatistics::toldFromZero(double seconds, TimeBasis basis) const {
+    const auto ladder = ladderSeconds(basis);
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < ladder.size(); ++k)
+        if (std::abs(std::log(ladder[k] / seconds)) < std::abs(std::log(ladder[nearest] / seconds))) nearest = k;
+    const Estimate error = meanWithStudent(figures(nearest, &RungRun::relMse));
+    return !error.bounded() || error.low > 0;
 }
 
 // Straight between rungs on logarithmic scales; beyond the last one by the fitted slope.
 std::optional<double> CurveStatistics::errorAtTime(std::span<const double> errors,
                                                    std::span<const double> ladderSeconds, double seconds) const {
-    if (rungs() == 1) return std::nullopt;
+    if (rungs() == 1 || !(ladderSeconds.front() > 0)) return std::nullopt;
     if (seconds >= ladderSeconds.back()) {
         const double more = std::log(seconds / ladderSeconds.back());
         if (more < 1e-12) return errors.back();
+        if (more > kFarthestCompared * std::log(2.0)) return std::nullopt;
         const auto slope = slopeOf(errors);
         if (!slope || !(*slope < 0)) return std::nullopt; // rare bright paths: the curve says nothing of what follows
         return errors.back() * std::exp(*slope * more);
@@ -186,7 +231,7 @@ std::optional<double> CurveStatistics::errorAtTime(std::span<const double> error
     return std::exp(std::lerp(std::log(errors[above - 1]), std::log(errors[above]), step));
 }
 
-Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other) const {
+Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other, TimeBasis basis) const {
     std::vector<SeedRun> ours, theirs; // of the seeds that both have
     for (const SeedRun& run : runs_)
         for (const SeedRun& rival : other.runs_)
@@ -194,16 +239,20 @@ Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other) const 
                 ours.push_back(run);
                 theirs.push_back(rival);
             }
+    const double seconds = commonSeconds(other, basis);
     if (ours.empty()) return {};
-    const double seconds = commonSeconds(other);
-    return SeedBootstrap(ours.size()).estimate([&](Weights w) -> std::optional<double> {
-        const auto mine =
-            errorAtTime(weightedMeans(ours, w, &RungRun::relMse), weightedMedians(ours, w, &RungRun::seconds), seconds);
-        const auto its = other.errorAtTime(weightedMeans(theirs, w, &RungRun::relMse),
-                                           weightedMedians(theirs, w, &RungRun::seconds), seconds);
+    const auto errorOf = [&](const CurveStatistics& curve, const std::vector<SeedRun>& runs, Weights w) {
+        return curve.errorAtTime(weightedMeans(runs, w, &RungRun::relMse), ladderSeconds(runs, w, basis), seconds);
+    };
+    Estimate ratio = SeedBootstrap(ours.size()).estimate([&](Weights w) -> std::optional<double> {
+        const auto mine = errorOf(*this, ours, w), its = errorOf(other, theirs, w);
         if (!mine || !its || !(*mine > 0) || !(*its > 0)) return std::nullopt;
         return *its / *mine;
     });
+    // A quotient whose divisor may be 0 has no bound [Fieller1954].
+    if (ratio.bounded() && !toldFromZero(seconds, basis)) ratio.high = Estimate::kUnbounded;
+    if (ratio.bounded() && !other.toldFromZero(seconds, basis)) ratio.low = 0;
+    return ratio;
 }
 
 } // namespace abbe

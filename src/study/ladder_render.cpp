@@ -110,6 +110,7 @@ void LadderRender::account(const RenderStatistics& s, double seconds) {
     }
     cost_.seconds += first ? seconds : seconds * traced / (traced + pilot);
     cost_.coreSeconds = s.coreSeconds + pilotCoreSeconds_; // the render's sum knows nothing of looks ahead
+    cost_.sampleSeconds = s.coreSeconds;
     cost_.rays = s.rays() + firstPilot_;
     dropped_ = std::accumulate(s.dropped.begin(), s.dropped.end(), std::uint64_t{0});
 }

@@ -14,6 +14,7 @@ struct RungRun {
     double seconds = 0;     // of wall clock from the first ray on
     double coreSeconds = 0; // summed over threads
     std::uint64_t rays = 0;
+    double sampleSeconds = 0; // of coreSeconds what samples took: without pilots, plans and denoising
 };
 
 // One render that went on from rung to rung, so the errors of its rungs are not independent: whatever is said about a

@@ -153,31 +153,6 @@ openvdb::FloatGrid::Ptr floatField(const openvdb::GridBase::Ptr& grid) {
 
 } // namespace
 
-VdbInput::VdbInput(const std::string& path) : path_(path) {
-    openvdb::initialize();
-    file_ = std::make_unique<openvdb::io::File>(path);
-    file_->open(false); // delayed loading would read later, from another place
-    if (file_->beginName() == file_->endName())
-        throw Failure(Kind::damaged, fmt::format("`{}` holds no grids: it is empty or cut off", path));
-}
-
-std::vector<std::string> VdbInput::names() const {
-    std::vector<std::string> names;
-    for (auto name = file_->beginName(); name != file_->endName(); ++name) names.push_back(name.gridName());
-    return names;
-}
-
-openvdb::GridBase::Ptr VdbInput::grid(const std::string& name) {
-    if (!file_->hasGrid(name)) return nullptr;
-    try {
-        return file_->readGrid(name);
-    } catch (const openvdb::ArithmeticError&) {
-        throw Failure(Kind::transform, subject(name) + " has a transform without an inverse");
-    }
-}
-
-std::string VdbInput::subject(const std::string& name) const { return fmt::format("grid `{}` of `{}`", name, path_); }
-
 Field<openvdb::FloatGrid> amountField(const VdbInput& input, const openvdb::GridBase::Ptr& grid, VdbUse use) {
     const std::string subject = input.subject(grid->getName());
     auto field = floatField(grid);

@@ -127,7 +127,7 @@ void writeGrids(const std::string& path, const openvdb::GridPtrVec& grids) {
         if (back->activeVoxelCount() != grids.back()->activeVoxelCount())
             throw Failure(Kind::file, "the volume cannot be written: what was read back is not the same");
     } catch (const openvdb::Exception& e) {
-        throw Failure(Kind::file, fmt::format("the volume cannot be written: {}", e.what()));
+        throw Failure(Kind::file, fmt::format("the volume cannot be written: {}", plainWords(e)));
     }
 }
 

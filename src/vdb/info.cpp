@@ -134,7 +134,8 @@ void info(Arguments arguments) {
         grid.name = name;
         try {
             inspect(*input.grid(name), grid); // one at a time in memory
-        } catch (const Failure&) {
+        } catch (const Failure& e) {
+            if (e.fault().kind != VdbFault::Kind::transform) throw;
             grid.singular = true;
         }
     }

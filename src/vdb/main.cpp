@@ -72,7 +72,7 @@ void guarded(const std::string& command, const std::vector<std::string>& argumen
                                  {}});
     } catch (const std::exception& e) {
         vdb::writeFrame(VdbFrame::fault,
-                        VdbFault{VdbFault::Kind::damaged, subject + " cannot be read: " + e.what(), {}});
+                        VdbFault{VdbFault::Kind::damaged, subject + " cannot be read: " + vdb::plainWords(e), {}});
     }
 }
 

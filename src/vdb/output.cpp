@@ -5,6 +5,15 @@
 
 namespace abbe::vdb {
 
+std::string plainWords(const std::exception& e) {
+    std::string words = e.what();
+    const auto colon = words.find(": ");
+    const bool isName =
+        colon != std::string::npos && words.substr(0, colon).ends_with("Error") && words.find(' ') > colon;
+    if (isName) words.erase(0, colon + 2);
+    return words;
+}
+
 void writeBytes(const void* bytes, std::size_t size) {
     const auto* next = static_cast<const char*>(bytes);
     while (size > 0) {

@@ -4,6 +4,7 @@
 #include "volumes/vdb_message.h"
 
 #include <exception>
+#include <string>
 
 namespace abbe::vdb {
 
@@ -18,6 +19,9 @@ class Failure : public std::exception {
   private:
     VdbFault fault_;
 };
+
+// What a library says, without the name of the exception's class that OpenVDB puts before it ("IoError: …").
+std::string plainWords(const std::exception&);
 
 // All of the bytes, to standard output. The process ends when nobody listens any more.
 void writeBytes(const void* bytes, std::size_t size);

@@ -26,6 +26,25 @@ says out ": inside"
 says_not out ": outside"
 expect 0 certify image.exr
 says_not out measured
+
+# The reference's own error is taken into account: one that is as noisy as the image differs from it by 1.4 times as much.
+expect 0 certify image.exr --ref long2.exr "$dark"
+says out ": inside"
+says_not out ": outside"
+is_empty err
+expect 0 "${room[@]}" --samples 32 --seed 2 "$dark" -q -o short2.exr
+expect 0 certify image.exr --ref short2.exr "$dark"
+says_not out ": outside"
+is_empty err
+expect 0 "${room[@]}" --samples 256 -q -o own.exr
+expect 0 certify image.exr --ref own.exr "$dark"
+says err "\`own.exr\` has the seed of the image (0), so it holds the image's own samples"
+expect 0 certify image.exr --ref own.exr --ref long2.exr "$dark"
+says err "is left out"
+expect 0 certify image.exr --ref long2.exr --ref long2.exr "$dark" --json
+says out "has the seed of"
+says out '"measured_interval"'
+"$json_lines" <out >/dev/null || fault "certify --json"
 expect 0 "$scenes/glass.scene" --size 48x32 --samples 32 -q -o glass.exr
 expect 4 certify image.exr --ref glass.exr "$dark"
 says out ": outside"
@@ -36,6 +55,18 @@ says err "the display's error is not measured"
 expect 0 "$scenes/room.scene" --samples 4 --size 32x32 -q -o small.exr
 expect 1 certify image.exr --ref small.exr
 expect 2 certify image.exr --ref a --ref b --ref c
+
+# Noise that few samples carry: said in the summary, in the header and beside the image.
+expect 0 "$scenes/glossy_caustic.scene" -o glossy.exr
+says err W0649
+says err "few samples carry the noise (Pareto k 0."
+says glossy.exr.json '"pareto_k"'
+says glossy.exr.json '"tiles_untrusted"'
+expect 0 info glossy.exr
+says out "variance.Y cannot be trusted in"
+says out "abbe.errorUnseen = "
+expect 0 "${room[@]}" --samples 64 -o even.exr
+says_not err W0649
 
 # A certificate that cannot be given, and a file that cannot be written.
 sed 's/^scene .*/&\nrender { replicates 1 }/' "$scenes/room.scene" >single.scene

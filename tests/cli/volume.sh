@@ -54,12 +54,19 @@ cp fire.vdb before.vdb
 cmp -s fire.vdb before.vdb || fault "the output was touched"
 expect 3 volume info none.vdb
 says err "none.vdb"
-head -c 500 fire.vdb >cut.vdb
-expect 3 volume info cut.vdb
+for size in 500 2000; do
+    head -c $size fire.vdb >cut.vdb
+    expect 3 volume info cut.vdb
+    says err "\`cut.vdb\`"
+    says err "is damaged or cut off (the file has $size bytes)"
+    says_not err "Error:"
+done
 expect 3 volume convert cut.vdb out.vdb
 [[ ! -e out.vdb && ! -e out.vdb.tmp ]] || fault "a failed conversion left a file"
 printf 'not a volume' >text.vdb
 expect 3 volume info text.vdb
+says err "\`text.vdb\` is not an OpenVDB file: it begins with \`not a vo\`"
+says_not err "Error:"
 expect 3 volume make fire no/such/folder/x.vdb
 mkdir folder.vdb
 expect 3 volume info folder.vdb

@@ -13,7 +13,7 @@ namespace abbe::test {
 // `values` are balanced and scaled.
 inline MeasuredError::Planes measuredPlanes(const ErrorCertificate::Picture& picture, PixelBounds bounds,
                                             const std::vector<Xyz>& values) {
-    MeasuredError::Planes planes{bounds.width(), bounds.height(), {}, {}};
+    MeasuredError::Planes planes{bounds.width(), bounds.height(), {}, {}, {}};
     for (const Xyz& xyz : values) {
         planes.luminance.push_back(static_cast<float>(xyz.y));
         const auto rgb = picture.toRgb.apply<Xyz>(xyz);
@@ -63,8 +63,8 @@ struct Coverages {
     Coverage relative, display;
 
     void add(const ErrorCertificate& certificate, const MeasuredError& measured) {
-        relative.add(certificate.relative, measured.relative);
-        display.add(*certificate.display, *measured.display);
+        relative.add(certificate.relative, measured.relative.value);
+        display.add(*certificate.display, measured.display->value);
     }
 };
 

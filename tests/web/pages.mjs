@@ -138,6 +138,14 @@ async function hostileText(browser, study) {
 }
 
 // What is null is not zero, and a line is not followed for years.
+// Intervals without an upper end, and times that more samples do not need.
+async function withoutBounds(browser) {
+    const page = await browser.open("noise.html"), text = await page.evaluate("document.querySelector('main').textContent");
+    for (const right of ["3.0 … no upper bound", "of fixed time apart, against", "are pilots and plans that more samples do not need"]) check(`noise: “${right}”`, text.includes(right), text.slice(0, 900));
+    check("noise: no number without end", !/Infinity|NaN|e\+/.test(text), text.slice(0, 900));
+    await page.close();
+}
+
 async function unknownFigures(browser) {
     const page = await browser.open("nulls.html"), text = await page.evaluate("document.querySelector('main').textContent");
     for (const wrong of ["0 … 0", "NaN", "null", "undefined", "years", "(95\u00a0%: )"]) check(`nulls: “${wrong}”`, !text.includes(wrong), text.slice(Math.max(0, text.indexOf(wrong) - 80), text.indexOf(wrong) + 40));
@@ -195,6 +203,7 @@ try {
     await studyInUse(browser, study);
     await hostileText(browser, odd.hostile);
     await unknownFigures(browser);
+    await withoutBounds(browser);
     await billOf(browser);
     await warnings(browser);
     await compare(browser);

@@ -153,6 +153,9 @@ export function oddities() {
     hostile.program.command = `abbe study ${evil}`;
     hostile.measure = evil;
     hostile.leftOut[0].reason = evil;
+    Object.assign(noise.curves[1], {time: {fixed: 0.9, perSample: 1e-3}, efficiency: {ratio: 14, low: 3, high: null}}); // without an upper bound
+    Object.assign(noise.curves[0], {time: {fixed: 1.4, perSample: 1e-3}});
+    Object.assign(noise.curves[0].fit, {halfNoiseCostHigh: null});
     noise.complete = false;
     noise.reference.advantage = 2.1;
     const effectsAlone = {...empty, scene: one.scene, effects: ordinary(7, []).effects};

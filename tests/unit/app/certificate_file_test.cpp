@@ -17,6 +17,10 @@ ErrorCertificate stated() {
     c.most = 1024;
     c.samples = 60.5;
     c.relative = {0.0052, 0.0049, 0.0056, 5'000'000'000, {{-16, 32, 0, 48}, 0.021}};
+    c.relative.tail = 0.625;
+    c.relative.unseen = 1.5;
+    c.relative.tiles = 240;
+    c.relative.untrustedTiles = 12;
     c.display = ErrorFigure{0.81, 0.77, 0.86, 4'999'999'999, {{16, 0, 32, 16}, 3.5}};
     c.view = "sRGB - Display, ACES 1.0 - SDR Video, 0 stops, abbe-aces-1.3";
     return c;
@@ -41,6 +45,10 @@ void checkFigure(const ErrorFigure& a, const ErrorFigure& b) {
     CHECK(a.worst.pixels.y0 == b.worst.pixels.y0);
     CHECK(a.worst.pixels.x1 == b.worst.pixels.x1);
     CHECK(a.worst.pixels.y1 == b.worst.pixels.y1);
+    CHECK(a.tail == b.tail);
+    CHECK(a.unseen == b.unseen);
+    CHECK(a.tiles == b.tiles);
+    CHECK(a.untrustedTiles == b.untrustedTiles);
 }
 
 } // namespace

@@ -14,7 +14,7 @@ const std::vector<std::uint32_t> kLadder{4, 8, 16, 32, 64, 128};
 // Errors that fall by a known law. Each rung takes half of its deviation from the rung before, as renders that go on
 // do.
 struct MadeCurve {
-    double scale = 0.1, power = -1, floor = 0, sigma = 0.1, secondsPerSample = 0.01;
+    double scale = 0.1, power = -1, floor = 0, sigma = 0.1, secondsPerSample = 0.01, fixedSeconds = 0;
 
     double errorAt(double n) const { return floor + scale * std::pow(n, power); }
     CurveStatistics make(std::uint64_t study, std::size_t seeds = 8, std::uint64_t firstSeed = 1) const {
@@ -26,8 +26,9 @@ struct MadeCurve {
             for (const std::uint32_t n : kLadder) {
                 deviation = 0.5 * deviation + std::sqrt(0.75) * normal(random);
                 const double falling = scale * std::pow(n, power) * std::exp(sigma * deviation - sigma * sigma / 2);
+                const double seconds = fixedSeconds + secondsPerSample * n;
                 run.rungs.push_back(
-                    {floor + falling, 0.9 * falling, secondsPerSample * n, 2 * secondsPerSample * n, n});
+                    {floor + falling, 0.9 * falling, seconds, 2 * seconds, n, 2 * secondsPerSample * n});
             }
             runs.push_back(run);
         }
@@ -144,12 +145,12 @@ TEST_CASE("efficiency against another curve at equal time") {
     slow.scale = 0.2;
     slow.secondsPerSample = 0.03;
     main.sigma = slow.sigma = 0;
-    CHECK(slow.make(2).efficiencyAgainst(main.make(1)).value == doctest::Approx(1.0 / 6));
-    CHECK(main.make(1).efficiencyAgainst(slow.make(2)).value == doctest::Approx(6));
+    CHECK(slow.make(2).efficiencyAgainst(main.make(1), TimeBasis::sampling).value == doctest::Approx(1.0 / 6));
+    CHECK(main.make(1).efficiencyAgainst(slow.make(2), TimeBasis::sampling).value == doctest::Approx(6));
     main.sigma = slow.sigma = 0.1;
     int inside = 0;
     for (std::uint64_t study = 0; study < 500; ++study) {
-        const Estimate e = slow.make(2 * study + 1).efficiencyAgainst(main.make(2 * study + 2));
+        const Estimate e = slow.make(2 * study + 1).efficiencyAgainst(main.make(2 * study + 2), TimeBasis::sampling);
         inside += e.low <= 1.0 / 6 && 1.0 / 6 <= e.high;
     }
     CHECK(inside >= 450);
@@ -157,13 +158,13 @@ TEST_CASE("efficiency against another curve at equal time") {
     // One that begins only when the other is done: that one is continued by its slope.
     main.sigma = slow.sigma = 0;
     slow.secondsPerSample = 1;
-    CHECK(slow.make(1).efficiencyAgainst(main.make(1)).value == doctest::Approx(0.005));
+    CHECK(slow.make(1).efficiencyAgainst(main.make(1), TimeBasis::sampling).value == doctest::Approx(0.005));
     // One that rises is not continued.
     main.power = 0.5;
-    CHECK_FALSE(slow.make(1).efficiencyAgainst(main.make(1)).known());
+    CHECK_FALSE(slow.make(1).efficiencyAgainst(main.make(1), TimeBasis::sampling).known());
     main.power = -1;
     // No seed in common.
-    CHECK_FALSE(slow.make(1, 8, 101).efficiencyAgainst(main.make(1)).known());
+    CHECK_FALSE(slow.make(1, 8, 101).efficiencyAgainst(main.make(1), TimeBasis::sampling).known());
 }
 
 TEST_CASE("times that vary count in the intervals of what is told in time") {
@@ -189,4 +190,63 @@ TEST_CASE("times that vary count in the intervals of what is told in time") {
     }
     CHECK(inside >= 276);
     CHECK(width > 1.5 * quietWidth);
+}
+
+TEST_CASE("time: what is fixed is told from what samples take") {
+    MadeCurve curve;
+    curve.fixedSeconds = 3;
+    const auto time = curve.make(1).time();
+    REQUIRE(time);
+    CHECK(time->fixed == doctest::Approx(3));
+    CHECK(time->perSample == doctest::Approx(0.01));
+    const std::vector<double> samples{4, 8, 16}, falling{3, 2, 1}, broken{0, 1, 2};
+    CHECK_FALSE(TimeModel::fit(samples, falling));
+    CHECK_FALSE(TimeModel::fit(samples, broken));
+    CHECK_FALSE(TimeModel::fit(std::span(samples).first(1), std::span(falling).first(1)));
+    const std::vector<double> steep{1, 3, 9};
+    CHECK(TimeModel::fit(samples, steep)->fixed == 0); // not below
+}
+
+// As on small pictures: 1.28 s of samples after pilots of 3 s, against the same without pilots and with twice the
+// error.
+TEST_CASE("efficiency: pilots of one curve are not speed of the other") {
+    MadeCurve main, bare;
+    main.fixedSeconds = 3;
+    bare.scale = 0.2;
+    main.sigma = bare.sigma = 0.05;
+    const CurveStatistics a = main.make(1), b = bare.make(2);
+    const Estimate sampling = b.efficiencyAgainst(a, TimeBasis::sampling);
+    CHECK(sampling.low <= 0.5);
+    CHECK(sampling.high >= 0.5);
+    CHECK(sampling.high < 0.6);
+    CHECK(b.efficiencyAgainst(a, TimeBasis::whole).value > 10); // "sooner", but for the pilots alone
+    // Times to an error are those on the wall, and what is fixed does not grow with them.
+    CHECK(a.timeTo(std::sqrt(0.1 / 1280), {}).seconds.value == doctest::Approx(3 + 12.8).epsilon(0.1));
+}
+
+TEST_CASE("bounds that nobody knows are none") {
+    // Of an error that cannot be told from 0 the inverse has no upper bound.
+    MadeCurve main, lost;
+    lost.scale = 1e-5;
+    const CurveStatistics sharp = lost.make(3);
+    std::vector<SeedRun> runs(sharp.runs().begin(), sharp.runs().end());
+    for (std::size_t s = 0; s < runs.size(); ++s)
+        for (RungRun& rung : runs[s].rungs) rung.relMse = (s % 4 == 0 ? 1e-3 : 1e-7) / static_cast<double>(rung.rays);
+    const Estimate ratio = CurveStatistics(kLadder, runs).efficiencyAgainst(main.make(1), TimeBasis::sampling);
+    CHECK(ratio.known());
+    CHECK(std::isinf(ratio.high));
+    CHECK(std::isfinite(ratio.low));
+    // Nor does the cost of halving a noise that hardly falls.
+    MadeCurve flat;
+    flat.power = -0.2;
+    flat.sigma = 0.3;
+    const Estimate cost = flat.make(1).halfNoiseCost();
+    CHECK((!cost.known() || std::isinf(cost.high)));
+    flat.power = -0.01;
+    flat.sigma = 0;
+    CHECK_FALSE(flat.make(1).halfNoiseCost().known());
+    // And nothing is compared far beyond its ladder.
+    MadeCurve late;
+    late.secondsPerSample = 1000;
+    CHECK_FALSE(late.make(1).efficiencyAgainst(main.make(1), TimeBasis::sampling).known());
 }

@@ -11,7 +11,13 @@ function biasOf(curve) {
     const last = (curve.points || []).filter(p => isNumber(p.bias2Low) && isNumber(p.bias2High)).pop();
     return last ? {relMse: last.bias2, low: last.bias2Low, high: last.bias2High, samples: last.samples} : null;
 }
-const between = (low, high, shown) => isNumber(low) && isNumber(high) ? `${shown(low)} … ${shown(high)}` : "";
+// A number below and nothing above it: there is no upper bound.
+const upperEnd = ({low, high}) => isNumber(low) && !isNumber(high) ? Infinity : high;
+const between = (low, high, shown) => isNumber(low) ? `${shown(low)} … ${isNumber(high) ? shown(high) : "no upper bound"}` : "";
+// An interval of a ratio; its low end is 0 and the high one infinite where there is no bound.
+const hasInterval = e => isNumber(e.low) && (e.low > 0 || positive(e.high));
+// Seconds of a render that more samples do not need.
+const fixedOf = curve => curve.time && isNumber(curve.time.fixed) ? curve.time.fixed : 0;
 
 function findingsOf(study) {
     const curves = study.curves || [], base = curves[0];
@@ -34,10 +40,13 @@ function costFindings(base) {
         found.push([`An error of ${percent(first.error, 1)} takes `, timeText(first.seconds), `${far(first)}, one of ${percent(last.error, 1)} takes `, timeText(last.seconds), `${far(last)}.`]);
     const cost = base.fit && base.fit.halfNoiseCost;
     if (positive(cost)) {
-        const [low, high] = [base.fit.halfNoiseCostLow, base.fit.halfNoiseCostHigh], known = isNumber(low) && isNumber(high);
+        const low = base.fit.halfNoiseCostLow, high = upperEnd({low, high: base.fit.halfNoiseCostHigh}), known = isNumber(low);
         const law = (known ? low <= 4 && high >= 4 : Math.abs(Math.log(cost / 4)) < 0.12) ? "averaging promises 4×" : cost < 4 ? "less than the 4× of plain averaging" : "more than the 4× of plain averaging";
         found.push(["Halving the noise costs ", ratioText(cost), ` the time here (${known ? `95\u00a0%: ${between(low, high, factorText)}; ` : ""}${law}).`]);
     }
+    const longest = (base.points || []).filter(p => positive(p.seconds)).pop();
+    if (longest && fixedOf(base) > 0.1 * longest.seconds)
+        found.push([`Of ${timeText(longest.seconds)} for ${countText(longest.samples)} samples `, timeText(fixedOf(base)), " are pilots and plans that more samples do not need; ratios of speed leave them out."]);
     const end = (base.points || []).filter(p => positive(p.relMse) && positive(p.trimmed)).pop();
     if (end && end.trimmed < 0.3 * end.relMse)
         found.push(["Few bright pixels dominate: without the worst 0.1\u00a0% of them the error after ", timeText(end.seconds), ` is ${errorText(end.trimmed, 2)} instead of ${errorText(end.relMse, 2)}.`]);
@@ -47,16 +56,17 @@ function costFindings(base) {
 // The changes that matter most: those whose interval does not contain 1, by the end of it that is nearer to 1.
 function changeFindings(curves) {
     const changes = curves.slice(1).filter(c => c.efficiency && positive(c.efficiency.ratio)).map(curve => {
-        const {ratio, low, high} = curve.efficiency, known = positive(low) && positive(high);
+        const {ratio, low} = curve.efficiency, high = upperEnd(curve.efficiency), known = hasInterval(curve.efficiency);
         return {curve, ratio, low, high, known, sure: known ? low > 1 || high < 1 : ratio < 0.5 || ratio > 2};
     }).filter(c => c.sure);
     const sureOf = c => c.known ? c.ratio < 1 ? c.high : c.low : c.ratio;
     const told = c => {
+        const apart = Math.abs(fixedOf(c.curve) - fixedOf(curves[0])) > 0.02 ? `; ${timeText(fixedOf(c.curve))} of fixed time apart, against ${timeText(fixedOf(curves[0]))}` : "";
         const slower = c.ratio < 1, factor = slower ? 1 / c.ratio : c.ratio;
         const ends = slower ? [1 / c.high, 1 / c.low] : [c.low, c.high];
         const interval = c.known ? ` (95\u00a0%: ${between(...ends, factorText)})` : "";
-        return slower ? [`With “${c.curve.label}” the same error takes ${c.known ? "" : "about "}`, ratioText(factor), ` as long${interval}.`]
-            : [`With “${c.curve.label}” the same error comes ${c.known ? "" : "about "}`, ratioText(factor), ` sooner${interval}.`];
+        return slower ? [`With “${c.curve.label}” the same error takes ${c.known ? "" : "about "}`, ratioText(factor), ` as long${interval}${apart}.`]
+            : [`With “${c.curve.label}” the same error comes ${c.known ? "" : "about "}`, ratioText(factor), ` sooner${interval}${apart}.`];
     };
     changes.sort((a, b) => sureOf(a) - sureOf(b));
     const slow = changes.filter(c => sureOf(c) < 0.9).slice(0, 2), fast = changes.filter(c => sureOf(c) > 1.1).slice(-1);

@@ -38,15 +38,15 @@ function efficiencies() {
     const line = (v, colour) => `<line x1="${at(v)}%" x2="${at(v)}%" y1="0" y2="27" stroke="var(--${colour})"/>`;
     const grid = marks.map(v => line(v, "grid")).join("") + line(1, "soft");
     const row = e => {
-        const look = looks[e.index], known = e.index > 0 && positive(e.low) && positive(e.high);
-        const whisker = known ? `<line x1="${at(e.low)}%" x2="${at(e.high)}%" y1="13.5" y2="13.5" stroke="var(--c)" stroke-width="2"/>` : "";
+        const look = looks[e.index], known = e.index > 0 && hasInterval(e);
+        const whisker = known ? `<line x1="${positive(e.low) ? at(e.low) : 0}%" x2="${positive(e.high) ? at(e.high) : 100}%" y1="13.5" y2="13.5" stroke="var(--c)" stroke-width="2"/>` : "";
         const strip = svgOf(`<svg class="plot" role="img" aria-label="${escaped(`${curves[e.index].label}: ${ratioText(e.ratio)}`)}">${grid}<g class="${look.color}">${whisker}<svg x="${at(e.ratio)}%" y="13.5" overflow="visible"><path class="mark" d="${markerPath(look.marker, 0, 0, 5)}"/></svg></g></svg>`);
         return make("div", {}, make("div", {class: "row-name"}, named(e.index)), make("div", {class: "strip"}, strip),
                     make("div", {class: "value"}, ratioText(e.ratio), " ", make("small", {}, known ? `(${between(e.low, e.high, factorText)})` : "")));
     };
     const missing = curves.length - list.length;
     section("efficiency", "Efficiency", "Efficiency against the scene as rendered",
-            "How much more (right) or less (left) accuracy a second buys: the inverse of error² × time, as a ratio, with 95\u00a0% intervals.",
+            "How much more (right) or less (left) accuracy a second of samples buys: the inverse of error² × time, as a ratio, with 95\u00a0% intervals. Pilots and plans, whose time does not grow with the samples, are left out.",
             make("div", {class: "whiskers"}, list.map(row), make("div", {}, make("div", {class: "row-name"}),
                 make("div", {class: "strip scale"}, marks.map(v => make("span", {style: `left:${at(v)}%`}, `${+v.toPrecision(2)}×`))), make("div", {class: "value"}))),
             missing ? make("p", {class: "soft"}, `${missing} without a figure: ${curves.filter(c => !c.efficiency || !positive(c.efficiency.ratio)).map(c => c.label).join(", ")}.`) : "");
