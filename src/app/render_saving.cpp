@@ -204,10 +204,9 @@ void RenderRun::write(const PixelFilm& film) {
     warnOfDensities(summary_.statistics.excess, warnings);
     if (!summary_.partial) warnOfMissingSamples(lookedAt_, film.bounds(), warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
-    if (summary_.certificate->most == 0)
-        warnOfEmptyImage(summary_.image, warnings);
-    else if (summary_.certificate->fewest > 0) // what was not begun says nothing of the scene
-        warnOfBlackImage(picture.image, warnings);
+    if (summary_.partial && summary_.certificate->most == 0) warnOfNoSamples(summary_.image, lookedAt_ > 0, warnings);
+    // What was not begun says nothing of the scene.
+    if (summary_.certificate->fewest > 0) warnOfBlackImage(picture.image, warnings);
     warnOfHeavyTail(summary_.certificate->relative, warnings);
     report_->diagnostics(warnings, loaded_->sources);
     summary_.warnings += warnings.warningCount();

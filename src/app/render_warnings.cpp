@@ -60,9 +60,12 @@ void warnOfMissingSamples(std::size_t pixels, PixelBounds bounds, Diagnostics& d
         .help = "give it more `--time`, or a smaller `--size`";
 }
 
-void warnOfEmptyImage(const std::string& image, Diagnostics& diagnostics) {
-    diagnostics.warning("W0648", {}, fmt::format("`{}` is empty: the render was ended before its first sample", image))
-        .help = "let it render a little longer; `--time` ends a render with an image";
+void warnOfNoSamples(const std::string& image, bool firstLook, Diagnostics& diagnostics) {
+    Diagnostic& d = diagnostics.warning(
+        "W0648", {},
+        fmt::format("the render was ended before the first sample of `{}`: {}", image,
+                    firstLook ? "it shows a rough first look" : "it is black, which says nothing of the scene"));
+    d.help = "let it render a little longer; `--time` ends a render with an image";
 }
 
 void warnOfHeavyTail(const ErrorFigure& error, Diagnostics& diagnostics) {

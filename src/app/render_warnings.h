@@ -17,8 +17,8 @@ void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> f
 void warnOfDensities(const DensityExcess&, Diagnostics&);
 // Of pixels that show the first look, in an image of these bounds, because the time was too short for a sample of them.
 void warnOfMissingSamples(std::size_t pixels, PixelBounds, Diagnostics&);
-// Of a render that was ended before any pixel had a sample. `image`: its path.
-void warnOfEmptyImage(const std::string& image, Diagnostics&);
+// Of a render that was ended before any pixel had a sample. `image`: its path; `firstLook`: whether it shows that.
+void warnOfNoSamples(const std::string& image, bool firstLook, Diagnostics&);
 // Of an image whose error is mostly carried by samples that are too rare.
 void warnOfHeavyTail(const ErrorFigure&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
