@@ -23,7 +23,7 @@ constexpr double kOzoneCrossSections[] = {
 constexpr double kDobson = 2.6867e20; // molecules per m²
 
 // Aerosol: [Hess1998, "continental average"] at 550 nm by Lorenz-Mie theory. Its share of scattering, and two lobes
-// that are within a quarter of its phase function from 2° on.
+// that are within a third of its phase function from 2° on.
 constexpr double kAerosolAlbedo = 0.925;
 constexpr double kForwardLobe = 0.72, kBackwardLobe = -0.6, kForwardShare = 0.987; // mean cosine 0.703
 constexpr double kDepolarisation = 0.0141; // γ = ρ / (2 - ρ), ρ = 0.028 [Bucholtz1995]
