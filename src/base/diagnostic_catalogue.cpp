@@ -88,7 +88,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0345", "the inner cone is larger than the outer one", "A spot is even inside `inner-angle` and dark outside `angle`. Both are full angles, from edge to edge."},
     {"E0346", "the sun's direction is stated twice", "Use `toward`, the direction in which the light travels, or `elevation` and `azimuth`, where the sun stands."},
     {"E0347", "a sun without a diameter has no luminance", "Light from a single direction fills no solid angle, so only its `irradiance` is finite."},
-    {"E0348", "an environment is stretched", "The transform of an environment image may turn it, mirror it and scale all axes alike."},
+    {"E0348", "a light is stretched", "The transform of an environment image, a sky or a beam may turn it, mirror it and scale all axes alike."},
     {"E0350", "a camera is placed twice", "`transform` places the camera instead of `from`, `look-at` and `up`."},
     {"E0351", "a camera is stretched or mirrored", "The transform of a camera may move and turn it; a uniform scale has no effect."},
     {"E0352", "a camera has no direction", "`look-at` is the camera's own position, or the camera looks along `up`. Change one of the three."},

@@ -159,6 +159,7 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     ray.density.position = static_cast<double>(origin->pdf);
     ray.density.direction = pdfDirection(source, *origin, w, ray.target);
     ray.deltaPosition = origin->point();
+    ray.unmet = ray.deltaPosition || source.light->bodiless();
     return ray;
 }
 
@@ -220,7 +221,7 @@ std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std
     ray.density.distant = true;
     ray.density.position = pdfPosition(source, ray.ray.origin, w, target);
     ray.density.direction = s->delta ? 1 : static_cast<double>(s->pdfSolidAngle);
-    ray.deltaDirection = s->delta;
+    ray.deltaDirection = ray.unmet = s->delta;
     return ray;
 }
 

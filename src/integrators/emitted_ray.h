@@ -22,7 +22,8 @@ struct EmittedRay {
     Vec3 n;        // unit normal of the light's surface, outside; 0 where it has none
     Spectrum beta; // W·nm⁻¹: radiance cos θ / density. Its mean over rays is the power of all lights
     EmissionDensity density;
-    bool deltaPosition = false, deltaDirection = false; // a camera path cannot meet the light
+    bool deltaPosition = false, deltaDirection = false;
+    bool unmet = false; // a camera path cannot meet the light, as it is one of these or has no body
 };
 
 } // namespace abbe

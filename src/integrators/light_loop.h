@@ -166,7 +166,7 @@ template <EffectBits E> void LightLoop<E>::arriveAt(const EmittedRay& start, Vec
         else if (!start.density.distant)
             ends = static_cast<double>(std::abs(dot(start.n, start.ray.direction)));
         rivals_.asked = ends / start.density.total();
-        rivals_.met = start.deltaPosition || start.deltaDirection ? 0 : rivals_.asked;
+        rivals_.met = start.unmet ? 0 : rivals_.asked;
     }
     rivals_.met /= cosine;
     rivals_.asked /= cosine;

@@ -49,7 +49,7 @@ template <EffectBits E> bool LightLoop<E>::followedFrom(const EmittedRay& start,
     CoveredChain chain;
     chain.start();
     for (std::size_t i = linkCount_; i-- > 0;) sampler->follow(chain, links_[i].shape, links_[i].lobe);
-    if (start.deltaPosition || start.deltaDirection) return sampler->coversKind(chain, start.light);
+    if (start.unmet) return sampler->coversKind(chain, start.light);
     const float time = this->path_.time;
     ChainStart from;
     from.receiver = Receiver(hit.p, hit.shading.z, true);

@@ -16,7 +16,7 @@ struct LightTarget {
     bool distant = false;   // otherwise what follows:
     Vec3 direction;         // unit, towards the light
     Spectrum radiance{0.f}; // from there; irradiance if the light is a single direction
-    bool delta = false;     // of a single point or direction: no path meets it by chance
+    bool delta = false;     // of a single point or direction, or of a beam: no path meets it by chance
     // 1/m² of origin.p or 1/sr of the direction, with the probability of the light's part; deltas count as 1.
     float pdf = 0;
     float pick = 1; // probability of the light
@@ -79,7 +79,7 @@ struct LightTarget {
   private:
     void takeOrigin(const LightOrigin& o) {
         origin = o;
-        delta = o.point();
+        delta = o.point() || light->bodiless();
         pdf = o.pdf / static_cast<float>(light->parts());
     }
 };

@@ -29,6 +29,16 @@ ShapeSample toRender(const LightPose& pose, const ShapeSample& s) {
 // A direction, taken to another space.
 Vec3 turned(const Transform& m, Vec3 w) { return Vec3(normalize(m.vector(Vec3d(w)))); }
 
+// From rest to render space.
+LightOrigin moved(LightOrigin origin, const LightPose& pose) {
+    origin.p = Vec3(pose.toRender.point(Vec3d(origin.p)));
+    if (origin.point()) return origin;
+    origin.n = turned(pose.toRender, origin.n);
+    origin.pError = abs(origin.p) * 0x1p-21f;
+    origin.pdf *= static_cast<float>(1 / square(pose.scale));
+    return origin;
+}
+
 } // namespace
 
 std::optional<LightBounds> MovingLight::bounds(std::uint32_t part) const {
@@ -52,7 +62,10 @@ std::optional<LightSample> MovingLight::sample(const Receiver& from, std::uint32
     const float scale = static_cast<float>(pose->scale);
     s->p = Vec3(pose->toRender.point(Vec3d(s->p)));
     s->distance *= scale;
-    s->radiance *= 1 / (scale * scale); // intensity / d²
+    if (atRest_->bodiless())
+        s->n = turned(pose->toRender, s->n);
+    else
+        s->radiance *= 1 / (scale * scale); // intensity / d²
     return s;
 }
 
@@ -71,19 +84,21 @@ std::optional<LightOrigin> MovingLight::sampleOrigin(std::uint32_t part, Vec2 u,
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
     auto origin = atRest_->sampleOrigin(part, u, lambda, time);
-    if (origin) origin->p = Vec3(pose->toRender.point(Vec3d(origin->p)));
-    return origin;
+    return origin ? std::optional(moved(*origin, *pose)) : origin;
 }
 
 LightOrigin MovingLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return {};
-    LightOrigin origin = atRest_->originAt(part, pose->rest(p), n, time);
-    origin.p = Vec3(pose->toRender.point(Vec3d(origin.p)));
-    return origin;
+    return moved(atRest_->originAt(part, pose->rest(p), turned(pose->toRest, n), time), *pose);
 }
 
-// The light has no surface: what leaves it depends on the direction alone.
+float MovingLight::pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    return pose ? atRest_->pdfAtPoint(pose->rest(from), part, pose->rest(p), turned(pose->toRest, n), time) : 0;
+}
+
+// The light has no surface, or is a beam: what leaves it depends on the direction alone.
 Vec3 MovingLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {
     const auto pose = motion_.at(origin.time);
     const Vec3 w = atRest_->sampleDirection(origin, u);

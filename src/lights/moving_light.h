@@ -6,7 +6,7 @@
 
 namespace abbe {
 
-// A light without surface, or infinitely far away: only its rotation matters then.
+// A light without surface, which may have an extent, or infinitely far away: only its rotation matters then.
 class MovingLight final : public Light {
   public:
     MovingLight(std::unique_ptr<Light> atRest, LightMotion motion)
@@ -20,13 +20,15 @@ class MovingLight final : public Light {
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     const Curve* powerShape() const override { return atRest_->powerShape(); }
     bool infinite() const override { return atRest_->infinite(); }
+    bool bodiless() const override { return atRest_->bodiless(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
+    float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
-    // Intensity stays when the scale changes.
+    // Intensity stays when the scale changes, or the radiance of what has an extent.
     LightPaths paths() const override { return atRest_->paths(); }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
                                             float time) const noexcept override;

@@ -25,7 +25,7 @@ struct LightSample {
     float distance;      // to that point; infinite for distant lights
     Spectrum radiance;   // W·m⁻²·sr⁻¹·nm⁻¹
     float pdfSolidAngle; // > 0
-    bool delta;          // cannot be met by chance: MIS weight 1
+    bool delta;          // cannot be met by chance, as points and beams: MIS weight 1
     Vec3 n;              // unit normal of the light's surface at that point, outside; 0 where it has none
 };
 
@@ -67,6 +67,9 @@ class Light {
     virtual const Curve* powerShape() const { return nullptr; }
     // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
     virtual bool infinite() const { return false; }
+    // True if it has an extent, but nothing that rays could meet: found by sampling alone, and its samples are deltas
+    // whose density counts.
+    virtual bool bodiless() const { return false; }
     // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
     virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // What this light samples, if it is a medium that shines: found along rays, never as a surface.

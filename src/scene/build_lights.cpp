@@ -2,6 +2,7 @@
 #include "io/image.h"
 #include "io/io_error.h"
 #include "lights/area_light.h"
+#include "lights/beam_light.h"
 #include "lights/daylight_light.h"
 #include "lights/environment_light.h"
 #include "lights/ies_light.h"
@@ -122,6 +123,8 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
         placeBareLight<PointLightParams>(d, place, makePointLight);
     } else if (type == "spot") {
         placeBareLight<SpotLightParams>(d, place, makeSpotLight);
+    } else if (type == "beam") {
+        placeBareLight<BeamLightParams>(d, place, makeBeamLight);
     } else if (type == "sun") {
         placeBareLight<SunLightParams>(d, place, makeSunLight);
     } else if (type == "sky") {

@@ -8,6 +8,7 @@
 #include "film/film_params.h"
 #include "integrators/render_params.h"
 #include "lights/area_light_types.h"
+#include "lights/beam_light.h"
 #include "lights/daylight_light.h"
 #include "lights/environment_light.h"
 #include "lights/ies_light.h"
@@ -161,9 +162,10 @@ constexpr CameraEntry kCameras[] = {
 };
 
 constexpr schema::TypeInfo (*kOthers[])() = {
-    quadType,        sphereType,    diskType,       planeType,     meshType,     lightQuadType, lightDiskType,
-    lightSphereType, lightMeshType, pointLightType, spotLightType, sunLightType, skyLightType,  environmentLightType,
-    instancesType,   filmType,      renderType,     daylightType,  iesLightType,
+    quadType,      sphereType,    diskType,        planeType,     meshType,
+    lightQuadType, lightDiskType, lightSphereType, lightMeshType, pointLightType,
+    spotLightType, beamLightType, sunLightType,    skyLightType,  environmentLightType,
+    instancesType, filmType,      renderType,      daylightType,  iesLightType,
 };
 
 } // namespace

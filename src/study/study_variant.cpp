@@ -24,6 +24,7 @@ Reason needsLights(const StudySubject& s) {
 
 // A light without extent is never met by chance: a path tracer that only scatters loses it.
 bool isPoint(const Light& light, const Vec3& from, const Wavelengths& wavelengths) {
+    if (light.bodiless()) return true;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / 8, 0.5f);
         const auto sample = light.sample(Receiver(from), 0, u, wavelengths, 0);

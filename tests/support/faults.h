@@ -138,6 +138,7 @@ class FaultyLight final : public Light {
     std::optional<LightBounds> bounds(std::uint32_t part) const override { return sound_->bounds(part); }
     const Curve* powerShape() const override { return sound_->powerShape(); }
     bool infinite() const override { return sound_->infinite(); }
+    bool bodiless() const override { return sound_->bodiless(); }
     std::optional<LightReach> reach(const Ray& ray, float tMax) const noexcept override {
         return sound_->reach(ray, tMax);
     }

@@ -36,8 +36,8 @@ bool smallLights(const fs::path& path) {
     const TestScene scene = TestScene::load(path);
     const auto& lights = scene.built().facts.lightList;
     return std::any_of(lights.begin(), lights.end(), [](const auto& light) {
-        return light.type == "point" || light.type == "spot" || light.type == "sun" || light.type == "daylight" ||
-               light.type == "ies";
+        return light.type == "point" || light.type == "spot" || light.type == "beam" || light.type == "sun" ||
+               light.type == "daylight" || light.type == "ies";
     });
 }
 

@@ -320,6 +320,7 @@ TEST_CASE("faults of each light are dropped, counted and located") {
          "light lamp mesh { points { - -1 1 -1; - 1 1 -1; - 0 2 -1 }; faces { - 0 1 2 }; luminance 3000 nits }"},
         {"point", "light lamp point { position 0 2 1; power 800 lm }"},
         {"spot", "light lamp spot { position 0 3 1; look-at 0 0 0; angle 60 deg; intensity 500 cd }"},
+        {"beam", "light lamp beam { position 0 3 0; look-at 0 0 0; radius 1; power 20 W }"},
         {"sun", "light lamp sun { elevation 40 deg; azimuth 160 deg; irradiance 1 klx }"},
         {"sky", "light lamp sky { luminance 300 nits }"},
         {"daylight", "light lamp daylight { elevation 40 deg; azimuth 160 deg; turbidity 3 }"},
@@ -334,7 +335,7 @@ TEST_CASE("faults of each light are dropped, counted and located") {
                                   "\nshape ball sphere { center 0.8 0.5 1; radius 0.5; material conductor { index "
                                   "metal Ag; roughness 0.3 } }\n";
         // In each function that it has: those that cannot be met have no light to be met.
-        const bool met = type->name != "point" && type->name != "spot" && type->name != "ies";
+        const bool met = type->name != "point" && type->name != "spot" && type->name != "beam" && type->name != "ies";
         const int found =
             tryAll(scene, {Site::radiance, Site::lightPdf, Site::lightTurn, Site::emitted, Site::emittedPdf},
                    [](FaultyScene& s) { s.breakLight("lamp"); });
