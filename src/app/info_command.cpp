@@ -36,6 +36,57 @@ std::string text(const ImageAttribute& a) {
 
 // --- scenes
 
+// What is left of a zero is rounding: coordinates are stored from the camera.
+Vec3d withoutRounding(Vec3d v, const Bounds3d& box) {
+    const double least = 1e-6 * maxComponent(box.upper - box.lower);
+    for (double* c : {&v.x, &v.y, &v.z})
+        if (std::abs(*c) < least) *c = 0;
+    return v;
+}
+
+std::string boundsText(const Bounds3d& box) {
+    if (box.empty()) return "nothing";
+    if (!isFinite(box.lower) || !isFinite(box.upper)) return "without an end";
+    const Vec3d a = withoutRounding(box.lower, box), b = withoutRounding(box.upper, box);
+    return fmt::format("{:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+Json boundsJson(const Bounds3d& box) {
+    if (box.empty() || !isFinite(box.lower) || !isFinite(box.upper)) return {};
+    return Json::object({{"lower", json(box.lower)}, {"upper", json(box.upper)}});
+}
+
+// `ball sphere`, or `12 × tree`; and in which space its bounds are.
+std::string shapeText(const SceneFacts::ShapeFact& shape) {
+    std::string s = fmt::format("{:<10} ", shape.kind);
+    if (shape.places > 1) s += fmt::format("{} × ", shape.places);
+    s += shape.name;
+    if (!shape.type.empty() && !shape.name.starts_with(shape.type + "-")) s += ' ' + shape.type;
+    s += "  " + boundsText(shape.bounds);
+    return s + (shape.inside.empty() ? "\n" : fmt::format(", in the space of `{}`\n", shape.inside));
+}
+
+std::string shapesText(const std::vector<SceneFacts::ShapeFact>& shapes) {
+    constexpr std::size_t kMost = 100;
+    std::string s;
+    for (std::size_t i = 0; i < std::min(shapes.size(), kMost); ++i) s += shapeText(shapes[i]);
+    if (shapes.size() > kMost) s += fmt::format("           and {} more: --json has all\n", shapes.size() - kMost);
+    return s;
+}
+
+Json shapesJson(const std::vector<SceneFacts::ShapeFact>& shapes) {
+    Json list = Json::list();
+    for (const auto& shape : shapes) {
+        Json object = Json::object({{"kind", shape.kind}, {"name", shape.name}});
+        if (!shape.type.empty()) object.set("type", shape.type);
+        if (!shape.inside.empty()) object.set("inside", shape.inside);
+        object.set("places", std::uint64_t{shape.places});
+        object.set("bounds_m", boundsJson(shape.bounds));
+        list.push(std::move(object));
+    }
+    return list;
+}
+
 struct SceneInfo {
     const LoadedScene& loaded;
     const BuiltScene& built;
@@ -66,8 +117,8 @@ std::string sceneJson(const SceneInfo& info) {
                                 {"samples", info.built.render.samples},
                                 {"effects", effectNames(info.built.scene.effects)},
                                 {"files", std::move(files)}});
-    if (!f.bounds.empty())
-        object.set("bounds_m", Json::object({{"lower", json(f.bounds.lower)}, {"upper", json(f.bounds.upper)}}));
+    object.set("shape_list", shapesJson(f.shapeList));
+    if (!f.bounds.empty()) object.set("bounds_m", boundsJson(f.bounds));
     return object.text(true) + "\n";
 }
 
@@ -79,18 +130,8 @@ std::string sceneText(const SceneInfo& info) {
     if (f.points > 0) s += fmt::format("points     {}\n", f.points);
     if (f.objects > 0) s += fmt::format("objects    {}, placed {} times\n", f.objects, f.instances);
     s += fmt::format("materials  {}\n", f.materials);
-    if (!f.bounds.empty()) {
-        // Coordinates are stored from the camera; what is left of a zero is rounding.
-        const Vec3d size = f.bounds.upper - f.bounds.lower;
-        const double least = 1e-6 * std::max({size.x, size.y, size.z});
-        const auto snapped = [&](Vec3d v) {
-            for (double* c : {&v.x, &v.y, &v.z})
-                if (std::abs(*c) < least) *c = 0;
-            return v;
-        };
-        const Vec3d a = snapped(f.bounds.lower), b = snapped(f.bounds.upper);
-        s += fmt::format("bounds     {:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m\n", a.x, a.y, a.z, b.x, b.y, b.z);
-    }
+    if (!f.bounds.empty()) s += fmt::format("bounds     {}\n", boundsText(f.bounds));
+    s += shapesText(f.shapeList);
     for (const auto& l : f.lightList) {
         s += fmt::format("light      {} {}  {:.4g} W\n", l.name.empty() ? "(no name)" : l.name, l.type, l.watts);
     }

@@ -44,6 +44,14 @@ struct SceneFacts {
         double watts = 0;
     };
     std::vector<LightFact> lightList;
+    // A shape, a light with a surface, or what one line places of an object.
+    struct ShapeFact {
+        std::string kind, name, type; // of the line; of instances the object's name
+        std::string inside;           // the object whose space the bounds are in; empty: world space
+        std::size_t places = 1;
+        Bounds3d bounds; // m, when the shutter opens; infinite for planes, empty where nothing is shown
+    };
+    std::vector<ShapeFact> shapeList;
     std::vector<std::string> files; // read while building
 };
 

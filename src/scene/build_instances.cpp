@@ -164,6 +164,7 @@ void SceneBuilder::placeStill(const Definition& d, std::vector<Placement> places
     Bounds3 box;
     if (!geometry.bounds.empty())
         for (const Placement& p : places) box.add(p.toOuter(geometry.bounds));
+    noteBounds(d, box, place, places.size());
     if (place.into)
         place.into->bounds.add(box);
     else if (!box.empty())
@@ -201,6 +202,7 @@ void SceneBuilder::placeMoving(const Definition& d, const ObjectGeometry& geomet
     if (!checkMotion(place.motion, d.span)) return;
     ++instanceCount_;
     (place.object ? place.object->shown : built_->facts.instances) += geometry.shown;
+    noteBounds(d, Placement(atOpening(place.motion)).toOuter(geometry.bounds), place);
     if (geometry.hasUnshared) {
         if (place.object)
             place.object->nested.push_back({&geometry, {Placement(Transform())}, place.motion});

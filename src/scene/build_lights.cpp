@@ -257,6 +257,7 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
         // A lamp emits and reflects nothing.
         const Shape* const placed = keepShape(std::move(shape));
         built_->scene.names[placed] = nameOf(d);
+        noteBounds(d, placed->bounds(), place);
         addPlaced(*placed, {plainMaterial(0), light.get(), toOwn, context.texture != nullptr}, place);
         addLight(std::move(light), d);
     });

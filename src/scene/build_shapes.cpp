@@ -171,6 +171,7 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
     built_->scene.names[placed] = nameOf(*loaded.definition);
+    noteBounds(*loaded.definition, placed->bounds(), place);
     if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
     addPlaced(*placed,
               {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse(),

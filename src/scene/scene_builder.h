@@ -240,6 +240,7 @@ class SceneBuilder final : public schema::Resolver {
     bool mayLieInDielectric(bool dielectrics) const;
     void noteMedia(Scene&);
     void countShape(const LoadedShape&);
+    void noteBounds(const Definition&, const Bounds3&, const Place&, std::size_t places = 1); // shape_facts.cpp
     void noteShape(const LoadedShape&);
 
     // build_motion.cpp
