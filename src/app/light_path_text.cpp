@@ -25,6 +25,8 @@ constexpr std::string_view wordOf(LightPathVerdict v) {
         return "off";
     case otherTechnique:
         return "other-technique";
+    case hiddenShapes:
+        return "hidden-shapes";
     case noLights:
         return "no-lights";
     case nothingFocuses:
@@ -69,6 +71,8 @@ std::string reason(const LightPathFindings& f) {
         return "`light-paths off`";
     case otherTechnique:
         return "`sampler`, `strategy`, `mis-weights`, `directions` and `wavelengths` must be their defaults";
+    case hiddenShapes:
+        return "shadows and reflections see different shapes (`visible-to`)";
     case noLights:
         return "no light can start them";
     case nothingFocuses:

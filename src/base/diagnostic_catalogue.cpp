@@ -148,6 +148,8 @@ constexpr CodeInfo kCodes[] = {
     {"E0632", "nothing to scatter on", "`over` names a shape in the same group or object, or at the top level, where the instances are: a quad, a disk, or one that is made of polygons."},
     {"E0633", "objects nest too deeply", "Objects are placed inside of objects over more than 32 levels."},
     {"E0634", "a light or plane cannot move like this", "A light that moves keeps its shape: it may be moved, turned and scaled evenly while the shutter is open, but not be stretched or mirrored. An infinite plane stands still. This holds for groups and instances with keys, too."},
+    {"E0635", "a shape that light enters is hidden from some rays", "`visible-to` hides opaque shapes and thin sheets. Glass, boundaries and shapes with an interior are entered and left by all rays alike, and openings (`opacity`) by shadow rays as by reflections."},
+    {"E0636", "light paths and hidden shapes", "Light paths tell no shadows from reflections. Shapes that only one of these sees, or the camera alone, leave all light to camera paths: `light-paths always` and `alone` ask for what cannot be."},
     {"E0640", "a medium is described twice", "A medium has `extinction` and `albedo`, or `scattering` and `absorption`; the two pairs say the same and cannot be mixed."},
     {"E0641", "a volume without extent", "The transform of a volume has no inverse: it flattens the volume to a plane, a line or a point."},
     {"E0642", "an OpenVDB file cannot be used", "The file is damaged or not an OpenVDB file, or the grid is of a kind that cannot be a density: points, vectors, a level set, a transform that is not affine."},

@@ -66,7 +66,7 @@ void LayerRecorder::arrives(const SurfaceHit& hit, const Spectrum&) noexcept {
 // From where the point is seen when the shutter opens to where it is seen when it closes.
 std::optional<Vec2d> LayerRecorder::motionOf(const SurfaceHit& hit, float depth) const noexcept {
     const LayerSight& sight = layers_.sight();
-    const Ray onto{ray_.origin, (hit.p - ray_.origin) / depth, kInfinity, ray_.time};
+    const Ray onto{ray_.origin, (hit.p - ray_.origin) / depth, kInfinity, ray_.time, RayKind::camera};
     const auto passage = sight.world->passage(onto, hit, depth);
     if (!passage) return std::nullopt;
     const auto from = sight.camera->project(Vec3d(passage->opening), 0, middle_);

@@ -27,7 +27,7 @@ void fill(RTCRay& r, const Ray& ray, float tNear) {
     r.dir_z = ray.direction.z;
     r.time = ray.time;
     r.tfar = ray.tMax;
-    r.mask = 0xffffffffu;
+    r.mask = static_cast<unsigned>(ray.kind);
     r.id = 0;
     r.flags = 0;
 }

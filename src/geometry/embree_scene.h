@@ -24,8 +24,8 @@ class EmbreeScene final : public Intersector {
   public:
     bool intersect(const Ray&, SurfaceHit&) const noexcept override;
     bool occluded(const Ray&) const noexcept override;
-    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
-        return occluded({from, to - from, kBeforeEnd, time});
+    bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
+        return occluded({from, to - from, kBeforeEnd, time, kind});
     }
     std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
     std::optional<Passage> passage(const Ray&, const SurfaceHit&, float distance) const noexcept override;

@@ -12,7 +12,12 @@ namespace abbe {
 
 struct EmbreeSceneBuilder::Impl {
     using Shapes = std::vector<std::pair<const Shape*, Binding>>;
-    using Inside = std::pair<std::uint32_t, std::uint32_t>; // what holds placements, and the object placed
+    // What holds placements, the object placed, and the rays that see them.
+    struct Inside {
+        std::uint32_t holder = 0, object = 0;
+        std::uint32_t visible = 0;
+        auto operator<=>(const Inside&) const = default;
+    };
     Shapes shapes;
     std::vector<Shapes> objects;
     std::map<Inside, std::vector<Placement>> placements;
@@ -34,8 +39,12 @@ struct EmbreeSceneBuilder::Impl {
     void addShapes(EmbreeScene&, const Shapes&, BuiltObject&) const;
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     void addMoving(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
-    static const InstanceTable& addTable(EmbreeScene&, std::size_t geometryId, const BuiltObject& placed,
-                                         BuiltObject& inside, std::unique_ptr<const InstanceTable>);
+    struct TablePlace {
+        std::size_t geometryId;
+        Visibility visible;
+    };
+    static const InstanceTable& addTable(EmbreeScene&, TablePlace, const BuiltObject& placed, BuiltObject& inside,
+                                         std::unique_ptr<const InstanceTable>);
 };
 
 EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
@@ -55,7 +64,7 @@ void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& adde
             space = static_cast<std::uint32_t>(target.ownSpaces.size());
             target.ownSpaces.emplace_back(binding.toOwn.value_or(Transform{}));
         }
-        sink.add(*shape, binding.material, binding.light, space);
+        sink.add(*shape, binding.material, binding.light, space, binding.visible);
         if (std::isfinite(shape->area())) object.bounds.add(shape->bounds());
     }
 }
@@ -64,10 +73,10 @@ void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& adde
 // in the innermost object.
 void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
                                          BuiltObject& object) {
-    for (auto list = placements.lower_bound({inside, 0}); list != placements.end() && list->first.first == inside;
+    for (auto list = placements.lower_bound({inside, 0, 0}); list != placements.end() && list->first.holder == inside;
          ++list) {
-        const BuiltObject& placed = built[list->first.second];
-        const auto& table = addTable(target, geometryId++, placed, object,
+        const BuiltObject& placed = built[list->first.object];
+        const auto& table = addTable(target, {geometryId++, Visibility::fromBits(list->first.visible)}, placed, object,
                                      std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
                                                                            placed.firstRecord, instanceCount));
         if (inside == kScene) instanceCount += table.size();
@@ -78,19 +87,19 @@ void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t insi
 
 void EmbreeSceneBuilder::Impl::addMoving(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
                                          BuiltObject& object) {
-    for (auto list = moving.lower_bound({inside, 0}); list != moving.end() && list->first.first == inside; ++list) {
-        const BuiltObject& placed = built[list->first.second];
-        const auto& table = addTable(target, geometryId++, placed, object,
+    for (auto list = moving.lower_bound({inside, 0, 0}); list != moving.end() && list->first.holder == inside; ++list) {
+        const BuiltObject& placed = built[list->first.object];
+        const auto& table = addTable(target, {geometryId++, Visibility::fromBits(list->first.visible)}, placed, object,
                                      std::make_unique<const InstanceTable>(placed.scene, std::move(list->second),
                                                                            shutter, placed.firstRecord, instanceCount));
         if (inside == kScene) instanceCount += table.size();
     }
 }
 
-const InstanceTable& EmbreeSceneBuilder::Impl::addTable(EmbreeScene& target, std::size_t geometryId,
+const InstanceTable& EmbreeSceneBuilder::Impl::addTable(EmbreeScene& target, TablePlace place,
                                                         const BuiltObject& placed, BuiltObject& inside,
                                                         std::unique_ptr<const InstanceTable> table) {
-    table->attach(target.device.get(), inside.scene, geometryId);
+    table->attach(target.device.get(), inside.scene, place.geometryId, place.visible);
     inside.bounds.add(table->bounds(placed.bounds));
     inside.levels = std::max(inside.levels, placed.levels + 1);
     return *target.tables.emplace_back(std::move(table));
@@ -112,14 +121,15 @@ std::uint32_t EmbreeSceneBuilder::addObject(std::vector<std::pair<const Shape*, 
 void EmbreeSceneBuilder::addInstance(std::uint32_t object, const Transform& map, std::uint32_t inside) {
     ABBE_CHECK(object < impl_->objects.size() &&
                (inside == kScene || (inside > object && inside < impl_->objects.size())));
-    impl_->placements[{inside, object}].emplace_back(map);
+    impl_->placements[{inside, object, kVisibleToAll.bits()}].emplace_back(map);
 }
 
-void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placement> placements, std::uint32_t inside) {
+void EmbreeSceneBuilder::addInstances(std::uint32_t object, std::vector<Placement> placements, std::uint32_t inside,
+                                      Visibility visible) {
     ABBE_CHECK(object < impl_->objects.size() &&
                (inside == kScene || (inside > object && inside < impl_->objects.size())));
     if (placements.empty()) return;
-    auto& list = impl_->placements[{inside, object}];
+    auto& list = impl_->placements[{inside, object, visible.bits()}];
     if (list.empty())
         list = std::move(placements);
     else
@@ -130,10 +140,11 @@ void EmbreeSceneBuilder::setShutter(double open, double duration) { impl_->shutt
 Interval EmbreeSceneBuilder::shutter() const { return impl_->shutter; }
 void EmbreeSceneBuilder::setNested(bool nested) { impl_->nested = nested; }
 
-void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, std::uint32_t inside) {
+void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, std::uint32_t inside,
+                                   Visibility visible) {
     ABBE_CHECK(object < impl_->objects.size() &&
                (inside == kScene || (inside > object && inside < impl_->objects.size())));
-    impl_->moving[{inside, object}].push_back(motion);
+    impl_->moving[{inside, object, visible.bits()}].push_back(motion);
 }
 
 std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {

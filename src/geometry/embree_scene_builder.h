@@ -26,6 +26,7 @@ class EmbreeSceneBuilder {
         // For textures: from the coordinates of the shape to its own space, before its transform; nothing: the same.
         std::optional<Transform> toOwn = {};
         bool parametrized = false; // even if no material looks at textures
+        Visibility visible = kVisibleToAll;
     };
 
     EmbreeSceneBuilder();
@@ -44,7 +45,8 @@ class EmbreeSceneBuilder {
     // about 60 more for Embree. Requires maps without fault (Placement::findFault), object numbers from addObject, and
     // objects in at most kMaxInstanceLevels objects.
     void addInstance(std::uint32_t object, const Transform&, std::uint32_t inside = kScene);
-    void addInstances(std::uint32_t object, std::vector<Placement>, std::uint32_t inside = kScene);
+    void addInstances(std::uint32_t object, std::vector<Placement>, std::uint32_t inside = kScene,
+                      Visibility = kVisibleToAll);
     // The time, in s, at which Ray::time is 0, and how much later it is 1. Before the first addMoving.
     void setShutter(double open, double duration);
     Interval shutter() const;
@@ -52,7 +54,7 @@ class EmbreeSceneBuilder {
     void setNested(bool);
     // Places an object that moves while the shutter is open, as addInstance. Requires maps without fault at all times
     // of the interval.
-    void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene);
+    void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene, Visibility = kVisibleToAll);
     // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
     std::unique_ptr<Intersector> build();
 

@@ -57,8 +57,8 @@ void analyticOccluded(const RTCOccludedFunctionNArguments* args) {
 
 } // namespace
 
-void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id) {
-    rtcSetGeometryMask(geometry, 0xffffffffu);
+void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id, Visibility visible) {
+    rtcSetGeometryMask(geometry, visible.bits());
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(id));
     rtcReleaseGeometry(geometry);
@@ -67,7 +67,9 @@ void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id) {
 EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records, bool nested)
     : device_(device), scene_(scene), records_(records), firstRecord_(records.size()), nested_(nested) {}
 
-void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light, std::uint32_t space) {
+void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light, std::uint32_t space,
+                     Visibility visible) {
+    visible_ = visible;
     next_ = {&shape, material, light, space, 0, PrimitiveKind::analytic, 1};
     shape.commit(*this);
 }
@@ -171,7 +173,7 @@ void EmbreeSink::analytic(const Bounds3&) {
 }
 
 void EmbreeSink::attach(RTCGeometry geometry, PrimitiveKind kind) {
-    attachGeometry(scene_, geometry, records_.size() - firstRecord_);
+    attachGeometry(scene_, geometry, records_.size() - firstRecord_, visible_);
     next_.kind = kind;
     records_.push_back(next_);
     ++next_.part;

@@ -38,7 +38,8 @@ class EmbreeSink final : public GeometrySink {
     // `nested`: meshes of dielectrics can be skipped by rays (RayContext::skips).
     EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records, bool nested);
 
-    void add(const Shape&, const Material*, const Light*, std::uint32_t space = GeometryRecord::kUntextured);
+    void add(const Shape&, const Material*, const Light*, std::uint32_t space = GeometryRecord::kUntextured,
+             Visibility = kVisibleToAll);
 
     void triangles(TimeSteps<Vec3>, Triangles) override;
     void quads(TimeSteps<Vec3>, Quads) override;
@@ -59,9 +60,10 @@ class EmbreeSink final : public GeometrySink {
     std::size_t firstRecord_;
     bool nested_;
     GeometryRecord next_;
+    Visibility visible_; // of the next one
 };
 
 // Sets the mask, commits and hands the geometry over to the scene under the given number.
-void attachGeometry(RTCScene, RTCGeometry, std::size_t id);
+void attachGeometry(RTCScene, RTCGeometry, std::size_t id, Visibility);
 
 } // namespace abbe

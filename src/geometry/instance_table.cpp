@@ -104,7 +104,7 @@ Bounds3 InstanceTable::boundsAround(std::uint32_t i, unsigned step, const Bounds
     return {all.lower - bend * 2, all.upper + bend * 2};
 }
 
-void InstanceTable::attach(RTCDevice device, RTCScene scene, std::size_t geometryId) const {
+void InstanceTable::attach(RTCDevice device, RTCScene scene, std::size_t geometryId, Visibility visible) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(size()));
     if (!motions_.empty()) rtcSetGeometryTimeStepCount(geometry, kMotionSteps);
@@ -112,7 +112,7 @@ void InstanceTable::attach(RTCDevice device, RTCScene scene, std::size_t geometr
     rtcSetGeometryBoundsFunction(geometry, boundsCallback, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersectCallback);
     rtcSetGeometryOccludedFunction(geometry, occludedCallback);
-    attachGeometry(scene, geometry, geometryId);
+    attachGeometry(scene, geometry, geometryId, visible);
 }
 
 Bounds3 InstanceTable::bounds(const Bounds3& object) const {

@@ -65,8 +65,9 @@ class InstanceTable {
     InstanceTable(const InstanceTable&) = delete;
     InstanceTable& operator=(const InstanceTable&) = delete;
 
-    // A user geometry with a primitive per placement; the table must not move any more.
-    void attach(RTCDevice, RTCScene, std::size_t geometryId) const;
+    // A user geometry with a primitive per placement, of which rays see what they see of the object and of the
+    // placements; the table must not move any more.
+    void attach(RTCDevice, RTCScene, std::size_t geometryId, Visibility) const;
 
     std::size_t size() const { return motions_.empty() ? placements_.size() : motions_.size(); }
     RTCScene object() const { return object_; }

@@ -159,7 +159,7 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     ray.density.position = static_cast<double>(origin->pdf);
     ray.density.direction = pdfDirection(source, *origin, w, ray.target);
     ray.deltaPosition = origin->point();
-    ray.unmet = ray.deltaPosition || source.light->bodiless();
+    ray.unmet = ray.deltaPosition || source.light->unmet();
     return ray;
 }
 
@@ -221,7 +221,8 @@ std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std
     ray.density.distant = true;
     ray.density.position = pdfPosition(source, ray.ray.origin, w, target);
     ray.density.direction = s->delta ? 1 : static_cast<double>(s->pdfSolidAngle);
-    ray.deltaDirection = ray.unmet = s->delta;
+    ray.deltaDirection = s->delta;
+    ray.unmet = s->delta || source.light->unmet();
     return ray;
 }
 

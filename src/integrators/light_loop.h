@@ -80,6 +80,7 @@ template <EffectBits E> class LightLoop : private PathLoop<E> {
     }
     std::optional<LensConnection> connect(Vec3 p, Vec2 lens) const;
     Spectrum passing(Vec3 origin, const LensConnection&, bool through, std::uint32_t depth);
+    bool hiddenFromCamera(const SurfaceHit&, Vec3 towardsLens) const;
     bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
     bool scatterInMedium(const EmittedRay&, Ray&, const VertexSample&);
     bool survives(std::uint32_t depth);
@@ -213,7 +214,16 @@ Spectrum LightLoop<E>::passing(Vec3 origin, const LensConnection& c, bool throug
     const LightSample end(c.wi, c.lens, c.distance, Spectrum(1.f), 1);
     ++this->counters_.shadowRays;
     return this->transmittance(origin, end, {this->path_.nested.after(through), {}},
-                               this->sampler_.stream(2 * depth + 3));
+                               this->sampler_.stream(2 * depth + 3), RayKind::camera);
+}
+
+// Rays of light have met what the camera may not see: then nothing that it sees lies there, to within rounding.
+template <EffectBits E> bool LightLoop<E>::hiddenFromCamera(const SurfaceHit& hit, Vec3 towardsLens) const {
+    const float cosine = std::max(std::abs(dot(towardsLens, hit.ng)), 0.01f);
+    const float near = (8 * dot(abs(hit.ng), hit.pError) + 0x1p-21f * hit.distance) / cosine;
+    const Vec3 before = hit.p + towardsLens * near;
+    return !this->context_.scene.intersector->occluded(
+        {before, -towardsLens, 2 * near, this->path_.time, RayKind::camera});
 }
 
 // The densities at a vertex as both kinds of path tell them, of a path that belongs to its hero.
@@ -233,6 +243,8 @@ void LightLoop<E>::show(const EmittedRay& start, const SurfaceHit& hit, const Li
     if (!c) return;
     const LightScattering s = vertex.towards(c->wi);
     if (!anyNonZero(s.fcos)) return;
+    if (this->context_.scene.hidden.fromCamera && hiddenFromCamera(hit, c->wi)) [[unlikely]]
+        return;
     const bool through = dot(c->wi, hit.ng) * dot(hit.arrival, hit.ng) > 0;
     const Spectrum clear = passing(spawnOrigin(hit, c->wi), *c, through, depth);
     if (!anyNonZero(clear)) return;

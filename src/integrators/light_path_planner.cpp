@@ -269,6 +269,7 @@ LightPathVerdict lightPathVerdict(const Scene& scene, const Technique& t) {
     if (t.strategy != plain.strategy || t.weights != plain.weights || t.directions != plain.directions ||
         t.numbers != plain.numbers || t.wavelengths != plain.wavelengths)
         return otherTechnique;
+    if (scene.hidden.splits) return hiddenShapes;
     if (std::ranges::none_of(scene.lights, [](const auto& l) { return l->paths() != LightPaths::none; }))
         return noLights;
     if (scene.focusing.empty() && t.lightPaths == Technique::LightPaths::automatic) return nothingFocuses;

@@ -32,7 +32,7 @@ struct LightTarget {
             const auto s = light.sampleDistant(u, lambda, time);
             if (!s) return std::nullopt;
             target.distant = true;
-            target.delta = s->delta;
+            target.delta = s->delta || light.unmet();
             target.direction = s->wi;
             target.radiance = s->radiance;
             target.pdf = s->pdfSolidAngle;
@@ -79,7 +79,7 @@ struct LightTarget {
   private:
     void takeOrigin(const LightOrigin& o) {
         origin = o;
-        delta = o.point() || light->bodiless();
+        delta = o.point() || light->unmet();
         pdf = o.pdf / static_cast<float>(light->parts());
     }
 };

@@ -128,7 +128,8 @@ template <EffectBits E> class PathLoop {
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
     float trackingShare(const PickedLight&);
     void sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
-    Spectrum transmittance(Vec3 origin, const LightSample&, path_detail::Nested, RandomStream);
+    Spectrum transmittance(Vec3 origin, const LightSample&, path_detail::Nested, RandomStream,
+                           RayKind = RayKind::shadow);
     Spectrum clearness(const Surroundings&, float distance) const;
     // Light that reached the eye from a Light or a MediumEmission.
     void gather(const Spectrum& light, const void* source, bool passing = false) {
@@ -159,16 +160,21 @@ template <EffectBits E> class PathLoop {
     }
     void condemn(float fault, Blame);
     void meetLight(const SurfaceHit&, Vec3 direction);
-    void leaveScene(Vec3 direction);
+    void leaveScene(const Ray&);
     void sampleLight(const SurfaceHit&, const Bsdf&, const Directions&, const VertexSample&, std::uint32_t depth);
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const Directions&, Ray&);
     [[gnu::cold]] const Bsdf* evenly(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
     bool survives(std::uint32_t depth, float rouletteScale);
-    bool occluded(Vec3 origin, const LightSample& light) const {
+    bool occluded(Vec3 origin, const LightSample& light, RayKind kind = RayKind::shadow) const {
         const Intersector& world = *context_.scene.intersector;
-        return light.distance < kInfinity ? world.occluded(origin, light.p, path_.time)
-                                          : world.occluded({origin, light.wi, kInfinity, path_.time});
+        return light.distance < kInfinity ? world.occluded(origin, light.p, path_.time, kind)
+                                          : world.occluded({origin, light.wi, kInfinity, path_.time, kind});
     }
+    // path_loop_hidden.h
+    float clearWay(Vec3 origin, Vec3 direction, float tMax, RayKind) const;
+    bool arrivesAlike(const SurfaceHit&, Vec3 direction) const;
+    bool arrivesAlike(const Ray&, float t) const;
+    void hideFromScattering(LightSample&, const Light&, Vec3 origin) const;
     void absorb(const SurfaceHit&, Vec3 direction, float distance);
     // Throughput of the path so far, whatever lane made it.
     float throughput() const;
@@ -269,7 +275,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         const Arrival arrival = arrive(ray, hit, depth);
         if (arrival == Arrival::nowhere) {
             setWork(Work::lights);
-            leaveScene(ray.direction);
+            leaveScene(ray);
             break;
         }
         if (arrival == Arrival::surface) meetSurface(hit, ray.direction, depth);
@@ -369,6 +375,7 @@ inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
         scatterCone();
     }
     ray = {spawnOrigin(hit, direction), direction, kInfinity, path_.time};
+    path_.origin = ray.origin;
     return anyNonZero(path_.beta);
 }
 
@@ -389,6 +396,7 @@ template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, V
 #include "integrators/path_loop_cone.h"
 #include "integrators/path_loop_faults.h"
 #include "integrators/path_loop_glints.h"
+#include "integrators/path_loop_hidden.h"
 #include "integrators/path_loop_interfaces.h"
 #include "integrators/path_loop_lights.h"
 #include "integrators/path_loop_manifold.h"

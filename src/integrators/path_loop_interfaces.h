@@ -74,7 +74,7 @@ template <EffectBits E> Spectrum PathLoop<E>::clearness(const Surroundings& insi
 // Of everything between a vertex and a light: nothing behind a surface.
 template <EffectBits E>
 Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_detail::Nested nested,
-                                    [[maybe_unused]] RandomStream random) {
+                                    [[maybe_unused]] RandomStream random, RayKind kind) {
     const bool infinite = !(light.distance < kInfinity);
     // Up to tMax; `end` is the same, measured as without media, where they shall make no difference.
     const auto along = [&](const Ray& ray, const Surroundings& inside, float tMax, float end) {
@@ -83,9 +83,9 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
             return clear * media_.tracker.transmittance(ray, tMax, inside.media(), path_.lambda, random);
         return clear;
     };
-    Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path_.time};
+    Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path_.time, kind};
     if (!context_.scene.boundaries) {
-        if (occluded(origin, light)) return Spectrum(0.f);
+        if (occluded(origin, light, kind)) return Spectrum(0.f);
         return along(ray, nested.here, ray.tMax, light.distance);
     }
     Spectrum result(1.f);

@@ -43,6 +43,8 @@ template <EffectBits E> float PathLoop<E>::lightWeight(float lightPdf, const Bsd
 }
 
 template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 direction) {
+    if (context_.scene.hidden.splits && !arrivesAlike(hit, direction)) [[unlikely]]
+        return;
     const Spectrum emitted = hit.light->emitted(hit, -direction, path_.lambda);
     float lightPdf = 0;
     if (!path_.delta && context_.how.asksLights)
@@ -61,11 +63,15 @@ template <EffectBits E> void PathLoop<E>::meetLight(const SurfaceHit& hit, Vec3 
     gather(path_.beta * weight * emitted, hit.light, false, [&] { observer_->meets(hit.light, emitted, lightPdf); });
 }
 
-template <EffectBits E> void PathLoop<E>::leaveScene(Vec3 direction) {
+template <EffectBits E> void PathLoop<E>::leaveScene(const Ray& ray) {
+    const Vec3 direction = ray.direction;
     if (observer_) [[unlikely]]
         observer_->leaves(direction);
     checkDirection(direction);
+    if (context_.scene.hidden.splits && !arrivesAlike(ray, kInfinity)) [[unlikely]]
+        return;
     for (const Light* light : context_.lights.infinite()) {
+        if (!light->visible().has(ray.kind)) continue;
         float lightPdf = 0;
         if (!path_.delta && context_.how.asksLights)
             lightPdf = context_.lights.probability(light, 0, path_.from, path_.scatters) *
@@ -89,7 +95,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     if (!context_.how.asksLights || context_.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
     const PickedLight picked = context_.lights.pick(sample.pick, path_.from, path_.scatters);
-    const auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);
+    auto light = picked.light->sample(path_.from, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
     const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
@@ -106,6 +112,7 @@ void PathLoop<E>::sampleLight(const SurfaceHit& hit, const Bsdf& bsdf, const Dir
     } else if (occluded(origin, *light)) {
         return;
     }
+    hideFromScattering(*light, *picked.light, origin);
     const float pdf = picked.probability * light->pdfSolidAngle;
     checkDensities(pdf, eval.pdfSolidAngle);
     if constexpr (kDispersion) checkRatios(eval.pdfRatio);

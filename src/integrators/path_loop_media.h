@@ -13,6 +13,8 @@ template <EffectBits E> class PathLoop<E>::GlowCollector final : public Emission
     void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
                 const Spectrum& density) override {
         PathState<E>& path = loop_.path_;
+        if (loop_.context_.scene.hidden.splits && !loop_.arrivesAlike(ray_, t)) [[unlikely]]
+            return;
         float lightPdf = 0;
         if (!path.delta && loop_.context_.how.asksLights)
             lightPdf = loop_.context_.lights.probability(&emission, path.from, path.scatters) *
@@ -119,6 +121,8 @@ template <EffectBits E> bool PathLoop<E>::scatterInMedium(Ray& ray, std::uint32_
     }
     if constexpr (kTextures) scatterCone();
     ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
+    ray.kind = RayKind::scattered;
+    path_.origin = ray.origin;
     ++counters_.effects.volumes[volumeRow(collided_->number)].scattered;
     return true;
 }
@@ -134,7 +138,7 @@ template <EffectBits E>
 void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth) {
     if (!context_.how.asksLights || context_.lights.empty()) return;
     const PickedLight picked = context_.lights.pick(sample.pick, p);
-    const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
+    auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
     const PhaseFunction& phase = collided_->phase();
     const float cosine = dot(direction, light->wi), value = phase.value(cosine);
@@ -142,6 +146,7 @@ void PathLoop<E>::sampleLightInMedium(Vec3 p, Vec3 direction, const VertexSample
     ++counters_.shadowRays;
     const Spectrum passing = transmittance(p, *light, {path_.nested.here, {}}, sampler_.stream(2 * depth + 1));
     if (!anyNonZero(passing)) return;
+    hideFromScattering(*light, *picked.light, p);
     const float pdf = picked.probability * light->pdfSolidAngle;
     const float weight = askedInMedium(*light, picked, p, context_.how.mixedDensity(value, depth));
     Spectrum contribution = path_.beta * light->radiance * passing * (value * weight / pdf);

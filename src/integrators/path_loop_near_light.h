@@ -35,8 +35,9 @@ void PathLoop<E>::sampleNearLight(const Ray& ray, float tMax, std::uint32_t dept
     // Where tracking is as good there is no need to pay for both.
     const float kept = std::min(1.f, 4 * share);
     if (media_.inScattering.empty() || sample.bsdf.y >= kept) return;
-    const auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
+    auto light = picked.light->sample(p, picked.part, sample.light, path_.lambda, path_.time);
     if (!light) return;
+    hideFromScattering(*light, *picked.light, p);
 
     const float cosine = dot(ray.direction, light->wi), lightPdf = pickedThere * light->pdfSolidAngle;
     PickedLight asTracking = picked;

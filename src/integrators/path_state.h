@@ -100,6 +100,7 @@ template <EffectBits E> struct PathState {
     Spectrum radiance{0.f}; // estimate of the radiance at the eye, per lane of the film's wavelengths
     Spectrum least{0.f};    // the least of all that was added to it, which the sum does not show
     Receiver from{Vec3()};  // the last vertex, for the densities of lights
+    Vec3 origin;            // where its last ray started there
     ScatterView scatters;   // there, if any of its lobes is glossy and lights are chosen by it
     float bsdfPdf = 1;      // density of the last direction; 1 at the eye
     bool delta = true;      // the last direction came from a delta lobe (or the eye): no other technique finds it

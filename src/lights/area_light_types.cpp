@@ -27,6 +27,7 @@ template <typename Params> void addCommonFields(std::vector<FieldInfo>& fields) 
                          .doc("Emit the same radiance from the inner side too; `power` counts both sides.")
                          .example("two-sided on")
                          .synonyms({"twosided", "double-sided"}));
+    fields.push_back(visibleField<Params>());
     fields.push_back(schema::field<Params, KeyedTransform>(FieldType::transform, "transform", &Params::transform)
                          .doc("Places the light: steps from top to bottom, as applied to it.")
                          .example("transform { rotate x 90 deg; translate 0 2 0 }")

@@ -4,12 +4,13 @@
 
 #include "lights/amount.h"
 #include "math/keyed_transform.h"
+#include "render/visible_field.h"
 
 #include <vector>
 
 namespace abbe {
 
-struct AreaLightParams : AmountParams {
+struct AreaLightParams : AmountParams, VisibleParams {
     bool twoSided = false;
     schema::Reference texture; // factor of the radiance; unset: 1
     KeyedTransform transform;  // light to parent

@@ -67,6 +67,7 @@ schema::TypeInfo daylightType() {
                               .doc("Whether the disk of the sun shines; the sky stays as it is without.")
                               .example("sun off")
                               .synonyms({"sun-disk", "sun_disc"}));
+    type.fields.push_back(distantVisibleField<DaylightParams>());
     type.fields.push_back(schema::field(FieldType::transform, "transform", &DaylightParams::transform)
                               .doc("Turns the light; moving it has no effect.")
                               .example("transform { rotate y 30 deg }")

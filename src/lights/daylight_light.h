@@ -7,13 +7,14 @@
 #include "lights/sun_direction.h"
 #include "math/distribution_2d.h"
 #include "render/light.h"
+#include "render/visible_field.h"
 #include "spectrum/sampled_curve.h"
 
 #include <memory>
 
 namespace abbe {
 
-struct DaylightParams : SunPlace {
+struct DaylightParams : SunPlace, VisibleParams {
     double turbidity = 3;
     double ozone = 300;                  // Dobson units
     const Curve* groundAlbedo = nullptr; // null: 0.2

@@ -79,6 +79,7 @@ schema::TypeInfo environmentLightType() {
                                    "counter-clockwise seen from inside. They only help: nothing else changes.")
                               .example("portals { - -1 1 -3; - 1 1 -3; - 1 2 -3; - -1 2 -3 }")
                               .synonyms({"portal", "windows"}));
+    type.fields.push_back(distantVisibleField<EnvironmentLightParams>());
     type.fields.push_back(schema::field(FieldType::transform, "transform", &EnvironmentLightParams::transform)
                               .doc("Turns the image; moving it has no effect.")
                               .example("transform { rotate y 25 deg }")

@@ -7,6 +7,7 @@
 #include "math/distribution_2d.h"
 #include "math/frame.h"
 #include "render/light.h"
+#include "render/visible_field.h"
 
 #include <memory>
 #include <vector>
@@ -29,7 +30,7 @@ class RgbRadiance {
     virtual Spectrum at(Vec3 rgb, const Wavelengths&) const noexcept = 0;
 };
 
-struct EnvironmentLightParams {
+struct EnvironmentLightParams : VisibleParams {
     schema::Text image;                        // resolved path; key `space`
     std::optional<schema::Quantity> luminance; // cd/m² of a texel of (1, 1, 1); default: 683 ∫ȳ dλ = 72 983
     double exposure = 0;                       // stops, on top of that

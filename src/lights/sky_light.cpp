@@ -23,6 +23,7 @@ schema::TypeInfo skyLightType() {
                           .example = "light sky { luminance 8000 nits }",
                           .fields = {}};
     addAmountFields<SkyLightParams>(type.fields, kSkyAmounts);
+    type.fields.push_back(distantVisibleField<SkyLightParams>());
     return type;
 }
 

@@ -4,13 +4,14 @@
 #include "lights/amount.h"
 #include "lights/light_context.h"
 #include "render/light.h"
+#include "render/visible_field.h"
 
 #include <memory>
 
 namespace abbe {
 
 // Without an amount: kDefaultSkyLuminance.
-struct SkyLightParams : AmountParams {};
+struct SkyLightParams : AmountParams, VisibleParams {};
 
 inline constexpr double kDefaultSkyLuminance = 20000; // cd/m²: a bright hazy sky
 

@@ -38,6 +38,7 @@ schema::TypeInfo sunLightType() {
                           .example = "light sun { elevation 30 deg; azimuth 240 deg; irradiance 100 klx }",
                           .fields = directionFields()};
     addAmountFields<SunLightParams>(type.fields, kSunAmounts);
+    type.fields.push_back(distantVisibleField<SunLightParams>());
     type.fields.push_back(schema::field(FieldType::transform, "transform", &SunLightParams::transform)
                               .doc("Turns the light; only the rotation matters.")
                               .example("transform { rotate y 30 deg }")

@@ -6,12 +6,13 @@
 #include "lights/sun_direction.h"
 #include "math/frame.h"
 #include "render/light.h"
+#include "render/visible_field.h"
 
 #include <memory>
 
 namespace abbe {
 
-struct SunLightParams : AmountParams, SunPlace {
+struct SunLightParams : AmountParams, SunPlace, VisibleParams {
     double angularDiameter = 0.53 * kPiD / 180; // rad
     KeyedTransform transform;                   // light to parent; only its rotation matters
 };

@@ -16,7 +16,7 @@ struct CameraSample {
 };
 
 struct CameraRay {
-    Ray ray;
+    Ray ray = {{}, {}, kInfinity, 0, RayKind::camera};
     float weight = 1;      // vignetting and the like; 0: no light comes through
     bool heroOnly = false; // other wavelengths take other ways: weight and ray are the hero's alone
 };

@@ -36,7 +36,8 @@ class Intersector {
     // True if anything lies in (0, tMax).
     virtual bool occluded(const Ray&) const noexcept = 0;
     // True if anything lies between two points: a shadow ray without the cost of a unit direction.
-    virtual bool occluded(Vec3 from, Vec3 to, float time) const noexcept = 0;
+    virtual bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept = 0;
+    bool occluded(Vec3 from, Vec3 to, float time) const noexcept { return occluded(from, to, time, RayKind::shadow); }
     // Of all finite geometry (infinite planes left out), in render space.
     virtual Bounds3 bounds() const = 0;
     virtual std::uint64_t rejectedRays() const = 0;

@@ -47,6 +47,9 @@ struct LightReach {
 class Light {
   public:
     virtual ~Light() = default;
+    // Which rays meet it; whatever this says, it is asked for its light. Set before the scene is committed.
+    Visibility visible() const { return visible_; }
+    void setVisible(Visibility v) { visible_ = v; }
     // Called once, after the bounds of all finite geometry are known and before anything else.
     virtual void commit(const Bounds3&) {}
     // Emitted power in W, for choosing lights; 0 only if it is dark or cannot be sampled. Infinite lights: through the
@@ -70,6 +73,8 @@ class Light {
     // True if it has an extent, but nothing that rays could meet: found by sampling alone, and its samples are deltas
     // whose density counts.
     virtual bool bodiless() const { return false; }
+    // Whether nothing that was scattered meets it, whatever its extent.
+    bool unmet() const { return bodiless() || !visible_.has(RayKind::scattered); }
     // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
     virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // What this light samples, if it is a medium that shines: found along rays, never as a surface.
@@ -131,6 +136,9 @@ class Light {
         return sample(Vec3{}, 0, u, lambda, time);
     }
     virtual float pdfDistant(Vec3 w, float time) const noexcept { return pdfEscaped(Vec3{}, w, time); }
+
+  private:
+    Visibility visible_ = kVisibleToAll;
 };
 
 } // namespace abbe

@@ -18,6 +18,7 @@ enum class LightPathVerdict : std::uint8_t {
     asked,          // whatever is forecast: `light-paths always` or `alone`
     off,            // `light-paths off`
     otherTechnique, // another choice of `render` is at odds with them
+    hiddenShapes,   // shadows and reflections see different shapes, which light paths cannot tell apart
     noLights,       // no light can start paths
     nothingFocuses, // no shape focuses light
     nothingFound,   // what light paths could bring has next to no noise in camera paths

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/vec.h"
+#include "render/visibility.h"
 
 namespace abbe {
 
@@ -10,6 +11,7 @@ struct Ray {
     Vec3 direction;
     float tMax = kInfinity;
     float time = 0;
+    RayKind kind = RayKind::scattered; // shapes that it does not see are not there
 };
 
 // A part of a ray.

@@ -40,6 +40,12 @@ struct SurfaceUse {
     bool insideObject = false; // seen through instances alone, in a space of its own
 };
 
+// What shapes that some rays do not see ask of those who trace them.
+struct HiddenShapes {
+    bool fromCamera = false; // some that other rays see
+    bool splits = false;     // some that only one of shadow rays and scattered ones sees, or the camera alone
+};
+
 struct Scene {
     std::vector<std::unique_ptr<const Curve>> curves;
     std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
@@ -55,6 +61,7 @@ struct Scene {
     bool nested = false;     // whether such dielectrics may overlap
     bool boundaries = false; // whether light goes straight through any surface: one that only bounds a medium, is
                              // partly open, or lies hidden in a dielectric
+    HiddenShapes hidden;
     std::unique_ptr<const Intersector> intersector; // refers to shapes, materials and lights
     std::unique_ptr<const Camera> camera;
     Sensor sensor;                 // what a pixel's three numbers are

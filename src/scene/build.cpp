@@ -153,6 +153,7 @@ void SceneBuilder::finish(BuiltScene& built) {
         built.facts.lightList.push_back({lightNames_[i].first, lightNames_[i].second, lights_[i]->power()});
     }
     checkLightGroups(built);
+    checkLightPathsSeeAll();
     if (!(emitted > 0) && !diagnostics_.hasErrors())
         diagnostics_.error("E0610", tree_.header.span, "the scene has no light", "its picture would be black").help =
             "add one, for example `light sky { luminance 5000 nits }`";

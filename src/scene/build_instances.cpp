@@ -135,16 +135,20 @@ void SceneBuilder::placeInstances(const Definition& d, const std::vector<Definit
         params = bound<InstancesParams>(d);
         if (!params) return;
     }
-    const KeyedTransform own = params ? params->transform : ownTransform(d);
+    const Placing own = params ? Placing{params->transform, visibilityOf(params->visibleTo)} : ownPlacing(d);
     const ObjectGeometry* geometry = instanced(d, outer);
     if (!geometry || diagnostics_.errorCount() != before) return;
-    if (!params && moves(own)) {
-        Place place = outer;
-        place.motion = within(outer.motion, own);
+    Place seen = outer;
+    seen.visible = seen.visible & own.visible;
+    noteVisible(seen.visible, geometry->passing, d);
+    if (outer.object) outer.object->passing.add(geometry->passing);
+    if (!params && moves(own.transform)) {
+        Place place = seen;
+        place.motion = within(outer.motion, own.transform);
         noteEffect(Effect::motion, d.span, "it moves while the shutter is open");
         return placeMoving(d, *geometry, place);
     }
-    carry(own, outer, d.span, [&](const Place& place) {
+    carry(own.transform, seen, d.span, [&](const Place& place) {
         placeStill(d, placements(d, params ? &*params : nullptr, siblings, atOpening(place.motion)), *geometry, place);
     });
 }
@@ -157,9 +161,10 @@ void SceneBuilder::placeStill(const Definition& d, std::vector<Placement> places
     if (geometry.hasUnshared) {
         const Motion carried = place.motion.moves() ? fromOpening(place.motion) : Motion();
         if (place.object)
-            place.object->nested.push_back({&geometry, places, carried});
+            place.object->nested.push_back({&geometry, places, carried, place.visible});
         else
-            for (const Placement& p : places) placeUnshared(geometry, Motion(p.map()).then(carried), d.span);
+            for (const Placement& p : places)
+                placeUnshared(geometry, Motion(p.map()).then(carried), d.span, place.visible);
     }
     Bounds3 box;
     if (!geometry.bounds.empty())
@@ -172,9 +177,9 @@ void SceneBuilder::placeStill(const Definition& d, std::vector<Placement> places
     placeFocusing(geometry.focusing, places, place.into);
     if (!geometry.embreeObject) return;
     if (place.into)
-        place.into->placed.emplace_back(*geometry.embreeObject, std::move(places));
+        place.into->placed.push_back({*geometry.embreeObject, std::move(places), place.visible});
     else
-        embree_.addInstances(*geometry.embreeObject, std::move(places));
+        embree_.addInstances(*geometry.embreeObject, std::move(places), EmbreeSceneBuilder::kScene, place.visible);
 }
 
 void SceneBuilder::noteFocusing(const Material& material, FocusingShape shape, Assembly* into) {
@@ -205,18 +210,19 @@ void SceneBuilder::placeMoving(const Definition& d, const ObjectGeometry& geomet
     noteBounds(d, Placement(atOpening(place.motion)).toOuter(geometry.bounds), place);
     if (geometry.hasUnshared) {
         if (place.object)
-            place.object->nested.push_back({&geometry, {Placement(Transform())}, place.motion});
+            place.object->nested.push_back({&geometry, {Placement(Transform())}, place.motion, place.visible});
         else
-            placeUnshared(geometry, place.motion, d.span);
+            placeUnshared(geometry, place.motion, d.span, place.visible);
     }
     if (geometry.embreeObject)
         addMoving(*geometry.embreeObject, geometry.levels, geometry.bounds, geometry.focusing, place.motion, place.base,
-                  d.targetSpan);
+                  d.targetSpan, place.visible);
 }
 
 // Emitters are made anew for every instance, because each is a light of its own; so are planes, which have no end to
 // transform.
-void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& toRender, Span asker) {
+void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& toRender, Span asker,
+                                 Visibility visible) {
     unsharedCount_ += geometry.unshared.size();
     if (unsharedCount_ > kMaxUnshared) {
         if (unsharedCount_ - geometry.unshared.size() <= kMaxUnshared)
@@ -224,17 +230,19 @@ void SceneBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& t
                                "each of them is one of its own");
         return;
     }
-    for (std::size_t i = 0; i < geometry.unshared.size(); ++i) {
+    for (const auto& part : geometry.unshared) {
         Place place;
-        place.motion = geometry.unsharedPlace[i].then(toRender);
-        if (geometry.unshared[i]->kind == Kind::light)
-            placeLight(*geometry.unshared[i], place);
+        place.motion = part.motion.then(toRender);
+        place.visible = part.visible & visible;
+        if (part.definition->kind == Kind::light)
+            placeLight(*part.definition, place);
         else
-            placeShape(*geometry.unshared[i], place);
+            placeShape(*part.definition, place);
     }
     for (const NestedObject& nested : geometry.nested)
         for (const Placement& place : nested.placements)
-            placeUnshared(*nested.object, Motion(place.map()).then(nested.carried).then(toRender), asker);
+            placeUnshared(*nested.object, Motion(place.map()).then(nested.carried).then(toRender), asker,
+                          nested.visible & visible);
 }
 
 // The object of an instance. One inside the object that is being built stays an object of its own: a level that rays
@@ -266,7 +274,8 @@ SceneBuilder::ObjectGeometry& SceneBuilder::objectGeometry(const Definition& obj
     geometry.busy = true;
     chain_.push_back(&object);
     Assembly parts;
-    carry(ownTransform(object), {Motion(), &parts, &parts, &geometry}, object.span,
+    const Placing own = ownPlacing(object);
+    carry(own.transform, {Motion(), &parts, &parts, &geometry, own.visible}, object.span,
           [&](const Place& place) { placeAll(object.children, place); });
     chain_.pop_back();
     geometry.busy = false;

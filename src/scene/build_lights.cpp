@@ -28,8 +28,9 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
     return context;
 }
 
-void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d) {
+void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d, Visibility visible) {
     if (!light) return;
+    light->setVisible(visible);
     if (!(light->power() > 0)) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
     built_->scene.names[light.get()] = nameOf(d);
     if (const MediumEmission* glow = light->emission()) built_->scene.names[glow] = nameOf(d);
@@ -62,7 +63,8 @@ SceneBuilder::Emission SceneBuilder::emissionOf(const LoadedShape& shape) {
     return {{color, *scale}, own.texture, shape.definition->span};
 }
 
-const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender) {
+const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender,
+                                     Visibility visible) {
     const Emission emission = emissionOf(shape);
     const Definition& d = *shape.definition;
     std::optional<LightMotion> motion;
@@ -86,6 +88,7 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
                                                             std::move(texture)));
     else
         lights_.push_back(std::make_unique<AreaLight>(placed, emission.radiance, false, std::move(texture)));
+    lights_.back()->setVisible(visible);
     lightNames_.emplace_back(d.name, "shape");
     built_->scene.names[lights_.back().get()] = nameOf(d);
     return lights_.back().get();
@@ -99,7 +102,9 @@ void SceneBuilder::placeBareLight(const Definition& d, const Place& place, Make 
     std::optional<LightMotion> motion;
     if (!lightMotion(within(place.motion, params->transform), d.span, motion)) return;
     if (motion) context.motion = &*motion;
-    addLight(inMotion(make(*params, context, diagnostics_), context), d);
+    Visibility visible = place.visible;
+    if constexpr (std::derived_from<P, VisibleParams>) visible = visible & visibilityOf(params->visibleTo);
+    addLight(inMotion(make(*params, context, diagnostics_), context), d, visible);
 }
 
 void SceneBuilder::placeDaylight(const Definition& d, const Place& place) {
@@ -109,13 +114,13 @@ void SceneBuilder::placeDaylight(const Definition& d, const Place& place) {
     std::optional<LightMotion> motion;
     if (!lightMotion(within(place.motion, params->transform), d.span, motion)) return;
     if (motion) context.motion = &*motion;
-    for (auto& light : makeDaylight(*params, context, diagnostics_)) addLight(inMotion(std::move(light), context), d);
+    for (auto& light : makeDaylight(*params, context, diagnostics_))
+        addLight(inMotion(std::move(light), context), d, place.visible & visibilityOf(params->visibleTo));
 }
 
 void SceneBuilder::placeLight(const Definition& d, const Place& place) {
     if (place.object) {
-        place.object->unshared.push_back(&d);
-        place.object->unsharedPlace.push_back(place.motion);
+        place.object->unshared.push_back({&d, place.motion, place.visible});
         return;
     }
     const std::string_view type = d.type ? d.type->name : "";
@@ -129,7 +134,8 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
         placeBareLight<SunLightParams>(d, place, makeSunLight);
     } else if (type == "sky") {
         if (const auto p = bound<SkyLightParams>(d))
-            addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d);
+            addLight(makeSkyLight(*p, lightContext(d, place.motion), diagnostics_), d,
+                     place.visible & visibilityOf(p->visibleTo));
     } else if (type == "ies") {
         placeBareLight<IesLightParams>(
             d, place,
@@ -258,8 +264,10 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
         const Shape* const placed = keepShape(std::move(shape));
         built_->scene.names[placed] = nameOf(d);
         noteBounds(d, placed->bounds(), place);
-        addPlaced(*placed, {plainMaterial(0), light.get(), toOwn, context.texture != nullptr}, place);
-        addLight(std::move(light), d);
+        const Visibility visible = place.visible & visibilityOf(amount.visibleTo);
+        noteVisible(visible, {}, d);
+        addPlaced(*placed, {plainMaterial(0), light.get(), toOwn, context.texture != nullptr, visible}, place);
+        addLight(std::move(light), d, visible);
     });
 }
 

@@ -74,22 +74,23 @@ void SceneBuilder::carry(const KeyedTransform& own, const Place& outer, Span ask
 
 std::uint32_t SceneBuilder::addAssembly(Assembly parts) {
     const std::uint32_t number = embree_.addObject(std::move(parts.shapes));
-    for (auto& [object, places] : parts.placed) embree_.addInstances(object, std::move(places), number);
-    for (const auto& [object, motion] : parts.moving) embree_.addMoving(object, motion, number);
+    for (auto& [object, places, visible] : parts.placed)
+        embree_.addInstances(object, std::move(places), number, visible);
+    for (const auto& [object, motion, visible] : parts.moving) embree_.addMoving(object, motion, number, visible);
     return number;
 }
 
 void SceneBuilder::addMoving(std::uint32_t object, int levels, const Bounds3& bounds,
                              const std::vector<FocusingShape>& focusing, const Motion& motion, Assembly* into,
-                             Span asker) {
+                             Span asker, Visibility visible) {
     const Bounds3 box = swept(motion, bounds);
     for (const FocusingShape& shape : focusing) focusingIn(into).push_back({swept(motion, shape.box), shape.name});
     if (!into) {
         if (!box.empty()) bounds_.add(Bounds3d{Vec3d(box.lower), Vec3d(box.upper)});
-        embree_.addMoving(object, motion);
+        embree_.addMoving(object, motion, EmbreeSceneBuilder::kScene, visible);
     } else if (nest(*into, levels, asker)) {
         into->bounds.add(box);
-        into->moving.emplace_back(object, motion);
+        into->moving.push_back({object, motion, visible});
     }
 }
 

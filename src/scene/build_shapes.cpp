@@ -23,19 +23,6 @@ const std::string& SceneBuilder::nameOf(const Definition& d) {
     return name;
 }
 
-KeyedTransform SceneBuilder::ownTransform(const Definition& d) {
-    KeyedTransform result;
-    for (const schema::Node& property : d.properties) {
-        if (property.name() == "transform")
-            result = schema::bindMotion(property, tree_.header, diagnostics_);
-        else
-            diagnostics_.error("E0201", property.nameSpan(),
-                               fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
-                               "only `transform` is possible here");
-    }
-    return result;
-}
-
 const Material* SceneBuilder::plainMaterial(double reflectance) {
     auto& index = plainMaterials_[reflectance];
     if (!index) {
@@ -149,8 +136,7 @@ void SceneBuilder::placeShape(const Definition& d, const Place& outer) {
     LoadedShape& loaded = loadedShape(d);
     if (!loaded.sound) return;
     if (outer.object && (loaded.infinite || emissionOf(loaded).radiance.curve)) {
-        outer.object->unshared.push_back(&d);
-        outer.object->unsharedPlace.push_back(outer.motion);
+        outer.object->unshared.push_back({&d, outer.motion, outer.visible});
         return;
     }
     carry(loaded.common.transform, outer, d.span, [&](const Place& place) { placeLoaded(loaded, place); });
@@ -173,9 +159,13 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     built_->scene.names[placed] = nameOf(*loaded.definition);
     noteBounds(*loaded.definition, placed->bounds(), place);
     if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
+    const Visibility visible = place.visible & visibilityOf(loaded.common.visibleTo);
+    const Passing passing = passingOf(loaded.common);
+    noteVisible(visible, passing, *loaded.definition);
+    if (place.object) place.object->passing.add(passing);
     addPlaced(*placed,
-              {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion), here.inverse(),
-               emissionOf(loaded).texture != nullptr},
+              {materialOf(loaded.common), emitterOf(loaded, *placed, place.motion, visible), here.inverse(),
+               emissionOf(loaded).texture != nullptr, visible},
               place);
 }
 
@@ -193,6 +183,13 @@ void SceneBuilder::addPlaced(const Shape& shape, EmbreeSceneBuilder::Binding bin
     embree_.addShape(shape, binding);
 }
 
+void SceneBuilder::placeGroup(const Definition& d, const Place& outer) {
+    const Placing own = ownPlacing(d);
+    Place place = outer;
+    place.visible = place.visible & own.visible;
+    carry(own.transform, place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
+}
+
 void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Place& place) {
     for (const Definition& d : definitions) {
         switch (d.kind) {
@@ -203,7 +200,7 @@ void SceneBuilder::placeAll(const std::vector<Definition>& definitions, const Pl
             placeLight(d, place);
             break;
         case Kind::group:
-            carry(ownTransform(d), place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
+            placeGroup(d, place);
             break;
         case Kind::atmosphere:
             placeAtmosphere(d);

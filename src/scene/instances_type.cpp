@@ -73,6 +73,7 @@ TypeInfo instancesType() {
             .byDefault("off")
             .doc("Scattered instances stand along the normal of the surface, not upright.")
             .example("align on"),
+        visibleField<IP>(),
         field<IP, KeyedTransform>(FieldType::transform, "transform", &IP::transform)
             .synonyms({"to_world", "toWorld", "xform"})
             .doc("Moves all places together.")

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "math/keyed_transform.h"
+#include "render/visible_field.h"
 #include "schema/type.h"
 
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace abbe {
 
-struct InstancesParams {
+struct InstancesParams : VisibleParams {
     schema::Text points;         // resolved path of a PLY file
     std::optional<Vec3d> grid;   // counts along the axes
     std::optional<double> count; // of `scatter`

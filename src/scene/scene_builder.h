@@ -79,12 +79,35 @@ class SceneBuilder final : public schema::Resolver {
     };
     struct ObjectGeometry;
     using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
+    // What groups, objects and instances state of their own.
+    struct Placing {
+        KeyedTransform transform;
+        Visibility visible = kVisibleToAll;
+    };
+    // Whether light goes into a shape, or through holes of it.
+    struct Passing {
+        bool entered = false, open = false;
+        void add(Passing p) {
+            entered = entered || p.entered;
+            open = open || p.open;
+        }
+    };
     // What is placed together in one space: the parts of an object, or what moves as one, where it is when the shutter
     // opens.
     struct Assembly {
         SharedShapes shapes;
-        std::vector<std::pair<std::uint32_t, std::vector<Placement>>> placed; // objects by number
-        std::vector<std::pair<std::uint32_t, Motion>> moving;
+        struct Placed {
+            std::uint32_t object; // by number
+            std::vector<Placement> places;
+            Visibility visible;
+        };
+        struct Moving {
+            std::uint32_t object;
+            Motion motion;
+            Visibility visible;
+        };
+        std::vector<Placed> placed;
+        std::vector<Moving> moving;
         Bounds3 bounds;
         std::vector<FocusingShape> focusing; // in that space
         int levels = 0;                      // of objects inside of it
@@ -95,18 +118,24 @@ class SceneBuilder final : public schema::Resolver {
         Assembly* into = nullptr;         // null: the scene
         Assembly* base = nullptr;         // where what moves by itself goes: `into`, or what `into` moves in
         ObjectGeometry* object = nullptr; // being built, if any
+        Visibility visible = kVisibleToAll;
     };
     // An object inside another one, which is to be taken apart because of its lights.
     struct NestedObject {
         const ObjectGeometry* object;
         std::vector<Placement> placements;
         Motion carried; // from there on
+        Visibility visible;
     };
     // The geometry of an object that instances share.
     struct ObjectGeometry {
         std::optional<std::uint32_t> embreeObject; // absent: nothing in it can be shared
-        std::vector<const Definition*> unshared;   // emitters, planes and lights, with the transform of their group
-        std::vector<Motion> unsharedPlace;
+        struct Unshared {
+            const Definition* definition;
+            Motion motion; // of their group
+            Visibility visible;
+        };
+        std::vector<Unshared> unshared; // emitters, planes and lights
         std::vector<NestedObject> nested;
         Bounds3 bounds;                      // of what is shared, object space
         std::vector<FocusingShape> focusing; // likewise
@@ -114,6 +143,7 @@ class SceneBuilder final : public schema::Resolver {
         int levels = 0;                      // of objects inside of it
         bool hasUnshared = false;            // nested ones included
         bool hasShapes = false;              // of its own
+        Passing passing;                     // of all shapes in it
         bool busy = false;                   // being built: meeting it again is a cycle
     };
 
@@ -157,6 +187,7 @@ class SceneBuilder final : public schema::Resolver {
 
     // build_shapes.cpp
     void placeAll(const std::vector<Definition>&, const Place&);
+    void placeGroup(const Definition&, const Place&);
     void placeShape(const Definition&, const Place&);
     void placeLoaded(LoadedShape&, const Place&); // whose own transform is part of the place
     void addPlaced(const Shape&, EmbreeSceneBuilder::Binding, const Place&);
@@ -205,7 +236,11 @@ class SceneBuilder final : public schema::Resolver {
     void loadPoints(const Definition&, LoadedShape&);
     bool refuseEmission(const Definition&, const ShapeParams&);
     const Shape* keepShape(std::unique_ptr<const Shape>);
-    KeyedTransform ownTransform(const Definition&);
+    // visible.cpp
+    Placing ownPlacing(const Definition&);
+    Passing passingOf(const ShapeParams&);
+    void noteVisible(Visibility, const Passing&, const Definition& asker);
+    void checkLightPathsSeeAll();
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);
     // build_phases.cpp
@@ -254,7 +289,7 @@ class SceneBuilder final : public schema::Resolver {
     void carry(const KeyedTransform& own, const Place& outer, Span asker, const std::function<void(const Place&)>&);
     std::uint32_t addAssembly(Assembly);
     void addMoving(std::uint32_t object, int levels, const Bounds3&, const std::vector<FocusingShape>&, const Motion&,
-                   Assembly* into, Span asker);
+                   Assembly* into, Span asker, Visibility = kVisibleToAll);
     bool nest(Assembly& into, int levels, Span asker); // makes room for an object with so many in it, or reports
     void tooDeep(Span asker);
     // False after an error; nothing if the light stands still.
@@ -268,7 +303,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<Placement> placements(const Definition&, const InstancesParams*,
                                       const std::vector<Definition>& siblings, const Transform& outwards);
     bool scatterSurface(const schema::Text& over, const std::vector<Definition>& siblings, ScatterSurface&);
-    void placeUnshared(const ObjectGeometry&, const Motion& toRender, Span asker);
+    void placeUnshared(const ObjectGeometry&, const Motion& toRender, Span asker, Visibility);
     ObjectGeometry& objectGeometry(const Definition& object);
     const ObjectGeometry* instanced(const Definition&, const Place&);
 
@@ -285,7 +320,7 @@ class SceneBuilder final : public schema::Resolver {
     void checkLightGroups(const BuiltScene&);
     // Its name or, without one, its type and a number.
     const std::string& nameOf(const Definition&);
-    void addLight(std::unique_ptr<Light>, const Definition&);
+    void addLight(std::unique_ptr<Light>, const Definition&, Visibility = kVisibleToAll);
     struct Emission {
         ScaledCurve radiance; // no curve: none
         const Texture* texture = nullptr;
@@ -295,7 +330,7 @@ class SceneBuilder final : public schema::Resolver {
     const Curve* textureWhite(const Texture&);
     // Ready for a light over the shape; false after an error.
     bool checkLightTexture(const Texture&, Span asker, const Definition&, const Shape&);
-    const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender);
+    const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender, Visibility);
     LightContext lightContext(const Definition&, const Motion& toRender);
 
     const schema::SceneTree& tree_;

@@ -23,6 +23,7 @@ template <typename P> void addShapeFields(std::vector<schema::FieldInfo>& fields
             .synonyms({"emitter", "glow", "Le"})
             .doc("Spectral radiance that leaves the outer side, in W per m², sr and nm, or a texture of it.")
             .example("emission 0.5"));
+    fields.push_back(visibleField<P>());
     fields.push_back(field<P, KeyedTransform>(FieldType::transform, "transform", &P::transform)
                          .synonyms({"to_world", "toWorld", "xform"})
                          .doc("Places the shape: steps from top to bottom, as applied to the object.")

@@ -5,6 +5,7 @@
 #include "math/keyed_transform.h"
 #include "math/mesh_data.h"
 #include "render/shape.h"
+#include "render/visible_field.h"
 #include "scene/shape_key.h"
 #include "schema/type.h"
 
@@ -18,7 +19,7 @@ namespace abbe {
 inline constexpr double kLargestCoordinate = 1e15;
 
 // What every shape has. The transform takes the shape to its parent (object, group or world).
-struct ShapeParams {
+struct ShapeParams : VisibleParams {
     schema::Reference material;                         // unset: grey diffuse
     std::vector<schema::GroupReference> groupMaterials; // of parts; mesh and subdivision only
     schema::Reference interior;                         // medium; unset: empty

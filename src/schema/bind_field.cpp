@@ -119,6 +119,7 @@ std::optional<BoundValue> bindUntextured(const FieldInfo& field, const Entry& en
         return bindNumeric(field, entry, context);
     case FieldType::toggle:
     case FieldType::choice:
+    case FieldType::words:
     case FieldType::text:
     case FieldType::file:
         return bindWord(field, entry, context);

@@ -12,8 +12,8 @@ namespace {
 
 class WordBinder {
   public:
-    WordBinder(const FieldInfo& field, const Entry& entry, const BindContext& context)
-        : field_(field), entry_(entry), tree_(context.tree), diagnostics_(context.diagnostics) {}
+    WordBinder(const FieldInfo& field, const Entry& entry, const SceneTree& tree, Diagnostics& diagnostics)
+        : field_(field), entry_(entry), tree_(tree), diagnostics_(diagnostics) {}
 
     std::optional<BoundValue> toggle() {
         if (entry_.count() == 0) return fault(entry_.span(), "E0308", "needs `on` or `off`", "has no value");
@@ -37,24 +37,33 @@ class WordBinder {
             return std::nullopt;
         }
         const Value word = entry_.value(0);
-        if (!word.isText()) {
-            reportAt(diagnostics_, word, "E0314", fmt::format("`{}` needs a word", field_.name), "not a word").help =
-                choicesHelp();
-            return std::nullopt;
-        }
-        if (!field_.choices.empty() && std::ranges::find(field_.choices, word.text) == field_.choices.end()) {
-            const auto meant = nearest(word.text, field_.choices);
-            reportAt(diagnostics_, word, "E0307", fmt::format("`{}` has no choice `{}`", field_.name, word.text),
-                     meant.empty() ? "unknown choice" : didYouMean(meant))
-                .help = choicesHelp();
-            return std::nullopt;
-        }
+        if (!known(word)) return std::nullopt;
         Choice result{std::string(word.text), std::nullopt};
         if (entry_.count() > 1) {
             const MeasureReader reader(measureOf(field_), tree_.header, diagnostics_);
             const auto row = reader.row(entry_, 1, 1);
             if (!row) return std::nullopt;
             result.number = row->values[0];
+        }
+        return result;
+    }
+
+    std::optional<BoundValue> words() {
+        if (entry_.count() == 0) {
+            fault(entry_.span(), "E0306", "needs a word", "has no value", choicesHelp());
+            return std::nullopt;
+        }
+        Words result{{}, entry_.span()};
+        for (std::size_t i = 0; i < entry_.count(); ++i) {
+            const Value word = entry_.value(i);
+            if (!known(word)) return std::nullopt;
+            const bool alone = word.text == "none" && entry_.count() > 1;
+            if (alone || std::ranges::find(result.words, word.text) != result.words.end()) {
+                reportAt(diagnostics_, word, "E0306", fmt::format("`{}` takes each word once", field_.name),
+                         alone ? "`none` stands alone" : "said twice");
+                return std::nullopt;
+            }
+            result.words.emplace_back(word.text);
         }
         return result;
     }
@@ -92,6 +101,20 @@ class WordBinder {
 
     std::string choicesHelp() const {
         return field_.choices.empty() ? std::string() : "the choices are " + quotedList(field_.choices);
+    }
+
+    bool known(const Value& word) {
+        if (!word.isText()) {
+            reportAt(diagnostics_, word, "E0314", fmt::format("`{}` needs a word", field_.name), "not a word").help =
+                choicesHelp();
+            return false;
+        }
+        if (field_.choices.empty() || std::ranges::find(field_.choices, word.text) != field_.choices.end()) return true;
+        const auto meant = nearest(word.text, field_.choices);
+        reportAt(diagnostics_, word, "E0307", fmt::format("`{}` has no choice `{}`", field_.name, word.text),
+                 meant.empty() ? "unknown choice" : didYouMean(meant))
+            .help = choicesHelp();
+        return false;
     }
 
     bool single() {
@@ -180,9 +203,16 @@ class WordBinder {
 } // namespace
 
 std::optional<BoundValue> bindWord(const FieldInfo& field, const Entry& entry, const BindContext& context) {
-    WordBinder binder(field, entry, context);
+    WordBinder binder(field, entry, context.tree, context.diagnostics);
     if (field.type == FieldType::toggle) return binder.toggle();
+    if (field.type == FieldType::words) return binder.words();
     return field.type == FieldType::choice ? binder.choice() : binder.text();
+}
+
+std::optional<Words> bindWords(const FieldInfo& field, const Node& property, const SceneTree& tree,
+                               Diagnostics& diagnostics) {
+    const auto value = WordBinder(field, Entry(property), tree, diagnostics).words();
+    return value ? std::optional(std::get<Words>(*value)) : std::nullopt;
 }
 
 } // namespace abbe::schema

@@ -24,10 +24,10 @@ std::optional<BoundValue> bindUntextured(const FieldInfo&, const Entry&, const B
 // The parts of bindField, by group of field types.
 std::optional<BoundValue> bindTextured(const FieldInfo&, const Entry&, const BindContext&); // texturable ones
 std::optional<BoundValue> bindStop(const FieldInfo&, const Entry&, const BindContext&);
-std::optional<BoundValue> bindNumeric(const FieldInfo&, const Entry&, const BindContext&); // integer … vector3
-std::optional<BoundValue> bindWord(const FieldInfo&, const Entry&, const BindContext&);    // toggle, choice, text, file
-std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindContext&);    // points, numbers, rows
-std::optional<BoundValue> bindOptical(const FieldInfo&, const Entry&, const BindContext&); // spectrum, complexIndex
+std::optional<BoundValue> bindNumeric(const FieldInfo&, const Entry&, const BindContext&);   // integer … vector3
+std::optional<BoundValue> bindWord(const FieldInfo&, const Entry&, const BindContext&);      // toggle … file
+std::optional<BoundValue> bindList(const FieldInfo&, const Entry&, const BindContext&);      // points, numbers, rows
+std::optional<BoundValue> bindOptical(const FieldInfo&, const Entry&, const BindContext&);   // spectrum, complexIndex
 std::optional<BoundValue> bindReference(const FieldInfo&, const Entry&, const BindContext&); // reference
 std::optional<BoundValue> bindWeighted(const FieldInfo&, const Entry&, const BindContext&);  // weighted
 std::optional<BoundValue> bindPlace(const FieldInfo&, const Entry&, const BindContext&);     // place

@@ -36,6 +36,8 @@ std::string describeUntextured(const FieldInfo& field) {
         return "`on` or `off`";
     case FieldType::choice:
         return field.choices.empty() ? "a word" : "one of " + quotedList(field.choices, "or");
+    case FieldType::words:
+        return "one or several of " + quotedList(field.choices, "or");
     case FieldType::text:
         return "a text";
     case FieldType::file:

@@ -119,6 +119,9 @@ SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesy
 // type is unknown is bound with params == nullptr: what is wrong in every type of its kind is still reported.
 void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
 
+// Words as a field of that type has them; nothing after an error.
+std::optional<Words> bindWords(const FieldInfo&, const Node& property, const SceneTree&, Diagnostics&);
+
 // The transform of a `transform { … }` block, top to bottom as applied to the object, or its keys `at TIME { … }`; the
 // identity after an error.
 // True if the block has keys.

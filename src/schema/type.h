@@ -103,6 +103,12 @@ struct Choice {
     std::optional<double> number;
 };
 
+// Words out of a list, each of them once (`visible-to camera shadows`).
+struct Words {
+    std::vector<std::string> words;
+    Span span;
+};
+
 // A string with the keys its field allows (`output "a.exr" space=acescg`).
 struct Text {
     std::string value;
@@ -167,7 +173,7 @@ struct ComplexIndex {
     const Curve* k = nullptr;
 };
 
-using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Text,
+using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quantity, Vec2d, Vec3d, Choice, Words, Text,
                                 std::vector<double>, std::vector<Vec3d>, IndexRows, SharpRow, TableRows, Location,
                                 const Curve*, ComplexIndex, Reference, GroupReference, WeightedReference,
                                 KeyedTransform, TexturedSpectrum, TexturedNumber, SpectrumStop, NamedNumbers>;
@@ -180,6 +186,7 @@ enum class FieldType : std::uint8_t {
     vector3,      // x y z [unit] -> Vec3d
     toggle,       // on | off -> bool
     choice,       // word out of `choices`, optionally a number -> Choice
+    words,        // one or several words out of `choices`; `none`, if it is one of them, alone -> Words
     text,         // string -> Text
     file,         // path, looked up beside the scene file; must exist -> Text with the resolved path
     points,       // x y z x y z … or a block of rows, in lengths unless `dimensions` is none -> std::vector<Vec3d>

@@ -74,6 +74,8 @@ Reason needsLightPaths(const StudySubject& s) {
         return "no light can start light paths";
     case nothingFocuses:
         return "nothing focuses light";
+    case hiddenShapes:
+        return "shadows and reflections see different shapes";
     case otherTechnique:
         return "light paths do not go with another technique of `render`";
     default:

@@ -1,0 +1,138 @@
+// Shapes that only some rays see: what is asked for and what is scattered agree on where light arrives, and rays that
+// see everything render what they always did.
+#include "support/scene_test.h"
+#include "support/scene_test_compare.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+namespace abbe::test {
+namespace {
+
+using Strategy = Technique::Strategy;
+
+// A satin floor and a rough ball under a lamp that is large, near and out of the picture; scattering finds much of it.
+TestScene stage(const std::string& more, const std::string& lamp = "") {
+    return TestScene::parse(
+        "scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 6 }\n"
+        "camera { from 0 1.6 4; look-at 0 0.5 0; fov 38 deg }\n"
+        "light key quad { points -1.2 2.4 -1  1.2 2.4 -1  1.2 2.4 1  -1.2 2.4 1; luminance 900 nits; " +
+        lamp +
+        " }\n"
+        "light sky { luminance 60 nits; color rgb 0.3 0.5 1 }\n"
+        "shape floor quad { points -3 0 -3  -3 0 3  3 0 3  3 0 -3; material conductor { index metal Al; roughness 0.5 "
+        "} }\n"
+        "shape ball sphere { center 0.7 0.5 0; radius 0.5; material diffuse { reflectance 0.6 } }\n" +
+        more + "\n");
+}
+
+TestImage renderBy(const TestScene& scene, Strategy strategy, std::uint32_t samples, std::uint64_t seed) {
+    RenderSettings settings = scene.settings();
+    settings.samples = samples;
+    settings.seed = seed;
+    settings.technique.strategy = strategy;
+    return render(scene, settings);
+}
+
+// By both techniques, and by asking alone.
+void agree(const TestScene& scene, double error) {
+    const std::uint32_t samples = nightly() ? 4096 : 512;
+    checkSame(compareImages(renderBy(scene, Strategy::mis, samples, 1).film,
+                            renderBy(scene, Strategy::lightsOnly, 2 * samples, 2).film),
+              error);
+}
+
+int differentPixels(const TestScene& a, const TestScene& b, PixelBounds within) {
+    const TestImage x = render(a, 16), y = render(b, 16);
+    int count = 0;
+    for (int j = within.y0; j < within.y1; ++j)
+        for (int i = within.x0; i < within.x1; ++i)
+            count += !(x.film.pixel(i, j, Channel::y).mean == y.film.pixel(i, j, Channel::y).mean);
+    return count;
+}
+constexpr PixelBounds kWhole{0, 0, 32, 24};
+
+std::string card(const std::string& visible, const std::string& material = "diffuse { reflectance 0.3 }") {
+    return fmt::format("shape card quad {{ points -1 1.3 -0.6  0.2 1.3 -0.6  0.2 1.3 0.6  -1 1.3 0.6; {} material "
+                       "two-sided {{ front {} }} }}",
+                       visible.empty() ? "" : "visible-to " + visible + ";", material);
+}
+
+} // namespace
+
+TEST_CASE("shapes that shadows and reflections see differently: scattering and asking come to the same light") {
+    for (const char* const visible :
+         {"camera reflections", "shadows", "camera shadows", "reflections", "camera", "none"}) {
+        CAPTURE(visible);
+        agree(stage(card(visible)), 0.01);
+    }
+}
+
+TEST_CASE("lamps that reflections or shadows do not see light the scene all the same") {
+    for (const char* const visible : {"camera", "shadows", "none", "camera shadows", "reflections"}) {
+        CAPTURE(visible);
+        agree(stage(card(""), fmt::format("visible-to {}", visible)), 0.01);
+    }
+}
+
+TEST_CASE("hidden shapes in fog, between places in it and a lamp") {
+    for (const char* const visible : {"camera reflections", "shadows"}) {
+        CAPTURE(visible);
+        agree(stage(card(visible) + "\nvolume air atmosphere { extinction 0.3 per-m; albedo 0.8; scale-height 3 m }"),
+              0.01);
+    }
+}
+
+TEST_CASE("behind a boundary and in front of openings hidden shapes count as everywhere") {
+    const std::string box = "shape box { min -1.3 0.05 -0.9; max 0.3 1.1 0.9; material boundary; interior homogeneous "
+                            "{ extinction 0.5 per-m; albedo 0.9 } }\n",
+                      holes =
+                          "shape net quad { points -1.2 1.2 -1  1.2 1.2 -1  1.2 1.2 1  -1.2 1.2 1; material two-sided "
+                          "{ front diffuse { opacity 0.6 } } }\n";
+    for (const char* const visible : {"camera reflections", "shadows"}) {
+        CAPTURE(visible);
+        agree(stage(card(visible) + "\n" + box + holes), 0.012);
+    }
+}
+
+TEST_CASE("a lamp out of the picture may be hidden from the camera: the same bits") {
+    CHECK(differentPixels(stage(card("")), stage(card(""), "visible-to shadows reflections"), kWhole) == 0);
+}
+
+TEST_CASE("a sky hidden from the camera is black behind the scene, and lights it to the last bit") {
+    const std::string text =
+        "scene 1\nfilm { size 32 24; filter box 0.5 }\ncamera { from 0 0 4; look-at 0 0 0; fov 40 deg }\n"
+        "shape sphere { radius 0.5; material diffuse }\nlight sky { luminance 300 nits";
+    const TestScene shown = TestScene::parse(text + " }\n"),
+                    hidden = TestScene::parse(text + "; visible-to reflections }\n");
+    const TestImage a = render(shown, 16), b = render(hidden, 16);
+    int same = 0, black = 0;
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x) {
+            const double own = a.film.pixel(x, y, Channel::y).mean, other = b.film.pixel(x, y, Channel::y).mean;
+            const bool sky = (x < 4 || x >= 28);
+            same += !sky && own == other;
+            black += sky && own > 0 && other == 0;
+        }
+    CHECK(black == 8 * 24);
+    CHECK(same > 100); // the ball
+}
+
+TEST_CASE("what the camera alone sees shades nothing, and is not mirrored") {
+    const TestScene bare = stage(""), with = stage(card("camera"));
+    CHECK(differentPixels(bare, with, {0, 14, 32, 24}) == 0); // the floor before it
+    CHECK(differentPixels(bare, with, kWhole) > 20);          // itself
+}
+
+TEST_CASE("a card that only shadow rays see is a shadow without a card") {
+    // Where the camera looks at the card, it sees what lies behind.
+    const TestScene bare = stage(""), with = stage(card("shadows")), solid = stage(card(""));
+    const TestImage a = render(bare, 64), b = render(with, 64), c = render(solid, 64);
+    const auto tile = [](const TestImage& image, PixelBounds part) { return image.film.tile(part, Channel::y).mean; };
+    const PixelBounds shade{4, 17, 14, 21};
+    CHECK(tile(b, shade) < 0.8 * tile(a, shade));
+    const PixelBounds itself{8, 6, 14, 8};
+    CHECK(tile(b, itself) != doctest::Approx(tile(c, itself)).epsilon(0.05));
+}
+
+} // namespace abbe::test
