@@ -379,21 +379,10 @@ inline bool PathLoop<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
     return anyNonZero(path_.beta);
 }
 
-// What stands for the scattering at a surface some of whose directions are drawn evenly.
-template <EffectBits E> const Bsdf* PathLoop<E>::evenly(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
-    const Bsdf& own = *hit.material->bsdf(hit, path_.lambda, arena_);
-    float eta = 1;
-    if (const Curve* inside = hit.material->ior()) {
-        eta = inside->at(path_.lambda)[0];
-        if (hit.outside) eta /= hit.outside->at(path_.lambda)[0];
-        if (dot(hit.shading.z, direction) > 0) eta = 1 / eta; // on the way out
-    }
-    return arena_.make<DefensiveBsdf>(own, eta, context_.how.evenShare(depth));
-}
-
 } // namespace abbe
 
 #include "integrators/path_loop_cone.h"
+#include "integrators/path_loop_evenly.h"
 #include "integrators/path_loop_faults.h"
 #include "integrators/path_loop_glints.h"
 #include "integrators/path_loop_hidden.h"

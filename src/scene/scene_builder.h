@@ -19,6 +19,7 @@
 #include "scene/curve_library.h"
 #include "scene/instances_type.h"
 #include "scene/shape_types.h"
+#include "scene/visible.h"
 #include "textures/texture_store.h"
 #include "volumes/voxel_grid.h"
 
@@ -79,19 +80,6 @@ class SceneBuilder final : public schema::Resolver {
     };
     struct ObjectGeometry;
     using SharedShapes = std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>;
-    // What groups, objects and instances state of their own.
-    struct Placing {
-        KeyedTransform transform;
-        Visibility visible = kVisibleToAll;
-    };
-    // Whether light goes into a shape, or through holes of it.
-    struct Passing {
-        bool entered = false, open = false;
-        void add(Passing p) {
-            entered = entered || p.entered;
-            open = open || p.open;
-        }
-    };
     // What is placed together in one space: the parts of an object, or what moves as one, where it is when the shutter
     // opens.
     struct Assembly {
@@ -239,7 +227,7 @@ class SceneBuilder final : public schema::Resolver {
     // visible.cpp
     Placing ownPlacing(const Definition&);
     Passing passingOf(const ShapeParams&);
-    void noteVisible(Visibility, const Passing&, const Definition& asker);
+    void noteVisible(Visibility, Passing, const Definition& asker);
     void checkLightPathsSeeAll();
     const Material* materialOf(const ShapeParams&);
     const Material* plainMaterial(double reflectance);

@@ -26,7 +26,7 @@ Span visibleSpan(const schema::Definition& d) {
 } // namespace
 
 // Of groups, objects and instances, which have no type.
-SceneBuilder::Placing SceneBuilder::ownPlacing(const Definition& d) {
+Placing SceneBuilder::ownPlacing(const Definition& d) {
     Placing result;
     for (const schema::Node& property : d.properties) {
         if (property.name() == "transform") {
@@ -44,7 +44,7 @@ SceneBuilder::Placing SceneBuilder::ownPlacing(const Definition& d) {
 }
 
 // What a shape's materials make of it.
-SceneBuilder::Passing SceneBuilder::passingOf(const ShapeParams& params) {
+Passing SceneBuilder::passingOf(const ShapeParams& params) {
     Passing passing;
     const auto add = [&](const Material* material) {
         if (!material) return;
@@ -58,7 +58,7 @@ SceneBuilder::Passing SceneBuilder::passingOf(const ShapeParams& params) {
 
 // Notes what the scene asks of those who trace rays. What light goes through it meets on its way in and out, whatever
 // ray it is: such a shape is seen by all.
-void SceneBuilder::noteVisible(Visibility visible, const Passing& passing, const Definition& asker) {
+void SceneBuilder::noteVisible(Visibility visible, Passing passing, const Definition& asker) {
     if (visible == kVisibleToAll) return;
     if (passing.entered) {
         diagnostics_

@@ -130,7 +130,9 @@ class FaultyMaterial final : public ForwardingMaterial {
 class FaultyLight final : public Light {
   public:
     FaultyLight(std::unique_ptr<const Light> sound, const Injection& injection)
-        : sound_(std::move(sound)), injection_(injection) {}
+        : sound_(std::move(sound)), injection_(injection) {
+        setVisible(sound_->visible());
+    }
     double power() const override { return sound_->power(); }
     double visiblePower() const override { return sound_->visiblePower(); }
     double irradiance() const override { return sound_->irradiance(); }
@@ -268,7 +270,9 @@ class FaultyIntersector final : public Intersector {
         return count;
     }
     bool occluded(const Ray& ray) const noexcept override { return sound_->occluded(ray); }
-    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override { return sound_->occluded(from, to, time); }
+    bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
+        return sound_->occluded(from, to, time, kind);
+    }
     Bounds3 bounds() const override { return sound_->bounds(); }
     std::uint64_t rejectedRays() const override { return sound_->rejectedRays(); }
 

@@ -21,7 +21,7 @@ class OneThing final : public Intersector {
         return true;
     }
     bool occluded(const Ray&) const noexcept override { return false; }
-    bool occluded(Vec3, Vec3, float) const noexcept override { return false; }
+    bool occluded(Vec3, Vec3, float, RayKind) const noexcept override { return false; }
     Bounds3 bounds() const override { return {}; }
     std::uint64_t rejectedRays() const override { return 0; }
     char material = 0;
