@@ -24,7 +24,7 @@ Reason needsLights(const StudySubject& s) {
 
 // A light without extent is never met by chance: a path tracer that only scatters loses it.
 bool isPoint(const Light& light, const Vec3& from, const Wavelengths& wavelengths) {
-    if (light.bodiless()) return true;
+    if (light.unmet()) return true;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / 8, 0.5f);
         const auto sample = light.sample(Receiver(from), 0, u, wavelengths, 0);
@@ -36,6 +36,7 @@ bool isPoint(const Light& light, const Vec3& from, const Wavelengths& wavelength
 Reason needsExtent(const StudySubject& s) {
     if (const Reason reason = needsLights(s)) return reason;
     const Scene& scene = s.built->scene;
+    if (scene.hidden.splits) return "scattering meets shapes that do not shade (`visible-to`)";
     const Wavelengths wavelengths = scene.wavelengths.sample(0.5f);
     for (const auto& light : scene.lights)
         for (const Vec3 from : {Vec3(0, 0, 0), Vec3(0.1f, 0.2f, -0.3f)})

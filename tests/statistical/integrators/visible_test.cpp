@@ -9,7 +9,7 @@
 namespace abbe::test {
 namespace {
 
-using Strategy = Technique::Strategy;
+using Weights = Technique::Weights;
 
 // A satin floor and a rough ball under a lamp that is large, near and out of the picture; scattering finds much of it.
 TestScene stage(const std::string& more, const std::string& lamp = "") {
@@ -26,20 +26,20 @@ TestScene stage(const std::string& more, const std::string& lamp = "") {
         more + "\n");
 }
 
-TestImage renderBy(const TestScene& scene, Strategy strategy, std::uint32_t samples, std::uint64_t seed) {
+TestImage renderBy(const TestScene& scene, Weights weights, std::uint32_t samples, std::uint64_t seed) {
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     settings.seed = seed;
-    settings.technique.strategy = strategy;
+    settings.technique.weights = weights;
     return render(scene, settings);
 }
 
-// By both techniques, and by asking alone.
+// Light that both techniques find: by both of them, by scattering alone and by asking alone.
 void agree(const TestScene& scene, double error) {
     const std::uint32_t samples = nightly() ? 4096 : 512;
-    checkSame(compareImages(renderBy(scene, Strategy::mis, samples, 1).film,
-                            renderBy(scene, Strategy::lightsOnly, 2 * samples, 2).film),
-              error);
+    const TestImage both = renderBy(scene, Weights::balance, samples, 1);
+    checkSame(compareImages(renderBy(scene, Weights::lights, samples, 2).film, both.film), error);
+    checkSame(compareImages(renderBy(scene, Weights::scattering, samples, 3).film, both.film), error);
 }
 
 int differentPixels(const TestScene& a, const TestScene& b, PixelBounds within) {
