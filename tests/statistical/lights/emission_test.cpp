@@ -153,6 +153,24 @@ TEST_CASE("emission: what strikes a surface is what it gets by asking the light,
     }
 }
 
+TEST_CASE("emission: a collimated beam strikes what it is asked to light, and no more") {
+    const EmissionCase lamp{"light beam { toward 0.2 0.1 1; radius 0.9; color blackbody 2700 K; power 10 W }"};
+    const TestScene test = emissionScene(lamp);
+    const Scene& scene = test.scene();
+    const Light& light = *scene.lights.at(0);
+    const Patch patch = patchFor(lamp, Vec3(scene.origin));
+    constexpr int samples = 100000;
+    const Moments expected = asked(light, patch, samples, 700);
+    const double across = std::abs(static_cast<double>(dot(patch.n, kAhead)));
+    CHECK(expected.mean() == doctest::Approx(10 / (kPiD * 0.81) * across).epsilon(2e-3)); // the patch lies within
+    std::uint64_t seed = 700;
+    for (const Aim& aim : aimsAt(patch)) {
+        CAPTURE(aim.name);
+        const AimedEmission emission(scene.lights, scene.intersector->bounds(), aim.plan);
+        CHECK(sameMeanTest(struck(emission, patch, samples, ++seed), expected) > 1e-4);
+    }
+}
+
 TEST_CASE("emission: lights are drawn by power and usefulness, and none is lost") {
     const TestScene test =
         TestScene::parse("scene 1\ncamera { from 0 0 9; shutter 1 s }\nshape box { size 3 3 3 }\n"
