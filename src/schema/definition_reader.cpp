@@ -186,25 +186,27 @@ void DefinitionReader::containerHead(const Node& node, Definition& definition) c
 }
 
 void DefinitionReader::containerBlock(const Node& node, Definition& definition) const {
-    Span transform;
+    Span transform, visible;
     for (const Node child : node.children()) {
         if (definition.kind == Kind::atmosphere) {
             if (!child.name().starts_with("x-"))
                 report(diagnostics_, child.nameSpan(), "E0201",
                        fmt::format("`atmosphere` has no property `{}`", child.name()), "unknown property")
                     .help = "what it is made of is said by its medium; `volume … atmosphere` is thinner with height";
-        } else if (child.name() == "transform") {
-            if (transform.valid()) {
-                auto& d = report(diagnostics_, child.headSpan(), "E0208", "`transform` is given twice", "second");
-                d.related.push_back({transform, "first"});
+        } else if (child.name() == "transform" || child.name() == "visible-to") {
+            Span& first = child.name() == "transform" ? transform : visible;
+            if (first.valid()) {
+                auto& d = report(diagnostics_, child.headSpan(), "E0208",
+                                 fmt::format("`{}` is given twice", child.name()), "second");
+                d.related.push_back({first, "first"});
             } else {
                 definition.properties.push_back(child);
             }
-            transform = child.headSpan();
+            first = child.headSpan();
         } else if (definition.kind == Kind::instance && !child.name().starts_with("x-")) {
             report(diagnostics_, child.nameSpan(), "E0201",
                    fmt::format("`instance` has no property `{}`", child.name()), "unknown property")
-                .help = "an instance takes `transform { … }`";
+                .help = "an instance takes `transform { … }` and `visible-to`";
         } else if (definition.kind != Kind::instance) {
             read(child, definition.children, Place::group);
         }

@@ -10,10 +10,10 @@ namespace abbe::schema {
 
 namespace {
 
-constexpr std::array kFieldTypes = {"integer",  "number",   "quantity",     "vector2",   "vector3",     "toggle",
-                                    "choice",   "text",     "file",         "points",    "numbers",     "indexRows",
-                                    "sharpRow", "spectrum", "complexIndex", "reference", "transform",   "table",
-                                    "place",    "moments",  "weighted",     "stop",      "namedNumbers"};
+constexpr std::array kFieldTypes = {"integer",   "number",   "quantity", "vector2",      "vector3",   "toggle",
+                                    "choice",    "words",    "text",     "file",         "points",    "numbers",
+                                    "indexRows", "sharpRow", "spectrum", "complexIndex", "reference", "transform",
+                                    "table",     "place",    "moments",  "weighted",     "stop",      "namedNumbers"};
 constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
 constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
                                       "temperature", "power",      "luminousFlux", "luminousIntensity",
