@@ -185,7 +185,7 @@ std::string kindPage(const TypeTable& table, Kind kind) {
     if (!types.empty()) text += typeIndex(types);
     for (const TypeInfo* type : types) text += typeSection(*type);
     if (types.empty() && kind != Kind::atmosphere)
-        text += "Takes a `transform` ([scene.md](scene.md#transform))" +
+        text += "Takes a `transform` ([scene.md](scene.md#transform)), `visible-to` as a [shape](shape.md)" +
                 std::string(kind == Kind::instance ? ".\n" : " and definitions.\n");
     return text;
 }

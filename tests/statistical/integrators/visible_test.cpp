@@ -12,9 +12,9 @@ namespace {
 using Weights = Technique::Weights;
 
 // A satin floor and a rough ball under a lamp that is large, near and out of the picture; scattering finds much of it.
-TestScene stage(const std::string& more, const std::string& lamp = "") {
+TestScene hiddenStage(const std::string& more, const std::string& lamp = "") {
     return TestScene::parse(
-        "scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 6 }\n"
+        "scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 6; roulette off }\n"
         "camera { from 0 1.6 4; look-at 0 0.5 0; fov 38 deg }\n"
         "light key quad { points -1.2 2.4 -1  1.2 2.4 -1  1.2 2.4 1  -1.2 2.4 1; luminance 900 nits; " +
         lamp +
@@ -26,7 +26,7 @@ TestScene stage(const std::string& more, const std::string& lamp = "") {
         more + "\n");
 }
 
-TestImage renderBy(const TestScene& scene, Weights weights, std::uint32_t samples, std::uint64_t seed) {
+TestImage renderWeighed(const TestScene& scene, Weights weights, std::uint32_t samples, std::uint64_t seed) {
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     settings.seed = seed;
@@ -35,14 +35,14 @@ TestImage renderBy(const TestScene& scene, Weights weights, std::uint32_t sample
 }
 
 // Light that both techniques find: by both of them, by scattering alone and by asking alone.
-void agree(const TestScene& scene, double error) {
+void techniquesAgree(const TestScene& scene, double error) {
     const std::uint32_t samples = nightly() ? 4096 : 512;
-    const TestImage both = renderBy(scene, Weights::balance, samples, 1);
-    checkSame(compareImages(renderBy(scene, Weights::lights, samples, 2).film, both.film), error);
-    checkSame(compareImages(renderBy(scene, Weights::scattering, samples, 3).film, both.film), error);
+    const TestImage both = renderWeighed(scene, Weights::balance, samples, 1);
+    checkSame(compareImages(renderWeighed(scene, Weights::lights, samples, 2).film, both.film), error);
+    checkSame(compareImages(renderWeighed(scene, Weights::scattering, samples, 3).film, both.film), error);
 }
 
-int differentPixels(const TestScene& a, const TestScene& b, PixelBounds within) {
+int differingPixels(const TestScene& a, const TestScene& b, PixelBounds within) {
     const TestImage x = render(a, 16), y = render(b, 16);
     int count = 0;
     for (int j = within.y0; j < within.y1; ++j)
@@ -50,36 +50,37 @@ int differentPixels(const TestScene& a, const TestScene& b, PixelBounds within) 
             count += !(x.film.pixel(i, j, Channel::y).mean == y.film.pixel(i, j, Channel::y).mean);
     return count;
 }
-constexpr PixelBounds kWhole{0, 0, 32, 24};
+constexpr PixelBounds kWholePicture{0, 0, 32, 24};
 
-std::string card(const std::string& visible, const std::string& material = "diffuse { reflectance 0.3 }") {
+std::string cardSeenBy(const std::string& visible) {
     return fmt::format("shape card quad {{ points -1 1.3 -0.6  0.2 1.3 -0.6  0.2 1.3 0.6  -1 1.3 0.6; {} material "
-                       "two-sided {{ front {} }} }}",
-                       visible.empty() ? "" : "visible-to " + visible + ";", material);
+                       "diffuse {{ reflectance 0.3 }} }}",
+                       visible.empty() ? "" : "visible-to " + visible + ";");
 }
 
 } // namespace
 
 TEST_CASE("shapes that shadows and reflections see differently: scattering and asking come to the same light") {
-    for (const char* const visible :
+    for (const std::string visible :
          {"camera reflections", "shadows", "camera shadows", "reflections", "camera", "none"}) {
         CAPTURE(visible);
-        agree(stage(card(visible)), 0.01);
+        techniquesAgree(hiddenStage(cardSeenBy(visible)), 0.01);
     }
 }
 
 TEST_CASE("lamps that reflections or shadows do not see light the scene all the same") {
-    for (const char* const visible : {"camera", "shadows", "none", "camera shadows", "reflections"}) {
+    for (const std::string visible : {"camera", "shadows", "none", "camera shadows", "reflections"}) {
         CAPTURE(visible);
-        agree(stage(card(""), fmt::format("visible-to {}", visible)), 0.01);
+        techniquesAgree(hiddenStage(cardSeenBy(""), fmt::format("visible-to {}", visible)), 0.01);
     }
 }
 
 TEST_CASE("hidden shapes in fog, between places in it and a lamp") {
-    for (const char* const visible : {"camera reflections", "shadows"}) {
+    for (const std::string visible : {"camera reflections", "shadows"}) {
         CAPTURE(visible);
-        agree(stage(card(visible) + "\nvolume air atmosphere { extinction 0.3 per-m; albedo 0.8; scale-height 3 m }"),
-              0.01);
+        techniquesAgree(hiddenStage(cardSeenBy(visible) +
+                                    "\nvolume air atmosphere { extinction 0.3 per-m; albedo 0.8; scale-height 3 m }"),
+                        0.01);
     }
 }
 
@@ -87,16 +88,17 @@ TEST_CASE("behind a boundary and in front of openings hidden shapes count as eve
     const std::string box = "shape box { min -1.3 0.05 -0.9; max 0.3 1.1 0.9; material boundary; interior homogeneous "
                             "{ extinction 0.5 per-m; albedo 0.9 } }\n",
                       holes =
-                          "shape net quad { points -1.2 1.2 -1  1.2 1.2 -1  1.2 1.2 1  -1.2 1.2 1; material two-sided "
-                          "{ front diffuse { opacity 0.6 } } }\n";
-    for (const char* const visible : {"camera reflections", "shadows"}) {
+                          "shape net quad { points -1.2 1.2 -1  1.2 1.2 -1  1.2 1.2 1  -1.2 1.2 1; material diffuse "
+                          "{ opacity 0.6 } }\n";
+    for (const std::string visible : {"camera reflections", "shadows"}) {
         CAPTURE(visible);
-        agree(stage(card(visible) + "\n" + box + holes), 0.012);
+        techniquesAgree(hiddenStage(cardSeenBy(visible) + "\n" + box + holes), 0.012);
     }
 }
 
 TEST_CASE("a lamp out of the picture may be hidden from the camera: the same bits") {
-    CHECK(differentPixels(stage(card("")), stage(card(""), "visible-to shadows reflections"), kWhole) == 0);
+    CHECK(differingPixels(hiddenStage(cardSeenBy("")), hiddenStage(cardSeenBy(""), "visible-to shadows reflections"),
+                          kWholePicture) == 0);
 }
 
 TEST_CASE("a sky hidden from the camera is black behind the scene, and lights it to the last bit") {
@@ -115,24 +117,24 @@ TEST_CASE("a sky hidden from the camera is black behind the scene, and lights it
             black += sky && own > 0 && other == 0;
         }
     CHECK(black == 8 * 24);
-    CHECK(same > 100); // the ball
+    CHECK(same > 70); // the ball
 }
 
 TEST_CASE("what the camera alone sees shades nothing, and is not mirrored") {
-    const TestScene bare = stage(""), with = stage(card("camera"));
-    CHECK(differentPixels(bare, with, {0, 14, 32, 24}) == 0); // the floor before it
-    CHECK(differentPixels(bare, with, kWhole) > 20);          // itself
+    const TestScene bare = hiddenStage(""), with = hiddenStage(cardSeenBy("camera"));
+    CHECK(differingPixels(bare, with, {0, 14, 32, 24}) == 0); // the floor before it
+    CHECK(differingPixels(bare, with, kWholePicture) > 20);   // itself
 }
 
 TEST_CASE("a card that only shadow rays see is a shadow without a card") {
     // Where the camera looks at the card, it sees what lies behind.
-    const TestScene bare = stage(""), with = stage(card("shadows")), solid = stage(card(""));
-    const TestImage a = render(bare, 64), b = render(with, 64), c = render(solid, 64);
+    const TestScene bare = hiddenStage(""), with = hiddenStage(cardSeenBy("shadows")),
+                    solid = hiddenStage(cardSeenBy(""));
+    const TestImage a = render(bare, 64), b = render(with, 64);
     const auto tile = [](const TestImage& image, PixelBounds part) { return image.film.tile(part, Channel::y).mean; };
     const PixelBounds shade{4, 17, 14, 21};
     CHECK(tile(b, shade) < 0.8 * tile(a, shade));
-    const PixelBounds itself{8, 6, 14, 8};
-    CHECK(tile(b, itself) != doctest::Approx(tile(c, itself)).epsilon(0.05));
+    CHECK(differingPixels(with, solid, {4, 3, 18, 8}) > 5); // where the card itself would be
 }
 
 } // namespace abbe::test

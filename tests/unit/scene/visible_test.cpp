@@ -21,40 +21,40 @@ std::string seenAt(const TestScene& scene, double x) {
     return seen;
 }
 
-std::string at(double x) { return fmt::format("transform {{ translate {} 0 0 }}", x); }
+std::string shiftedBy(double x) { return fmt::format("transform {{ translate {} 0 0 }}", x); }
 
 } // namespace
 
 TEST_CASE("rays meet what is visible to them: shapes of all kinds, groups, objects, instances") {
     const TestScene scene = build("shape sphere { radius 0.4 }\n"
                                   "shape sphere { radius 0.4; visible-to camera; " +
-                                  at(1) +
+                                  shiftedBy(1) +
                                   " }\n"
                                   "shape quad { visible-to shadows reflections; size 0.8 0.8; " +
-                                  at(2) +
+                                  shiftedBy(2) +
                                   " }\n"
                                   "shape box { visible-to none; size 0.8 0.8 0.8; " +
-                                  at(3) +
+                                  shiftedBy(3) +
                                   " }\n"
                                   "group { visible-to camera shadows; " +
-                                  at(4) +
+                                  shiftedBy(4) +
                                   "\n shape sphere { radius 0.4; visible-to shadows reflections } }\n"
                                   "object pebble { visible-to camera reflections\n shape sphere { radius 0.4 }\n"
                                   "    shape sphere { radius 0.4; visible-to camera; " +
-                                  at(1) +
+                                  shiftedBy(1) +
                                   " } }\n"
                                   "instance pebble { " +
-                                  at(5) +
+                                  shiftedBy(5) +
                                   " }\n"
                                   "instance pebble { visible-to shadows reflections; " +
-                                  at(7) +
+                                  shiftedBy(7) +
                                   " }\n"
                                   "object heap { instance pebble { visible-to reflections } }\n"
                                   "instance heap { " +
-                                  at(9) +
+                                  shiftedBy(9) +
                                   " }\n"
                                   "instances pebble { grid 1 1 1; visible-to camera shadows; " +
-                                  at(11) + " }\n");
+                                  shiftedBy(11) + " }\n");
     const char* const expected[] = {"csr", "c", "sr", "", "s", "cr", "c", "r", "", "r", "", "c", "c"};
     for (int x = 0; x < 13; ++x) {
         CAPTURE(x);
@@ -67,10 +67,10 @@ TEST_CASE("rays meet what is visible to them: shapes of all kinds, groups, objec
 TEST_CASE("lamps in objects are hidden with their instances, and tell the scene") {
     const TestScene scene = build("object lantern { light quad { size 0.8 0.8; luminance 10 nits } }\n"
                                   "instance lantern { " +
-                                  at(1) +
+                                  shiftedBy(1) +
                                   " }\n"
                                   "instance lantern { visible-to shadows reflections; " +
-                                  at(2) + " }\n");
+                                  shiftedBy(2) + " }\n");
     CHECK(seenAt(scene, 1) == "csr");
     CHECK(seenAt(scene, 2) == "sr");
     REQUIRE(scene.scene().lights.size() == 3);
