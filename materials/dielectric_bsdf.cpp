@@ -12,8 +12,6 @@ constexpr Lobes kBothSides = Lobes(Lobe::reflection) | Lobe::transmission;
 
 Spectrum relativeIndex(Spectrum n, bool outside) { return outside ? n : Spectrum(1.f) / n; }
 
-Spectrum meanInLanes(Spectrum a) { return Spectrum(mean(a)); }
-
 } // namespace
 
 // ---- polished
@@ -79,12 +77,26 @@ ScatterOutline RoughDielectricBsdf::outline(Vec3 wo) const noexcept {
     return result;
 }
 
-// Factor that makes reflection and transmission sum to 1 after single scattering took its loss [Turquin2019].
-Spectrum RoughDielectricBsdf::lossless(float mu, Spectrum eta) const {
-    if (!disperses_) return Spectrum(1 / ggxAlbedo(mu, ggx_.alphaX(), eta[0]));
-    Float8 factor;
-    for (int i = 0; i < kLanes; ++i) factor[i] = 1 / ggxAlbedo(mu, ggx_.alphaX(), eta[i]);
-    return factor;
+// [Turquin2019], but for each part by itself.
+RoughDielectricBsdf::Scale RoughDielectricBsdf::lossless(float mu, Spectrum eta) const {
+    if (!disperses_) {
+        const InterfaceShares<float> shares = ggxInterface(mu, ggx_.alphaX(), eta[0]);
+        return {Spectrum(shares.reflection()), Spectrum(shares.transmission())};
+    }
+    Float8 reflection, transmission;
+    for (int i = 0; i < kLanes; ++i) {
+        const InterfaceShares<float> shares = ggxInterface(mu, ggx_.alphaX(), eta[i]);
+        reflection[i] = shares.reflection(), transmission[i] = shares.transmission();
+    }
+    return {Spectrum(reflection), Spectrum(transmission)};
+}
+
+RoughDielectricBsdf::Facet RoughDielectricBsdf::facet(const Scale& scale, float c, Spectrum eta) {
+    const Spectrum r = fresnelDielectric(c, eta);
+    Facet f{r * scale.reflection, (Spectrum(1.f) - r) * scale.transmission, 0};
+    const float reflected = mean(f.reflected);
+    f.probability = reflected / (reflected + mean(f.transmitted));
+    return f;
 }
 
 BsdfEval RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, Transport transport) const noexcept {
@@ -103,28 +115,26 @@ BsdfEval RoughDielectricBsdf::eval(Vec3 wo, Vec3 wi, Transport transport) const 
 
 BsdfEval RoughDielectricBsdf::evalReflection(Vec3 wo, Vec3 wi, Spectrum eta) const {
     const Vec3 h = normalize(wo + wi); // both z > 0: never 0
-    const Spectrum reflectance = fresnelDielectric(std::min(dot(wo, h), 1.f), eta);
+    const Facet at = facet(lossless(wo.z, eta), std::min(dot(wo, h), 1.f), eta);
     const float d = 0.25f * ggx_.D(h);
-    return {reflectance * lossless(wo.z, eta) * (d * ggx_.maskingOverCosine(wo, wi)),
-            mean(reflectance) * d * ggx_.visible(wo)};
+    return {at.reflected * (d * ggx_.maskingOverCosine(wo, wi)), at.probability * d * ggx_.visible(wo)};
 }
 
 // Value and density per lane, each off its own microfacet.
 RoughDielectricBsdf::LaneEval RoughDielectricBsdf::transmission(Vec3 wo, Vec3 wi, Spectrum eta,
                                                                 Transport transport) const {
     const RefractingHalves halves(wo, wi, eta);
-    const Float8 cosine = min(Spectrum(halves.cosO), Spectrum(1.f)).v;
-    const Spectrum reflectance = fresnelDielectric(Spectrum(cosine), eta);
-    Float8 chosen = meanInLanes(reflectance).v; // probability of reflection off each lane's microfacet
+    const Spectrum cosine = max(min(Spectrum(halves.cosO), Spectrum(1.f)), Spectrum(0.f));
+    const Scale scale = lossless(wo.z, eta);
+    const Spectrum through = (Spectrum(1.f) - fresnelDielectric(cosine, eta)) * scale.transmission;
+    Spectrum chosen(1 - facet(scale, cosine[0], eta).probability); // of transmission off each lane's microfacet
     if (disperses_)
-        for (int i = 0; i < kLanes; ++i) chosen[i] = mean(fresnelDielectric(cosine[i], eta));
+        for (int i = 1; i < kLanes; ++i) chosen.v[i] = 1 - facet(scale, cosine[i], eta).probability;
 
-    const Float8 common = halves.density(ggx_.alphaX(), ggx_.alphaX(), eta).v;
-    const Spectrum fcos = (1.f - reflectance.v) * common * ggx_.maskingOverCosine(wo, wi);
-    const Spectrum pdf = (1.f - chosen) * common * ggx_.visible(wo);
-    const Spectrum none(0.f);
-    return {select(halves.possible, fcos * lossless(wo.z, eta) * compression(eta, transport), none),
-            select(halves.possible, pdf, none)};
+    const Spectrum common = halves.density(ggx_.alphaX(), ggx_.alphaX(), eta);
+    const Spectrum fcos = through * common * ggx_.maskingOverCosine(wo, wi) * compression(eta, transport);
+    const Spectrum pdf = chosen * common * ggx_.visible(wo), none(0.f);
+    return {select(halves.possible, fcos, none), select(halves.possible, pdf, none)};
 }
 
 std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2 u,
@@ -136,21 +146,20 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(Vec3 wo, float uLobe, Vec2
     const Vec3 m = ggx_.sampleVisible(wo, u);
     const float cosO = std::min(dot(wo, m), 1.f);
     if (!(cosO > 0)) return std::nullopt;
-    const Spectrum reflectance = fresnelDielectric(cosO, eta);
-    const float probability = mean(reflectance);
+    const Facet at = facet(lossless(wo.z, eta), cosO, eta);
     std::optional<BsdfSample> result;
-    if (uLobe >= probability) {
-        result = sampleTransmission(wo, m, eta, reflectance, transport);
+    if (uLobe >= at.probability) {
+        result = sampleTransmission(wo, m, eta, at, transport);
     } else if (const Vec3 wi = reflect(wo, m); wi.z > 0) {
         const float visible = ggx_.visible(wo), kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
-        result.emplace(wi, reflectance * lossless(wo.z, eta) * (kept / probability),
-                       0.25f * probability * ggx_.D(m) * visible, Lobes(Lobe::glossy) | Lobe::reflection);
+        result.emplace(wi, at.reflected * (kept / at.probability), 0.25f * at.probability * ggx_.D(m) * visible,
+                       Lobes(Lobe::glossy) | Lobe::reflection);
     }
     if (result && below) result->wi.z = -result->wi.z;
     return result;
 }
 
-std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 m, Spectrum eta, Spectrum reflectance,
+std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 m, Spectrum eta, const Facet& at,
                                                                   Transport transport) const {
     const float hero = eta[0], cosO = std::min(dot(wo, m), 1.f);
     const float contrast = (hero - 1) * (hero + 1), g2 = contrast + cosO * cosO;
@@ -166,13 +175,13 @@ std::optional<BsdfSample> RoughDielectricBsdf::sampleTransmission(Vec3 wo, Vec3 
         return std::optional<BsdfSample>(std::in_place, wi, lanes.fcos / pdf, pdf, lobe | Lobe::dispersive, hero,
                                          lanes.pdf / pdf);
     }
-    const float probability = 1 - mean(reflectance), visible = ggx_.visible(wo);
+    const float probability = 1 - at.probability, visible = ggx_.visible(wo);
     const float kept = ggx_.maskingOverCosine(wo, wi) / visible; // G2/G1
     // |wo + η wi| = g - cosO, without the cancellation.
     const float length2 = square(contrast / (cosO + g));
     const float pdf = probability * ggx_.D(m) * visible * cosO * hero * g / length2;
-    const Spectrum weight = (Spectrum(1.f) - reflectance) * lossless(wo.z, eta) * compression(eta, transport);
-    return std::optional<BsdfSample>(std::in_place, wi, weight * (kept / probability), pdf, lobe, hero);
+    const Spectrum weight = at.transmitted * compression(eta, transport) * (kept / probability);
+    return std::optional<BsdfSample>(std::in_place, wi, weight, pdf, lobe, hero);
 }
 
 } // namespace abbe

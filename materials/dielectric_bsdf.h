@@ -37,8 +37,8 @@ class SmoothDielectricBsdf final : public Bsdf {
     bool absent_; // index 1 to within rounding: rays pass straight on
 };
 
-// Walter et al.'s rough interface [Walter2007] with GGX, height-correlated masking and shadowing, scaled so that
-// reflection and transmission together keep all light.
+// Walter et al.'s rough interface [Walter2007] with GGX; reflection and transmission are scaled so that they have what
+// they have after any number of events between microfacets, which is all of the light.
 class RoughDielectricBsdf final : public Bsdf {
   public:
     // False if the surface is smooth, or refracts so little that the transmitted lobe is narrower than directions in
@@ -60,10 +60,20 @@ class RoughDielectricBsdf final : public Bsdf {
     struct LaneEval {
         Spectrum fcos, pdf;
     };
+    // Factors of both parts, and what they make of a microfacet met at cosine c.
+    struct Scale {
+        Spectrum reflection, transmission;
+    };
+    struct Facet {
+        Spectrum reflected, transmitted;
+        float probability; // of reflection
+    };
+    Scale lossless(float mu, Spectrum eta) const;
+    static Facet facet(const Scale&, float c, Spectrum eta);
+
     BsdfEval evalReflection(Vec3 wo, Vec3 wi, Spectrum eta) const;
     LaneEval transmission(Vec3 wo, Vec3 wi, Spectrum eta, Transport) const;
-    std::optional<BsdfSample> sampleTransmission(Vec3 wo, Vec3 m, Spectrum eta, Spectrum reflectance, Transport) const;
-    Spectrum lossless(float mu, Spectrum eta) const;
+    std::optional<BsdfSample> sampleTransmission(Vec3 wo, Vec3 m, Spectrum eta, const Facet&, Transport) const;
 
     Spectrum n_;
     Ggx ggx_;

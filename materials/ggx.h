@@ -45,7 +45,8 @@ class Ggx {
     // Density of the normals visible from wo, over D(m) (wo·m): G1(wo)/|wo.z|.
     float visible(Vec3 wo) const { return 2 / (wo.z + stretch(wo)); }
 
-    // G2(wo, wi)/|wo.z|, where wi may lie on either side, wi.z != 0.
+    // G2(wo, wi)/|wo.z|, where wi may lie on either side, wi.z != 0. For transmission, too: why is told in
+    // docs/decisions/031-masking-of-transmission.md.
     float maskingOverCosine(Vec3 wo, Vec3 wi) const {
         return 2 / (stretch(wo) + stretch(wi) * (wo.z / std::abs(wi.z)));
     }

@@ -37,18 +37,18 @@ struct Neighbours {
 };
 
 // Linear along mu, where the coordinate has made the function nearly straight between nodes.
-float row(const std::uint16_t* table, float position) {
-    const float scaled = std::clamp(position, 0.f, 1.f) * (AlbedoGrid::kMu - 1);
-    const int cell = std::min(static_cast<int>(scaled), AlbedoGrid::kMu - 2);
+template <int nodes> float row(const std::uint16_t* table, float position) {
+    const float scaled = std::clamp(position, 0.f, 1.f) * (nodes - 1);
+    const int cell = std::min(static_cast<int>(scaled), nodes - 2);
     const float a = table[cell], b = table[cell + 1];
     return a + (b - a) * (scaled - static_cast<float>(cell));
 }
 
-float plane(const std::uint16_t* table, float position, const Neighbours& roughness) {
+template <int nodes> float plane(const std::uint16_t* table, float position, const Neighbours& roughness) {
     float sum = 0;
     for (int i = 0; i < 4; ++i)
         if (roughness.weight[i] != 0)
-            sum += roughness.weight[i] * row(table + roughness.index[i] * AlbedoGrid::kMu, position);
+            sum += roughness.weight[i] * row<nodes>(table + roughness.index[i] * nodes, position);
     return sum;
 }
 
@@ -58,23 +58,29 @@ float widthOf(float alpha) { return std::max(alpha, static_cast<float>(AlbedoGri
 
 float ggxAlbedo(float mu, float alpha) {
     const float x = AlbedoGrid::coordinate(mu, widthOf(alpha), 0.f);
-    return plane(kMirrorAlbedo, x, {std::sqrt(alpha), AlbedoGrid::kRoughness}) * (1.f / 65535);
+    return plane<AlbedoGrid::kMu>(kMirrorAlbedo, x, {std::sqrt(alpha), AlbedoGrid::kRoughness}) * (1.f / 65535);
 }
 
-float ggxAlbedo(float mu, float alpha, float eta) {
+InterfaceShares<float> ggxInterface(float mu, float alpha, float eta) {
     const bool inside = eta < 1;
     const float contrast = std::abs(eta - 1) / (eta + 1);
-    const float criticalMu = inside ? std::sqrt((1 - eta) * (1 + eta)) : 0;
-    const float x = AlbedoGrid::coordinate(mu, widthOf(alpha), criticalMu);
     const Neighbours roughness(std::sqrt(alpha), AlbedoGrid::kRoughness);
     const Neighbours index(std::sqrt(contrast / static_cast<float>(AlbedoGrid::kMaxContrast)), AlbedoGrid::kEta);
-    const std::uint16_t* table = inside ? kInsideAlbedo : kOutsideAlbedo;
-    float sum = 0;
-    for (int i = 0; i < 4; ++i)
-        if (index.weight[i] != 0)
-            sum += index.weight[i] *
-                   plane(table + index.index[i] * AlbedoGrid::kRoughness * AlbedoGrid::kMu, x, roughness);
-    return sum * (1.f / 65535);
+    const float criticalMu = inside ? std::sqrt((1 - eta) * (1 + eta)) : 0;
+    const float x = AlbedoGrid::coordinate(mu, widthOf(alpha), criticalMu);
+    const std::uint16_t* turned = inside ? kInsideTurned : kOutsideTurned;
+    const std::uint16_t* kept = inside ? kInsideKept : kOutsideKept;
+    InterfaceShares<float> sum{0, 0};
+    for (int i = 0; i < 4; ++i) {
+        const float weight = index.weight[i] * (1.f / 65535);
+        if (weight == 0) continue;
+        const int plate = index.index[i] * AlbedoGrid::kRoughness;
+        sum.turned += weight * plane<AlbedoGrid::kTurnedMu>(turned + plate * AlbedoGrid::kTurnedMu, x, roughness);
+        sum.kept += 2 * weight * plane<AlbedoGrid::kMu>(kept + plate * AlbedoGrid::kMu, x, roughness);
+    }
+    // Nearly index-matched, grazing light is lost to the wrong side; the factors stay finite.
+    sum.kept = std::max(sum.kept, 1e-3f);
+    return sum;
 }
 
 } // namespace abbe

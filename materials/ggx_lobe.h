@@ -29,21 +29,31 @@ class GgxLobe {
         if (smooth()) return Spectrum(wo.z);
         return stretched_ ? stretched_->cosines(wo) : microfacetCosines(wo.z, width(wo));
     }
-    // Whether the tables know a clear interface: round ones all, a stretched one that of one index. eta: far side over
-    // near side, `within` if that is outside; `varies` if it differs between the lanes.
+    // Whether the tables know a clear interface: round ones of indices up to 10, a stretched one that of one index.
+    // eta: far side over near side, `within` if that is outside; `varies` if it differs between the lanes.
     bool tabulated(Spectrum eta, bool varies, bool within) const {
-        if (!stretched_ || smooth()) return true;
+        if (smooth()) return true;
+        if (maxLane(eta) > kMostEta || maxLane(Spectrum(1.f) / eta) > kMostEta) return false;
+        if (!stretched_) return true;
         return interface_ && !varies && eta[0] == (within ? 1 / interface_->eta() : interface_->eta());
     }
-    // Share that it reflects and transmits together; if not tabulated, that of a round one of the width along wo.
-    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool varies, bool within) const {
-        if (smooth()) return Spectrum(1.f);
-        if (interface_ && tabulated(eta, varies, within)) return Spectrum((*interface_)(wo, within));
+    // Shares of reflection and transmission; if not tabulated, that of a round one of the width along wo.
+    InterfaceShares<Spectrum> interface(Vec3 wo, Spectrum eta, bool varies, bool within) const {
+        if (smooth()) return {Spectrum(0.5f), Spectrum(1.f)};
         const float alpha = width(wo);
-        if (!varies) return Spectrum(ggxAlbedo(wo.z, alpha, eta[0]));
-        Float8 result;
-        for (int i = 0; i < kLanes; ++i) result[i] = ggxAlbedo(wo.z, alpha, eta[i]);
-        return result;
+        if (!varies) {
+            const InterfaceShares<float> round = ggxInterface(wo.z, alpha, eta[0]);
+            if (!interface_ || !tabulated(eta, varies, within)) return {Spectrum(round.turned), Spectrum(round.kept)};
+            const auto [reflected, transmitted] = (*interface_)(wo, within);
+            const float kept = 2 * (round.turned * reflected + (1 - round.turned) * transmitted);
+            return {Spectrum(round.turned), Spectrum(std::max(kept, 1e-3f))};
+        }
+        Float8 turned, kept;
+        for (int i = 0; i < kLanes; ++i) {
+            const InterfaceShares<float> lane = ggxInterface(wo.z, alpha, eta[i]);
+            turned[i] = lane.turned, kept[i] = lane.kept;
+        }
+        return {Spectrum(turned), Spectrum(kept)};
     }
 
     // α of the profile cut along wo.
@@ -55,6 +65,7 @@ class GgxLobe {
     }
 
   private:
+    static constexpr float kMostEta = 10.001f; // of the tables
     Ggx ggx_;
     const StretchedLobe* stretched_;
     const StretchedInterface* interface_;

@@ -68,7 +68,7 @@ float Gloss::albedo(float mu) const {
     return lerp(below_->at(mu), above_->at(mu));
 }
 
-float Gloss::lossless(float mu) const { return 1 / ggxAlbedo(mu, ggx_.alphaX(), ior_); }
+float Gloss::lossless(float mu) const { return ggxInterface(mu, ggx_.alphaX(), ior_).reflection(); }
 
 float Gloss::reflectance(Vec3 wo, Vec3 wi) const {
     const Vec3 h = normalize(wo + wi); // both z > 0: never 0

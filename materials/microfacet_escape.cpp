@@ -41,7 +41,7 @@ Spectrum MicrofacetEscape::density(const Direction& m) const {
 
 // The circle by t = tan(φ/2), φ from the microfacet nearest to the normal: from 0 to where the microfacet stands
 // upright, or to infinity. t = w p/(1 - κ p) puts half of the p in [0, 1] where the normals are dense, at t < w.
-Spectrum MicrofacetEscape::operator()(Spectrum c) const {
+MicrofacetEscape::Shares MicrofacetEscape::operator()(Spectrum c) const {
     const Spectrum s = sqrt(max((kOne - c) * (kOne + c), kNone));
     const Spectrum a = wo_.z * c, b = max(sine_ * s, kTiny), top = a + b;
     const Spectrum bend = max((kOne - narrow_ * top * top) / max(narrow_ * top * b, kTiny), Spectrum(1e-6f));
@@ -50,7 +50,7 @@ Spectrum MicrofacetEscape::operator()(Spectrum c) const {
     const Spectrum g2 = (eta_ - kOne) * (eta_ + kOne) + c * c, turn = c - sqrt(max(g2, kNone));
     const Spectrum x(wo_.x), y(wo_.y), z(wo_.z), twice = c + c;
     const int panels = round_ ? 2 : 4; // light that just leaves, and normals that crowd, make kinks
-    Spectrum sum(0.f);
+    Shares sum{kNone, kNone};
     for (int i = 0; i < kPoints * panels; ++i) {
         const float p = (kPoint[i % kPoints] + static_cast<float>(i / kPoints)) / static_cast<float>(panels);
         const Spectrum rest = kOne / (kOne - kappa * p), t = w * p * rest, per = kOne / fma(t, t, kOne);
@@ -61,10 +61,13 @@ Spectrum MicrofacetEscape::operator()(Spectrum c) const {
                               max(fma(c, z, u * up_.z), kNone)};
             const Direction back{m.x * twice - x, m.y * twice - y, m.z * twice - z};
             const Direction through{(m.x * turn - x) / eta_, (m.y * turn - y) / eta_, (z - m.z * turn) / eta_};
-            sum += arc * density(m) * (kept(back) - kept(through));
+            const Spectrum met = arc * density(m);
+            sum.reflected += met * kept(back);
+            sum.refracted += met * kept(through);
         }
     }
-    return select(g2.v > 0.f, sum * c * (perCircle_ / static_cast<float>(panels)), kNone);
+    const Spectrum per = select(g2.v > 0.f, c * (perCircle_ / static_cast<float>(panels)), kNone);
+    return {sum.reflected * per, sum.refracted * per};
 }
 
 } // namespace abbe

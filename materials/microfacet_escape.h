@@ -15,8 +15,11 @@ class MicrofacetEscape {
     MicrofacetEscape(const Ggx& ggx, Vec3 wo, Spectrum eta);
 
     // Of the light that meets microfacets at cosine c in [0, 1], per unit of c: the share that leaves the surface if
-    // they reflect all of it, less the share that leaves it if they refract all of it. 0 where they cannot.
-    Spectrum operator()(Spectrum c) const;
+    // they reflect all of it, and the share that leaves it if they refract all of it. 0 where they cannot refract.
+    struct Shares {
+        Spectrum reflected, refracted;
+    };
+    Shares operator()(Spectrum c) const;
 
   private:
     struct Direction {

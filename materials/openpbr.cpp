@@ -4,6 +4,8 @@
 #include "materials/openpbr_bsdf.h"
 #include "materials/openpbr_coat_frame.h"
 #include "materials/openpbr_inside.h"
+#include "materials/openpbr_tangent.h"
+#include "materials/openpbr_veil.h"
 #include "render/surface_input.h"
 #include "spectrum/cauchy_curve.h"
 #include "spectrum/sampled_curve.h"
@@ -20,11 +22,10 @@ CauchyCurve cauchyOf(double index, double abbeNumber) {
     return {index - b / (d * d), b};
 }
 
-constexpr double kMostAnisotropic = 0.99; // as in `material subsurface`
+constexpr float kAny = 1e9f; // where a number has no upper limit
 
-bool isWhite(const schema::TexturedSpectrum& s) {
-    return !s.texture && (!s.curve || (s.curve->minimum() == 1 && s.curve->maximum() == 1));
-}
+// Share of diffuse light from below that the surface of a coat in air returns.
+float returnedByCoat(double ior) { return static_cast<float>(1 - (1 - hemisphericalReflectance(ior)) / (ior * ior)); }
 
 class OpenPbr final : public Material {
   public:
@@ -36,9 +37,16 @@ class OpenPbr final : public Material {
     const Curve* ior() const override { return refracts() ? ior_ : nullptr; }
     bool seesOutside() const override { return true; }
     SurfaceEmission emission() const override {
-        return {p_.emissionLuminance, p_.emissionColor.curve, p_.emissionColor.texture};
+        return {p_.emissionLuminance, p_.emissionColor.curve, p_.emissionColor.texture, p_.geometryThinWalled,
+                veil_ ? &*veil_ : nullptr};
     }
     bool usesTextures() const override;
+    bool bends() const override { return turnsTangent(p_); }
+    void bend(SurfaceHit& hit) const noexcept override {
+        if (bends())
+            hit.shading =
+                Frame::fromNormalTangent(hit.shading.z, openPbrTangent(p_.geometryTangent, hit, hit.shading.z));
+    }
 
   private:
     bool refracts() const { return !p_.geometryThinWalled && !transmissionWeight_.is(0) && !baseMetalness_.is(1); }
@@ -51,14 +59,16 @@ class OpenPbr final : public Material {
     OpenPbrParams p_;
     NumberInput baseWeight_, baseDiffuseRoughness_, baseMetalness_, specularWeight_, specularRoughness_,
         specularRoughnessAnisotropy_, transmissionWeight_, subsurfaceWeight_, coatWeight_, coatRoughness_,
-        coatRoughnessAnisotropy_, coatDarkening_, fuzzWeight_, fuzzRoughness_, thinFilmWeight_;
+        coatRoughnessAnisotropy_, coatIor_, coatDarkening_, fuzzWeight_, fuzzRoughness_, thinFilmWeight_, thinFilmMap_,
+        thinFilmIor_;
     SpectrumInput baseColor_, specularColor_, transmissionColor_, subsurfaceColor_, coatColor_, fuzzColor_;
     std::optional<CauchyCurve> cauchy_;
     ConstantCurve plainIor_{1.5};
     const Curve* ior_; // never null
     std::optional<AttenuationCurve> attenuation_;
-    bool filled_; // with the medium of the subsurface part
-    float coatReturns_;
+    std::optional<OpenPbrVeil> veil_;
+    bool filled_;       // with the medium of the subsurface part
+    float coatReturns_; // unless the index is textured
     OpenPbrCoatFrame coatFrame_;
     std::optional<StretchedLobe> stretched_, stretchedCoat_;
     std::optional<StretchedInterface> stretchedGlass_;
@@ -66,23 +76,24 @@ class OpenPbr final : public Material {
 
 OpenPbr::OpenPbr(const OpenPbrParams& p)
     : p_(p), baseWeight_(p.baseWeight, 0, 1), baseDiffuseRoughness_(p.baseDiffuseRoughness, 0, 1),
-      baseMetalness_(p.baseMetalness, 0, 1), specularWeight_(p.specularWeight, 0, 1),
+      baseMetalness_(p.baseMetalness, 0, 1), specularWeight_(p.specularWeight, 0, kAny),
       specularRoughness_(p.specularRoughness, 0, 1), specularRoughnessAnisotropy_(p.specularRoughnessAnisotropy, 0, 1),
       transmissionWeight_(p.transmissionWeight, 0, 1), subsurfaceWeight_(p.subsurfaceWeight, 0, 1),
       coatWeight_(p.coatWeight, 0, 1), coatRoughness_(p.coatRoughness, 0, 1),
-      coatRoughnessAnisotropy_(p.coatRoughnessAnisotropy, 0, 1), coatDarkening_(p.coatDarkening, 0, 1),
-      fuzzWeight_(p.fuzzWeight, 0, 1), fuzzRoughness_(p.fuzzRoughness, 0, 1), thinFilmWeight_(p.thinFilmWeight, 0, 1),
-      baseColor_(p.baseColor, 0.8f), specularColor_(p.specularColor, 1), transmissionColor_(p.transmissionColor, 1),
-      subsurfaceColor_(p.subsurfaceColor, 0.8f), coatColor_(p.coatColor, 1), fuzzColor_(p.fuzzColor, 1),
-      ior_(p.specularIor ? p.specularIor : &plainIor_), filled_(hasSubsurfaceInside(p)),
-      coatReturns_(static_cast<float>(1 - (1 - hemisphericalReflectance(p.coatIor)) / (p.coatIor * p.coatIor))),
-      coatFrame_(p) {
+      coatRoughnessAnisotropy_(p.coatRoughnessAnisotropy, 0, 1), coatIor_(p.coatIor, 0.2f, 10),
+      coatDarkening_(p.coatDarkening, 0, 1), fuzzWeight_(p.fuzzWeight, 0, 1), fuzzRoughness_(p.fuzzRoughness, 0, 1),
+      thinFilmWeight_(p.thinFilmWeight, 0, 1), thinFilmMap_(p.thinFilmMap, 0, kAny),
+      thinFilmIor_(p.thinFilmIor, 0.2f, 10), baseColor_(p.baseColor, 0.8f), specularColor_(p.specularColor, 1),
+      transmissionColor_(p.transmissionColor, 1), subsurfaceColor_(p.subsurfaceColor, 0.8f), coatColor_(p.coatColor, 1),
+      fuzzColor_(p.fuzzColor, 1), ior_(p.specularIor ? p.specularIor : &plainIor_), filled_(hasSubsurfaceInside(p)),
+      coatReturns_(returnedByCoat(p.coatIor.value)), coatFrame_(p) {
+    if (OpenPbrVeil::needed(p)) veil_.emplace(p);
     if (p.transmissionDispersionScale > 0) {
         cauchy_.emplace(cauchyOf(ior_->at(587.6), p.transmissionDispersionAbbeNumber / p.transmissionDispersionScale));
         ior_ = &*cauchy_;
     }
     if (refracts() && !hasScatteringGlass(p) && p.transmissionDepth > 0 && p.transmissionColor.curve &&
-        !isWhite(p.transmissionColor))
+        tints(p.transmissionColor))
         attenuation_.emplace(*p.transmissionColor.curve, p.transmissionDepth);
     const auto constant = [](const NumberInput& n) { return !n.textured(); };
     if (constant(specularRoughness_) && constant(specularRoughnessAnisotropy_) && constant(coatWeight_) &&
@@ -110,11 +121,12 @@ Effects OpenPbr::needs() const {
 }
 
 bool OpenPbr::usesTextures() const {
-    if (!coatWeight_.is(0) && coatFrame_.usesTextures()) return true;
+    if (bends() || (!coatWeight_.is(0) && coatFrame_.usesTextures())) return true;
     for (const NumberInput* n :
          {&baseWeight_, &baseDiffuseRoughness_, &baseMetalness_, &specularWeight_, &specularRoughness_,
           &specularRoughnessAnisotropy_, &transmissionWeight_, &subsurfaceWeight_, &coatWeight_, &coatRoughness_,
-          &coatRoughnessAnisotropy_, &coatDarkening_, &fuzzWeight_, &fuzzRoughness_, &thinFilmWeight_})
+          &coatRoughnessAnisotropy_, &coatIor_, &coatDarkening_, &fuzzWeight_, &fuzzRoughness_, &thinFilmWeight_,
+          &thinFilmMap_, &thinFilmIor_})
         if (n->textured()) return true;
     for (const SpectrumInput* s :
          {&baseColor_, &specularColor_, &transmissionColor_, &subsurfaceColor_, &coatColor_, &fuzzColor_})
@@ -127,9 +139,9 @@ OpenPbrCover OpenPbr::cover(const SurfaceHit& hit, const Wavelengths& lambda) co
     c.coat = coatWeight_.at(hit);
     c.film = thinFilmWeight_.at(hit);
     if (hit.outside) c.outer = hit.outside->at(lambda);
-    c.coatEta = Spectrum(static_cast<float>(p_.coatIor)) / c.outer;
-    c.filmIndex = Spectrum(static_cast<float>(p_.thinFilmIor));
-    c.filmThickness = static_cast<float>(p_.thinFilmThickness * 1e9);
+    c.coatEta = Spectrum(coatIor_.at(hit)) / c.outer;
+    c.filmIndex = Spectrum(thinFilmIor_.at(hit));
+    c.filmThickness = static_cast<float>(p_.thinFilmThickness * 1e9) * thinFilmMap_.at(hit);
     c.wavelength = lambda.nm;
     c.varies = c.film > 0 || !ior_->isConstant() || (hit.outside && !hit.outside->isConstant());
     return c;
@@ -181,13 +193,13 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
         .under = subsurfaceColor_.at(hit, lambda),
         .tint = specularColor_.at(hit, lambda),
         .through = tinted ? transmissionColor_.at(hit, lambda) : one,
-        .coatLog = covering.coat > 0 && !isWhite(p_.coatColor)
+        .coatLog = covering.coat > 0 && tints(p_.coatColor)
                        ? 0.5f * log(max(coatColor_.at(hit, lambda), Spectrum(1e-6f)))
                        : Spectrum(0.f),
         .diffuseRoughness = baseDiffuseRoughness_.at(hit),
         .roughness = roughness,
         .coatDarkening = coatDarkening_.at(hit),
-        .coatReturns = coatReturns_,
+        .coatReturns = coatIor_.textured() ? returnedByCoat(static_cast<double>(coatIor_.at(hit))) : coatReturns_,
         .fuzz = fuzzWeight_.at(hit),
         .fuzzColor = fuzzColor_.at(hit, lambda),
         .sheen = SheenLobe(fuzzRoughness_.at(hit)),
@@ -202,46 +214,6 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
 }
 
 } // namespace
-
-bool checkParams(const OpenPbrParams& p, const schema::PlaceOf& placeOf, Diagnostics& diagnostics) {
-    const std::size_t before = diagnostics.errorCount();
-    const auto error = [&](const char* code, std::string_view property, const char* message, const char* label,
-                           const char* help) {
-        diagnostics.error(code, placeOf(property), message, label).help = help;
-    };
-    const bool filled = hasSubsurfaceInside(p);
-    if (filled && (p.transmissionWeight.texture || p.transmissionWeight.value > 0))
-        error("E0700", "transmission-weight", "a solid is filled with two things",
-              "glass, and the medium of `subsurface-weight`",
-              "leave one of the weights out; milky glass is `transmission-weight 1` with `transmission-scatter`");
-    if (filled && std::abs(p.subsurfaceScatterAnisotropy) > kMostAnisotropic)
-        error("E0703", "subsurface-scatter-anisotropy", "light is never turned aside",
-              "in a solid, this lies between -0.99 and 0.99", "0.9 is strongly forward");
-    if (p.transmissionDispersionScale > 0 && p.specularIor && !p.specularIor->isConstant())
-        error("E0701", "transmission-dispersion-scale", "the dispersion is stated twice",
-              "`specular-ior` varies with wavelength already", "leave one of them out");
-    if (!p.geometryThinWalled && p.transmissionDepth > 0 && p.transmissionColor.texture)
-        error("E0702", "transmission-color", "the colour of an inside cannot be a texture",
-              "`transmission-depth` is above 0",
-              "leave `transmission-depth` out to tint at the surface, or give one colour");
-    if (filled && p.subsurfaceColor.texture)
-        error("E0702", "subsurface-color", "the colour of an inside cannot be a texture",
-              "light that enters here comes out elsewhere",
-              "give one colour; `subsurface-weight` and `base-color` may be textures");
-    for (const auto& [property, directions] : {std::pair("geometry-coat-normal", p.geometryCoatNormal.texture),
-                                               std::pair("geometry-coat-tangent", p.geometryCoatTangent.texture)})
-        if (directions && directions->channels() < 3)
-            error("E0705", property, "directions have three channels", "this texture has one",
-                  "take an image of directions, 0 … 1 for -1 … 1, or give a number");
-    const bool stretched = p.specularRoughnessAnisotropy.texture || p.specularRoughnessAnisotropy.value > 0;
-    const bool varies = p.specularRoughness.texture || p.specularRoughnessAnisotropy.texture || p.coatWeight.texture ||
-                        p.coatRoughness.texture;
-    if (mayRefract(p) && stretched && varies)
-        error("E0704", "specular-roughness-anisotropy", "stretched rough glass cannot vary by a texture",
-              "what it scatters more than once is tabulated for one roughness and one anisotropy",
-              "give plain numbers, or leave the anisotropy out where the surface transmits");
-    return diagnostics.errorCount() == before;
-}
 
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams& params) { return std::make_unique<OpenPbr>(params); }
 

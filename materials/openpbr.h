@@ -45,27 +45,40 @@ struct OpenPbrParams {
     Color coatColor; // null: 1
     Number coatRoughness{0, nullptr, {}};
     Number coatRoughnessAnisotropy{0, nullptr, {}};
-    double coatIor = 1.6;
+    Number coatIor{1.6, nullptr, {}};
     Number coatDarkening{1, nullptr, {}};
+    // Turns from the texture's u to the direction that the base's highlight is stretched along. Or a texture of
+    // directions, 0 … 1 for -1 … 1.
+    Number geometryTangent{0, nullptr, {}};
     // How far the coat's normal follows that of the base: 1 wholly, 0 it is the shape's own. Or a normal map of its
     // own.
     Number geometryCoatNormal{1, nullptr, {}};
-    // Turns from the texture's u to the coat's tangent. Or a texture of directions, 0 … 1 for -1 … 1.
     Number geometryCoatTangent{0, nullptr, {}};
 
     Number fuzzWeight{0, nullptr, {}};
     Color fuzzColor; // null: 1
     Number fuzzRoughness{0.5, nullptr, {}};
 
-    double emissionLuminance = 0;           // cd/m²
-    schema::TexturedSpectrum emissionColor; // a curve of any scale, or a factor of D65; neither: D65
+    double emissionLuminance = 0; // cd/m²
+    Color emissionColor;          // of Y = 1 where it is white, or a factor of D65; neither: D65
 
     Number thinFilmWeight{0, nullptr, {}};
-    double thinFilmThickness = 0.5e-6; // m
-    double thinFilmIor = 1.4;
+    double thinFilmThickness = 0.5e-6; // m, where the map is 1
+    Number thinFilmMap{1, nullptr, {}};
+    Number thinFilmIor{1.4, nullptr, {}};
 
     bool geometryThinWalled = false;
 };
+
+// Whether a colour changes what it is a factor of.
+inline bool tints(const OpenPbrParams::Color& c) {
+    return c.texture || (c.curve && (c.curve->minimum() != 1 || c.curve->maximum() != 1));
+}
+// Whether the base is stretched along a direction of its own.
+inline bool turnsTangent(const OpenPbrParams& p) {
+    const bool turned = p.geometryTangent.texture || p.geometryTangent.value != 0;
+    return turned && (p.specularRoughnessAnisotropy.texture || p.specularRoughnessAnisotropy.value > 0);
+}
 
 schema::TypeInfo openPbrType();
 // Reports what no single property can say wrong; false if it did.

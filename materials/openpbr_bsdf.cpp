@@ -61,13 +61,13 @@ OpenPbrBsdf::Facet OpenPbrBsdf::facet(const View& v, Spectrum c) const {
     if (v.within) {
         const Spectrum r = point_.dielectric.reflectanceWithin(c);
         f.clear = v.scale * r * v.clear;
-        f.transmitted = v.scale * (kOne - r) * v.clear;
+        f.transmitted = v.through * (kOne - r) * v.clear;
     } else if (dielectric > 0) {
         const Spectrum r = point_.dielectric.reflectance(c);
         f.opaque += v.scale * point_.tint * r * (dielectric * (1 - point_.transmission));
         if (v.clear > 0) {
             f.clear = v.scale * point_.tint * (point_.thinWalled ? sheetFacet(c).reflected : r) * v.clear;
-            if (!point_.thinWalled) f.transmitted = v.scale * (kOne - r) * v.clear;
+            if (!point_.thinWalled) f.transmitted = v.through * (kOne - r) * v.clear;
         }
     }
     return f;

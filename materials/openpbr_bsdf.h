@@ -65,7 +65,8 @@ class OpenPbrBsdf final : public Bsdf {
         Spectrum covered;    // what the coat lets through, times its coverage
         Spectrum darkening;  // of opaque bases under the coat
         Spectrum pathOut;    // logarithm of the coat's transmittance along wo
-        Spectrum scale;      // factor of the dielectric's single scattering
+        Spectrum scale;      // factor of the dielectric's single scattering, reflected
+        Spectrum through;    // and refracted
         Spectrum metalScale; // of the metal's
         Spectrum below;      // share of the light that enters the dielectric base
         Spectrum sheet;      // of that, what leaves a thin-walled sheet on the other side
@@ -83,8 +84,11 @@ class OpenPbrBsdf final : public Bsdf {
     void viewCoat(View&) const;
     void viewDielectric(View&) const;
     void viewWithin(View&) const;
+    template <typename F>
+    Spectrum lobeMean(const GgxLobe&, Vec3 wo, Spectrum eta, const MetCosines::Kinks&, F&& f, bool varies,
+                      float beyond) const;
     template <typename Covered, typename Bare>
-    Spectrum interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covered&& covered, Bare&& bare) const;
+    void setInterface(View&, Spectrum eta, Covered&& covered, Bare&& bare) const;
     void choose(View&) const;
     Spectrum opaqueAlbedo() const;
     struct Sheet {

@@ -15,16 +15,16 @@ class OpenPbrCoatFrame {
     explicit OpenPbrCoatFrame(const OpenPbrParams&);
 
     // Whether at() looks at the parametrisation of the hit.
-    bool usesTextures() const { return ownNormal() || tangent_.texture || tangent_.value != 0; }
+    bool usesTextures() const { return ownNormal() || tangent_.texture || tangent_.value != 0 || baseTurned_; }
     // In hit.shading's axes; nothing where they are the same. Requires the parametrisation if usesTextures().
     std::optional<Frame> at(const SurfaceHit& hit) const;
 
   private:
     bool ownNormal() const { return normal_.texture || normal_.value < 1; }
     Vec3 normal(const SurfaceHit& hit) const;
-    Vec3 tangent(const SurfaceHit& hit, Vec3 normal) const;
 
     schema::TexturedNumber normal_, tangent_;
+    bool baseTurned_; // the axes of the hit are those of the base, which has a tangent of its own
 };
 
 } // namespace abbe

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "materials/fresnel.h"
-#include "materials/microfacet_cosines.h"
+#include "materials/met_cosines.h"
 #include "materials/thin_film.h"
 
 namespace abbe {
@@ -40,12 +40,15 @@ inline Spectrum mix(Spectrum a, Spectrum b, float t) { return fma(b - a, Spectru
 class OpenPbrDielectric {
   public:
     // index: of the base; weight: specular-weight, which scales the reflectance at normal incidence by way of the
-    // index.
+    // index, against the coat where there is one.
     OpenPbrDielectric(const OpenPbrCover& cover, Spectrum index, float weight)
-        : cover_(cover), eta_(weighted(index / cover.outer, weight)),
-          etaCoated_(weighted(index / (cover.outer * cover.coatEta), weight)) {}
+        : cover_(cover), etaBare_(weighted(index / cover.outer, weight)),
+          etaCoated_(weighted(index / (cover.outer * cover.coatEta), weight)), eta_(etaBare_) {
+        if (cover.coat > 0) eta_ = mix(etaBare_, etaCoated_ * cover.coatEta, cover.coat);
+    }
 
-    // Index of the base over that of the outside.
+    // Index of the base over that of the outside, by which light is refracted. The parts with and without a coat may
+    // have slightly different ones; where this mean of them refracts nothing, all is reflected.
     const Spectrum& eta() const { return eta_; }
     // Whether there is more than the bare interface.
     bool covered() const { return cover_.coat > 0 || cover_.film > 0; }
@@ -54,9 +57,10 @@ class OpenPbrDielectric {
 
     // From outside, at the microfacet; c in [0, 1] is the cosine outside the coat.
     Spectrum reflectance(Spectrum c) const {
-        Spectrum r = under(c, cover_.outer, eta_);
-        if (cover_.coat > 0) r = mix(r, underCoat(c), cover_.coat);
-        return r;
+        Spectrum r = under(c, cover_.outer, etaBare_);
+        if (!(cover_.coat > 0)) return r;
+        r = mix(r, underCoat(c), cover_.coat);
+        return select(((eta_ - Spectrum(1.f)) * (eta_ + Spectrum(1.f)) + c * c).v > 0.f, r, Spectrum(1.f));
     }
     // From within the base, c inside it. The same interface the other way: stated by the angle outside, it reflects the
     // same share, and beyond the critical angle everything. The coat's surface adds its part, to and fro.
@@ -68,7 +72,7 @@ class OpenPbrDielectric {
         const Spectrum lost = fma(e, e, -e2) + (e2 - (shifted + Spectrum(1.f))) + fma(c, c, -c2);
         const Spectrum g2 = (shifted + c2) + lost;
         const Spectrum outside = min(sqrt(max(g2, Spectrum(0.f))) * eta_, Spectrum(1.f));
-        Spectrum r = under(outside, cover_.outer, eta_);
+        Spectrum r = under(outside, cover_.outer, etaBare_);
         if (cover_.coat > 0) {
             const Spectrum one(1.f), inner = underCoat(outside), top = cover_.coatReflectance(outside);
             const Spectrum through = one - inner;
@@ -76,6 +80,20 @@ class OpenPbrDielectric {
             r = mix(r, min(both, one), cover_.coat);
         }
         return select(g2.v > 0.f, r, Spectrum(1.f));
+    }
+
+    // Critical cosines outside, and the same within the base.
+    float critical(bool within) const { return criticalCosine(within ? Spectrum(1.f) / eta_ : eta_); }
+    MetCosines::Kinks kinks(bool within) const {
+        MetCosines::Kinks all{};
+        if (cover_.coat > 0)
+            all = {criticalCosine(etaBare_), criticalCosine(etaCoated_ * cover_.coatEta),
+                   criticalCosine(cover_.coatEta)};
+        if (cover_.film > 0) all[3] = criticalCosine(cover_.filmIndex / cover_.outer);
+        if (within)
+            for (float& c : all)
+                if (c > 0) c = std::sqrt(std::max(1 - (1 - c * c) / square(maxLane(eta_)), 0.f));
+        return all;
     }
 
     // Mean over a lobe, see microfacetCosines(); `varies` if what is averaged differs between the lanes for reasons of
@@ -92,7 +110,8 @@ class OpenPbrDielectric {
     }
 
   private:
-    // ε = ± √(weight F) and η' = (1 + ε)/(1 - ε) reflect weight · F at normal incidence.
+    // ε = ± √(weight F) and η' = (1 + ε)/(1 - ε) reflect weight · F at normal incidence; ε stays below 1, as the
+    // specification wants.
     static Spectrum weighted(Spectrum eta, float weight) {
         if (weight == 1) return eta;
         const Spectrum one(1.f), root = (eta - one) / (eta + one);
@@ -112,7 +131,7 @@ class OpenPbrDielectric {
     }
 
     OpenPbrCover cover_;
-    Spectrum eta_, etaCoated_;
+    Spectrum etaBare_, etaCoated_, eta_;
 };
 
 // The metallic base: by measured indices, or by its colours.
@@ -137,7 +156,7 @@ class OpenPbrMetal {
     Spectrum reflectance(Spectrum c) const {
         Spectrum r = under(c, c, cover_.outer);
         if (cover_.coat > 0) r = mix(r, under(c, cover_.cosineInCoat(c), cover_.outer * cover_.coatEta), cover_.coat);
-        return r * weight_;
+        return min(r * weight_, Spectrum(1.f)); // the weight may be above 1
     }
 
   private:

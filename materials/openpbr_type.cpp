@@ -48,10 +48,12 @@ std::vector<FieldInfo> baseFields() {
 std::vector<FieldInfo> specularFields() {
     return {
         field(FieldType::number, "specular-weight", &P::specularWeight)
-            .doc("Factor of the reflectance at normal incidence, by way of the index; of a metal's as a whole.")
+            .doc(
+                "Factor of the reflectance at normal incidence, by way of the index; of a metal's as a whole. Above 1, "
+                "up to where all is reflected.")
             .example("specular-weight 0.5")
             .unit({Dimension::none, Dimension::fraction})
-            .range(0, 1)
+            .range(0, 1e9)
             .byDefault("1")
             .synonyms({"specular_weight", "specular", "specular_level"}),
         field(FieldType::spectrum, "specular-color", &P::specularColor)
@@ -75,6 +77,13 @@ std::vector<FieldInfo> specularFields() {
             .range(0, 1)
             .byDefault("0")
             .synonyms({"specular_roughness_anisotropy", "anisotropy", "anisotropic", "specular_anisotropy"}),
+        field(FieldType::number, "geometry-tangent", &P::geometryTangent)
+            .doc("Turns from the texture's u to the direction that the highlight of the base is stretched along; or a "
+                 "texture of directions.")
+            .example("geometry-tangent 0.25")
+            .range(-1, 1)
+            .byDefault("0")
+            .synonyms({"geometry_tangent", "tangent", "specular_rotation", "anisotropic_rotation", "rotation"}),
         field(FieldType::spectrum, "specular-ior", &P::specularIor)
             .doc("Refractive index of plastic and glass; a curve that varies disperses.")
             .example("specular-ior 1.5")
@@ -269,12 +278,19 @@ std::vector<FieldInfo> filmFields() {
                 .byDefault("0")
                 .synonyms({"thin_film_weight", "thin_film", "iridescence"}),
             field(FieldType::quantity, "thin-film-thickness", &P::thinFilmThickness)
-                .doc("Thickness of the film. Beyond 10 µm there are no fringes, only their mean.")
+                .doc("Thickness of the film, or what a map makes of it. Beyond 10 µm there are no fringes, only their "
+                     "mean.")
                 .example("thin-film-thickness 350 nm")
                 .unit({Dimension::length})
                 .range(0, 1)
                 .byDefault("500 nm")
-                .synonyms({"thin_film_thickness", "iridescence_thickness"}),
+                .synonyms({"thin_film_thickness", "iridescence_thickness"})
+                .block({field(FieldType::number, "map", &P::thinFilmMap)
+                            .doc("A texture, as a factor of the thickness; its first channel counts.")
+                            .example("map noise { scale 1 cm }")
+                            .range(0, 1e9)
+                            .byDefault("1")
+                            .synonyms({"texture", "image"})}),
             field(FieldType::number, "thin-film-ior", &P::thinFilmIor)
                 .doc("Refractive index of the film.")
                 .example("thin-film-ior 1.33")
@@ -284,25 +300,27 @@ std::vector<FieldInfo> filmFields() {
 }
 
 std::vector<FieldInfo> emissionFields() {
-    return {field(FieldType::quantity, "emission-luminance", &P::emissionLuminance)
-                .doc("Luminance that the base gives off, seen without coat and fuzz.")
-                .example("emission-luminance 1000 nits")
-                .unit({Dimension::luminance})
-                .range(0, 1e12)
-                .byDefault("0 nits")
-                .synonyms({"emission_luminance", "emission", "emission_weight", "emission_intensity"}),
-            field(FieldType::spectrum, "emission-color", &P::emissionColor)
-                .doc("Colour of that light; only its shape counts, or a texture, where 1 stands for D65 of the full "
-                     "luminance. D65 when left out.")
-                .example("emission-color rgb 1 0.5 0.2")
-                .role(SpectrumRole::shape)
-                .range(0, 1e12)
-                .synonyms({"emission_color", "emissionColor", "emissive_color"}),
-            field(FieldType::toggle, "geometry-thin-walled", &P::geometryThinWalled)
-                .doc("The surface is a thin sheet, such as a leaf or a bubble, without an inside.")
-                .example("geometry-thin-walled on")
-                .byDefault("off")
-                .synonyms({"geometry_thin_walled", "thin_walled", "thin"})};
+    return {
+        field(FieldType::quantity, "emission-luminance", &P::emissionLuminance)
+            .doc("Luminance that the base gives off where emission-color is white, seen without coat and fuzz. Thin "
+                 "walls shine on both sides.")
+            .example("emission-luminance 1000 nits")
+            .unit({Dimension::luminance})
+            .range(0, 1e12)
+            .byDefault("0 nits")
+            .synonyms({"emission_luminance", "emission", "emission_weight", "emission_intensity"}),
+        field(FieldType::spectrum, "emission-color", &P::emissionColor)
+            .doc("Colour of that light: rgb, plain numbers and textures are factors of D65 of the full luminance; "
+                 "spectra of light, such as `blackbody 2700 K`, have all of it. D65 when left out.")
+            .example("emission-color rgb 1 0.5 0.2")
+            .role(SpectrumRole::tint)
+            .range(0, 1e12)
+            .synonyms({"emission_color", "emissionColor", "emissive_color"}),
+        field(FieldType::toggle, "geometry-thin-walled", &P::geometryThinWalled)
+            .doc("The surface is a thin sheet, such as a leaf or a bubble, without an inside.")
+            .example("geometry-thin-walled on")
+            .byDefault("off")
+            .synonyms({"geometry_thin_walled", "thin_walled", "thin"})};
 }
 
 } // namespace

@@ -1,55 +1,10 @@
 // What of an OpenPBR surface depends on the direction of view alone: the albedos by which its layers share the light.
-#include "materials/microfacet_escape.h"
+#include "materials/dielectric_bsdf.h"
 #include "materials/openpbr_bsdf.h"
 
 #include <cmath>
 
 namespace abbe {
-namespace {
-
-// Cosines at which a lobe meets microfacets, for integrals over them: dense where most of the light is and, from within
-// a dense base, where total reflection makes an edge.
-class MetCosines {
-  public:
-    // lobe: see microfacetCosines(); lowest: the cosine of that edge, 0 if there is none.
-    MetCosines(Spectrum lobe, float lowest, bool fine) : count_(fine ? 4 : 2) {
-        const float middle = 0.5f * (lobe[3] + lobe[4]), width = std::max(0.5f * (lobe[5] - lobe[2]), 1e-5f);
-        const float from = std::asinh((lowest - middle) / width), all = std::asinh((1 - middle) / width) - from;
-        const float panel = 1 / static_cast<float>(count_);
-        for (std::size_t i = 0; i < count_; ++i) {
-            const Spectrum t = (Spectrum(kCosinePoints) + Spectrum(static_cast<float>(i))) * panel;
-            // Beyond the edge reflectances grow like the root of the distance.
-            const Spectrum place = lowest > 0 ? t * t : t, pace = lowest > 0 ? t + t : kOne;
-            const Spectrum up = exp(fma(place, Spectrum(all), Spectrum(from))), down = kOne / up;
-            cosines_[i] = min(max(fma(up - down, Spectrum(0.5f * width), Spectrum(middle)), Spectrum(lowest)), kOne);
-            steps_[i] = (up + down) * pace * Spectrum(kCosineWeights) * (0.5f * width * all * panel);
-        }
-    }
-    // Integral of share · f over the cosine. `varies`: f differs between the lanes for reasons of its own; `disperses`:
-    // the share does.
-    template <typename F, typename Share> Spectrum integral(F&& f, Share&& share, bool varies, bool disperses) const {
-        Spectrum result(0.f);
-        for (std::size_t block = 0; block < count_; ++block) {
-            const Spectrum& c = cosines_[block];
-            const Spectrum weighted = disperses ? steps_[block] : share(c) * steps_[block];
-            if (!varies) { // the lanes take eight cosines
-                result += Spectrum(sum(f(c) * weighted));
-                continue;
-            }
-            for (int i = 0; i < kLanes; ++i) {
-                const Spectrum at(c[i]);
-                result += f(at) * (disperses ? share(at) * weighted[i] : Spectrum(weighted[i]));
-            }
-        }
-        return result;
-    }
-
-  private:
-    std::size_t count_;
-    std::array<Spectrum, 4> cosines_, steps_;
-};
-
-} // namespace
 
 double hemisphericalReflectance(double n) {
     if (std::abs(n - 1) < 1e-3) return 0;
@@ -97,57 +52,76 @@ OpenPbrBsdf::View OpenPbrBsdf::makeView(Vec3 wo) const {
     return v;
 }
 
-// Single scattering returns `mirror` times the mean of Fresnel's reflectance; scaling it and what goes through alike
-// makes them sum to 1.
+// Single scattering is scaled so that what it reflects and what goes through sum to 1.
 void OpenPbrBsdf::viewDielectric(View& v) const {
     const OpenPbrDielectric& d = point_.dielectric;
-    v.scale = kOne;
+    v.scale = v.through = kOne;
     v.below = Spectrum(0.f);
     if (point_.metalness == 1) return;
-    const Spectrum cosines = point_.specular.cosines(v.wo);
     const auto reflectance = [&](Spectrum c) { return d.reflectance(c); };
-    const Spectrum mean = d.meanOver(cosines, reflectance);
-    const Spectrum mirror(point_.specular.mirrorAlbedo(v.wo));
-    if (point_.thinWalled) {
-        v.scale = kOne / mirror; // the sheet's other lobe is scaled to fit
-        v.below = kOne - mean;
-        if (point_.transmission > 0)
-            v.sheet = d.meanOver(
-                cosines, [&](Spectrum c) { return sheetFacet(c).through; }, sheetAbsorbs_);
+    const auto bare = [&](Spectrum c) { return fresnelDielectric(c, d.eta()); };
+    const GgxLobe& lobe = point_.specular;
+    const float mirror = lobe.mirrorAlbedo(v.wo);
+    const Spectrum mean = lobeMean(lobe, v.wo, d.eta(), d.kinks(false), reflectance, d.varies(), 1);
+    if (!point_.thinWalled) {
+        setInterface(v, d.eta(), reflectance, bare);
+        // Plastic keeps its light whatever the scale of its gloss: the matte part gets the rest.
+        if (!refracts()) v.scale = min(v.scale, Spectrum(1 / mirror));
+        v.below = max(kOne - v.scale * mean * mirror, Spectrum(0.f));
         return;
     }
-    const auto bare = [&](Spectrum c) { return fresnelDielectric(c, d.eta()); };
-    v.scale = kOne / interfaceAlbedo(v.wo, d.eta(), false, reflectance, bare);
-    v.below = max(kOne - v.scale * mirror * mean, Spectrum(0.f));
+    v.scale = Spectrum(1 / mirror); // the sheet's other lobe is scaled to fit
+    v.below = kOne - mean;
+    if (point_.transmission > 0)
+        v.sheet = lobeMean(
+            lobe, v.wo, d.eta(), d.kinks(false), [&](Spectrum c) { return sheetFacet(c).through; },
+            d.varies() || sheetAbsorbs_, 0);
 }
 
 void OpenPbrBsdf::viewWithin(View& v) const {
     const OpenPbrDielectric& d = point_.dielectric;
     const Spectrum eta = kOne / d.eta();
-    const auto covered = [&](Spectrum c) { return d.reflectanceWithin(c); };
-    const auto bare = [&](Spectrum c) { return fresnelDielectric(c, eta); };
+    setInterface(
+        v, eta, [&](Spectrum c) { return d.reflectanceWithin(c); },
+        [&](Spectrum c) { return fresnelDielectric(c, eta); });
     v.below = kOne;
-    v.scale = kOne / interfaceAlbedo(v.wo, eta, true, covered, bare);
 }
 
-// What single scattering at the interface returns and transmits together: what it would if it reflected everything,
-// changed wherever it transmits by as much as other microfacets stop the one more often than the other. Where tables
+// Mean of f over the light that a perfect mirror of the lobe's shape would reflect; `beyond`: its value where an
+// interface of that index reflects totally.
+template <typename F>
+Spectrum OpenPbrBsdf::lobeMean(const GgxLobe& lobe, Vec3 wo, Spectrum eta, const MetCosines::Kinks& kinks, F&& f,
+                               bool varies, float beyond) const {
+    const OpenPbrDielectric& d = point_.dielectric;
+    const Spectrum cosines = lobe.cosines(wo);
+    const float critical = criticalCosine(eta);
+    if (lobe.smooth() || !(std::max(critical, std::ranges::max(kinks)) > 0)) return d.meanOver(cosines, f, varies);
+    const auto more = [&](Spectrum c) { return f(c) - Spectrum(beyond); };
+    const MetCosines points(cosines, critical, kinks, true);
+    const Spectrum change = points.integral(more, MicrofacetEscape(lobe.ggx(), wo, eta), varies, disperses_).reflected;
+    return min(max(Spectrum(beyond) + change / lobe.mirrorAlbedo(wo), Spectrum(0.f)), kOne);
+}
+
+// What single scattering at the interface returns and transmits, with the weights of InterfaceShares: what it would if
+// it reflected everything, changed wherever it transmits by what leaves the microfacets on either side. Where tables
 // know that of the bare interface, only the change that film and coat make is left to integrate.
 template <typename Covered, typename Bare>
-Spectrum OpenPbrBsdf::interfaceAlbedo(Vec3 wo, Spectrum eta, bool within, Covered&& covered, Bare&& bare) const {
+void OpenPbrBsdf::setInterface(View& v, Spectrum eta, Covered&& covered, Bare&& bare) const {
     const GgxLobe& lobe = point_.specular;
     const OpenPbrDielectric& d = point_.dielectric;
-    const Spectrum pair = lobe.interfaceAlbedo(wo, eta, disperses_, within);
-    // Plastic keeps its light whatever the scale of its gloss: the matte part gets the rest.
-    if (!refracts() || lobe.smooth()) return pair;
-    const bool tabulated = lobe.tabulated(eta, disperses_, within);
-    if (tabulated && !d.covered()) return pair;
-    const auto more = [&](Spectrum c) { return covered(c) - (tabulated ? bare(c) : kOne); };
-    const float ratio = maxLane(eta), edge = std::sqrt(std::max((1 - ratio) * (1 + ratio), 0.f));
-    const MetCosines cosines(lobe.cosines(wo), edge, edge > 0 || !tabulated);
-    const MicrofacetEscape escape(lobe.ggx(), wo, eta);
-    const Spectrum change = cosines.integral(more, escape, d.varies(), disperses_);
-    return min(max((tabulated ? pair : Spectrum(lobe.mirrorAlbedo(wo))) + change, Spectrum(1e-3f)), kOne);
+    InterfaceShares<Spectrum> shares = lobe.interface(v.wo, eta, disperses_, v.within);
+    const bool tabulated = lobe.tabulated(eta, disperses_, v.within);
+    if (refracts() && !lobe.smooth() && (!tabulated || d.covered())) {
+        const auto more = [&](Spectrum c) { return covered(c) - (tabulated ? bare(c) : kOne); };
+        const float critical = d.critical(v.within);
+        const MetCosines points(lobe.cosines(v.wo), critical, d.kinks(v.within), critical > 0 || !tabulated);
+        const auto change = points.integral(more, MicrofacetEscape(lobe.ggx(), v.wo, eta), d.varies(), disperses_);
+        if (!tabulated) shares.kept = shares.turned * (2 * lobe.mirrorAlbedo(v.wo));
+        shares.kept += (shares.turned * change.reflected - (kOne - shares.turned) * change.refracted) * 2;
+        shares.kept = max(shares.kept, Spectrum(1e-3f));
+    }
+    v.scale = shares.reflection();
+    v.through = shares.transmission();
 }
 
 // Seen from the back of a sheet, what leans to the right there leans to the right here: of directions told as if both
@@ -164,19 +138,19 @@ void OpenPbrBsdf::turnCoat(View& v, bool back) const {
 // partly sent back, (1 - K)/(1 - E K) of it gets out in the end.
 void OpenPbrBsdf::viewCoat(View& v) const {
     const OpenPbrCover& cover = point_.cover;
+    const GgxLobe& lobe = point_.coat;
     const auto reflectance = [&](Spectrum c) { return cover.coatReflectance(c); };
-    const Spectrum mean = point_.dielectric.meanOver(point_.coat.cosines(v.coatWo), reflectance);
-    v.coatScale =
-        kOne / point_.coat.interfaceAlbedo(v.coatWo, cover.coatEta,
-                                           maxLane(abs(cover.coatEta - Spectrum(cover.coatEta[0]))) > 0, false);
-    const Spectrum albedo = min(v.coatScale * point_.coat.mirrorAlbedo(v.coatWo) * mean, kOne);
+    const bool varies = disperses(cover.coatEta);
+    const float mirror = lobe.mirrorAlbedo(v.coatWo);
+    v.coatScale = min(lobe.interface(v.coatWo, cover.coatEta, varies, false).reflection(), Spectrum(1 / mirror));
+    const Spectrum albedo = v.coatScale * lobeMean(lobe, v.coatWo, cover.coatEta, {}, reflectance, varies, 1) * mirror;
     v.pick[kCoat] = v.ground * cover.coat * abbe::mean(albedo);
     v.covered *= kOne - albedo;
     if (coatAbsorbs_) v.pathOut = point_.coatLog / cover.cosineInCoat(Spectrum(v.coatWo.z));
     if (!(point_.coatDarkening > 0 && v.opaque > 0)) return;
     const Spectrum smooth = cover.coatReflectance(Spectrum(v.coatWo.z));
-    const Spectrum returned = mix(smooth, Spectrum(point_.coatReturns), baseRoughness_);
-    const Spectrum dark = (kOne - returned) / max(kOne - baseAlbedo_ * returned, Spectrum(1e-6f));
+    const Spectrum sentBack = mix(smooth, Spectrum(point_.coatReturns), baseRoughness_);
+    const Spectrum dark = (kOne - sentBack) / max(kOne - baseAlbedo_ * sentBack, Spectrum(1e-6f));
     v.darkening = mix(kOne, dark, point_.coatDarkening);
 }
 

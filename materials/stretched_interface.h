@@ -1,5 +1,5 @@
 // What one event at a stretched (anisotropic) rough interface of glass reflects and transmits together: the companion
-// of ggxAlbedo, which knows surfaces of one width only.
+// of ggxInterface, which knows surfaces of one width only.
 #pragma once
 
 #include "materials/stretched_grid.h"
@@ -14,17 +14,21 @@ class StretchedInterface {
     StretchedInterface(float alphaX, float alphaY, float eta);
 
     float eta() const { return eta_; }
-    // Share of the light from wo (unit, wo.z >= 0) that is neither stopped nor turned back by other microfacets; from
-    // the inside if `within`.
-    float operator()(Vec3 wo, bool within) const {
+    // Shares of the light from wo (unit, wo.z >= 0) that leave a microfacet on either side and are not stopped by
+    // others; from the inside if `within`.
+    struct Shares {
+        float reflected = 0, transmitted = 0;
+    };
+    Shares operator()(Vec3 wo, bool within) const {
         const Side& side = sides_[within ? 1 : 0];
-        return side.grid.at(side.table, wo, [](float share) { return share; });
+        return {side.grid.at(side.table, wo, [](const Shares& s) { return s.reflected; }),
+                side.grid.at(side.table, wo, [](const Shares& s) { return s.transmitted; })};
     }
 
   private:
     struct Side {
         StretchedGrid grid;
-        StretchedGrid::Table<float> table;
+        StretchedGrid::Table<Shares> table;
     };
     static Side make(float alphaX, float alphaY, float eta);
 

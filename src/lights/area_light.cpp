@@ -8,13 +8,30 @@
 
 namespace abbe {
 
+namespace {
+
+// In the mean over the light that leaves an even surface, 2∫ f(µ) µ dµ, at even steps of µ².
+SampledCurve veiledSpectrum(const Curve& spectrum, const EmissionVeil& veil) {
+    constexpr int kPoints = 8;
+    return SampledCurve([&](double nm) {
+        const auto lambda = Wavelengths::single(static_cast<float>(nm));
+        double sum = 0;
+        for (int i = 0; i < kPoints; ++i)
+            sum += static_cast<double>(veil.passing(std::sqrt((static_cast<float>(i) + 0.5f) / kPoints), lambda)[0]);
+        return spectrum.at(nm) * sum / kPoints;
+    });
+}
+
+} // namespace
+
 AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided,
-                     std::unique_ptr<const LightTexture> texture)
-    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)),
+                     std::unique_ptr<const LightTexture> texture, const EmissionVeil* veil)
+    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)), veil_(veil),
       twoSided_(twoSided) {
+    if (veil_) veiled_.emplace(veiledSpectrum(*unveiled(), *veil_));
     const double area = shape.area();
     const double spread = std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiance.scale : 0;
-    const Curve& mean = texture_ ? texture_->spectrum() : *radiance.curve;
+    const Curve& mean = *powerShape();
     power_ = spread * radiantIntegral(mean);
     visiblePower_ = spread * visibleIntegral(mean);
 }
@@ -64,14 +81,21 @@ std::optional<LightSample> AreaLight::arriving(const ShapeSample& s, Vec3 from, 
     const float rounding = 0x1p-21f * distance;
     const Vec3 p = spawnOrigin(s.p, s.pError + Vec3{rounding, rounding, rounding}, s.ng, -wi);
     // In place, as every Bsdf::sample (render/bsdf.h).
-    std::optional<LightSample> sample(std::in_place, wi, p, distance, radiance_.at(lambda) * factor, s.pdfSolidAngle);
+    std::optional<LightSample> sample(std::in_place, wi, p, distance, radiance(dot(s.ng, wi), lambda) * factor,
+                                      s.pdfSolidAngle);
     sample->n = s.ng;
     return sample;
 }
 
 Spectrum AreaLight::emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept {
     if (!emits(hit.ng, w)) return Spectrum(0.f);
-    return texture_ ? radiance_.at(lambda) * texture_->at(hit, lambda) : radiance_.at(lambda);
+    const Spectrum plain = radiance(dot(hit.ng, w), lambda);
+    return texture_ ? plain * texture_->at(hit, lambda) : plain;
+}
+
+Spectrum AreaLight::radiance(float cosine, const Wavelengths& lambda) const noexcept {
+    const Spectrum plain = radiance_.at(lambda);
+    return veil_ ? plain * veil_->passing(std::min(std::abs(cosine), 1.f), lambda) : plain;
 }
 
 float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float) const noexcept {
@@ -133,7 +157,7 @@ float AreaLight::pdfDirection(const LightOrigin& origin, Vec3 w) const noexcept 
 }
 
 Spectrum AreaLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths& lambda) const noexcept {
-    return emits(origin.n, w) ? radiance_.at(lambda) * origin.factor : Spectrum(0.f);
+    return emits(origin.n, w) ? radiance(dot(origin.n, w), lambda) * origin.factor : Spectrum(0.f);
 }
 
 std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape& shape, const LightContext& context,

@@ -1,8 +1,10 @@
-// A shape that emits the same radiance in all directions of its outer side: from all its points, or with a texture.
+// A shape that emits the same radiance in all directions of its outer side, but for what a veil takes: from all its
+// points, or with a texture.
 #pragma once
 
 #include "lights/amount.h"
 #include "lights/light_texture.h"
+#include "render/emission_veil.h"
 #include "render/light.h"
 #include "render/shape.h"
 
@@ -13,8 +15,9 @@ namespace abbe {
 class AreaLight : public Light {
   public:
     // The shape is in render space; shape and curve outlive the light. `radiance` is that where the texture is 1; the
-    // texture is one over the same shape and curve.
-    AreaLight(const Shape&, ScaledCurve radiance, bool twoSided, std::unique_ptr<const LightTexture> = nullptr);
+    // texture is one over the same shape and curve. The veil outlives the light; null: none.
+    AreaLight(const Shape&, ScaledCurve radiance, bool twoSided, std::unique_ptr<const LightTexture> = nullptr,
+              const EmissionVeil* veil = nullptr);
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
     double power() const override { return power_; }
@@ -23,7 +26,7 @@ class AreaLight : public Light {
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
-    const Curve* powerShape() const override { return texture_ ? &texture_->spectrum() : radiance_.curve; }
+    const Curve* powerShape() const override { return veiled_ ? &*veiled_ : unveiled(); }
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
@@ -51,10 +54,16 @@ class AreaLight : public Light {
   private:
     bool emits(Vec3 ng, Vec3 w) const noexcept { return twoSided_ ? dot(ng, w) != 0 : dot(ng, w) > 0; }
     LightOrigin originOf(Vec3 p, Vec3 n, float pdf, float time) const noexcept;
+    // Light that leaves at this cosine, of either sign, where the texture is 1.
+    Spectrum radiance(float cosine, const Wavelengths&) const noexcept;
+    // Shape of the spectrum in the mean over the surface.
+    const Curve* unveiled() const { return texture_ ? &texture_->spectrum() : radiance_.curve; }
     const Shape& shape_;
     Vec3 centre_;
     ScaledCurve radiance_;
     std::unique_ptr<const LightTexture> texture_; // or null
+    const EmissionVeil* veil_;                    // or null
+    std::optional<SampledCurve> veiled_;          // unveiled(), and what the veil lets through of it
     double power_, visiblePower_;
     bool twoSided_;
 };

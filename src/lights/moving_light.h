@@ -49,8 +49,8 @@ class MovingAreaLight final : public AreaLight {
   public:
     // `atRest`: as AreaLight has it, at rest.
     MovingAreaLight(const Shape& atRest, ScaledCurve radiance, bool twoSided, LightMotion motion,
-                    std::unique_ptr<const LightTexture> texture = nullptr)
-        : AreaLight(atRest, radiance, twoSided, std::move(texture)), motion_(std::move(motion)) {}
+                    std::unique_ptr<const LightTexture> texture = nullptr, const EmissionVeil* veil = nullptr)
+        : AreaLight(atRest, radiance, twoSided, std::move(texture), veil), motion_(std::move(motion)) {}
 
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;

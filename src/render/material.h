@@ -9,14 +9,17 @@
 
 namespace abbe {
 
+class EmissionVeil;
 class Medium;
 class Texture;
 
 // What a surface gives off by itself, on its outer side.
 struct SurfaceEmission {
-    double luminance = 0;             // cd/m², where `texture` is 1; 0: none
-    const Curve* color = nullptr;     // of any scale; null: D65
-    const Texture* texture = nullptr; // factor over the surface; null: 1
+    double luminance = 0;               // cd/m², where `texture` and the Y of `color` are 1; 0: none
+    const Curve* color = nullptr;       // null: D65 of Y = 1
+    const Texture* texture = nullptr;   // factor over the surface; null: 1
+    bool bothSides = false;             // on its inner side, too
+    const EmissionVeil* veil = nullptr; // not in the luminance; null: none
 };
 
 // Immutable after construction, thread-safe.

@@ -55,12 +55,8 @@ SceneBuilder::Emission SceneBuilder::emissionOf(const LoadedShape& shape) {
     const SurfaceEmission own = material ? material->emission() : SurfaceEmission{};
     if (!(own.luminance > 0)) return {};
     const Curve* color = own.color ? own.color : curves_.daylight();
-    const auto scale = scaleFor({own.luminance, schema::Dimension::luminance, {}}, *color, 1);
-    if (!scale) {
-        diagnostics_.error("E0343", shape.definition->span, "the emission of its material has a colour without light");
-        return {};
-    }
-    return {{color, *scale}, own.texture, shape.definition->span};
+    const auto ofWhite = scaleFor({own.luminance, schema::Dimension::luminance, {}}, *curves_.daylight(), 1);
+    return {{color, ofWhite.value_or(0)}, own.texture, shape.definition->span, own.bothSides, own.veil};
 }
 
 const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender,
@@ -83,11 +79,13 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
                                                        options_.geometry);
         if (texture->black()) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
     }
+    const bool both = emission.bothSides;
     if (motion)
-        lights_.push_back(std::make_unique<MovingAreaLight>(placed, emission.radiance, false, std::move(*motion),
-                                                            std::move(texture)));
+        lights_.push_back(std::make_unique<MovingAreaLight>(placed, emission.radiance, both, std::move(*motion),
+                                                            std::move(texture), emission.veil));
     else
-        lights_.push_back(std::make_unique<AreaLight>(placed, emission.radiance, false, std::move(texture)));
+        lights_.push_back(
+            std::make_unique<AreaLight>(placed, emission.radiance, both, std::move(texture), emission.veil));
     lights_.back()->setVisible(visible);
     lightNames_.emplace_back(d.name, "shape");
     built_->scene.names[lights_.back().get()] = nameOf(d);

@@ -3,6 +3,7 @@
 #include "spectrum/cauchy_curve.h"
 #include "spectrum/emission_curves.h"
 #include "spectrum/named_spectra.h"
+#include "spectrum/observer.h"
 #include "spectrum/rgb_upsampling.h"
 #include "spectrum/sampled_curve.h"
 #include "spectrum/sellmeier_curve.h"
@@ -17,7 +18,9 @@ using Form = SpectrumValue::Form;
 
 namespace {
 
-bool isLight(SpectrumRole role) { return role == SpectrumRole::emission || role == SpectrumRole::shape; }
+bool isLight(SpectrumRole role) {
+    return role == SpectrumRole::emission || role == SpectrumRole::shape || role == SpectrumRole::tint;
+}
 
 std::string_view purpose(SpectrumRole role) {
     switch (role) {
@@ -30,6 +33,7 @@ std::string_view purpose(SpectrumRole role) {
     case SpectrumRole::index:
         return "a refractive index";
     case SpectrumRole::shape:
+    case SpectrumRole::tint:
         return "the colour of light";
     }
     return "";
@@ -152,7 +156,22 @@ const Curve* CurveLibrary::named(const SpectrumValue& value, SpectrumRole role, 
     return keep(indexCurve(*found));
 }
 
+// Numbers and reflectances are factors of D65, as `rgb` is; spectra of light have a brightness of their own, which does
+// not count.
+const Curve* CurveLibrary::tint(const SpectrumValue& value, Diagnostics& diagnostics) {
+    const Curve* const light = curve(value, SpectrumRole::shape, diagnostics);
+    if (!light || value.form == Form::rgb) return light;
+    if (value.form == Form::flat || value.form == Form::measured)
+        return keep(std::make_unique<SampledCurve>([&](double nm) { return light->at(nm) * daylight()->at(nm); }));
+    const double y = integrate(*light).y;
+    if (y > 0) return keep(std::make_unique<SampledCurve>([&](double nm) { return light->at(nm) / y; }));
+    diagnostics.error("E0343", value.span, "this colour has no light that is seen", "luminance cannot be given to it")
+        .help = "black is `rgb 0 0 0`";
+    return nullptr;
+}
+
 const Curve* CurveLibrary::curve(const SpectrumValue& value, SpectrumRole role, Diagnostics& diagnostics) {
+    if (role == SpectrumRole::tint) return tint(value, diagnostics);
     const auto usable = [&](std::unique_ptr<const Curve> c) -> const Curve* {
         if (role != SpectrumRole::index || usableIndex(*c)) return keep(std::move(c));
         diagnostics

@@ -30,6 +30,7 @@ class CurveLibrary {
     const Curve* named(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
     const Curve* rgb(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
     const Curve* table(const schema::SpectrumValue&, schema::SpectrumRole);
+    const Curve* tint(const schema::SpectrumValue&, Diagnostics&);
 
     std::vector<std::unique_ptr<const Curve>> curves_;
     const Curve* daylight_ = nullptr;

@@ -43,10 +43,10 @@ bool DressedMaterial::usesTextures() const {
 }
 
 void DressedMaterial::bend(SurfaceHit& hit) const noexcept {
-    inner_.bend(hit);
     if (dress_.normal.texture) turn(hit, mappedNormal(dress_.normal, hit));
     if (dress_.bump.texture) turn(hit, bumpedNormal(dress_.bump, hit));
-    turn(hit, consistentNormal(hit.ng, hit.shading.z, -hit.arrival));
+    if (dress_.normal.texture || dress_.bump.texture) turn(hit, consistentNormal(hit.ng, hit.shading.z, -hit.arrival));
+    inner_.bend(hit); // which may turn the tangent
 }
 
 } // namespace abbe

@@ -313,6 +313,8 @@ class SceneBuilder final : public schema::Resolver {
         ScaledCurve radiance; // no curve: none
         const Texture* texture = nullptr;
         Span span; // where the texture is asked for
+        bool bothSides = false;
+        const EmissionVeil* veil = nullptr;
     };
     Emission emissionOf(const LoadedShape&);
     const Curve* textureWhite(const Texture&);

@@ -92,6 +92,8 @@ std::string_view describe(SpectrumRole role) {
         return "a refractive index";
     case SpectrumRole::shape:
         return "a spectrum of which only the shape matters";
+    case SpectrumRole::tint:
+        return "a colour of light, 1 where it is white";
     }
     return {};
 }

@@ -160,7 +160,7 @@ std::string unitText(const Unit& unit) {
 std::string formText(const SpectrumForm& form) {
     std::string roles;
     for (const SpectrumRole role : {SpectrumRole::albedo, SpectrumRole::unbounded, SpectrumRole::emission,
-                                    SpectrumRole::index, SpectrumRole::shape})
+                                    SpectrumRole::index, SpectrumRole::shape, SpectrumRole::tint})
         if (fits(form.form, role)) roles += fmt::format("{}{}", roles.empty() ? "" : "; ", describe(role));
     return fmt::format("spectrum: {}\n  {}\n", form.name, form.doc) + labelled("example", form.example) +
            labelled("fits", roles);

@@ -137,7 +137,7 @@ std::string spectrumSection() {
     for (const SpectrumForm& form : spectrumForms()) {
         std::string roles;
         for (const SpectrumRole role : {SpectrumRole::albedo, SpectrumRole::unbounded, SpectrumRole::emission,
-                                        SpectrumRole::index, SpectrumRole::shape})
+                                        SpectrumRole::index, SpectrumRole::shape, SpectrumRole::tint})
             if (fits(form.form, role)) roles += fmt::format("{}{}", roles.empty() ? "" : "; ", describe(role));
         text += fmt::format("| `{}` | {} | {} | {} |\n", form.name, roles, tableCell(form.doc),
                             tableCell(inCode(form.example)));

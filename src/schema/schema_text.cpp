@@ -14,7 +14,7 @@ constexpr std::array kFieldTypes = {"integer",   "number",   "quantity", "vector
                                     "choice",    "words",    "text",     "file",         "points",    "numbers",
                                     "indexRows", "sharpRow", "spectrum", "complexIndex", "reference", "transform",
                                     "table",     "place",    "moments",  "weighted",     "stop",      "namedNumbers"};
-constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape"};
+constexpr std::array kRoles = {"albedo", "unbounded", "emission", "index", "shape", "tint"};
 constexpr std::array kDimensionIds = {"none",        "length",     "angle",        "time",
                                       "temperature", "power",      "luminousFlux", "luminousIntensity",
                                       "illuminance", "irradiance", "luminance",    "inverseLength",

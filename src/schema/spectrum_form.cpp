@@ -46,7 +46,7 @@ bool fits(Form form, SpectrumRole role) {
     case Form::blackbody:
     case Form::illuminant:
     case Form::line:
-        return role == SpectrumRole::emission || role == SpectrumRole::shape;
+        return role == SpectrumRole::emission || role == SpectrumRole::shape || role == SpectrumRole::tint;
     case Form::glass:
     case Form::metal:
     case Form::sellmeier:

@@ -54,6 +54,8 @@ enum class SpectrumRole : std::uint8_t {
     emission,  // >= 0, energy-preserving tables; rgb is upsampled against the space's white
     index,     // refractive index, > 0; rgb makes no sense
     shape,     // >= 0, only its shape matters (a light's `color`): the user normalises it
+    tint,      // >= 0, a factor of the brightness of a light: white and spectra of light have Y = 1, rgb and plain
+               // numbers are factors of D65
 };
 
 // A number in SI units with the dimension that was written.

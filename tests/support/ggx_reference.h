@@ -71,21 +71,25 @@ inline double referenceAlbedo(double mu, double alpha) {
     });
 }
 
-// Share that one event of an isotropic rough dielectric interface reflects or transmits.
-inline double referenceDielectricAlbedo(double mu, double alpha, double eta) {
+// Shares that one event of an isotropic rough dielectric interface reflects and transmits.
+struct ReferenceInterface {
+    double reflected = 0, transmitted = 0;
+};
+inline ReferenceInterface referenceInterface(double mu, double alpha, double eta) {
     const ReferenceGgx ggx{alpha, alpha};
     const Vec3d wo{std::sqrt(1 - mu * mu), 0, mu};
-    return meanOverVisible(ggx, wo, [&](Vec3d m) {
-        const double c = dot(wo, m), reflectance = referenceFresnel(c, eta);
-        const Vec3d wr = m * (2 * c) - wo;
-        double sum = wr.z > 0 ? reflectance * ggx.G2(wo, wr) / ggx.G1(wo) : 0.0;
-        if (reflectance < 1) {
-            const double cosT = safeSqrt(1 - (1 - c * c) / (eta * eta));
-            const Vec3d wt = m * (c / eta - cosT) - wo * (1 / eta);
-            if (wt.z < 0) sum += (1 - reflectance) * ggx.G2(wo, wt) / ggx.G1(wo);
-        }
-        return sum;
+    ReferenceInterface sum;
+    sum.reflected = meanOverVisible(ggx, wo, [&](Vec3d m) {
+        const Vec3d wr = m * (2 * dot(wo, m)) - wo;
+        return wr.z > 0 ? referenceFresnel(dot(wo, m), eta) * ggx.G2(wo, wr) / ggx.G1(wo) : 0.0;
     });
+    sum.transmitted = meanOverVisible(ggx, wo, [&](Vec3d m) {
+        const double c = dot(wo, m), reflectance = referenceFresnel(c, eta);
+        if (!(reflectance < 1)) return 0.0;
+        const Vec3d wt = m * (c / eta - safeSqrt(1 - (1 - c * c) / (eta * eta))) - wo * (1 / eta);
+        return wt.z < 0 ? (1 - reflectance) * ggx.G2(wo, wt) / ggx.G1(wo) : 0.0;
+    });
+    return sum;
 }
 
 } // namespace abbe::test

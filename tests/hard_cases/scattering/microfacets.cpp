@@ -104,12 +104,14 @@ TEST_CASE("case 27: grazing directions") {
                             bad += !allFinite(s->weight) || !allFinite(s->pdfRatio) || !isFinite(s->wi) ||
                                    !(s->pdfSolidAngle > 0) || !std::isfinite(s->pdfSolidAngle);
                             if (b.bsdf->lobes().has(Lobe::dispersive)) continue; // only ratios are bounded
-                            // Compensation divides by what single scattering kept.
-                            const float kept = b.alpha == 0 ? 1
-                                               : b.eta == 0 ? ggxAlbedo(cosine, std::min(1.f, b.alpha))
-                                               : wo.z > 0   ? ggxAlbedo(cosine, b.alpha, b.eta)
-                                                            : ggxAlbedo(cosine, b.alpha, 1 / b.eta);
-                            heaviest = std::max(heaviest, maxLane(s->weight) * std::min(1.f, kept));
+                            // Compensation makes up for what single scattering lost.
+                            float scale = 1;
+                            if (b.alpha > 0 && b.eta == 0) scale = 1 / ggxAlbedo(cosine, std::min(1.f, b.alpha));
+                            if (b.alpha > 0 && b.eta > 0) {
+                                const auto shares = ggxInterface(cosine, b.alpha, wo.z > 0 ? b.eta : 1 / b.eta);
+                                scale = std::max(shares.reflection(), shares.transmission());
+                            }
+                            heaviest = std::max(heaviest, maxLane(s->weight) / std::max(1.f, scale));
                         }
     c.measured("samples that are no numbers, cosines from 1 to 0", bad, 0);
     c.measured("largest weight", static_cast<double>(heaviest), 1.5);

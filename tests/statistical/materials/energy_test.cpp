@@ -66,6 +66,7 @@ TEST_CASE("white furnace of stretched metal") {
         for (const float roughness : {0.1f, 0.3f, 0.6f, 1.f}) CHECK(worst(roughness, anisotropy) < 0.005);
 }
 
+// At roughness 1, where further events turn up to sixteen times as much as one, tables of both factors are less exact.
 TEST_CASE("white furnace: a clear interface loses nothing, from both sides and both ways of transport") {
     double worst = 0;
     for (const double ior : {1.33, 1.5, 2.4})
@@ -77,8 +78,9 @@ TEST_CASE("white furnace: a clear interface loses nothing, from both sides and b
                 // In equilibrium the radiance inside is n² that outside: what refraction compressed, it makes up for.
                 const double eye = meanOfSamples(*b.bsdf, wo, Transport::radiance, kEnergySamples,
                                                  [](const BsdfSample& s) { return s.weight[0] * s.eta * s.eta; });
-                CHECK_MESSAGE(std::abs(light - 1) < 2e-3, b.name, " direction ", i, ": ", light);
-                CHECK_MESSAGE(std::abs(eye - 1) < 2e-3, b.name, " direction ", i, ": ", eye);
+                const double limit = roughness < 1 ? 2e-3 : 5e-3;
+                CHECK_MESSAGE(std::abs(light - 1) < limit, b.name, " direction ", i, ": ", light);
+                CHECK_MESSAGE(std::abs(eye - 1) < limit, b.name, " direction ", i, ": ", eye);
                 worst = std::max(worst, std::abs(light - 1));
             }
         }
@@ -132,7 +134,7 @@ TEST_CASE("reciprocity of single scattering") {
             const Ggx ggx = Ggx::fromRoughness(std::sqrt(b.alpha), 0.7f);
             stretched.emplace(ggx.alphaX(), ggx.alphaY());
         }
-        const auto kept = [&](Vec3 w) {
+        const auto kept = [&](Vec3 w, bool through) {
             if (b.name == "diffuse") return 1.0;
             if (b.eta == 0) {
                 const Vec3 up{w.x, w.y, std::abs(w.z)};
@@ -140,7 +142,8 @@ TEST_CASE("reciprocity of single scattering") {
                              f0 = 1 - 4 * 0.2 / (1.2 * 1.2 + 9);
                 return 1 / (1 + f0 * (1 - e) / e);
             }
-            return static_cast<double>(ggxAlbedo(std::abs(w.z), b.alpha, w.z > 0 ? b.eta : 1 / b.eta));
+            const auto shares = ggxInterface(std::abs(w.z), b.alpha, w.z > 0 ? b.eta : 1 / b.eta);
+            return 1 / static_cast<double>(through ? shares.transmission() : shares.reflection());
         };
         for (int i = 0; i < 3000; ++i) {
             const Vec3 a = squareToSphere({random.uniform(), random.uniform()});
@@ -148,7 +151,8 @@ TEST_CASE("reciprocity of single scattering") {
             if (std::min(std::abs(a.z), std::abs(c.z)) < 0.01f) continue;
             const float there = b.bsdf->eval(a, c, Transport::radiance).fcos[0] / std::abs(c.z);
             const float back = b.bsdf->eval(c, a, Transport::importance).fcos[0] / std::abs(a.z);
-            const double x = there * kept(a), y = back * kept(c);
+            const bool through = (a.z > 0) != (c.z > 0);
+            const double x = there * kept(a, through), y = back * kept(c, through);
             // Relative 1e-4 at the top of a lobe; Fresnel's slope near the critical angle leaves 1e-5 absolute.
             CHECK_MESSAGE(std::abs(x - y) <= 2e-4 * std::max({x, y, 0.05}), b.name, ": ", x, " and ", y);
             if (there > 1e-3f && b.alpha <= 0.36f)

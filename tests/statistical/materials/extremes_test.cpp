@@ -33,12 +33,14 @@ TEST_CASE("samples at every cosine and number are finite, and no weight is large
                                    s->pdfSolidAngle > 0 && std::isfinite(s->pdfSolidAngle) && s->eta > 0 &&
                                    std::abs(length(s->wi) - 1) < 1e-5f;
                             if (b.bsdf->lobes().has(Lobe::dispersive)) continue; // only ratios of densities are bounded
-                            // Compensation divides by what single scattering kept.
-                            const float kept = b.alpha == 0 ? 1
-                                               : b.eta == 0 ? ggxAlbedo(c, std::min(1.f, b.alpha))
-                                               : wo.z > 0   ? ggxAlbedo(c, b.alpha, b.eta)
-                                                            : ggxAlbedo(c, b.alpha, 1 / b.eta);
-                            heaviest = std::max(heaviest, maxLane(s->weight) * std::min(1.f, kept));
+                            // Compensation makes up for what single scattering lost.
+                            float scale = 1;
+                            if (b.alpha > 0 && b.eta == 0) scale = 1 / ggxAlbedo(c, std::min(1.f, b.alpha));
+                            if (b.alpha > 0 && b.eta > 0) {
+                                const auto shares = ggxInterface(c, b.alpha, wo.z > 0 ? b.eta : 1 / b.eta);
+                                scale = std::max(shares.reflection(), shares.transmission());
+                            }
+                            heaviest = std::max(heaviest, maxLane(s->weight) / std::max(1.f, scale));
                         }
         CHECK_MESSAGE(good, b.name);
         CHECK_MESSAGE(heaviest <= 1.5f, b.name, ": ", heaviest);

@@ -39,6 +39,34 @@ struct Coated {
     const Bsdf* bsdf;
 };
 
+// The base is stretched along its own tangent, the coat along u whatever that is.
+TEST_CASE("geometry-tangent turns the highlight of the base alone") {
+    const Vec3 wo = normalize(Vec3{0.3f, 0.2f, 1}), wi = normalize(Vec3{-0.1f, 0.4f, 1});
+    const auto turned = [](Vec3 w) { return Vec3{w.y, -w.x, w.z}; }; // by -90 degrees
+    const Constant alongV = directions({0, 1, 0});
+    OpenPbrParams p;
+    p.baseMetalness = number(1), p.specularRoughness = number(0.5), p.specularRoughnessAnisotropy = number(0.8);
+    const auto value = [&](const OpenPbrParams& of, Vec3 o, Vec3 i) {
+        const auto material = makeOpenPbr(of);
+        SurfaceHit hit = planeHit(o);
+        REQUIRE(material->usesTextures() == material->bends());
+        if (material->bends()) material->bend(hit);
+        Arena arena;
+        const Bsdf* bsdf = material->bsdf(hit, Wavelengths::single(550), arena);
+        return static_cast<double>(
+            bsdf->eval(hit.shading.toLocal(o), hit.shading.toLocal(i), Transport::radiance).fcos[0]);
+    };
+    const double plain = value(p, wo, wi), across = value(p, turned(wo), turned(wi));
+    CHECK(std::abs(plain / across - 1) > 0.2);
+    OpenPbrParams number90 = p, map = p;
+    number90.geometryTangent = number(0.25), map.geometryTangent.texture = &alongV;
+    CHECK(value(number90, wo, wi) == doctest::Approx(across).epsilon(1e-4));
+    CHECK(value(map, wo, wi) == doctest::Approx(across).epsilon(1e-4));
+    // Round highlights have no direction.
+    number90.specularRoughnessAnisotropy = number(0);
+    CHECK(!makeOpenPbr(number90)->bends());
+}
+
 OpenPbrParams lacquer(double roughness) {
     OpenPbrParams p;
     p.baseColor = color(flat(0.2)), p.specularWeight = number(0);
@@ -143,7 +171,7 @@ TEST_CASE("a leaning coat: sample() and eval() agree, no light is made, little i
         for (const Vec3 wo : {directionAt(15), directionAt(50, 2), directionAt(70, 4)}) {
             OpenPbrParams p = whiteOpenPbr();
             p.baseMetalness = number(kind == 1), p.specularRoughness = number(0.4);
-            p.coatIor = kind == 2 ? 6 : 1.6; // most of the light is the coat's
+            p.coatIor = number(kind == 2 ? 6 : 1.6); // most of the light is the coat's
             p.coatWeight = number(0.8), p.coatRoughness = number(0.3);
             p.geometryCoatNormal.texture = &leaning;
             const Coated c(p, wo);

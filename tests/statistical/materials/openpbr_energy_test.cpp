@@ -27,9 +27,8 @@ struct Furnace {
         if (outside) b.bsdf = b.material->bsdf(hit, Wavelengths::single(550), *b.arena);
         for (const double degrees : {5.0, 40.0, 65.0, 80.0, 87.0}) {
             const Vec3 w = directionAt(degrees), wo = turned ? Vec3{w.y, w.x, w.z} : w;
-            note(std::abs(albedo(*b.bsdf, wo, samples) - 1), b.name, degrees, worst, where);
-            if (b.eta > 0)
-                note(std::abs(albedo(*b.bsdf, mirrored(wo), samples) - 1), b.name, degrees, worstWithin, whereWithin);
+            note(errorOf(*b.bsdf, wo, samples), b.name, degrees, worst, where);
+            if (b.eta > 0) note(errorOf(*b.bsdf, mirrored(wo), samples), b.name, degrees, worstWithin, whereWithin);
         }
     }
     void report() const {
@@ -38,6 +37,11 @@ struct Furnace {
     }
 
   private:
+    // What is doubtful is looked at again: of a few thousand samples the sum itself is not exact.
+    static double errorOf(const Bsdf& bsdf, Vec3 wo, int samples) {
+        const double error = std::abs(albedo(bsdf, wo, samples) - 1);
+        return error < 0.003 ? error : std::abs(albedo(bsdf, wo, 20 * samples) - 1);
+    }
     void note(double error, const std::string& name, double degrees, double& largest, std::string& place) {
         sum += error, ++count;
         if (error > largest) largest = error, place = fmt::format("{} at {}", name, degrees);
@@ -63,6 +67,47 @@ TEST_CASE("white furnace over the cube: translucent surfaces, from both sides") 
     CHECK(furnace.sum / furnace.count < 0.001);
 }
 
+// Bases, coats and films thinner than what is around them, which reflect totally, and weights above 1.
+TEST_CASE("white furnace over the cube: relative indices from 0.3 to 10") {
+    RandomOpenPbr cube(6);
+    std::deque<ConstantCurve> curves;
+    Furnace furnace;
+    for (int i = 0; i < 150; ++i) {
+        OpenPbrParams p = cube(i % 4 == 0, true, false);
+        const auto between = [&](double low, double high) { return low + (high - low) * cube.random.uniformDouble(); };
+        p.specularIor = &curves.emplace_back(i % 5 == 0 ? between(2, 10) : between(0.3, 1.5));
+        if (!(p.baseMetalness.value > 0)) p.specularWeight = number(i % 2 ? between(0, 3) : between(0, 1));
+        p.coatIor = number(i % 3 == 0 ? between(0.6, 1) : between(1, 2.2));
+        p.thinFilmIor = number(between(0.9, 2.3));
+        furnace.add(p, 4000, false, i % 6 == 0 ? &flat(1.33) : nullptr);
+    }
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+    CHECK(furnace.worstWithin < 0.005);
+    CHECK(furnace.sum / furnace.count < 0.001);
+}
+
+// It lost up to half: the base under the coat and that beside it had critical angles of their own.
+TEST_CASE("white furnace: thin glass under a dense coat, with a modulated index") {
+    static const ConstantCurve thin(0.73), thinner(0.9);
+    Furnace furnace;
+    for (const double roughness : {0.0, 0.3, 0.8})
+        for (const double coat : {1.0, 0.5}) {
+            OpenPbrParams p = whiteOpenPbr();
+            p.transmissionWeight = number(1), p.specularRoughness = number(roughness);
+            p.specularIor = &thin, p.specularWeight = number(0.46);
+            p.coatWeight = number(coat), p.coatIor = number(1.72);
+            furnace.add(p, 8000);
+        }
+    OpenPbrParams filmed = whiteOpenPbr();
+    filmed.transmissionWeight = number(1), filmed.specularRoughness = number(0.96), filmed.specularIor = &thinner;
+    filmed.thinFilmWeight = number(0.4), filmed.thinFilmIor = number(1.5);
+    furnace.add(filmed, 8000);
+    furnace.report();
+    CHECK(furnace.worst < 0.005);
+    CHECK(furnace.worstWithin < 0.005);
+}
+
 TEST_CASE("white furnace over the cube: stretched highlights") {
     RandomOpenPbr cube(3);
     Furnace furnace;
@@ -81,8 +126,8 @@ TEST_CASE("white furnace: film and coat on rough glass, from both sides") {
                 OpenPbrParams p = whiteOpenPbr();
                 p.transmissionWeight = number(1), p.specularRoughness = number(roughness);
                 p.specularIor = &curves.emplace_back(ior);
-                p.coatWeight = number(cover != 2), p.coatIor = cover == 1 ? 2 : 1.5;
-                p.thinFilmWeight = number(cover != 1), p.thinFilmIor = 1 + 0.35 * cover;
+                p.coatWeight = number(cover != 2), p.coatIor = number(cover == 1 ? 2 : 1.5);
+                p.thinFilmWeight = number(cover != 1), p.thinFilmIor = number(1 + 0.35 * cover);
                 p.thinFilmThickness = cover * 150e-9;
                 furnace.add(p, 8000);
             }

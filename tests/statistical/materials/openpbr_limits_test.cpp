@@ -1,6 +1,7 @@
 // Where the OpenPBR surface becomes one of the simple materials, and how it gets there.
 #include "materials/openpbr_interface.h"
 #include "openpbr_suite.h"
+#include "support/analytic_textures.h"
 
 #include <doctest/doctest.h>
 
@@ -68,6 +69,48 @@ TEST_CASE("transmission-weight 1 is the dielectric, from both sides") {
             CHECK(x->weight[0] == doctest::Approx(y->weight[0]).epsilon(1e-5));
             CHECK(x->eta == doctest::Approx(y->eta));
         }
+}
+
+TEST_CASE("specular-weight is the factor of the reflectance at normal incidence, above 1 up to all of it") {
+    const Vec3 up{0, 0, 1};
+    for (const double weight : {0.0, 0.5, 1.0, 4.0, 1000.0})
+        for (const double coat : {0.0, 1.0}) {
+            OpenPbrParams p;
+            p.transmissionWeight = number(1), p.specularRoughness = number(0), p.specularWeight = number(weight);
+            p.coatWeight = number(coat), p.coatColor = color(flat(0)); // black: what is below the coat is not seen
+            const BsdfUnderTest glass = openPbr(p, "glass");
+            const float f0 = 0.04f, coated = square(0.6f / 2.6f);
+            const float expected = coat > 0 ? coated : std::min(1.f, f0 * static_cast<float>(weight));
+            CHECK(glass.bsdf->evalDelta(up, up).ratio[0] == doctest::Approx(expected).epsilon(1e-3));
+            p.coatWeight = number(0), p.baseMetalness = number(1), p.baseColor = color(flat(0.2));
+            CHECK(openPbr(p, "metal").bsdf->evalDelta(up, up).ratio[0] ==
+                  doctest::Approx(std::min(1.f, 0.2f * static_cast<float>(weight))).epsilon(1e-3));
+        }
+    // Under a coat the ratio to the coat counts: of the same index as the base, nothing is left to modulate.
+    OpenPbrParams p;
+    p.transmissionWeight = number(1), p.specularRoughness = number(0), p.specularWeight = number(3);
+    p.coatWeight = number(1), p.coatIor = number(1.5);
+    CHECK(openPbr(p, "matched").bsdf->evalDelta(up, up).ratio[0] == doctest::Approx(0.04).epsilon(1e-3));
+}
+
+TEST_CASE("coat-ior, thin-film-ior and the film's map as textures are what numbers are") {
+    const auto same = [](void (*textured)(OpenPbrParams&, const Texture&), void (*plain)(OpenPbrParams&),
+                         double value) {
+        const auto v = static_cast<float>(value);
+        const Constant texture({v, v, v});
+        OpenPbrParams a, b;
+        a.coatWeight = b.coatWeight = a.thinFilmWeight = b.thinFilmWeight = number(0.7);
+        a.coatRoughness = b.coatRoughness = number(0.3);
+        textured(a, texture), plain(b);
+        CHECK(difference(openPbr(a, "texture"), openPbr(b, "number")) < 1e-4);
+        CHECK(makeOpenPbr(a)->usesTextures());
+    };
+    same([](OpenPbrParams& p, const Texture& t) { p.coatIor.texture = &t; },
+         [](OpenPbrParams& p) { p.coatIor = number(1.9); }, 1.9);
+    same([](OpenPbrParams& p, const Texture& t) { p.thinFilmIor.texture = &t; },
+         [](OpenPbrParams& p) { p.thinFilmIor = number(2.1); }, 2.1);
+    same([](OpenPbrParams& p, const Texture& t) { p.thinFilmMap.texture = &t; },
+         [](OpenPbrParams& p) { p.thinFilmThickness = 0.3e-6; }, 0.6);
 }
 
 TEST_CASE("specular-weight 0 is matte: Lambert's law at roughness 0") {

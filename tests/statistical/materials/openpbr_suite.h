@@ -57,13 +57,13 @@ struct RandomOpenPbr {
         p.transmissionWeight = opaque ? number(0) : weight();
         p.coatWeight = weight();
         p.coatRoughness = roughness();
-        p.coatIor = 1.1 + random.uniformDouble();
+        p.coatIor = number(1.1 + random.uniformDouble());
         p.coatDarkening = weight();
         p.fuzzWeight = weight();
         p.fuzzRoughness = number(random.uniformDouble());
         p.thinFilmWeight = weight();
         p.thinFilmThickness = 1e-6 * random.uniformDouble();
-        p.thinFilmIor = 1.1 + random.uniformDouble();
+        p.thinFilmIor = number(1.1 + random.uniformDouble());
         p.geometryThinWalled = random.uniformDouble() < 0.3;
         if (p.geometryThinWalled) {
             p.subsurfaceWeight = weight();
@@ -88,9 +88,9 @@ inline std::string describe(const OpenPbrParams& p) {
         "rough {:.3g}/{:.3g} ior {:.3g} dark {:.3g} fuzz {:.3g}/{:.3g} film {:.3g} {:.4g}nm {:.3g} thin {}",
         p.baseMetalness.value, p.specularRoughness.value, p.specularRoughnessAnisotropy.value,
         p.specularIor ? p.specularIor->at(550.0) : 1.5, p.specularWeight.value, p.transmissionWeight.value,
-        p.subsurfaceWeight.value, p.coatWeight.value, p.coatRoughness.value, p.coatRoughnessAnisotropy.value, p.coatIor,
-        p.coatDarkening.value, p.fuzzWeight.value, p.fuzzRoughness.value, p.thinFilmWeight.value,
-        p.thinFilmThickness * 1e9, p.thinFilmIor, p.geometryThinWalled);
+        p.subsurfaceWeight.value, p.coatWeight.value, p.coatRoughness.value, p.coatRoughnessAnisotropy.value,
+        p.coatIor.value, p.coatDarkening.value, p.fuzzWeight.value, p.fuzzRoughness.value, p.thinFilmWeight.value,
+        p.thinFilmThickness * 1e9, p.thinFilmIor.value, p.geometryThinWalled);
 }
 
 } // namespace abbe::test

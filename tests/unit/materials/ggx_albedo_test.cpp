@@ -33,15 +33,17 @@ TEST_CASE("mirror: between nodes the table is right to 1.5e-3, within a degree o
     CHECK(all.mean() < 3e-4);
 }
 
-TEST_CASE("dielectric: between nodes the table is right to 3e-3 for indices from 1.1 to 2.6, both sides") {
+TEST_CASE("interface: between nodes the table is right to 3e-3 for indices from 1.1 to 2.6, both sides") {
     test::Random random(2);
     test::Moments all;
     for (int i = 0; i < 400; ++i) {
         const auto [mu, alpha] = randomPoint(random, i);
         const double index = 1.1 + 1.5 * random.uniformDouble(), eta = i % 4 < 2 ? index : 1 / index;
-        const double expected = test::referenceDielectricAlbedo(mu, alpha, eta);
-        const double error =
-            ggxAlbedo(static_cast<float>(mu), static_cast<float>(alpha), static_cast<float>(eta)) / expected - 1;
+        const test::ReferenceInterface once = test::referenceInterface(mu, alpha, eta);
+        const InterfaceShares<float> shares =
+            ggxInterface(static_cast<float>(mu), static_cast<float>(alpha), static_cast<float>(eta));
+        const double error = once.reflected * static_cast<double>(shares.reflection()) +
+                             once.transmitted * static_cast<double>(shares.transmission()) - 1;
         CHECK(std::abs(error) < (mu > 0.02 ? 3e-3 : 6e-3));
         all.add(std::abs(error));
     }
@@ -55,9 +57,11 @@ TEST_CASE("limits: smooth surfaces and grazing angles keep everything, the ends 
     for (const float mu : {0.f, 1e-30f, 0.5f, 1.f})
         for (const float alpha : {0.f, 1e-4f, 0.5f, 1.f})
             for (const float eta : {0.2f, 0.5f, 0.9999f, 1.f, 1.0001f, 1.5f, 4.f, 10.f}) {
-                const float albedo = ggxAlbedo(mu, alpha, eta);
-                CHECK(albedo > 0.001f); // nearly index-matched and from inside, grazing light is lost to the wrong side
-                CHECK(albedo < 1.01f);
+                const InterfaceShares<float> shares = ggxInterface(mu, alpha, eta);
+                CHECK(shares.turned > 0);
+                CHECK(shares.turned < 1);
+                CHECK(shares.kept >= 0.001f); // nearly index-matched, grazing light is stopped either way
+                CHECK(shares.kept < 1.01f);
             }
 }
 

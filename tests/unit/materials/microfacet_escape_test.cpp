@@ -7,13 +7,15 @@
 namespace abbe {
 namespace {
 
-// Share that is not stopped of the light from wo, reflected less refracted by microfacet m; 0 if it cannot refract.
-double difference(const Ggx& ggx, Vec3 wo, Vec3 m, float eta) {
+// Share that is not stopped of the light from wo, reflected or refracted by microfacet m, with a weight of each; 0 if
+// it cannot refract.
+double escaping(const Ggx& ggx, Vec3 wo, Vec3 m, float eta, double reflection, double refraction) {
     const float c = dot(wo, m), g2 = (eta - 1) * (eta + 1) + c * c;
     if (!(g2 > 0)) return 0;
     const Vec3 back = reflect(wo, m), through = (m * (c - std::sqrt(g2)) - wo) * (1 / eta);
-    const auto kept = [&](Vec3 wi) { return static_cast<double>(ggx.maskingOverCosine(wo, wi) / ggx.visible(wo)); };
-    return (back.z > 0 ? kept(back) : 0) - (through.z < 0 ? kept(through) : 0);
+    const auto kept = [&](float masking) { return static_cast<double>(masking / ggx.visible(wo)); };
+    return reflection * (back.z > 0 ? kept(ggx.maskingOverCosine(wo, back)) : 0) +
+           refraction * (through.z < 0 ? kept(ggx.maskingOverCosine(wo, through)) : 0);
 }
 
 TEST_CASE("microfacets stop what is reflected and refracted as they do one by one") {
@@ -25,18 +27,22 @@ TEST_CASE("microfacets stop what is reflected and refracted as they do one by on
         const Vec3 wo{sine * std::cos(phi), sine * std::sin(phi), mu};
         const float index = i % 3 == 0 ? 1.1f : 1.6f, eta = i % 4 < 2 ? index : 1 / index;
         const auto weight = [](double c) { return 1 - 0.5 * c; };
+        const double back = i % 5 < 2, through = 1 - back;
         double expected = 0, got = 0;
         constexpr int count = 20000, steps = 2000;
         for (int k = 0; k < count; ++k) {
             const double u = std::fmod((k + 0.5) * 0.6180339887498949, 1.0), v = (k + 0.5) / count;
             const Vec3 m = ggx.sampleVisible(wo, {static_cast<float>(u), static_cast<float>(v)});
             if (const float c = dot(wo, m); c > 0)
-                expected += weight(static_cast<double>(c)) * difference(ggx, wo, m, eta) / count;
+                expected += weight(static_cast<double>(c)) * escaping(ggx, wo, m, eta, back, through) / count;
         }
         const MicrofacetEscape escape(ggx, wo, Spectrum(eta));
         for (int k = 0; k < steps; ++k) {
             const double c = (k + 0.5) / steps;
-            got += weight(c) * static_cast<double>(escape(Spectrum(static_cast<float>(c)))[0]) / steps;
+            const MicrofacetEscape::Shares kept = escape(Spectrum(static_cast<float>(c)));
+            got += weight(c) *
+                   (back * static_cast<double>(kept.reflected[0]) + through * static_cast<double>(kept.refracted[0])) /
+                   steps;
         }
         CHECK_MESSAGE(std::abs(got - expected) < 1e-3, "widths ", width, " ", other, " mu ", mu, " eta ", eta, ": ",
                       got, " instead of ", expected);
