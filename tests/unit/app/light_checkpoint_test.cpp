@@ -224,9 +224,9 @@ TEST_CASE("parts by samples and crops of a render with light paths are the whole
 }
 
 TEST_CASE("the size of the pilots is kept, and parts with plans of different sizes do not fit") {
-    const Folder folder;
+    const LightFolder folder;
     const auto write = [&](const std::string& name, std::uint32_t first, std::uint32_t last, int pilot) {
-        PixelFilm film = makeFilm(kFrame);
+        PixelFilm film = makeLightFilm(kFrame);
         RenderState state(kFrame, first, kBlocks);
         state.setPilot(pilot);
         Renderer(film, state).run(last);
@@ -248,7 +248,7 @@ TEST_CASE("the size of the pilots is kept, and parts with plans of different siz
     for (const int asked : {-1, 3, 4}) { // -1: whatever the checkpoint has
         header.pilot = asked;
         RenderCheckpoint checkpoint(folder / "1of2", header, [] { return std::vector<Fact>{{"seed", "7"}}; });
-        PixelFilm film = makeFilm(kFrame);
+        PixelFilm film = makeLightFilm(kFrame);
         RenderState state(kFrame, 0, kBlocks);
         const std::string fault = faultOf([&] { checkpoint.resume(film.planes(), state); });
         CHECK(fault.empty() == (asked != 4));
