@@ -8,6 +8,7 @@
 #include "app/command_line_denoise.h"
 #include "app/command_line_doctor.h"
 #include "app/command_line_help.h"
+#include "app/command_line_png.h"
 #include "app/command_line_reference.h"
 #include "app/command_line_replay.h"
 #include "app/command_line_study.h"
@@ -56,9 +57,8 @@ class Reader {
     CommandInfo describe() const { return describeCommands(app_); }
 
     std::variant<Command, EarlyEnd> read(const Words& words) {
-        Words reversed(words.rbegin(), words.rend()); // as the library takes them
         try {
-            app_.parse(std::move(reversed));
+            app_.parse(libraryWords(words));
         } catch (const CLI::CallForHelp&) {
             const CLI::App& chosen = chosenCommand(app_);
             return EarlyEnd{ExitCode::done, &chosen == &app_ ? commandListText(describe()) : helpText(chosen)};
@@ -257,10 +257,10 @@ void Reader::addRender() {
     c->add_option("-t,--threads", common_.threads, "Threads; without it one per core")
         ->check(CLI::Range(1, 4096).description(""))
         ->type_name("N");
-    c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
+    c->add_flag(kPngFlag, png_, kPngHelp);
+    addView(c, r.view);
     addRead(c, "--preview", r.preview, "on|off", "A PNG of what there is so far, until the image is written",
             "on or off", readSwitch);
-    addView(c, r.view);
     c->add_flag("--json", common_.json, "Progress as JSON lines on stdout");
     c->add_flag("--bill", r.bill, "Print what the time was spent on");
     c->add_flag("--quiet,-q", r.quiet, "Say nothing but warnings and errors");
@@ -286,7 +286,7 @@ void Reader::addMerge() {
     c->add_option("parts", merge_.parts, "Parts of one render (.abbe)")->required()->type_name("");
     c->add_option("-o,--output", merge_.output, "Image to write (EXR)")->required()->type_name("FILE");
     c->add_option("--scene", merge_.scene, "Where the scene is now")->type_name("FILE");
-    c->add_flag("--png{.}", png_, "Also write a PNG; --png=FILE names it");
+    c->add_flag(kPngFlag, png_, kPngHelp);
     addView(c, merge_.view);
     addJson(c);
 }
@@ -347,7 +347,8 @@ Command Reader::command(const Words& words) {
     for (const std::string& word : words) common_.commandLine += " " + shellQuoted(word);
     common_.words = words;
     render_.largestKernel = kernel_ == "all";
-    if (!png_.empty()) merge_.png = render_.png = png_ == "." ? std::string() : png_;
+    render_.png = pngOptions(png_, render_.view);
+    merge_.png = pngOptions(png_, merge_.view);
     if (app_.got_subcommand("volume")) return {volume_, common_};
     const std::string name = chosenCommand(app_).get_name();
     if (name == "render") return {render_, common_};

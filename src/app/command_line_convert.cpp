@@ -14,7 +14,7 @@ Examples:
 
 void addConvertArguments(CLI::App& command, ConvertOptions& options) {
     command.add_option("input", options.input, "EXR that says what its colours are")->required()->type_name("");
-    command.add_option("output", options.output, "PNG")->required()->type_name("");
+    command.add_option("output", options.output, "PNG, by its name too: room.png")->required()->type_name("");
     command.add_option("--layer", options.layer, "A layer, or a channel, instead of the picture: depth, S0.555nm")
         ->type_name("NAME");
     command.add_flag("--overscan", options.overscan, "Show what lies beyond the edges of the picture, too");

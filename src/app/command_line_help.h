@@ -19,7 +19,7 @@ inline constexpr const char* kAbout = R"(A spectral, physically based film rende
 
 Examples:
   abbe render room.scene                       the image goes where the scene says, else to room.exr
-  abbe room.scene --samples 1024 --png         the same command; a PNG beside the EXR
+  abbe room.scene --samples 1024               the same command; room.png is beside room.exr
   abbe check room.scene                        everything that is wrong, without rendering
   abbe explain camera.f-stop                   what a property means; also: explain glass, explain E0310
   abbe info room.exr                           how an image was made)";
@@ -28,7 +28,7 @@ inline constexpr const char* kRenderHelp = R"(Renders a scene to an OpenEXR imag
 
 Examples:
   abbe render room.scene -o room.exr
-  abbe render room.scene --size 640x360 --samples 64 --png=look.png
+  abbe render room.scene --size 640x360 --samples 64 --png=look.png    another name than room.png; --png off: none
   abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
   abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
   abbe render room.scene --json                        progress as JSON lines on stdout

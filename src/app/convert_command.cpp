@@ -58,6 +58,15 @@ void noSuchLayer(const ConvertOptions& options, const ExrInfo& info, const Commo
     common.console.report(diagnostics, {});
 }
 
+ExitCode noSuchFormat(const ConvertOptions& options, const CommonOptions& common) {
+    const std::string png = std::filesystem::path(options.output).replace_extension(".png").string();
+    Diagnostics diagnostics;
+    diagnostics.error("E0432", {}, fmt::format("the picture `{}` must be a PNG", options.output)).help =
+        fmt::format("name it `{}`; other programs make other formats of it", png);
+    common.console.report(diagnostics, {});
+    return ExitCode::usage;
+}
+
 ExitCode showColours(RgbImage image, const ConvertOptions& options, const CommonOptions& common) {
     if (const std::string fault = spaceFault(options.input, image); !fault.empty()) {
         common.console.error(fault);
@@ -104,6 +113,7 @@ ExitCode showLayer(const ConvertOptions& options, const CommonOptions& common) {
 } // namespace
 
 ExitCode run(const ConvertOptions& options, const CommonOptions& common) {
+    if (!isPngName(options.output)) return noSuchFormat(options, common);
     if (!options.layer.empty()) return showLayer(options, common);
     if (std::filesystem::path(options.input).extension() == ".exr")
         if (const ExrInfo info = readExrInfo(options.input); info.deep)

@@ -1,5 +1,6 @@
 #include "app/certificate_file.h"
 #include "app/light_path_text.h"
+#include "app/picture_text.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -112,6 +113,11 @@ void HumanReport::done(const RenderSummary& s) {
         console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
                                   r.manifoldCapped, r.manifoldEstimates));
     if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
+    if (s.figures) console_.line("  " + pictureLine(*s.figures));
+    if (s.figures && s.exposure.automatic)
+        console_.line(fmt::format("  exposure auto is {0:.1f} stops: `exposure {0:.1f} stops` keeps it, in animations "
+                                  "for example",
+                                  s.exposure.stops));
     if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
     if (s.certificate && s.certificate->merged) console_.line("  " + mergedLine(*s.certificate->merged));
     console_.line(
@@ -125,6 +131,7 @@ void HumanReport::done(const RenderSummary& s) {
         fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
     for (const std::string& path : {s.deep, s.png})
         if (!path.empty()) console_.line(fmt::format("image {}", path));
+    if (!s.png.empty() && console_.interactive()) console_.line(viewingLine(s.png));
 }
 
 } // namespace

@@ -9,12 +9,19 @@
 #include "spectrum/color_space.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 
 namespace abbe {
 
 namespace {
+
+// By which PNGs of this program are known.
+constexpr const char* kSoftwareKey = "Software";
+constexpr const char* kSoftwareName = "abbe ";
 
 void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics& diagnostics) {
     if (report.halfOverflows > 0)
@@ -37,9 +44,28 @@ std::string imagePath(const RenderOptions& options, const FilmSettings& film) {
 }
 
 std::string pngPath(const RenderOptions& options, const std::string& imagePath) {
-    if (!options.png) return {};
-    if (!options.png->empty()) return *options.png;
+    if (options.png.off) return {};
+    if (!options.png.path.empty()) return options.png.path;
     return std::filesystem::path(imagePath).replace_extension(".png").string();
+}
+
+bool isPngName(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending == ".png";
+}
+
+bool isForeignPng(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    std::ifstream file(path, std::ios::binary);
+    std::string head(4096, '\0'); // texts come before the pixels
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    const std::size_t key = head.find(std::string(kSoftwareKey) + '\0');
+    if (key == std::string::npos) return true;
+    // Zeros that say that the text is neither compressed nor translated stand between.
+    const std::size_t value = head.find_first_not_of('\0', key + std::strlen(kSoftwareKey));
+    return value == std::string::npos || !head.substr(value).starts_with(kSoftwareName);
 }
 
 std::string writeFault(const std::string& path) {
@@ -139,7 +165,7 @@ void writeDisplayPng(const std::string& path, DisplayPicture picture, const View
     png.rgb = picture.rgb;
     png.bits = bits;
     png.srgb = view.isSrgb();
-    png.texts = {{"Software", "abbe " + versionNumber()},
+    png.texts = {{kSoftwareKey, kSoftwareName + versionNumber()},
                  {"Display", view.display()},
                  {"View", view.view()},
                  {"OCIO", view.config().name},

@@ -17,8 +17,12 @@ namespace abbe {
 // Where the image goes: -o, else the film's `output`, else the scene's name with .exr; the last two are relative to the
 // current directory like -o.
 std::string imagePath(const RenderOptions&, const FilmSettings&);
-// The EXR's name with .png, unless the option names one.
+// The EXR's name with .png, unless the options name one or ask for none.
 std::string pngPath(const RenderOptions&, const std::string& imagePath);
+// Whether the name says that a file is a PNG: `.png` in any case.
+bool isPngName(const std::string& path);
+// Whether a file is there that is no PNG by this program: a texture, say, that must not be lost unasked.
+bool isForeignPng(const std::string& path);
 
 // Whether a file can be written there, found out before hours are spent on it; tries, and leaves nothing behind.
 // The reason, or empty.

@@ -2,6 +2,7 @@
 #include "app/certificate_file.h"
 #include "app/fault_json.h"
 #include "app/light_path_text.h"
+#include "app/picture_text.h"
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
@@ -79,6 +80,7 @@ class JsonReport final : public RenderReport {
                                    {"pilot_seconds", r.pilotSeconds},
                                    {"noise", positiveOrNull(s.noise)},
                                    {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
+                                   {"picture", s.figures ? pictureJson(*s.figures, s.exposure) : Json()},
                                    {"kernel", r.kernel},
                                    {"memory_bytes", s.memoryBytes},
                                    {"dropped", dropped},

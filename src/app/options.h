@@ -32,6 +32,13 @@ struct ViewOptions {
     double exposure = 0;       // stops
 };
 
+// The picture for people beside an EXR.
+struct PngOptions {
+    bool off = false;   // none
+    bool asked = false; // by `--png` or for a view: what stands in its way is an error, and else a warning
+    std::string path;   // empty: named after the EXR
+};
+
 // How a render is kept from being lost.
 struct CheckpointOptions {
     double interval = 25; // s; 0: only when interrupted or asked to
@@ -43,8 +50,8 @@ struct CheckpointOptions {
 struct RenderOptions {
     std::vector<SampleId> replay; // these are taken again, and told
     SceneInput input;
-    std::string output;             // EXR; empty: from the scene
-    std::optional<std::string> png; // empty text: named after the EXR
+    std::string output; // EXR; empty: from the scene
+    PngOptions png;
     ViewOptions view;
     BuildOptions build;
     bool largestKernel = false; // run the instantiation with all effects
@@ -163,7 +170,7 @@ struct MergeOptions {
     std::vector<std::string> parts;
     std::string scene;  // empty: where it was when the first part was made
     std::string output; // EXR
-    std::optional<std::string> png;
+    PngOptions png;
     ViewOptions view;
 };
 

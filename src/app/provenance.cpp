@@ -83,6 +83,8 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.space", p.space);
     text("abbe.sceneRgb", std::string(schema::rgbSpaceId(p.loaded->tree.header.rgb)));
     real("abbe.exposure", p.built->exposure);
+    real("abbe.exposureStops", p.built->cameraExposure.stops);
+    if (p.built->cameraExposure.automatic) text("abbe.exposureMode", "auto");
     return list;
 }
 

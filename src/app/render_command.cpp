@@ -83,22 +83,17 @@ ExitCode RenderRun::checkFilm() {
 // Hours of rendering must not end in "permission denied" or "no such view".
 ExitCode RenderRun::checkOutputs() {
     summary_.image = imagePath(options_, film_);
-    summary_.png = pngPath(options_, summary_.image);
-    if (options_.part) {
-        summary_.image = partPath(summary_.image, *options_.part);
-        summary_.png.clear();
-    }
+    if (options_.part) summary_.image = partPath(summary_.image, *options_.part);
     if (!options_.part && std::filesystem::path(summary_.image).extension() != ".exr")
         return refuse("E0431", fmt::format("the image `{}` must be an EXR", summary_.image),
-                      "name it `….exr`; `--png=FILE` adds a PNG", ExitCode::usage);
+                      "name it `….exr`; a PNG is written beside it", ExitCode::usage);
     if (built_.layers.deep && !options_.part) summary_.deep = deepPath(summary_.image);
-    for (const std::string& path : {summary_.image, summary_.png, summary_.deep}) {
+    for (const std::string& path : {summary_.image, summary_.deep}) {
         if (path.empty()) continue;
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);
     }
-    checkView(options_.view, options_.png.has_value());
-    return ExitCode::done;
+    return checkPng();
 }
 
 ExitCode RenderRun::prepare() {
@@ -113,6 +108,7 @@ ExitCode RenderRun::prepare() {
         settings_.part = static_cast<std::uint32_t>(options_.part->x);
         settings_.parts = static_cast<std::uint32_t>(options_.part->y);
     }
+    meter();
     return ExitCode::done;
 }
 

@@ -4,7 +4,9 @@
 #include "app/console.h"
 #include "app/exit_code.h"
 #include "app/found_fault.h"
+#include "app/picture_figures.h"
 #include "app/sample_spread.h"
+#include "cameras/exposure.h"
 #include "film/error_certificate.h"
 #include "render/integrator.h"
 #include "study/bill.h"
@@ -40,6 +42,8 @@ struct RenderSummary {
     std::vector<FoundFault> faults;              // of the examples of dropped samples, unless interrupted
     std::optional<ErrorCertificate> certificate; // of that
     std::optional<SampleSpread> spread;          // of an adaptive render
+    std::optional<PictureFigures> figures;       // of the picture, if one was made
+    Exposure exposure;                           // of its camera
     std::optional<Bill> bill;                    // of all of it
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;

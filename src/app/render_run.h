@@ -1,6 +1,7 @@
 // One run of `abbe render` or `abbe merge`.
 #pragma once
 
+#include "app/display_view.h"
 #include "app/image_output.h"
 #include "app/interrupt.h"
 #include "app/options.h"
@@ -93,7 +94,12 @@ class RenderRun {
     ExitCode refuseForMemory();
     std::vector<ImageAttribute> attributes(const PixelFilm&);
     Bill bill();
+    void meter();
+    ExitCode checkPng();
     void writePng(const ResolvedImage&);
+    void judgePicture(const PixelFilm&, const ResolvedImage&, Diagnostics&);
+    // Nothing if there is no such view, with the reason.
+    std::optional<DisplayView> displayView(std::string& reason) const;
     void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
     FilmPicture pictureOf(const PixelFilm&);
     void openPreview();

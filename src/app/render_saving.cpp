@@ -144,30 +144,13 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
     return list;
 }
 
-void RenderRun::writePng(const ResolvedImage& image) {
-    if (summary_.png.empty()) return;
-    DisplayPicture picture{image.bounds.width(), image.bounds.height(), {}, film_.space};
-    picture.rgb.reserve(3 * image.r.size());
-    for (std::size_t i = 0; i < image.r.size(); ++i)
-        picture.rgb.insert(picture.rgb.end(), {image.r[i], image.g[i], image.b[i]});
-    const PixelBounds& b = image.bounds;
-    cutOut(picture, {b.x0, b.y0, b.x1, b.y1}, {0, 0, film_.width, film_.height});
-    writeDisplayPng(summary_.png, std::move(picture), options_.view, 8);
-    report_->image(summary_.png, summary_.partial);
-}
-
 // Without a view that can be made, which nobody may have asked for, the error is stated in linear units alone.
 void RenderRun::certify(const PixelFilm& film) {
     const WorkScope work(Work::certifying);
     ErrorCertificate::Picture picture{film_.whiteBalance, rgbSpace(film_.space).fromXyz(), built_.exposure, {}};
-    std::optional<DisplayView> view;
     std::string reason;
-    try {
-        view.emplace(film_.space, options_.view);
-        picture.display = [&view](std::span<float> rgb) { view->apply(rgb); };
-    } catch (const IoError& e) {
-        reason = e.what();
-    }
+    const auto view = displayView(reason);
+    if (view) picture.display = [&view](std::span<float> rgb) { view->apply(rgb); };
     summary_.certificate = ErrorCertificate::of(film, picture);
     summary_.certificate->view = view ? view->name() : std::string();
     summary_.certificate->displayReason = reason;
@@ -207,6 +190,7 @@ void RenderRun::write(const PixelFilm& film) {
     if (summary_.partial && summary_.certificate->most == 0) warnOfNoSamples(summary_.image, lookedAt_ > 0, warnings);
     // What was not begun says nothing of the scene.
     if (summary_.certificate->fewest > 0) warnOfBlackImage(picture.image, warnings);
+    judgePicture(film, picture.image, warnings);
     warnOfHeavyTail(summary_.certificate->relative, warnings);
     report_->diagnostics(warnings, loaded_->sources);
     summary_.warnings += warnings.warningCount();

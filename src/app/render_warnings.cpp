@@ -1,9 +1,11 @@
 #include "app/render_warnings.h"
 
+#include "app/argument_values.h"
 #include "film/tail_estimate.h"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -90,6 +92,21 @@ void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {
         diagnostics.warning("W0641", {}, "every pixel of the image is black").help =
             "no light reaches the camera: check where the camera looks, which side the lights face, and what "
             "encloses them";
+}
+
+void warnOfDisplay(const PictureFigures& figures, const ShownStops& stops, Span camera, Diagnostics& diagnostics) {
+    if (!figures.missingStops || !figures.display) return;
+    const bool white = *figures.missingStops < 0;
+    const double share = white ? figures.display->white : figures.display->black;
+    const std::string png = std::filesystem::path(stops.image).replace_extension(".png").string();
+    diagnostics
+        .warning("W0644", camera,
+                 fmt::format("{:.3g} % of the picture is {} on the display", 100 * share, white ? "white" : "black"),
+                 fmt::format("its exposure is {:g} stops", stops.camera))
+        .help = fmt::format("write `exposure {:.1f} stops`, or `exposure auto`; to see this picture as it is, `abbe "
+                            "convert {} {} --exposure {:.1f}`",
+                            stops.camera + *figures.missingStops, shellQuoted(stops.image), shellQuoted(png),
+                            stops.view + *figures.missingStops);
 }
 
 } // namespace abbe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/found_fault.h"
+#include "app/picture_figures.h"
 #include "base/diagnostic.h"
 #include "film/error_figure.h"
 #include "film/pixel_film.h"
@@ -22,5 +23,11 @@ void warnOfNoSamples(const std::string& image, bool firstLook, Diagnostics&);
 // Of an image whose error is mostly carried by samples that are too rare.
 void warnOfHeavyTail(const ErrorFigure&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);
+// That a display shows next to nothing of the picture, though other stops would.
+struct ShownStops {
+    double camera = 0, view = 0;
+    std::string image; // path
+};
+void warnOfDisplay(const PictureFigures&, const ShownStops&, Span camera, Diagnostics&);
 
 } // namespace abbe

@@ -168,7 +168,9 @@ std::vector<FieldInfo> placementFields() {
             .unit({Dimension::stops})
             .byDefault("0 stops")
             .range(-100, 100)
-            .doc("Brightness of the picture; each stop doubles it.")
+            .choices({"auto"})
+            .doc("Brightness of the picture; each stop doubles it. With `auto` a look at the scene before the first "
+                 "sample finds what shows it in middle grey; the render prints the stops, and the image states them.")
             .example("exposure 3 stops")
             .synonyms({"ev", "gain"})};
 }
@@ -264,10 +266,12 @@ std::optional<Aperture> apertureOf(const LensCameraParams& params, double radius
     return std::nullopt;
 }
 
-std::optional<double> exposureFactor(const LensCameraParams& params, std::optional<double> fNumber,
-                                     const CameraContext& context, Diagnostics& diagnostics) {
-    const double gain = std::exp2(params.exposure);
-    if (!params.iso) return gain;
+Exposure exposureOf(const CameraParams& params) { return {1, params.exposure.value, !params.exposure.word.empty()}; }
+
+std::optional<Exposure> exposureOf(const LensCameraParams& params, std::optional<double> fNumber,
+                                   const CameraContext& context, Diagnostics& diagnostics) {
+    Exposure exposure = exposureOf(params);
+    if (!params.iso) return exposure;
     const bool open = fNumber && std::isfinite(*fNumber);
     if (!params.shutter || !open) {
         diagnostics
@@ -275,11 +279,12 @@ std::optional<double> exposureFactor(const LensCameraParams& params, std::option
                    open             ? "`shutter` is missing"
                    : params.shutter ? "a pinhole lets no light through: `f-stop` is missing"
                                     : "both are missing")
-            .help = "give all three, or leave out `iso` and use `exposure 2 stops`";
+            .help = "give all three, or leave out `iso` and use `exposure 2 stops` or `exposure auto`";
         return std::nullopt;
     }
     const double illuminance = kUnitLuminance * kPiD / (4 * *fNumber * *fNumber); // lx of Y = 1
-    return gain * illuminance * *params.shutter * *params.iso / kSaturation;
+    exposure.sensitivity = illuminance * *params.shutter * *params.iso / kSaturation;
+    return exposure;
 }
 
 } // namespace abbe

@@ -3,6 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "cameras/aperture.h"
+#include "cameras/exposure.h"
 #include "cameras/shutter.h"
 #include "math/frame.h"
 #include "math/keyed_transform.h"
@@ -34,7 +35,7 @@ struct CameraParams {
     double time = 0;                 // when the shutter opens
     std::optional<double> shutter;   // how long it is open: see Shutter::exposure
     double opening = 0, closing = 0; // its ramps, in units of that
-    double exposure = 0;             // stops; applied by the film, not by the camera
+    schema::QuantityOrWord exposure; // stops, or `auto`; applied by the film, not by the camera
 };
 
 // A camera with a sensor behind a lens.
@@ -65,7 +66,7 @@ struct CameraContext {
 struct PlacedCamera {
     std::unique_ptr<Camera> camera; // in render space: world space minus `origin`
     Vec3d origin;                   // the camera's position in world space
-    double exposure = 1;            // factor from radiance to pixel values
+    Exposure exposure;
     Shutter shutter;
     Motion toWorld; // of camera space; moves only if it does so while the shutter is open
 };
@@ -87,10 +88,12 @@ std::optional<double> focusDistance(const LensCameraParams&, const CameraPlace&,
 // The opening whose circle of equal area has `radius`. Nothing after an error.
 std::optional<Aperture> apertureOf(const LensCameraParams&, double radius, const CameraContext&, Diagnostics&);
 
-// Pixel value per unit of radiance, of which Y = 1 stands for 72 983 nits. Without `iso` only 2^exposure. With it, a
-// pixel of 1 is the exposure that saturates a sensor of that speed, H_sat = 78 lx s / ISO [ISO12232], where a
-// lens of f-number N gives H = t L π / (4 N²). A missing f-number is an infinite one. Nothing after an error.
-std::optional<double> exposureFactor(const LensCameraParams&, std::optional<double> fNumber, const CameraContext&,
-                                     Diagnostics&);
+// Of a camera without a lens.
+Exposure exposureOf(const CameraParams&);
+// The sensitivity is 1 without `iso`. With it, a pixel of 1 is the exposure that saturates a sensor of that speed,
+// H_sat = 78 lx s / ISO [ISO12232], where a lens of f-number N gives H = t L π / (4 N²). A missing f-number is an
+// infinite one. Nothing after an error.
+std::optional<Exposure> exposureOf(const LensCameraParams&, std::optional<double> fNumber, const CameraContext&,
+                                   Diagnostics&);
 
 } // namespace abbe

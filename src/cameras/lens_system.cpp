@@ -241,7 +241,7 @@ std::optional<PlacedCamera> makeLensSystem(const LensSystemParams& params, const
     const auto opening = apertureOf(params, *radius, context, diagnostics);
     LensSystemCamera::Optics optics;
     optics.fNumber = points.focalLength / (2 * train->entrancePupilScale(kReference) * *radius);
-    const auto exposure = exposureFactor(params, optics.fNumber, context, diagnostics);
+    const auto exposure = exposureOf(params, optics.fNumber, context, diagnostics);
     if (!film || !opening || !exposure) return std::nullopt;
     optics.film = *film;
     optics.pupil = train->entrancePupil(kReference);

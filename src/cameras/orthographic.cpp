@@ -84,7 +84,7 @@ std::optional<PlacedCamera> makeOrthographic(const OrthographicParams& params, c
     ABBE_CHECK(params.width || params.height);
     const double pixel = params.width ? *params.width / context.filmSize.x : *params.height / context.filmSize.y;
     return PlacedCamera{std::make_unique<OrthographicCamera>(place->axes, context.filmSize, pixel), place->origin,
-                        std::exp2(params.exposure), place->shutter, place->toWorld};
+                        exposureOf(params), place->shutter, place->toWorld};
 }
 
 } // namespace abbe

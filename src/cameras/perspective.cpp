@@ -205,7 +205,7 @@ std::optional<PlacedCamera> makePerspective(const PerspectiveParams& params, con
     lens.tanHalfFov = params.fov ? std::tan(*params.fov / 2) : width / (2 * params.lens.value_or(kDefaultLens));
     lens.focalLength = width / (2 * lens.tanHalfFov);
     const auto aperture = apertureOf(params, lensRadius(params, lens.focalLength), context, diagnostics);
-    const auto exposure = exposureFactor(params, fNumber(params, lens.focalLength), context, diagnostics);
+    const auto exposure = exposureOf(params, fNumber(params, lens.focalLength), context, diagnostics);
     if (!focus || !aperture || !exposure) return std::nullopt;
     lens.aperture = *aperture;
     lens.focus = *focus;

@@ -128,7 +128,7 @@ std::optional<PlacedCamera> makeSpherical(const SphericalParams& params, const C
     const auto place = placeCamera(params, context, diagnostics);
     if (!place) return std::nullopt;
     return PlacedCamera{std::make_unique<SphericalCamera>(place->axes, context.filmSize, params.width, params.height),
-                        place->origin, std::exp2(params.exposure), place->shutter, place->toWorld};
+                        place->origin, exposureOf(params), place->shutter, place->toWorld};
 }
 
 } // namespace abbe

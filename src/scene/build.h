@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "cameras/exposure.h"
 #include "film/film_params.h"
 #include "film/layer_plan.h"
 #include "integrators/render_params.h"
@@ -60,8 +61,10 @@ struct BuiltScene {
     FilmParams film;
     LayerPlan layers;
     RenderParams render;
-    Interval shutter;    // when the camera's shutter is open, from its first light to its last
-    double exposure = 1; // factor from the camera's exposure in stops
+    Interval shutter; // when the camera's shutter is open, from its first light to its last
+    Exposure cameraExposure;
+    Span cameraSpan;     // of the camera's definition
+    double exposure = 1; // factor of the camera's exposure
     SceneFacts facts;
     std::vector<EffectAsker> askers; // of what can be left out, be it so or not
     double commitSeconds = 0;        // of the building, what the acceleration structure took

@@ -50,7 +50,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
             .error("E0601", tree_.header.span,
                    options_.camera.empty() ? std::string("the scene has no camera")
                                            : fmt::format("no camera is named `{}`", options_.camera))
-            .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0 }`";
+            .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0; exposure auto }`";
         return;
     }
     const std::size_t before = diagnostics_.errorCount();
@@ -72,7 +72,9 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
     built.scene.camera = std::move(placed->camera);
     built.scene.frame = {0, 0, context.filmSize.x, context.filmSize.y};
     built.scene.origin = placed->origin;
-    built.exposure = placed->exposure;
+    built.cameraExposure = placed->exposure;
+    built.exposure = placed->exposure.factor();
+    built.cameraSpan = definition->span;
     const Shutter& shutter = placed->shutter;
     built.shutter = {shutter.open, shutter.duration()};
     if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)

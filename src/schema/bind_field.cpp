@@ -1,5 +1,7 @@
 #include "schema/binding.h"
+#include "schema/describe.h"
 #include "schema/measure.h"
+#include "schema/suggest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +79,24 @@ std::optional<BoundValue> bindInteger(const MeasureReader& reader, const Entry& 
     return std::nullopt;
 }
 
+bool startsWithWord(const Entry& entry) { return entry.count() > 0 && entry.value(0).kind == ValueKind::word; }
+
+// One of the words that may stand in the place of a number.
+std::optional<BoundValue> bindWordForNumber(const FieldInfo& field, const Entry& entry, Diagnostics& diagnostics) {
+    const Value word = entry.value(0);
+    if (std::ranges::find(field.choices, word.text) == field.choices.end()) {
+        const auto meant = nearest(word.text, field.choices);
+        reportAt(diagnostics, word, "E0307", fmt::format("`{}` has no choice `{}`", field.name, word.text),
+                 meant.empty() ? "unknown choice" : didYouMean(meant))
+            .help = fmt::format("it takes {}; for example `{}`", describeField(field), field.example);
+        return std::nullopt;
+    }
+    if (entry.count() == 1) return Choice{std::string(word.text), std::nullopt};
+    reportAt(diagnostics, entry.value(1), "E0306", fmt::format("`{} {}` takes no more values", field.name, word.text),
+             "unexpected");
+    return std::nullopt;
+}
+
 std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
     std::vector<std::pair<std::string, std::string>> keys;
     for (const Key& key : entry.keys()) keys.emplace_back(key.name, key.value.text);
@@ -86,6 +106,7 @@ std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
 } // namespace
 
 std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry, const BindContext& context) {
+    if (!field.choices.empty() && startsWithWord(entry)) return bindWordForNumber(field, entry, context.diagnostics);
     const MeasureReader reader(measureOf(field), context.tree.header, context.diagnostics);
     if (field.type == FieldType::integer) return bindInteger(reader, entry, context, field.name);
     const std::size_t count = field.type == FieldType::vector2 ? 2 : field.type == FieldType::vector3 ? 3 : 1;

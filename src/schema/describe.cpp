@@ -27,7 +27,8 @@ std::string describeUntextured(const FieldInfo& field) {
         return "a whole number";
     case FieldType::number:
     case FieldType::quantity:
-        return isPlain(field) ? "a number" : dimensionList(field);
+        return (isPlain(field) ? "a number" : dimensionList(field)) +
+               (field.choices.empty() ? "" : ", or " + quotedList(field.choices, "or"));
     case FieldType::vector2:
         return isPlain(field) ? "two numbers" : fmt::format("two numbers, each {}", dimensionList(field));
     case FieldType::vector3:

@@ -66,6 +66,12 @@ struct Quantity {
     std::vector<std::pair<std::string, std::string>> keys = {}; // those its field allows
 };
 
+// A number in SI units, or a word that stands in its place: `exposure auto`.
+struct QuantityOrWord {
+    double value = 0; // meant unless there is a word
+    std::string word; // empty, or one of the field's choices
+};
+
 // Polygons: counts[i] vertices of face i, all indices concatenated.
 struct IndexRows {
     std::vector<std::uint32_t> counts;
@@ -181,21 +187,22 @@ using BoundValue = std::variant<std::monostate, bool, std::int64_t, double, Quan
                                 KeyedTransform, TexturedSpectrum, TexturedNumber, SpectrumStop, NamedNumbers>;
 
 enum class FieldType : std::uint8_t {
-    integer,      // -> std::int64_t
-    number,       // plain number, or a fraction where Dimension::fraction is listed -> double
-    quantity,     // number [unit] -> Quantity (or double/float members: SI value)
-    vector2,      // x y [unit] -> Vec2d
-    vector3,      // x y z [unit] -> Vec3d
-    toggle,       // on | off -> bool
-    choice,       // word out of `choices`, optionally a number -> Choice
-    words,        // one or several words out of `choices`; `none`, if it is one of them, alone -> Words
-    text,         // string -> Text
-    file,         // path, looked up beside the scene file; must exist -> Text with the resolved path
-    points,       // x y z x y z … or a block of rows, in lengths unless `dimensions` is none -> std::vector<Vec3d>
-    numbers,      // flat list or rows -> std::vector<double>
-    indexRows,    // block of rows of integers -> IndexRows
-    sharpRow,     // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
-    spectrum,     // any spectrum value -> const Curve*
+    integer,   // -> std::int64_t
+    number,    // plain number, or a fraction where Dimension::fraction is listed -> double
+    quantity,  // number [unit] -> Quantity (or double/float members: SI value); with `choices`, one of these words in
+               // its place -> Choice (into a QuantityOrWord)
+    vector2,   // x y [unit] -> Vec2d
+    vector3,   // x y z [unit] -> Vec3d
+    toggle,    // on | off -> bool
+    choice,    // word out of `choices`, optionally a number -> Choice
+    words,     // one or several words out of `choices`; `none`, if it is one of them, alone -> Words
+    text,      // string -> Text
+    file,      // path, looked up beside the scene file; must exist -> Text with the resolved path
+    points,    // x y z x y z … or a block of rows, in lengths unless `dimensions` is none -> std::vector<Vec3d>
+    numbers,   // flat list or rows -> std::vector<double>
+    indexRows, // block of rows of integers -> IndexRows
+    sharpRow,  // vertex numbers and perhaps `sharpness=`; may be repeated -> SharpRow, into a std::vector
+    spectrum,  // any spectrum value -> const Curve*
     complexIndex, // `metal Au` or { n …; k … } -> ComplexIndex
     reference, // name or inline definition of `referenceKind` -> Reference; with a key `group=`, which the field must
                // list and which may be repeated with other groups -> GroupReference
@@ -328,6 +335,9 @@ template <typename Params, typename Member> class Field {
             if (const auto* number = std::get_if<double>(&value)) member.value = *number;
             if (const auto* q = std::get_if<Quantity>(&value)) member.value = q->value;
             if (const auto* textured = std::get_if<TexturedNumber>(&value)) member = *textured;
+        } else if constexpr (std::is_same_v<M, QuantityOrWord>) {
+            if (const auto* q = std::get_if<Quantity>(&value)) member = {q->value, {}};
+            if (const auto* choice = std::get_if<Choice>(&value)) member.word = choice->word;
         } else if constexpr (std::is_same_v<M, Transform>) {
             if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
         } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {

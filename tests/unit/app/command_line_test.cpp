@@ -53,16 +53,36 @@ TEST_CASE("options of render") {
     CHECK(o.build.camera == "top");
     CHECK(o.largestKernel);
     CHECK(o.build.strategy == "bsdf");
-    CHECK_FALSE(o.png);
+    CHECK_FALSE(o.png.off);
+    CHECK_FALSE(o.png.asked);
 }
 
 TEST_CASE("a define does not swallow the scene") { CHECK(render({"-D", "x=1", "a.scene"}).input.path == "a.scene"); }
 
 TEST_CASE("the PNG has an optional name") {
-    CHECK(render({"a.scene", "--png"}).png == "");
-    CHECK(render({"--png", "a.scene"}).png == "");
+    CHECK(render({"a.scene", "--png"}).png.asked);
+    CHECK(render({"a.scene", "--png"}).png.path == "");
+    CHECK(render({"--png", "a.scene"}).png.path == "");
     CHECK(render({"--png", "a.scene"}).input.path == "a.scene");
-    CHECK(render({"a.scene", "--png=b.png"}).png == "b.png");
+    for (const auto& o : {render({"a.scene", "--png=b.png"}), render({"--png", "b.png", "a.scene"})}) {
+        CHECK(o.input.path == "a.scene");
+        CHECK(o.png.asked);
+        CHECK(o.png.path == "b.png");
+    }
+}
+
+TEST_CASE("a PNG is written unless it is switched off, and a view asks for it") {
+    CHECK_FALSE(render({"a.scene"}).png.off);
+    for (const auto& o :
+         {render({"a.scene", "--png=off"}), render({"a.scene", "--png", "off"}), render({"--png", "off", "a.scene"})}) {
+        CHECK(o.png.off);
+        CHECK(o.png.path == "");
+        CHECK(o.input.path == "a.scene");
+    }
+    CHECK(render({"a.scene", "--png", "on"}).png.asked);
+    CHECK(render({"a.scene", "--view", "Raw"}).png.asked);
+    CHECK(render({"a.scene", "--exposure", "2"}).png.asked);
+    CHECK(contains(end({"render", "--help"}).text, "--png[=FILE]"));
 }
 
 TEST_CASE("an unknown flag is answered with the nearest one") {

@@ -3,6 +3,8 @@
 #include "app/image_output.h"
 #include "io/io_error.h"
 #include "io/ocio_view.h"
+#include "io/png_writer.h"
+#include "unit/io/temporary_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -62,4 +64,19 @@ TEST_CASE("image output: the configuration comes from the option, the environmen
     options.view = "Filmic";
     checkView(options, false);
     CHECK_THROWS_WITH_AS(checkView(options, true), doctest::Contains("Filmic"), IoError);
+}
+
+TEST_CASE("image output: a PNG is known by its name, and ours by what it says") {
+    CHECK(isPngName("a.png"));
+    CHECK(isPngName("b/a.PNG"));
+    for (const char* name : {"a.jpg", "a", "png", "a.png.exr", ".png"}) CHECK_FALSE(isPngName(name));
+    const TemporaryFolder folder;
+    CHECK_FALSE(isForeignPng(folder / "absent.png"));
+    writeDisplayPng(folder / "ours.png", {1, 1, {0.5f, 0.5f, 0.5f}}, {{}, {}, OcioView::builtInConfig, 0}, 8);
+    CHECK_FALSE(isForeignPng(folder / "ours.png"));
+    const float grey[3] = {};
+    writePng(folder / "other.png", {.width = 1, .height = 1, .rgb = grey, .texts = {{"Software", "abbey 3"}}});
+    CHECK(isForeignPng(folder / "other.png"));
+    writePng(folder / "none.png", {.width = 1, .height = 1, .rgb = grey});
+    CHECK(isForeignPng(folder / "none.png"));
 }

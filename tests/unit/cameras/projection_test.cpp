@@ -30,8 +30,8 @@ TEST_CASE("an orthographic picture measures the same everywhere") {
     p.width = 6;
     CHECK(length(projectionRay(test::made(makeOrthographic, p, {600, 400}), {600, 0}).origin -
                  projectionRay(c, {600, 0}).origin) < 1e-6f);
-    p.exposure = 3;
-    CHECK(test::made(makeOrthographic, p, {6, 4}).exposure == 8);
+    p.exposure.value = 3;
+    CHECK(test::made(makeOrthographic, p, {6, 4}).exposure.factor() == 8);
 }
 
 TEST_CASE("a panorama holds every direction once, linear in both angles") {

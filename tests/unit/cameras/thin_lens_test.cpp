@@ -187,31 +187,32 @@ TEST_CASE("the focus on a shape is the distance of its middle along the axis") {
 TEST_CASE("exposure in the units of photography") {
     constexpr double kNits = 72983.27; // of Y = 1
     PerspectiveParams p;
-    p.exposure = 1;
-    CHECK(makeLens(p).exposure == 2);
+    p.exposure.value = 1;
+    CHECK(makeLens(p).exposure.factor() == 2);
     p.shutter = 0.01;
-    CHECK(makeLens(p).exposure == 2); // the shutter alone moves, and does not expose
+    CHECK(makeLens(p).exposure.factor() == 2); // the shutter alone moves, and does not expose
     CHECK(makeLens(p).shutter.exposure == 0.01);
     // Sunny 16: f/16 and a shutter of 1/ISO. A grey card of 18 % under 100 000 lx has 5730 nits; the sensor receives
     // 5730 π / (4·256) lx · 0.01 s = 0.1758 lx s of the 0.78 that saturate it: 22.5 %.
-    p.exposure = 0;
+    p.exposure.value = 0;
     p.fStop = 16;
     p.iso = 100;
-    CHECK(makeLens(p).exposure * (0.18 * 100'000 / kPiD) / kNits == doctest::Approx(0.2254).epsilon(1e-3).scale(0));
+    CHECK(makeLens(p).exposure.factor() * (0.18 * 100'000 / kPiD) / kNits ==
+          doctest::Approx(0.2254).epsilon(1e-3).scale(0));
     // A stop is a stop, wherever it is taken.
-    const double base = makeLens(p).exposure;
+    const double base = makeLens(p).exposure.factor();
     p.iso = 200;
-    CHECK(makeLens(p).exposure == doctest::Approx(2 * base));
+    CHECK(makeLens(p).exposure.factor() == doctest::Approx(2 * base));
     p.shutter = 0.005;
-    CHECK(makeLens(p).exposure == doctest::Approx(base));
+    CHECK(makeLens(p).exposure.factor() == doctest::Approx(base));
     p.fStop = 16 / std::sqrt(2.0);
-    CHECK(makeLens(p).exposure == doctest::Approx(2 * base));
-    p.exposure = -1;
-    CHECK(makeLens(p).exposure == doctest::Approx(base));
+    CHECK(makeLens(p).exposure.factor() == doctest::Approx(2 * base));
+    p.exposure.value = -1;
+    CHECK(makeLens(p).exposure.factor() == doctest::Approx(base));
     // The diameter says the same as the f-number.
     p.fStop.reset();
     p.aperture = 0.05 / 16 * std::sqrt(2.0);
-    CHECK(makeLens(p).exposure == doctest::Approx(base));
+    CHECK(makeLens(p).exposure.factor() == doctest::Approx(base));
 }
 
 TEST_CASE("half an exposure, and blades without a number, are reported") {

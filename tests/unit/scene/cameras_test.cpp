@@ -64,6 +64,25 @@ TEST_CASE("cameras: the focus is measured to a shape, through groups") {
     CHECK(codes(seenBy("camera { f-stop 1; focus on=floor }", ball + "shape floor plane { }\n")) == "E0354");
 }
 
+TEST_CASE("cameras: an exposure in stops, or automatic") {
+    const Exposure fixed = seenBy("camera { exposure -2.5 stops }").built().cameraExposure;
+    CHECK(fixed.stops == -2.5);
+    CHECK_FALSE(fixed.automatic);
+    for (const char* camera : {"{ exposure auto }", "orthographic { width 2; exposure auto }",
+                               "spherical { exposure auto }", "lens-system { prescription singlet; exposure auto }"}) {
+        const auto scene = seenBy(std::string("camera ") + camera);
+        REQUIRE(scene.report() == "");
+        CHECK(scene.built().cameraExposure.automatic);
+        CHECK(scene.built().exposure == 1);
+    }
+    const auto photograph = seenBy("camera { f-stop 16; shutter \"1/100\" s; iso 100; exposure auto }");
+    CHECK(photograph.built().cameraExposure.sensitivity ==
+          doctest::Approx(72983.27 * kPiD / 1024 * 0.01 * 100 / 78).epsilon(1e-4));
+    CHECK(codes(seenBy("camera { exposure auot }")) == "E0307");
+    CHECK(codes(seenBy("camera { exposure auto 2 }")) == "E0306");
+    CHECK(codes(seenBy("camera { exposure bright }")) == "E0307");
+}
+
 TEST_CASE("cameras: ISO, shutter and f-stop arrive; mistakes are located") {
     CHECK(seenBy("camera { f-stop 16; shutter \"1/100\" s; iso 100 }").built().exposure ==
           doctest::Approx(72983.27 * kPiD / 1024 * 0.01 * 100 / 78).epsilon(1e-4));

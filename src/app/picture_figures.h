@@ -1,0 +1,38 @@
+// Key figures of a finished picture: how bright it is, and how much of it a display can show.
+#pragma once
+
+#include "app/display_view.h"
+#include "film/pixel_film.h"
+
+#include <optional>
+
+namespace abbe {
+
+// Shares of pixels.
+struct DisplayShares {
+    double black = 0; // no component above 1 % of the display
+    double white = 0; // a component above 99 %
+};
+
+struct PictureFigures {
+    double median = 0, high = 0; // luminance that half and 99 % of the pixels have at most, nits; before any exposure
+    std::optional<DisplayShares> display; // nothing: there is no view
+    // Set where nearly all that is not exactly 0 is black on the display, or nearly all of it white, and other stops
+    // would show it: to be added to those of the camera.
+    std::optional<double> missingStops;
+};
+
+// What a picture is made of. `exposure`: factor from radiance to pixel values; `viewStops`: those of the view, which
+// may be null.
+struct ShownPicture {
+    const PixelFilm& film;
+    const ResolvedImage& image;
+    PixelBounds frame; // what of the image counts, if it has any of that
+    double exposure = 1;
+    const DisplayView* view = nullptr;
+    double viewStops = 0;
+};
+
+PictureFigures figuresOf(const ShownPicture&);
+
+} // namespace abbe
