@@ -6,11 +6,11 @@ namespace abbe {
 // All that `abbe` alone says.
 inline constexpr const char* kFirstWords = R"(abbe renders scenes written as text by simulating light.
 
-  abbe render room.scene          a picture of a scene
+  abbe render room.scene          a picture of a scene: room.exr, and room.png to look at
   abbe check room.scene           everything that is wrong with it, without rendering
   abbe explain                    how scenes are written, with a first one
   abbe explain light              what a word of them means
-  abbe convert room.exr room.png  a picture for the screen
+  abbe convert room.exr room.png  another PNG of it, say --exposure 1
 
 `abbe help` lists all commands, `abbe help render` explains one.
 )";
