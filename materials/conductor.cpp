@@ -112,6 +112,7 @@ class Conductor final : public Material {
     }
 
     bool usesTextures() const override { return shaped_ || tint_.textured(); }
+    bool isOpaque() const override { return true; }
     bool seesOutside() const override { return true; }
 
   private:

@@ -92,7 +92,7 @@ schema::TypeInfo dielectricType() {
                     .unit({Dimension::length})
                     .range(1e-9, 1e9)
                     .byDefault("1 m")
-                    .synonyms({"attenuationDistance", "transmission_depth", "at_distance"}),
+                    .synonyms({"attenuationDistance", "attenuation-depth", "transmission_depth", "at_distance"}),
             }};
 }
 

@@ -41,6 +41,7 @@ class Diffuse final : public Material {
     }
 
     bool choosesLobe() const override { return false; }
+    bool isOpaque() const override { return true; }
     bool focuses() const override { return false; }
     bool usesTextures() const override { return reflectance_.textured(); }
 

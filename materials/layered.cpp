@@ -167,6 +167,7 @@ class Layered final : public Material {
     }
     bool reversible() const override { return base_.reversible(); }
     bool seesOutside() const override { return base_.seesOutside(); }
+    bool isOpaque() const override { return base_.isOpaque(); }
     bool mayBeOpen() const override { return base_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override { return base_.opacity(hit); }
 

@@ -61,6 +61,7 @@ class Sheen final : public Material {
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         return arena.make<SheenBsdf>(color_.at(hit, lambda), baseColor_.at(hit, lambda), roughness_.at(hit));
     }
+    bool isOpaque() const override { return true; }
     bool focuses() const override { return false; }
     bool usesTextures() const override { return color_.textured() || baseColor_.textured() || roughness_.textured(); }
 

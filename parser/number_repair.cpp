@@ -75,7 +75,9 @@ NumberRepair repairNumber(std::string_view written) {
         repair.replacement = fmt::format("{} {}", loose.canonical, repair.second);
     } else {
         repair.message = fmt::format("`{}` is not a number", written);
-        repair.label = "a name that begins with a digit needs quotes";
+        const bool expression = std::string_view("*+-^").find(rest[0]) != std::string_view::npos;
+        repair.label =
+            expression ? "there are no expressions: write the result" : "a name that begins with a digit needs quotes";
         repair.first.clear();
         repair.lost = true;
     }

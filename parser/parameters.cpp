@@ -1,10 +1,13 @@
 #include "parser/parameters.h"
 
 #include "parser/characters.h"
+#include "parser/number.h"
 #include "parser/value_scanner.h"
 #include "parser/whitespace.h"
+#include "schema/foreign_words.h"
 #include "schema/scene_tree.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -171,6 +174,33 @@ std::vector<Value> ParameterTable::readValues(const SourceText& text, const Para
     return values;
 }
 
+// `$r*2`: says that there are no expressions, and what the result is where it is simple. False where it is none.
+bool ParameterTable::reportExpression(const Value& word, std::string_view text) {
+    const std::size_t sign = text.find_first_of("*+^");
+    const std::size_t end = sign == std::string_view::npos ? text.rfind('-') : sign;
+    Parameter* const parameter = end == std::string_view::npos ? nullptr : find(text.substr(0, end));
+    if (parameter == nullptr && sign == std::string_view::npos) return false; // `$two-words`
+    if (parameter != nullptr) used_[static_cast<std::size_t>(parameter - document_.parameters.data())] = true;
+    const std::string result = parameter != nullptr ? resultOf(*parameter, text[end], text.substr(end + 1)) : "";
+    diagnostics_
+        .error("E0204", word.span, fmt::format("`{}` is an expression, and scenes have none", word.text),
+               result.empty() ? "is not calculated" : fmt::format("write `{}`", result))
+        .help = "write the result, or give it a name of its own: `param name value`";
+    return true;
+}
+
+// What a parameter of one number and perhaps a unit comes to; empty where that is not simple.
+std::string ParameterTable::resultOf(const Parameter& parameter, char sign, std::string_view operand) {
+    const auto& values = parameter.values();
+    const NumberResult number = parseNumber(operand);
+    if (values.empty() || values.size() > 2 || values[0].kind != ValueKind::number || operand.empty() ||
+        number.error != NumberError::none)
+        return {};
+    const double a = values[0].number, b = number.value;
+    const double result = sign == '*' ? a * b : sign == '+' ? a + b : sign == '-' ? a - b : std::pow(a, b);
+    return values.size() == 2 ? fmt::format("{:.6g} {}", result, values[1].text) : fmt::format("{:.6g}", result);
+}
+
 // The parameter that `word` names, or null after a diagnostic.
 const Parameter* ParameterTable::lookUp(const Value& word) {
     const std::string_view name = word.text.substr(1);
@@ -178,10 +208,11 @@ const Parameter* ParameterTable::lookUp(const Value& word) {
         used_[found->second] = true;
         return &document_.parameters[found->second];
     }
+    if (reportExpression(word, name)) return nullptr;
     const std::string_view near = nearest(name);
     Diagnostic& d = diagnostics_.error("E0204", word.span, fmt::format("no parameter is named `{}`", name),
                                        near.empty() ? "unknown parameter" : fmt::format("did you mean `${}`?", near));
-    if (!near.empty()) d.fixes.push_back({word.span, fmt::format("${}", near)});
+    if (!near.empty() && schema::isMisspelling(name, near)) d.fixes.push_back({word.span, fmt::format("${}", near)});
     return nullptr;
 }
 

@@ -31,6 +31,8 @@ class ParameterTable {
 
     Parameter* find(std::string_view name);
     const Parameter* lookUp(const schema::Value& word);
+    bool reportExpression(const schema::Value& word, std::string_view text);
+    static std::string resultOf(const Parameter&, char sign, std::string_view operand);
     std::string_view nearest(std::string_view name);
     std::string listNames() const;
     std::vector<schema::Value> readValues(const SourceText&, const Parameter&);

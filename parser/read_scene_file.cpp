@@ -1,3 +1,4 @@
+#include "parser/foreign_file.h"
 #include "parser/parse.h"
 #include "parser/source_text.h"
 
@@ -43,6 +44,9 @@ std::optional<FileId> readText(SourceMap& sources, const std::filesystem::path& 
     }
     if (stream.bad())
         return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
+    if (const auto foreign = parser::recogniseForeign(text, path.filename().string()))
+        return refuse(sources, path, diagnostics, "E0413",
+                      fmt::format("`{}` is {}, not a scene", path.string(), foreign->what), foreign->help);
     const FileId file = sources.add(path.string(), std::move(text));
     const std::string_view added = sources.text(file);
     parser::SyntaxErrors errors({file, added.data(), added.data() + added.size()}, diagnostics);

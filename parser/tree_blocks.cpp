@@ -11,6 +11,39 @@ namespace abbe::parser {
 
 using schema::Document;
 
+// The braces that belong before the line here.
+void TreeReader::readImplied() {
+    while (!implied_.empty() && text_.offset(at_) >= implied_.front().before) {
+        if (implied_.front().opens)
+            openImplied();
+        else
+            closeImplied();
+        implied_ = implied_.subspan(1);
+    }
+}
+
+// As if the last node's line ended in `{`.
+void TreeReader::openImplied() {
+    const std::uint32_t previous = blocks_.back().lastChild;
+    const bool owned = previous != Document::kNone && !document_.nodes[previous].hasBlock;
+    blocks_.push_back({{owned ? previous : Document::kNone, false, owned, {}}, !owned, sizes(), Document::kNone, at_});
+    if (owned) document_.nodes[previous].hasBlock = true;
+}
+
+void TreeReader::closeImplied() {
+    if (blocks_.size() == 1) return;
+    const Block block = blocks_.back();
+    blocks_.pop_back();
+    if (block.discard) {
+        rollBack(block.before);
+    } else {
+        Document::NodeRecord& owner = document_.nodes[block.owner.index];
+        owner.end = text_.offset(at_);
+        owner.damaged |= at_ == text_.end; // what it holds may have been cut off
+    }
+    finish(block.owner);
+}
+
 // At a `{` where a node should begin. Mostly the author put it on the line after its node: then it belongs to that.
 void TreeReader::readLooseBlock(bool discard) {
     const std::uint32_t previous = blocks_.back().lastChild;

@@ -14,9 +14,10 @@ namespace abbe::parser {
 
 using schema::Document;
 
-TreeReader::TreeReader(SyntaxErrors& errors, Document& document, std::uint32_t maxDepth)
+TreeReader::TreeReader(SyntaxErrors& errors, Document& document, std::uint32_t maxDepth,
+                       std::span<const ImpliedBrace> implied)
     : errors_(errors), document_(document), scanner_(errors, document), text_(errors.text()), maxDepth_(maxDepth),
-      at_(text_.begin), entryEnd_(text_.begin) {}
+      implied_(implied), at_(text_.begin), entryEnd_(text_.begin) {}
 
 void TreeReader::read() {
     if (std::string_view(text_.begin, text_.end).starts_with("\xef\xbb\xbf")) at_ += 3;
@@ -24,6 +25,7 @@ void TreeReader::read() {
     blocks_.push_back({{}, false, {}, Document::kNone, text_.begin});
     for (;;) {
         at_ = skipLineSpace(at_, errors_);
+        if (!implied_.empty()) readImplied();
         if (*at_ == '}')
             closeBlock();
         else if (*at_ == ';')

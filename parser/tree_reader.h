@@ -1,10 +1,12 @@
 // Reads the nodes of a KDL text into a Document, and goes on after every mistake.
 #pragma once
 
+#include "parser/brace_plan.h"
 #include "parser/source_text.h"
 #include "parser/value_scanner.h"
 #include "schema/document.h"
 
+#include <span>
 #include <vector>
 
 namespace abbe::parser {
@@ -18,10 +20,11 @@ struct ParameterUse {
     bool operator==(const ParameterUse&) const = default;
 };
 
-// Requires: checkCharacters() accepted the text; the document is empty.
+// Requires: checkCharacters() accepted the text; the document is empty. The implied braces are read as if they stood in
+// the text.
 class TreeReader {
   public:
-    TreeReader(SyntaxErrors&, schema::Document&, std::uint32_t maxDepth);
+    TreeReader(SyntaxErrors&, schema::Document&, std::uint32_t maxDepth, std::span<const ImpliedBrace> = {});
     void read();
     // In the order of the nodes.
     const std::vector<ParameterUse>& uses() const { return uses_; }
@@ -91,6 +94,9 @@ class TreeReader {
     void skipSpace(Record&);
     void touch(Record&, const char* end) const;
 
+    void readImplied();
+    void openImplied();
+    void closeImplied();
     void readLooseBlock(bool discard);
     void openBlock(const OpenNode&, bool discard);
     void skipDeepBlock();
@@ -106,9 +112,10 @@ class TreeReader {
     ValueScanner scanner_;
     const SourceText text_;
     const std::uint32_t maxDepth_;
-    const char* at_;            // next character to read
-    const char* entryEnd_;      // end of the last entry, where no other may begin; or null
-    std::vector<Block> blocks_; // the first one is the whole file
+    std::span<const ImpliedBrace> implied_; // those to come
+    const char* at_;                        // next character to read
+    const char* entryEnd_;                  // end of the last entry, where no other may begin; or null
+    std::vector<Block> blocks_;             // the first one is the whole file
     std::vector<Suspect> suspects_;
     std::vector<ParameterUse> uses_;
     std::vector<const char*> commas_;   // of the current node

@@ -264,7 +264,9 @@ const char* ValueScanner::scanOther(const char* p) {
     Diagnostic& d = errors_.error("E0101", p, p + length, fmt::format("`{}` has no meaning here", character),
                                   "unexpected character");
     if (character == "[" || character == "]") d.help = "lists are plain values: `from 0 1 4`";
-    if (character == "/") d.help = "a name that contains `/` needs quotes; a comment begins with `//`";
+    if (character == "/")
+        d.help = "a name that contains `/` needs quotes; a comment begins with `//`; "
+                 "there are no expressions";
     lost_ = true;
     return p + length;
 }

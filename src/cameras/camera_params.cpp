@@ -181,6 +181,7 @@ std::vector<FieldInfo> lensCameraFields() {
                 .unit({Dimension::length})
                 .byDefault("36 24 mm")
                 .range(1e-6, 100)
+                .usually(1, "mm")
                 .doc("Width and height of the sensor. Where the film's shape differs, the width is kept.")
                 .example("sensor 24 16 mm")
                 .synonyms({"filmsize", "aperture-size", "sensor-width"}),

@@ -39,6 +39,7 @@ std::vector<FieldInfo> lensFields() {
             field(FieldType::quantity, "lens", &P::lens)
                 .unit({Dimension::length})
                 .range(1e-4, 100)
+                .usually(3, "mm")
                 .doc("Scales the whole lens to this focal length. Default: that of the prescription.")
                 .example("lens 50 mm")
                 .synonyms({"focal-length", "focallength", "focal_length"}),

@@ -24,6 +24,7 @@ std::vector<FieldInfo> viewFields() {
                 .unit({Dimension::length})
                 .group("field of view")
                 .range(1e-4, 100)
+                .usually(3, "mm")
                 .doc("Focal length. Default: 50 mm.")
                 .example("lens 35 mm")
                 .synonyms({"focal-length", "focallength", "focal_length"}),

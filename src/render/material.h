@@ -39,6 +39,9 @@ class Material {
     // True if there is no surface, only the boundary of an interior: light goes straight on.
     virtual bool isBoundary() const { return false; }
 
+    // True if no light gets through the surface, from either side.
+    virtual bool isOpaque() const { return false; }
+
     // False if light and eye meet it in different places: hair, whose fibres are met on the near side, whatever goes
     // through them. Light paths end there, and camera paths have all that it scatters.
     virtual bool reversible() const { return true; }

@@ -3,6 +3,7 @@
 #include "base/work.h"
 #include "film/layer_rows.h"
 #include "lights/emitted_spectrum.h"
+#include "scene/enclosed_camera.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "schema/suggest.h"
@@ -176,6 +177,20 @@ void SceneBuilder::finish(BuiltScene& built) {
     built.scene.materials = std::move(materials_);
     built.scene.shapes = std::move(shapes_);
     for (auto& light : lights_) built.scene.lights.push_back(std::move(light));
+    if (built.scene.intersector && built.scene.camera) checkEnclosure(built.scene);
+}
+
+void SceneBuilder::checkEnclosure(const Scene& scene) {
+    const Material* const body = darkBodyAroundCamera(scene);
+    if (!body) return;
+    std::vector<const Shape*> shapes; // of that material
+    for (const SurfaceUse& use : scene.surfaces)
+        if (use.material == body && use.shape) shapes.push_back(use.shape);
+    const auto name = shapes.size() == 1 ? scene.names.find(shapes[0]) : scene.names.end();
+    diagnostics_.warning("W0696", cameraSpan_, "the camera is inside of an opaque body", "no light gets here").help =
+        name == scene.names.end()
+            ? "move the camera or the shape around it: its picture would be black"
+            : fmt::format("move the camera out of `{}`: its picture would be black", name->second);
 }
 
 void SceneBuilder::build(BuiltScene& built) {

@@ -53,6 +53,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
             .help = "add one, for example `camera { from 0 1 4; look-at 0 0.5 0; exposure auto }`";
         return;
     }
+    cameraSpan_ = definition->span;
     const std::size_t before = diagnostics_.errorCount();
     const auto bindInto = [&](void* params) {
         schema::bind(*definition, tree_, types_, *this, params, diagnostics_);

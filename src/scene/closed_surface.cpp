@@ -96,6 +96,9 @@ void SceneBuilder::checkInterior(LoadedShape& shape) {
         shape.sound = false;
         return;
     }
+    if (own && material.valid() && materials_[material.index]->isOpaque())
+        diagnostics_.warning("W0695", span, "nothing is seen of this `interior`", "the material lets no light in")
+            .help = "a medium needs a surface that light passes: `dielectric`, or `boundary` for a body without one";
     const std::string_view type = shape.definition->type->name;
     std::string_view open = shape.openBecause;
     if (type == "quad" || type == "disk") open = "it has no inside";

@@ -29,6 +29,7 @@ class DressedMaterial final : public ForwardingMaterial {
     bool bends() const override { return dress_.normal.texture || dress_.bump.texture || inner_.bends(); }
     // The normal that the maps say, as far as consistentNormal() lets it.
     void bend(SurfaceHit&) const noexcept override;
+    bool isOpaque() const override { return inner_.isOpaque() && !mayBeOpen(); }
     bool mayBeOpen() const override { return !dress_.opacity.is(1) || inner_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {
         return dress_.opacity.at(hit) * inner_.opacity(hit);

@@ -18,6 +18,7 @@ class ForwardingMaterial : public Material {
     const Curve* absorption() const override { return inner_.absorption(); }
     const Medium* interior() const override { return inner_.interior(); }
     bool isBoundary() const override { return inner_.isBoundary(); }
+    bool isOpaque() const override { return inner_.isOpaque(); }
     bool reversible() const override { return inner_.reversible(); }
     bool focuses() const override { return inner_.focuses(); }
     bool usesTextures() const override { return inner_.usesTextures(); }

@@ -304,6 +304,7 @@ class SceneBuilder final : public schema::Resolver {
     std::unique_ptr<Light> makeEnvironment(const EnvironmentLightParams&, const LightContext&);
     bool takeTexture(const AreaLightParams&, const Shape&, const Definition&, LightContext&);
     std::unique_ptr<const Shape> lightShape(const Definition&, const Transform& toRender, AreaLightParams&);
+    void checkEnclosure(const Scene&);
     void checkMattes(const BuiltScene&);
     void checkLightGroups(const BuiltScene&);
     // Its name or, without one, its type and a number.
@@ -330,6 +331,7 @@ class SceneBuilder final : public schema::Resolver {
     CurveLibrary curves_;
     EmbreeSceneBuilder embree_;
     BuiltScene* built_ = nullptr;
+    Span cameraSpan_;
 
     std::vector<std::unique_ptr<const Material>> materials_, undressed_;
     std::vector<const Definition*> openMaterials_;                        // being made

@@ -1,6 +1,8 @@
 #include "schema/binding.h"
 #include "schema/default_text.h"
 #include "schema/definition_reader.h"
+#include "schema/foreign_words.h"
+#include "schema/loose_steps.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -37,6 +39,7 @@ class Binding {
     void run() {
         arguments();
         for (const Node& property : definition_.properties) this->property(property);
+        looseSteps();
         required();
         defaults();
     }
@@ -185,15 +188,18 @@ class Binding {
         const std::string_view name = node.name();
         if (name == "at" || isPlanned(name))
             return reportPlanned(name == "at" ? "at (deformation)" : name, node.nameSpan(), context_.diagnostics);
-        const bool byType = !type_.isDefault;
+        if (isTransformStep(name) && type_.find("transform")) return looseSteps_.push_back(node);
         auto& d = report(context_.diagnostics, node.nameSpan(), "E0201",
-                         byType ? fmt::format("`{} {}` has no property `{}`", keyword(type_.kind), type_.name, name)
-                                : fmt::format("`{}` has no property `{}`", keyword(type_.kind), name),
-                         "unknown property");
+                         fmt::format("{} has no property `{}`", typeTitle(), name), "unknown property");
         if (const FieldInfo* meant = suggestField(type_, name)) {
-            d.help = fmt::format("did you mean {}?", fieldHint(*meant));
-            d.fixes.push_back({node.nameSpan(), std::string(meant->name)});
+            const ForeignProperty foreign = translate(type_, *meant, node);
+            d.help = foreign.help.empty() ? fmt::format("did you mean {}?", fieldHint(*meant)) : foreign.help;
+            if (foreign.certain) d.fixes.push_back({node.nameSpan(), std::string(meant->name)});
             meant_.push_back(meant);
+            return;
+        }
+        if (std::string advice = adviceFor(type_, name); !advice.empty()) {
+            d.help = std::move(advice);
             return;
         }
         for (const TypeInfo* other : context_.table.of(type_.kind))
@@ -204,6 +210,16 @@ class Binding {
         std::vector<std::string_view> names;
         for (const FieldInfo& field : type_.fields) names.push_back(field.name);
         d.help = names.empty() ? "it has no properties" : "its properties are " + quotedList(names);
+    }
+
+    void looseSteps() {
+        if (looseSteps_.empty()) return;
+        reportLooseSteps(typeTitle(), looseSteps_, isGiven(*type_.find("transform")), context_.diagnostics);
+    }
+
+    std::string typeTitle() const {
+        return type_.isDefault ? fmt::format("`{}`", keyword(type_.kind))
+                               : fmt::format("`{} {}`", keyword(type_.kind), type_.name);
     }
 
     // A misspelt property is not also a missing one.
@@ -256,6 +272,7 @@ class Binding {
     std::map<std::pair<const FieldInfo*, std::string_view>, Span> keyed_;
     std::map<const FieldInfo*, double> momentTimes_; // of the last moment of each
     std::vector<const FieldInfo*> meant_;            // by misspelt properties
+    std::vector<Node> looseSteps_;                   // of a transform, without its block
 };
 
 // The type is unknown, but what every type of the kind would refuse is wrong all the same.

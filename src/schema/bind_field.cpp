@@ -97,6 +97,20 @@ std::optional<BoundValue> bindWordForNumber(const FieldInfo& field, const Entry&
     return std::nullopt;
 }
 
+// "lens 50 mm" for `lens 50`, which would be 50 m; empty for what is usual.
+std::string unusualBareNumber(const FieldInfo& field, const Entry& entry, const Header& header) {
+    if (field.usualUnit.empty() || field.dimensions[0] != Dimension::length) return {};
+    std::string written(field.name);
+    bool unusual = false;
+    for (std::size_t i = 0; i < entry.count(); ++i) {
+        const Value value = entry.value(i);
+        if (value.kind != ValueKind::number || value.use.valid()) return {};
+        unusual |= value.number * header.length > field.usual;
+        written += fmt::format(" {}", value.text);
+    }
+    return unusual ? fmt::format("{} {}", written, field.usualUnit) : std::string();
+}
+
 std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
     std::vector<std::pair<std::string, std::string>> keys;
     for (const Key& key : entry.keys()) keys.emplace_back(key.name, key.value.text);
@@ -107,12 +121,21 @@ std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
 
 std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     if (!field.choices.empty() && startsWithWord(entry)) return bindWordForNumber(field, entry, context.diagnostics);
-    const MeasureReader reader(measureOf(field), context.tree.header, context.diagnostics);
+    Measure measure = measureOf(field);
+    const std::string unusual = unusualBareNumber(field, entry, context.tree.header);
+    if (!unusual.empty()) measure.remedy = fmt::format("write `{}`", unusual);
+    const MeasureReader reader(measure, context.tree.header, context.diagnostics);
     if (field.type == FieldType::integer) return bindInteger(reader, entry, context, field.name);
     const std::size_t count = field.type == FieldType::vector2 ? 2 : field.type == FieldType::vector3 ? 3 : 1;
     const auto row = reader.row(entry, 0, count);
     if (!row) return std::nullopt;
     const auto& v = row->values;
+    if (!unusual.empty())
+        context.diagnostics
+            .warning("W0301", entry.span(),
+                     fmt::format("`{}` is {} {}", field.name, plain(v[0]), siUnit(row->scale.dimension)),
+                     "a number without a unit")
+            .help = fmt::format("write `{}`", unusual);
     switch (field.type) {
     case FieldType::quantity:
         return Quantity{v[0], row->scale.dimension, entry.span(), textKeys(entry)};

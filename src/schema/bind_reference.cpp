@@ -1,5 +1,6 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
+#include "schema/foreign_words.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ void unknownName(Kind kind, const Value& word, const BindContext& context) {
         }
     auto meant = nearest(word.text, names);
     const auto types = typeNames(context.table, kind);
+    if (meant.empty()) meant = foreignType(context.table, kind, word.text);
     if (meant.empty()) meant = nearest(word.text, types);
     auto& d = reportAt(context.diagnostics, word, "E0202", message, meant.empty() ? "unknown name" : didYouMean(meant));
     if (const Definition* definition = context.tree.find(kind, meant))

@@ -1,6 +1,7 @@
 // Spectra and numbers in whose place a texture may stand.
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
+#include "schema/encoded_color.h"
 #include "schema/measure.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
@@ -31,6 +32,10 @@ class TexturedBinder {
         if (bare && named) return texture(*named);
         if (const TypeInfo* const type = context_.table.find(Kind::texture, word.text)) return inlined(*type, word);
         if (named) return overloaded(word);
+        if (bare && isPicture(word.text)) {
+            unknown(word);
+            return std::nullopt;
+        }
         const bool form = spectral_ && (findSpectrumForm(word.text) || !bare);
         const bool fraction = !spectral_ && word.kind == ValueKind::string; // "1/3"
         if (form || fraction) return plain();
@@ -98,6 +103,8 @@ class TexturedBinder {
         const std::string_view what = spectral_ ? "spectrum or texture" : "texture";
         auto& d = reportAt(context_.diagnostics, word, "E0202", fmt::format("no {} is named `{}`", what, word.text),
                            meant.empty() ? "unknown name" : didYouMean(meant));
+        if (spectral_ && parseHex(word.text)) return suggestHex(word, d);
+        if (isPicture(word.text)) return suggestImage(word, d);
         for (const Kind kind : {Kind::spectrum, Kind::texture})
             if (const Definition* const definition = context_.tree.find(kind, meant))
                 d.related.push_back({definition->nameSpan, "defined here"});
@@ -105,6 +112,24 @@ class TexturedBinder {
             d.help = fmt::format("write {}, or one of {}",
                                  spectral_ ? "a spectrum, the name of a texture" : "a number, the name of a texture",
                                  quotedList(types, "or"));
+    }
+
+    // `reflectance "wood.png"`: only the type is missing.
+    static bool isPicture(std::string_view name) {
+        constexpr auto endings = std::to_array<std::string_view>(
+            {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".hdr", ".tga", ".bmp", ".tx"});
+        return std::ranges::any_of(endings, [&](std::string_view e) {
+            return name.size() > e.size() && editDistance(name.substr(name.size() - e.size()), e) == 0;
+        });
+    }
+
+    void suggestImage(const Value& word, Diagnostic& d) const {
+        const std::string_view space = spectral_ ? "" : " space=data"; // numbers are no colours
+        d.label = fmt::format("write `image \"{}\"{}`", word.text, space);
+        d.help = "the name of a file stands behind the type of the texture that reads it";
+        if (word.kind != ValueKind::string || word.use.valid() || entry_.count() != 1) return;
+        d.fixes.push_back({{word.span.file, word.span.begin, word.span.begin}, "image "});
+        if (!space.empty()) d.fixes.push_back({{word.span.file, word.span.end, word.span.end}, std::string(space)});
     }
 
     const FieldInfo& field_;

@@ -1,5 +1,6 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
+#include "schema/loose_steps.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 
@@ -16,7 +17,6 @@ constexpr std::array kPlainNumber = {Dimension::none};
 constexpr std::array kLength = {Dimension::length};
 constexpr std::array kAngle = {Dimension::angle};
 constexpr std::array kTime = {Dimension::time};
-constexpr auto kSteps = std::to_array<std::string_view>({"translate", "rotate", "scale", "matrix", "look-at"});
 
 class StepReader {
   public:
@@ -25,7 +25,7 @@ class StepReader {
 
     // Nothing after a diagnostic.
     std::optional<TransformStep> read() {
-        if (std::ranges::find(kSteps, entry_.name()) == kSteps.end()) {
+        if (!isTransformStep(entry_.name())) {
             unknown();
             return std::nullopt;
         }
@@ -60,10 +60,10 @@ class StepReader {
 
     void unknown() {
         const std::string_view name = entry_.name();
-        const auto meant = nearest(name, {kSteps.begin(), kSteps.end()});
+        const auto meant = nearest(name, {transformSteps().begin(), transformSteps().end()});
         report(diagnostics_, entry_.node()->nameSpan(), "E0313", fmt::format("`transform` has no step `{}`", name),
                meant.empty() ? "unknown step" : didYouMean(meant))
-            .help = "the steps are " + quotedList(kSteps);
+            .help = "the steps are " + quotedList(transformSteps());
     }
 
     std::optional<TransformStep> translate() {

@@ -1,6 +1,8 @@
 #include "schema/definition_reader.h"
 
 #include "schema/entry.h"
+#include "schema/foreign_words.h"
+#include "schema/loose_steps.h"
 #include "schema/preset_library.h"
 #include "schema/suggest.h"
 
@@ -60,6 +62,11 @@ void DefinitionReader::unknownKind(const Node& node) const {
             d.help = fmt::format("`{}` is a type: write `{} {}`", type.name, keyword(type.kind), type.name);
             return;
         }
+    if (isTransformStep(node.name())) {
+        d.help =
+            fmt::format("a step of `transform {{ {} }}` in a shape, a light, a group or an instance", headText(node));
+        return;
+    }
     if (const auto kind = suggestKind(node.name())) {
         d.help = didYouMean(keyword(*kind));
         return;
@@ -71,7 +78,8 @@ void DefinitionReader::unknownKind(const Node& node) const {
 
 void DefinitionReader::unknownType(Kind kind, const Value& word) const {
     const auto names = typeNames(table_, kind);
-    const auto meant = nearest(word.text, names);
+    auto meant = foreignType(table_, kind, word.text);
+    if (meant.empty()) meant = nearest(word.text, names);
     auto& d = reportAt(diagnostics_, word, "E0205", fmt::format("`{}` has no type `{}`", keyword(kind), word.text),
                        meant.empty() ? "unknown type" : didYouMean(meant));
     if (!names.empty()) d.help = fmt::format("the types of `{}` are {}", keyword(kind), quotedList(names));
@@ -90,7 +98,9 @@ void DefinitionReader::setName(Definition& definition, const Value& word) const 
 void DefinitionReader::missingType(Definition& definition, const Value* word) const {
     const std::string_view kind = keyword(definition.kind);
     const auto names = typeNames(table_, definition.kind);
-    if (word && !nearest(word->text, names).empty()) return unknownType(definition.kind, *word);
+    const bool likeType =
+        word && (!nearest(word->text, names).empty() || !foreignType(table_, definition.kind, word->text).empty());
+    if (likeType) return unknownType(definition.kind, *word);
     auto& d = report(diagnostics_, word ? place(*word) : definition.nameSpan, "E0211",
                      fmt::format("`{}` needs a type", kind), word ? "not a type" : "write its type behind the word");
     d.help = fmt::format("the types of `{}` are {}", kind, quotedList(names));
@@ -99,8 +109,22 @@ void DefinitionReader::missingType(Definition& definition, const Value* word) co
                                       names.empty() ? "type" : names[0]));
 }
 
-// One word after the kind is the type, two are name and type. A single word that is no type names a definition of the
-// default type, unless it looks like a mistyped type. Returns the number of values used; the first one is a text.
+namespace {
+
+// Whether the word behind a type is its argument, as in `preset gold`: a single one, where there are words for it.
+bool takesWord(const TypeInfo& type, const Node& head) {
+    if (head.valueCount() > 2) return false; // `mesh ball "ball.ply"`
+    const auto word = std::ranges::find(type.fields, 0, &FieldInfo::argument);
+    if (word == type.fields.end()) return false;
+    return word->type == FieldType::text || word->type == FieldType::file || word->type == FieldType::choice ||
+           word->type == FieldType::reference || word->type == FieldType::spectrum;
+}
+
+} // namespace
+
+// One word after the kind is the type, two are name and type, in either order where one of them is no type. A single
+// word that is no type names a definition of the default type, unless it looks like a mistyped type. Returns the number
+// of values used; the first one is a text.
 std::size_t DefinitionReader::nameAndType(const Node& node, Definition& definition) const {
     const Kind kind = definition.kind;
     const auto types = typeNames(table_, kind);
@@ -117,7 +141,9 @@ std::size_t DefinitionReader::nameAndType(const Node& node, Definition& definiti
     }
     if (firstType) {
         definition.type = firstType;
-        return 1;
+        if (!secondIsWord || takesWord(*firstType, node)) return 1;
+        setName(definition, second); // `light quad key`
+        return 2;
     }
     const bool likeType = !nearest(first.text, types).empty();
     if (secondIsWord || (second.isText() && !likeType && node.valueCount() > 2)) {
@@ -187,8 +213,11 @@ void DefinitionReader::containerHead(const Node& node, Definition& definition) c
 
 void DefinitionReader::containerBlock(const Node& node, Definition& definition) const {
     Span transform, visible;
+    std::vector<Node> steps;
     for (const Node child : node.children()) {
-        if (definition.kind == Kind::atmosphere) {
+        if (isTransformStep(child.name()) && definition.kind != Kind::atmosphere) {
+            steps.push_back(child);
+        } else if (definition.kind == Kind::atmosphere) {
             if (!child.name().starts_with("x-"))
                 report(diagnostics_, child.nameSpan(), "E0201",
                        fmt::format("`atmosphere` has no property `{}`", child.name()), "unknown property")
@@ -211,6 +240,8 @@ void DefinitionReader::containerBlock(const Node& node, Definition& definition) 
             read(child, definition.children, Place::group);
         }
     }
+    if (!steps.empty())
+        reportLooseSteps(fmt::format("`{}`", keyword(definition.kind)), steps, transform.valid(), diagnostics_);
 }
 
 void DefinitionReader::read(const Node& node, std::vector<Definition>& out, Place where) const {

@@ -27,6 +27,16 @@ Diagnostic& reportAt(Diagnostics& diagnostics, const Value& value, std::string_v
     return d;
 }
 
+std::string headText(const Node& node) {
+    std::string text(node.name());
+    for (std::size_t i = 0; i < node.valueCount(); ++i) {
+        const Value value = node.value(i);
+        const std::string_view quote = value.kind == ValueKind::string ? "\"" : "";
+        text += fmt::format(" {0}{1}{0}", quote, value.text);
+    }
+    return text;
+}
+
 std::string title(const Definition& definition) {
     const std::string_view kind = keyword(definition.kind);
     if (!definition.name.empty()) return fmt::format("`{} {}`", kind, definition.name);

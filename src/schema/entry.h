@@ -52,6 +52,9 @@ void mergeOnce(Diagnostics& diagnostics, const Diagnostics& found);
 Diagnostic& reportAt(Diagnostics&, const Value&, std::string_view code, std::string message, std::string label = {});
 Diagnostic& report(Diagnostics&, Span, std::string_view code, std::string message, std::string label = {});
 
+// Name and values as one writes them, for messages: "rotate y 45 deg".
+std::string headText(const Node&);
+
 // "`light rim`", "`camera`", "`material dielectric`": how messages name a definition.
 std::string title(const Definition&);
 

@@ -11,6 +11,10 @@ namespace abbe::schema {
 
 namespace {
 
+constexpr const char* kNoExpressions = "there are no expressions: write the result";
+
+bool isOperator(const Value& word) { return word.text == "*" || word.text == "+" || word.text == "-"; }
+
 // What a light unit measures; empty for other dimensions.
 std::string_view lightMeaning(Dimension d) {
     switch (d) {
@@ -137,7 +141,6 @@ void MeasureReader::wrongDimension(const Value& word, const Unit& unit) const {
     }
     auto& d = reportAt(diagnostics_, word, "E0302", std::move(message), std::move(label));
     if (!measure_.note.empty()) d.notes.emplace_back(measure_.note);
-    if (plainOnly && !word.use.valid()) d.fixes.push_back({word.span, ""});
 }
 
 void MeasureReader::unknownUnit(const Value& word) const {
@@ -145,6 +148,10 @@ void MeasureReader::unknownUnit(const Value& word) const {
     auto& d = reportAt(diagnostics_, word, "E0301", fmt::format("`{}` is not a unit", word.text),
                        meant.empty() ? "unknown unit" : didYouMean(meant));
     if (!meant.empty()) return;
+    if (isOperator(word)) {
+        d.help = kNoExpressions;
+        return;
+    }
     std::vector<std::string_view> units;
     for (const Dimension dimension : measure_.dimensions)
         units.insert(units.end(), spellings(dimension).begin(), spellings(dimension).end());
@@ -165,6 +172,20 @@ std::optional<Scale> MeasureReader::unit(const Value& word) const {
         return std::nullopt;
     }
     return Scale{found->scale, found->dimension, found->name};
+}
+
+// `30 %` of a plain number is 0.3.
+bool MeasureReader::isPercent(const Value& number, const Value& word) const {
+    const auto found = word.isText() ? findUnit(word.text) : std::nullopt;
+    const bool plainOnly = std::ranges::all_of(measure_.dimensions, [](Dimension d) { return d == Dimension::none; });
+    if (!found || found->dimension != Dimension::fraction || !plainOnly) return false;
+    if (number.kind != ValueKind::number || word.use.valid() || number.use.valid()) return false;
+    const std::string share = plain(number.number * found->scale);
+    auto& d =
+        reportAt(diagnostics_, word, "E0302", fmt::format("`{}` is a plain number, not a percentage", measure_.name),
+                 fmt::format("write `{}`", share));
+    d.fixes.push_back({join(number.span, word.span), share});
+    return true;
 }
 
 std::optional<double> MeasureReader::number(const Value& value) const {
@@ -193,6 +214,7 @@ bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) c
         fmt::format("`{}` {}", measure_.name, rangeText(measure_.lower, measure_.upper, scale.factor, scale.unit)),
         fmt::format("is {}", shown));
     if (!measure_.note.empty()) d.notes.emplace_back(measure_.note);
+    d.help = measure_.remedy;
     return false;
 }
 
@@ -237,7 +259,9 @@ std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std
         const Value next = entry.value(first + found + 1);
         const bool numberFollows = isNumeric(next) && findUnit(entry.value(first + found).text);
         reportAt(diagnostics_, next, "E0306", fmt::format("`{}` takes {}", measure_.name, countText(count)),
-                 numberFollows && count > 1 ? "write the unit once, behind the last number" : "unexpected");
+                 isOperator(entry.value(first + found)) ? kNoExpressions
+                 : numberFollows && count > 1           ? "write the unit once, behind the last number"
+                                                        : "unexpected");
         return std::nullopt;
     }
     // A wrong unit is the better message for `lens 50 mm 35`; for `sensor 36 mm` it is the count.
@@ -245,6 +269,7 @@ std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std
         wrongCount(entry, first, count, found);
         return std::nullopt;
     }
+    if (hasUnit && count == 1 && isPercent(entry.value(first), entry.value(first + 1))) return std::nullopt;
     const auto scale = hasUnit ? unit(entry.value(first + found)) : std::optional(defaultScale());
     Row result;
     bool good = scale.has_value();

@@ -18,6 +18,7 @@ struct Measure {
     double upper = std::numeric_limits<double>::infinity();
     std::string_view note;
     std::string_view example;
+    std::string remedy = {}; // help with a value out of range
 };
 
 Measure measureOf(const FieldInfo&);
@@ -64,6 +65,7 @@ class MeasureReader {
   private:
     bool appendPacked(const Entry&, std::vector<double>& out) const;
     void wrongDimension(const Value& word, const Unit&) const;
+    bool isPercent(const Value& number, const Value& word) const;
     void unknownUnit(const Value& word) const;
     std::optional<Row> measuredFraction(const Value&, const MeasuredFraction&) const;
     void wrongCount(const Entry&, std::size_t first, std::size_t count, std::size_t found) const;

@@ -1,6 +1,7 @@
 #include "schema/spectrum_reader.h"
 
 #include "schema/definition_reader.h"
+#include "schema/encoded_color.h"
 #include "schema/header.h"
 #include "schema/measure.h"
 #include "schema/spectrum_table.h"
@@ -19,29 +20,6 @@ using Form = SpectrumValue::Form;
 
 constexpr std::array kNoUnit = {Dimension::none};
 constexpr auto kFutureForms = std::to_array<std::string_view>({"image", "gauss", "mul", "mix"});
-
-// The decoding curve of sRGB [IEC61966-2-1].
-double decodeSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
-std::optional<int> hexDigit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return std::nullopt;
-}
-
-// Encoded components 0 … 1 of "#rrggbb" or "#rgb".
-std::optional<std::array<double, 3>> parseHex(std::string_view text) {
-    if (!text.starts_with('#') || (text.size() != 4 && text.size() != 7)) return std::nullopt;
-    const std::size_t digits = (text.size() - 1) / 3;
-    std::array<double, 3> rgb{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto high = hexDigit(text[1 + i * digits]), low = hexDigit(text[i * digits + digits]);
-        if (!high || !low) return std::nullopt;
-        rgb[i] = (*high * 16 + *low) / 255.0;
-    }
-    return rgb;
-}
 
 } // namespace
 
@@ -143,7 +121,7 @@ class SpectrumReader {
         if (const Definition* definition = tree_.find(Kind::spectrum, meant))
             d.related.push_back({definition->nameSpan, "defined here"});
         else if (parseHex(word.text))
-            d.help = fmt::format("write `srgb \"{}\"`", word.text);
+            suggestHex(word, d);
         else if (const std::string_view form = formOfData(word.text); meant.empty() && !form.empty())
             d.help = fmt::format("write `{} {}`", form, word.text);
         else if (meant.empty())
@@ -198,16 +176,25 @@ class SpectrumReader {
         result_.form = Form::flat;
         const bool three = entry_.count() == 3 && entry_.value(2).kind == ValueKind::number;
         if (three) {
-            auto& d = reportAt(diagnostics_, entry_.value(0), "E0306",
-                               fmt::format("`{}` takes one number or a colour", use_.name),
-                               "three numbers need a word in front");
-            d.help = "write `rgb` in front of the numbers";
-            const Span at = entry_.value(0).span;
-            d.fixes.push_back({{at.file, at.begin, at.begin}, "rgb "});
+            threeNumbers();
             return false;
         }
         constexpr auto unnamed = std::to_array<std::string_view>({""});
         return numbers(0, 1, unnamed);
+    }
+
+    // Numbers up to 1 are taken as linear ones, as those of all programs; larger ones may come from a picture.
+    void threeNumbers() {
+        auto& d =
+            reportAt(diagnostics_, entry_.value(0), "E0306",
+                     fmt::format("`{}` takes one number or a colour", use_.name), "three numbers need a word in front");
+        d.help = "write `rgb` in front of the numbers";
+        if (const std::string divided = dividedColor(entry_, 0); !divided.empty()) {
+            d.help = divided;
+            return;
+        }
+        const Span at = entry_.value(0).span;
+        d.fixes.push_back({{at.file, at.begin, at.begin}, "rgb "});
     }
 
     // `count` numbers from value `first` on, with the unit of the use, checked against its role.
@@ -216,10 +203,18 @@ class SpectrumReader {
                                    diagnostics_);
         const auto row = reader.row(entry_, first, count);
         if (!row) return false;
-        for (std::size_t i = 0; i < count; ++i)
-            if (!checkSpectrumValue(use_, row->values[i], row->scale, entry_.value(first + i), names[i], tree_.header,
-                                    diagnostics_))
-                return false;
+        for (std::size_t i = 0; i < count; ++i) {
+            Diagnostics found;
+            if (checkSpectrumValue(use_, row->values[i], row->scale, entry_.value(first + i), names[i], tree_.header,
+                                   found))
+                continue;
+            const std::string divided = dividedColor(entry_, first);
+            for (Diagnostic d : found.all()) {
+                if (!divided.empty()) d.help = divided;
+                diagnostics_.add(std::move(d));
+            }
+            return false;
+        }
         result_.numbers = row->values;
         return true;
     }
@@ -254,9 +249,14 @@ class SpectrumReader {
             }
             encoded = *hex;
         } else {
-            const MeasureReader reader(
-                {"srgb", kNoUnit, 0, 1, "encoded sRGB goes from 0 to 1; brighter colours are written with `rgb`", {}},
-                tree_.header, diagnostics_);
+            const MeasureReader reader({"srgb",
+                                        kNoUnit,
+                                        0,
+                                        1,
+                                        "encoded sRGB goes from 0 to 1; brighter colours are written with `rgb`",
+                                        {},
+                                        dividedColor(entry_, 1)},
+                                       tree_.header, diagnostics_);
             const auto row = reader.row(entry_, 1, 3);
             if (!row) return false;
             for (std::size_t i = 0; i < 3; ++i) encoded[i] = row->values[i];

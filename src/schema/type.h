@@ -242,10 +242,12 @@ struct FieldInfo {
     Kind referenceKind = Kind::material;
     std::vector<std::string_view> choices;
     std::vector<FieldKey> keys;
-    std::vector<std::string_view> synonyms; // other renderers' names for it: suggested, never accepted
-    std::string_view group;                 // at most one field of a group may be set ("amount")
-    std::string_view note;                  // shown with a unit or range error
-    std::string_view elsewhere;             // shown when another type of the kind is given it
+    std::vector<std::string_view> synonyms;                 // other renderers' names for it: suggested, never accepted
+    double usual = std::numeric_limits<double>::infinity(); // SI: a bare number above was hardly meant as it is,
+    std::string_view usualUnit;                             // but in this unit
+    std::string_view group;                                 // at most one field of a group may be set ("amount")
+    std::string_view note;                                  // shown with a unit or range error
+    std::string_view elsewhere;                             // shown when another type of the kind is given it
     bool required = false;
     bool repeats = false;         // may be given several times: by the type of the member
     bool tiles = false;           // file: `<UDIM>` in the name stands for tile numbers, at least one of which exists
@@ -303,6 +305,8 @@ template <typename Params, typename Member> class Field {
     Field& choices(std::vector<std::string_view> c) { return info_.choices = std::move(c), *this; }
     Field& key(FieldKey k) { return info_.keys.push_back(std::move(k)), *this; }
     Field& synonyms(std::vector<std::string_view> s) { return info_.synonyms = std::move(s), *this; }
+    // A number without a unit that comes to more than `most`, in SI units, was probably meant in `unit`.
+    Field& usually(double most, std::string_view unit) { return info_.usual = most, info_.usualUnit = unit, *this; }
     Field& group(std::string_view g) { return info_.group = g, *this; }
     Field& note(std::string_view n) { return info_.note = n, *this; }
     Field& elsewhere(std::string_view text) { return info_.elsewhere = text, *this; }

@@ -25,6 +25,7 @@ TypeInfo camera() {
                     .byDefault("50 mm")
                     .unit({Dimension::length})
                     .range(0.0001, 10)
+                    .usually(3, "mm")
                     .group("field of view")
                     .synonyms({"focal-length"}),
                 make(FieldType::quantity, "fov", &Params::fov)

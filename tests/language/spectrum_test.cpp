@@ -65,7 +65,7 @@ TEST_CASE("encoded sRGB is decoded") {
     CHECK(albedo("srgb \"#d8704\"")->codes() == "E0315");
     CHECK(albedo("srgb 1.2 0 0")->codes() == "E0303");
     CHECK(albedo("rgb \"#d87040\"")->get("E0315").help == "write `srgb \"#d87040\"`");
-    CHECK(albedo("\"#d87040\"")->get("E0202").help == "write `srgb \"#d87040\"`");
+    CHECK(albedo("\"#d87040\"")->get("E0202").label == "write `srgb \"#d87040\"`");
     CHECK(albedo("srgb 1 1 1 space=acescg")->codes() == "E0210");
 }
 

@@ -49,7 +49,8 @@ TEST_CASE("wrong units") {
     CHECK(camera("fov 40 degrees")->get("E0301").label == "did you mean `deg`?");
     CHECK(camera("lens 50 parsec")->get("E0301").help.starts_with("`lens` takes `mm`, `cm`"));
     CHECK(camera("f-stop 2.8 foo")->codes() == "E0301");
-    CHECK(camera("f-stop 2.8 cm")->get("E0302").fixes.size() == 1);
+    CHECK(camera("f-stop 2.8 cm")->get("E0302").fixes.empty()); // an f-number, or a diameter?
+    CHECK(camera("f-stop 280 %")->get("E0302").fixes.at(0).replacement == "2.8");
 }
 
 TEST_CASE("ranges and finiteness") {
@@ -110,8 +111,10 @@ TEST_CASE("choices and texts") {
 TEST_CASE("properties: unknown, twice, missing, synonyms") {
     CHECK(loadBody("material a diffuse { Kd 0.5 }\nshape sphere { material a }")->get("E0201").help ==
           "did you mean `reflectance`?");
-    CHECK(camera("fovy 40 deg")->get("E0201").help == "did you mean `fov` (full horizontal angle, e.g. `40 deg`)?");
-    CHECK(camera("fovy 40 deg")->get("E0201").fixes.at(0).replacement == "fov");
+    CHECK(camera("fovy 40 deg")
+              ->get("E0201")
+              .help.starts_with("did you mean `fov` (full horizontal angle, e.g. `40 deg`)?"));
+    CHECK(camera("fovy 40 deg")->get("E0201").fixes.empty()); // it may be the vertical one
     CHECK(loadBody("shape sphere { r 2 }")->get("E0201").message == "`shape sphere` has no property `r`");
     CHECK(camera("xyzzy 3")->get("E0201").help.starts_with("its properties are `lens`, `fov`"));
     CHECK(camera("f-stop 2; f-stop 4")->codes() == "E0208");

@@ -46,7 +46,7 @@ TEST_CASE("files that cannot be read") {
     const Folder folder;
     CHECK(codeOf(folder.path / "missing.scene") == "E0410");
     CHECK(codeOf(folder.path) == "E0410");
-    CHECK(codeOf(folder.write("a.png", "\x89PNG\r\n\x1a\n")) == "E0412");
+    CHECK(codeOf(folder.write("a.png", "\x89PNG\r\n\x1a\n")) == "E0413");
     CHECK(codeOf(folder.write("utf16.scene", std::string_view("\xff\xfes\0", 4))) == "E0412");
     const auto sparse = folder.write("sparse.scene", "x");
     std::error_code error;

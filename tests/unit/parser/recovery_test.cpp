@@ -56,7 +56,7 @@ TEST_CASE("repairs: the code, and the text after them, which has no mistake left
              Case{"points {\n 1 2 3\n}", "E0121@10-11", "points {\n - 1 2 3\n}"},
              Case{"a { b } c", "E0124@8-9", "a { b }; c"},
              Case{"a #ff8000", "E0125@2-9", "a \"#ff8000\""},
-             Case{"param yaw 1\na $yav $yaw", "E0204@14-18", "param yaw 1\na $yaw $yaw"},
+             Case{"param angle 1\na $angel $angle", "E0204@16-22", "param angle 1\na $angle $angle"},
          }) {
         CHECK_MESSAGE(parseText(c.source).codes() == c.code, c.source);
         CHECK_MESSAGE(fixed(c.source) == c.repaired, c.source);
@@ -119,7 +119,7 @@ TEST_CASE("the unclosed brace is the one whose block ends at the wrong indentati
     const auto inner = parseText("camera {\n    film {\n        size 1\n    lens 3\n}\nlight x {\n    y 2\n}\n");
     CHECK(inner.codes() == "E0110@18-19");
     REQUIRE(inner.diagnostics.all()[0].related.size() == 1);
-    CHECK(inner.diagnostics.all()[0].related[0].span.begin == 46);
+    CHECK(inner.diagnostics.all()[0].related[0].span.begin == 39);
     CHECK(parseText("camera {\n    from 1\nlight sky { }\n").codes() == "E0110@7-8");
     CHECK(parseText("a {\n  b {\n").codes() == "E0110@2-3 E0110@8-9");
     // One forgotten, and later a stray one: no complaint about the end.

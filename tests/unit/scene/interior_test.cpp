@@ -48,6 +48,19 @@ TEST_CASE("interiors: meshes and cages with holes or turned faces are reported w
           "W0694");
 }
 
+TEST_CASE("interiors: behind what no light passes nothing is seen of them") {
+    const auto filled = [](const std::string& material) {
+        return codes(
+            build("shape sphere { material " + material + "; interior homogeneous { extinction 1 per-m } }\n"));
+    };
+    CHECK(filled("conductor { index metal Au }") == "W0695");
+    CHECK(filled("diffuse") == "W0695");
+    CHECK(filled("layered { base diffuse }") == "W0695");
+    CHECK(filled("diffuse { opacity 0.5 }") == "");
+    CHECK(filled("dielectric { ior 1.3 }") == "");
+    CHECK(filled("thin-dielectric") == "");
+}
+
 TEST_CASE("interiors: vertices in one place are one, faces without an area none") {
     // A tetrahedron whose faces share no vertex, with a sliver between two of them.
     const Vec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -1,0 +1,28 @@
+// What words of other programs come to in ours. Only where that is certain may a word be replaced without asking.
+#pragma once
+
+#include "schema/scene_tree.h"
+
+#include <string>
+#include <string_view>
+
+namespace abbe::schema {
+
+// Whether `word` is `meant` with at most one wrong, missing, additional or swapped letter, or written with other
+// separators and capitals, `base_color` for `base-color`. Short words are not: too many lie near to each other.
+bool isMisspelling(std::string_view word, std::string_view meant);
+
+// A property that a type does not have, as a property `meant` that it has.
+struct ForeignProperty {
+    bool certain = false; // the name alone can be replaced, and the value stays
+    std::string help;     // "`alpha 0.1` is `roughness 0.316`: …"; empty if nothing is known but the name
+};
+ForeignProperty translate(const TypeInfo&, const FieldInfo& meant, const Node& written);
+
+// What to do about a property that no property here stands for, a switch of shadows for example; empty if unknown.
+std::string adviceFor(const TypeInfo&, std::string_view word);
+
+// A type of another program, as one of ours: "principled" -> openpbr. Nothing is certain about its properties.
+std::string_view foreignType(const TypeTable&, Kind, std::string_view word);
+
+} // namespace abbe::schema
