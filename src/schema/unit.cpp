@@ -57,12 +57,12 @@ constexpr std::array kUnits = {
     Unit{"px", Dimension::pixels, 1},
 };
 
-struct Words {
+struct DimensionWords {
     std::string_view description;
     std::string_view si;
 };
 
-constexpr Words words(Dimension d) {
+constexpr DimensionWords words(Dimension d) {
     switch (d) {
     case Dimension::none:
         return {"a plain number", ""};
