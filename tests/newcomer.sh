@@ -78,7 +78,7 @@ faulty() { # SCENE NAME WANTED…
     shift 2
     timeout 60 "$program" check --format short "$scene" >out 2>err
     code=$?
-    [[ $code -eq 1 ]] || fault "$name: check ended with $code"
+    [[ $code -eq 1 || $code -eq 3 ]] || fault "$name: check ended with $code" # 3: a file that cannot be read as a scene
     cat out >>err
     errors=$(grep -c 'error\[E' err)
     printf '%-34s %d errors\n' "$name" "$errors"
