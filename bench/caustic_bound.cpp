@@ -54,10 +54,10 @@ class KeepingIntersector final : public Intersector {
         keep({ray, false});
         return inner_->occluded(ray);
     }
-    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
+    bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
         const float distance = length(to - from);
-        keep({{from, (to - from) / distance, distance, time}, false});
-        return inner_->occluded(from, to, time);
+        keep({{from, (to - from) / distance, distance, time, kind}, false});
+        return inner_->occluded(from, to, time, kind);
     }
     Bounds3 bounds() const override { return inner_->bounds(); }
     std::uint64_t rejectedRays() const override { return inner_->rejectedRays(); }

@@ -40,8 +40,8 @@ class TimedIntersector final : public Intersector {
     bool occluded(const Ray& ray) const noexcept override {
         return timed([&] { return inner_->occluded(ray); });
     }
-    bool occluded(Vec3 from, Vec3 to, float time) const noexcept override {
-        return timed([&] { return inner_->occluded(from, to, time); });
+    bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
+        return timed([&] { return inner_->occluded(from, to, time, kind); });
     }
     Bounds3 bounds() const override { return inner_->bounds(); }
     std::uint64_t rejectedRays() const override { return inner_->rejectedRays(); }
