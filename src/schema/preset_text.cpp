@@ -43,10 +43,12 @@ std::string presetMarkdown(const PresetLibrary& library) {
 
 Made by `abbe explain library > docs/materials_library.md`; the definitions are in `materials/library/`.
 
-    material ring preset gold
-    material worn preset gold { roughness 0.4 }
-    shape bust mesh "bust.obj" { material preset marble }
-    shape drink mesh "drink.obj" { material dielectric { ior 0.882 }; interior preset milk }
+```kdl
+material ring preset gold
+material worn preset gold { roughness 0.4 }
+shape bust mesh "bust.obj" { material preset marble }
+shape drink mesh "drink.obj" { material dielectric { ior 0.882 }; interior preset milk }
+```
 
 What the block says replaces what the library says. Materials are complete. Where the table has a medium, too, that is what the
 material has inside, for the `interior` of a shape with a surface of its own: milk in a glass.

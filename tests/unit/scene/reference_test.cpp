@@ -193,7 +193,7 @@ TEST_CASE("every property is described and has an example that the program accep
                 CHECK(inner.doc.ends_with('.'));
                 CHECK(std::string_view(inner.example).starts_with(inner.name));
                 const std::string body = withRequired(field.block, inner, std::string(inner.example));
-                const std::string outer = example.substr(0, example.find('{')) + "{ " + body + " }";
+                const std::string outer = example.substr(0, example.find('{')) + " { " + body + " }";
                 CHECK(faultsOf(definitionOf(type, withRequired(type.fields, field, outer)), folder) == "");
             }
         }
