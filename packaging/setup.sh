@@ -62,18 +62,32 @@ build_failed() {
     say "$2 failed; all output is in $1. If the tree was changed lately, remove ${1%/*} and try again."
 }
 
-# Turns ninja's "[12/80] …" into one line that is rewritten on a terminal, or a line per fifth.
+# Turns ninja's "[12/80] …" into one line that is rewritten on a terminal, or a line per fifth, with the time left: as much for each
+# of the steps to come as for those so far.
 show_progress() {
-    local line fifth=0 shown=0
+    local line fifth=0 shown=0 built all started=$SECONDS
     while IFS= read -r line; do
         [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+        built=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]}
         if [[ -t 2 ]]; then
-            printf '\rabbe: compiled %d of %d ' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" >&2
+            printf '\rabbe: built %d of %d%s   ' "$built" "$all" "$(time_left)" >&2
             shown=1
-        elif (( BASH_REMATCH[1] * 5 / BASH_REMATCH[2] > fifth )); then
-            fifth=$(( BASH_REMATCH[1] * 5 / BASH_REMATCH[2] ))
-            say "compiled ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]}"
+        elif (( built * 5 / all > fifth )); then
+            fifth=$(( built * 5 / all ))
+            say "built $built of $all$(time_left)"
         fi
     done
     (( shown == 0 )) || printf '\n' >&2
+}
+
+# ", about 2 min left" for show_progress; nothing while too little is known.
+time_left() {
+    local spent=$((SECONDS - started)) seconds
+    (( spent >= 5 && built < all )) || return 0
+    seconds=$(( spent * (all - built) / built ))
+    if (( seconds >= 90 )); then
+        printf ', about %d min left' $(( (seconds + 30) / 60 ))
+    else
+        printf ', about %d s left' $(( seconds < 1 ? 1 : seconds ))
+    fi
 }

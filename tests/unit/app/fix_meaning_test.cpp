@@ -65,10 +65,9 @@ TEST_CASE("the meaning of what is repaired stays") {
         CHECK(r.help == c.help);
         CHECK(r.text == c.body);
     }
-    for (const char* body :
-         {"light environment \"tests/snippets/any.exr\" { strength 2 }", "light point { strength 2 }",
-          "light quad { strength 2 }", "light spot { strength 2 }",
-          "shape sphere { to-world 1 }", "light quad { scale 2; luminance 5 nits }"})
+    for (const char* body : {"light environment \"tests/snippets/any.exr\" { strength 2 }",
+                             "light point { strength 2 }", "light quad { strength 2 }", "light spot { strength 2 }",
+                             "shape sphere { to-world 1 }", "light quad { scale 2; luminance 5 nits }"})
         CHECK_MESSAGE(repair(body).text == body, body);
 }
 

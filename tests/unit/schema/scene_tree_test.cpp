@@ -36,8 +36,8 @@ TEST_CASE("kinds and their keywords") {
 }
 
 TEST_CASE("colour spaces by id and alias") {
-    for (const RgbSpaceName space :
-         {RgbSpaceName::linRec709, RgbSpaceName::linRec2020, RgbSpaceName::linP3D65, RgbSpaceName::linAp1, RgbSpaceName::linAp0})
+    for (const RgbSpaceName space : {RgbSpaceName::linRec709, RgbSpaceName::linRec2020, RgbSpaceName::linP3D65,
+                                     RgbSpaceName::linAp1, RgbSpaceName::linAp0})
         CHECK(findRgbSpace(rgbSpaceId(space)) == space);
     CHECK(findRgbSpace("srgb-linear") == RgbSpaceName::linRec709);
     CHECK(findRgbSpace("acescg") == RgbSpaceName::linAp1);
