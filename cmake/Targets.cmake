@@ -1,7 +1,7 @@
-# abbe_unity(target): its sources are compiled in units of up to 32 files of a folder, because headers cost more than what is in
+# abbe_unity(target): its sources are compiled as one unit a folder, because headers cost more than what is in
 # the files. So names in anonymous namespaces are unique within a folder; -DABBE_UNITY=OFF compiles each file by itself.
 function(abbe_unity target)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ${ABBE_UNITY} UNITY_BUILD_BATCH_SIZE 32)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${ABBE_UNITY} UNITY_BUILD_BATCH_SIZE 0)
 endfunction()
 
 # abbe_rarely_run(target…): code that takes longer to compile than it ever runs: commands, reports, tables of fields.

@@ -1,6 +1,7 @@
 // Grids of an OpenVDB file, and fields made of them that can be rendered. One of the few headers with OpenVDB.
 #pragma once
 
+#include "vdb/instantiated.h"
 #include "volumes/vdb_file.h"
 
 #include <memory>

@@ -1,6 +1,7 @@
 // Grids made leaf by leaf in parallel, and files of them.
 #pragma once
 
+#include "vdb/instantiated.h"
 #include "volumes/volume_recipe.h"
 
 #include <functional>

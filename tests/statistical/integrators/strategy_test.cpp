@@ -91,7 +91,7 @@ TEST_CASE("strategies: rough glass, plain, dispersive and absorbing") {
             {glass,
              kOpenBox + kLamp +
                  fmt::format("shape sphere {{ center 0 -0.3 0; radius 0.6; material dielectric {{ {} }} }}\n", glass),
-             512, 0, 0.004});
+             896, 0, 0.004});
 }
 
 TEST_CASE("strategies: a matte thing inside rough absorbing glass, with the lamp inside too") {
