@@ -144,7 +144,7 @@ TEST_CASE("light paths: walls and a lamp that the camera does not see") {
                     "shape sphere { center 0.5 0.5 0; radius 0.45; material dielectric { ior 1.5; roughness 0.3 } }\n"
                     "shape quad { points -1 0 1  1 0 1  1 1.5 1  -1 1.5 1; visible-to shadows reflections\n"
                     "    material diffuse { reflectance rgb 0.8 0.4 0.2 } }\n"),
-                40, 0.006);
+                112, 0.006);
 }
 
 TEST_CASE("light paths: a wide beam on rough glass and rough metal in haze") {
@@ -157,7 +157,7 @@ TEST_CASE("light paths: a wide beam on rough glass and rough metal in haze") {
             "shape sphere { center -0.4 0.4 0.3; radius 0.3; material conductor { index metal Au; roughness 0.3 } }\n"
             "shape box { min -1.2 0.1 -1.2; max 1.2 2 1.2; material boundary\n"
             "    interior homogeneous { extinction 0.3 per-m; albedo 0.95 } }\n"),
-        40, 0.012);
+        112, 0.012);
 }
 
 // The lenses of the shipped scene under a lamp, as wide as a sun of 20 degrees.
