@@ -17,6 +17,7 @@ cd "$folder" || exit 1
 unset OCIO DISPLAY WAYLAND_DISPLAY
 small=(--size 64x48 --samples 16)
 most_errors=3
+limit=1800 # seconds for a render; the first one may have to build
 faults=0
 pictures=0
 
@@ -49,7 +50,7 @@ look_at() { # PNG WHAT
 render() { # SCENE ARGUMENT…
     local scene=$1 code
     shift
-    timeout 120 "$program" render "$scene" "$@" >out 2>err
+    timeout $limit "$program" render "$scene" "$@" >out 2>err
     code=$?
     [[ $code -eq 0 ]] || { fault "render $scene $* ended with $code"; sed 's/^/    /' err; }
 }
@@ -62,6 +63,7 @@ readme() {
     readme_scene >mine.scene
     [[ $(wc -l <mine.scene) -ge 4 ]] || fault "the README has no scene"
     render mine.scene "${small[@]}"
+    limit=120
     look_at mine.png "README: its scene"
     local line scene
     while read -r line; do
