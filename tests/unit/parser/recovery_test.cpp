@@ -51,7 +51,6 @@ TEST_CASE("repairs: the code, and the text after them, which has no mistake left
              Case{"s \"1/48\" 1/48", "E0117@9-13", "s \"1/48\" \"1/48\""},
              Case{"a 0.5f", "E0117@2-6", "a 0.5"},
              Case{"size 512x256", "E0117@5-12", "size 512 256"},
-             Case{"a{ b }", "E0120@1-1", "a { b }"},
              Case{"a \"b\"c", "E0120@5-5", "a \"b\" c"},
              Case{"points {\n 1 2 3\n}", "E0121@10-11", "points {\n - 1 2 3\n}"},
              Case{"a { b } c", "E0124@8-9", "a { b }; c"},
