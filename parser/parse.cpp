@@ -56,7 +56,7 @@ Reading readAsMeant(FileId file, std::string_view text, std::uint32_t maxDepth) 
 std::shared_ptr<schema::Document> parse(const SourceMap& sources, FileId file, const ParseOptions& options,
                                         Diagnostics& diagnostics) {
     const Reading reading = readAsMeant(file, sources.text(file), options.maxDepth);
-    for (const Diagnostic& d : reading.found.all()) diagnostics.add(d);
+    diagnostics.addAll(reading.found);
     parser::ParameterTable parameters(*reading.document, diagnostics);
     parameters.override(options, sources);
     parameters.substitute(reading.uses);

@@ -49,7 +49,6 @@ void TreeReader::readEntries(const OpenNode& open) {
         skipSpace(node);
         if (readNumber(node)) continue; // behind a comment or on a continued line
         if (*at_ == '{') {
-            checkSpace();
             endEntries(node);
             return openBlock(open, false);
         }
@@ -194,7 +193,6 @@ void TreeReader::readKey(Record& node, std::uint32_t index, const KeyName& name)
 bool TreeReader::readSlashdashEntry(const OpenNode& open) {
     Record& node = document_.nodes[open.index];
     const char* const dash = at_;
-    checkSpace();
     at_ = skipLineSpace(at_ + 2, errors_);
     if (*at_ == '{') {
         endEntries(node);
@@ -299,23 +297,26 @@ void TreeReader::reportCommas(Record& node) {
     commas_.clear();
 }
 
-// Of several keys with one name the last one counts; the others are reported and removed.
+// Of several keys with one name the last one counts; the others are removed, with one warning for each name.
 void TreeReader::removeDoubleKeys(Record& node) {
-    std::unordered_map<std::string_view, std::uint32_t> last;
+    struct Given {
+        std::uint32_t first, last, count;
+    };
+    std::unordered_map<std::string_view, Given> given;
     const auto first = document_.keys.begin() + node.firstKey;
     std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < node.keyCount; ++i) last[first[i].name] = i;
-    if (last.size() == node.keyCount) return;
     for (std::uint32_t i = 0; i < node.keyCount; ++i) {
-        const schema::Key key = first[i];
-        if (last[key.name] != i) {
-            errors_.diagnostics()
-                .warning("W0101", key.nameSpan, fmt::format("the key `{}` is given twice", key.name), "has no effect")
-                .related.push_back({first[last[key.name]].nameSpan, "this one counts"});
-        } else {
-            first[kept++] = key;
-        }
+        Given& g = given.try_emplace(first[i].name, Given{i, i, 0}).first->second;
+        g.last = i;
+        ++g.count;
     }
+    if (given.size() == node.keyCount) return;
+    for (std::uint32_t i = 0; i < node.keyCount; ++i) {
+        const Given& g = given.at(first[i].name);
+        if (g.count > 1 && g.first == i) reportDoubleKey(first[i], first[g.last], g.count);
+    }
+    for (std::uint32_t i = 0; i < node.keyCount; ++i)
+        if (given.at(first[i].name).last == i) first[kept++] = first[i];
     node.keyCount = kept;
     document_.keys.resize(node.firstKey + kept);
     // The keys have moved: note their uses of parameters again.
@@ -326,6 +327,13 @@ void TreeReader::removeDoubleKeys(Record& node) {
     for (std::uint32_t i = 0; i < kept; ++i)
         if (first[i].value.kind == ValueKind::word && first[i].value.text.starts_with('$'))
             uses_.push_back({index, i, true});
+}
+
+void TreeReader::reportDoubleKey(const schema::Key& first, const schema::Key& last, std::uint32_t count) {
+    const std::string often = count == 2 ? "twice" : fmt::format("{} times", count);
+    errors_.diagnostics()
+        .warning("W0101", first.nameSpan, fmt::format("the key `{}` is given {}", first.name, often), "has no effect")
+        .related.push_back({last.nameSpan, "this one counts"});
 }
 
 } // namespace abbe::parser

@@ -89,6 +89,7 @@ class TreeReader {
     void endEntries(Record&);
     void reportCommas(Record&);
     void removeDoubleKeys(Record&);
+    void reportDoubleKey(const schema::Key& first, const schema::Key& last, std::uint32_t count);
     bool atEndOfNode() const;
     void skipSpace();
     void skipSpace(Record&);

@@ -20,7 +20,7 @@ std::unique_ptr<LoadedScene> checkScene(const SceneInput& input, bool textures =
 
 // Applies what can be applied, again and again until nothing is left: one fix may uncover the next.
 std::size_t fixScene(const SceneInput& input) {
-    constexpr int kRounds = 8;
+    constexpr int kRounds = 64; // each mends a thousand faults of a kind
     std::size_t applied = 0;
     for (int round = 0; round < kRounds; ++round) {
         const auto loaded = checkScene(input);

@@ -3,6 +3,8 @@
 
 #include "base/source.h"
 
+#include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -37,21 +39,31 @@ struct Diagnostic {
     std::vector<FixIt> fixes;
 };
 
-// Collects the diagnostics of one run in the order found. Not thread-safe.
+// Collects the diagnostics of one run in the order found. Of one code a thousand are listed and the others counted: what
+// is done with the list takes no longer for a file of a million faults. Not thread-safe.
 class Diagnostics {
   public:
+    static constexpr std::size_t kMostOfACode = 1000;
+
+    // The diagnostic, to be completed until the next call; one that is not listed is forgotten then.
     Diagnostic& add(Diagnostic);
+    void addAll(const Diagnostics&);
     Diagnostic& error(std::string code, Span, std::string message, std::string label = {});
     Diagnostic& warning(std::string code, Span, std::string message, std::string label = {});
 
+    // Those listed; where some are not, a warning (W0199) says so.
     const std::vector<Diagnostic>& all() const { return list_; }
     std::size_t errorCount() const { return errors_; }
-    std::size_t warningCount() const { return list_.size() - errors_; }
+    std::size_t warningCount() const { return warnings_; }
     bool hasErrors() const { return errors_ > 0; }
 
   private:
+    void count(Severity, std::size_t number);
+
     std::vector<Diagnostic> list_;
-    std::size_t errors_ = 0;
+    std::map<std::string, std::size_t, std::less<>> listed_; // of each code
+    Diagnostic unlisted_;                                    // the last one that is not
+    std::size_t errors_ = 0, warnings_ = 0;
 };
 
 // The one exception of loading: everything that was found wrong.

@@ -22,7 +22,7 @@ bool overlaps(const Accepted& accepted, const FixIt& fix) {
 } // namespace
 
 FixResult applyFixes(std::string_view text, FileId file, const Diagnostics& diagnostics) {
-    FixResult result{std::string(text), 0};
+    FixResult result;
     Accepted accepted;
     for (const Diagnostic* d : sortedByPlace(diagnostics)) {
         const bool blocked = std::any_of(d->fixes.begin(), d->fixes.end(), [&](const FixIt& fix) {
@@ -32,10 +32,13 @@ FixResult applyFixes(std::string_view text, FileId file, const Diagnostics& diag
         for (const FixIt& fix : d->fixes) accepted.emplace(fix.span.begin, &fix);
         ++result.applied;
     }
-    for (auto i = accepted.rbegin(); i != accepted.rend(); ++i) {
-        const FixIt& fix = *i->second;
-        result.text.replace(fix.span.begin, fix.span.end - fix.span.begin, fix.replacement);
+    std::size_t copied = 0;
+    for (const auto& [begin, fix] : accepted) {
+        if (begin < copied) continue; // within another one of the same diagnostic
+        result.text.append(text.substr(copied, begin - copied)).append(fix->replacement);
+        copied = fix->span.end;
     }
+    result.text.append(text.substr(copied));
     return result;
 }
 

@@ -132,7 +132,8 @@ std::string formatHuman(const Diagnostics& diagnostics, const SourceMap& sources
     HumanWriter writer(sources, options.color, std::to_string(lastLine).size());
     for (const Diagnostic* d : shown) writer.write(*d);
     std::string text = writer.take();
-    if (const std::size_t hidden = sorted.size() - shown.size(); hidden > 0)
+    const std::size_t found = diagnostics.errorCount() + diagnostics.warningCount();
+    if (const std::size_t hidden = found - shown.size(); hidden > 0)
         text += fmt::format("… and {} more\n\n", hidden);
     return text + summary(diagnostics, sorted, sources, options.summaryName);
 }

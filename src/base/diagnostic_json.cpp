@@ -10,16 +10,8 @@ namespace {
 
 // LSP counts lines from 0 and characters in UTF-16 units.
 std::string position(const SourceMap& sources, FileId file, std::uint32_t offset) {
-    const std::uint32_t line = sources.lineColumn(file, offset).line;
-    const std::string_view text = sources.text(file);
-    std::size_t i = static_cast<std::size_t>(sources.line(file, line).data() - text.data());
-    std::size_t units = 0;
-    for (; i < offset && i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        units += (byte & 0xc0u) != 0x80u ? 1 : 0;
-        units += byte >= 0xf0u ? 1 : 0; // beyond the basic plane: two units
-    }
-    return fmt::format("{{\"line\":{},\"character\":{}}}", line - 1, units);
+    return fmt::format("{{\"line\":{},\"character\":{}}}", sources.lineColumn(file, offset).line - 1,
+                       sources.utf16Column(file, offset));
 }
 
 std::string range(const SourceMap& sources, Span span) {

@@ -27,17 +27,28 @@ class SourceMap {
     std::string_view text(FileId) const;
     std::string_view text(Span) const;
     LineColumn lineColumn(FileId, std::uint32_t offset) const;
+    // Characters in UTF-16 units between the beginning of its line and `offset`, as editors count them.
+    std::uint32_t utf16Column(FileId, std::uint32_t offset) const;
     // The text of a line (from 1) without its line end.
     std::string_view line(FileId, std::uint32_t line) const;
     std::size_t fileCount() const { return files_.size(); }
 
   private:
+    // Characters of a text before a place.
+    struct Characters {
+        std::uint32_t points = 0; // code points
+        std::uint32_t units = 0;  // of UTF-16
+    };
     struct File {
         std::string path;
         std::string text;
         mutable std::vector<std::uint32_t> lineStarts; // made on first use
+        mutable std::vector<Characters> marks;         // likewise: before each block of kBlock bytes
     };
+    static constexpr std::size_t kBlock = 1024;
     const std::vector<std::uint32_t>& lineStarts(FileId) const;
+    // In a time that does not depend on the lengths of lines: thousands of faults may stand on one.
+    Characters charactersBefore(FileId, std::size_t offset) const;
     std::deque<File> files_;
 };
 

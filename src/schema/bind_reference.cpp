@@ -12,9 +12,6 @@ namespace abbe::schema {
 namespace {
 
 void unknownName(Kind kind, const Value& word, const BindContext& context) {
-    std::vector<std::string_view> names;
-    for (const Definition* d : context.tree.index.sorted)
-        if (d->kind == kind) names.push_back(d->name);
     const std::string message = fmt::format("no {} is named `{}`", keyword(kind), word.text);
     for (int i = 0; i <= static_cast<int>(Kind::render); ++i)
         if (const Definition* other = context.tree.find(static_cast<Kind>(i), word.text)) {
@@ -25,7 +22,7 @@ void unknownName(Kind kind, const Value& word, const BindContext& context) {
             d.related.push_back({other->nameSpan, "defined here"});
             return;
         }
-    auto meant = nearest(word.text, names);
+    auto meant = context.tree.nearestName({&kind, 1}, word.text);
     const auto types = typeNames(context.table, kind);
     if (meant.empty()) meant = foreignType(context.table, kind, word.text);
     if (meant.empty()) meant = nearest(word.text, types);

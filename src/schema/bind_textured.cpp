@@ -91,14 +91,12 @@ class TexturedBinder {
     }
 
     void unknown(const Value& word) {
-        std::vector<std::string_view> names;
-        for (const Definition* d : context_.tree.index.sorted)
-            if (d->kind == Kind::texture || (spectral_ && d->kind == Kind::spectrum)) names.push_back(d->name);
+        constexpr std::array kinds = {Kind::texture, Kind::spectrum};
         const auto types = typeNames(context_.table, Kind::texture);
         std::vector<std::string_view> words = types;
         if (spectral_)
             for (const SpectrumForm& form : spectrumForms()) words.push_back(form.name);
-        auto meant = nearest(word.text, names);
+        auto meant = context_.tree.nearestName(std::span(kinds).first(spectral_ ? 2 : 1), word.text);
         if (meant.empty()) meant = nearest(word.text, words);
         const std::string_view what = spectral_ ? "spectrum or texture" : "texture";
         auto& d = reportAt(context_.diagnostics, word, "E0202", fmt::format("no {} is named `{}`", what, word.text),

@@ -7,8 +7,8 @@ namespace abbe::schema {
 
 void mergeOnce(Diagnostics& diagnostics, const Diagnostics& found) {
     const auto same = [](const Diagnostic& a, const Diagnostic& b) {
-        return a.code == b.code && a.message == b.message && a.span.file == b.span.file &&
-               a.span.begin == b.span.begin && a.span.end == b.span.end;
+        return a.span.begin == b.span.begin && a.span.end == b.span.end && a.span.file == b.span.file &&
+               a.code == b.code && a.message == b.message;
     };
     for (const Diagnostic& d : found.all()) {
         const auto& known = diagnostics.all();

@@ -18,11 +18,14 @@ bool isTransformStep(std::string_view word) {
 
 void reportLooseSteps(std::string_view owner, const std::vector<Node>& steps, bool given, Diagnostics& diagnostics) {
     const Node& first = steps.front();
+    constexpr std::size_t kShown = 8;
+    const std::span shown = std::span(steps).first(std::min(steps.size(), kShown));
     std::string block;
-    for (const Node& step : steps) block += (block.empty() ? "" : "; ") + headText(step);
+    for (const Node& step : shown) block += (block.empty() ? "" : "; ") + headText(step);
+    if (shown.size() < steps.size()) block += "; …";
     Diagnostic& d = report(diagnostics, first.nameSpan(), "E0201",
                            fmt::format("{} has no property `{}`", owner, first.name()), "a step of a transform");
-    for (const Node& step : std::span(steps).subspan(1)) d.related.push_back({step.nameSpan(), "another one"});
+    for (const Node& step : shown.subspan(1)) d.related.push_back({step.nameSpan(), "another one"});
     d.help = given ? fmt::format("write `{}` into the block of its `transform`", block)
                    : fmt::format("write `transform {{ {} }}`", block);
     // `scale 2` of a light may be meant as a factor of its amount.

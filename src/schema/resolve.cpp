@@ -33,13 +33,22 @@ const Definition* findLinear(const std::vector<Definition>& definitions, Kind ki
 
 const Definition* SceneTree::find(Kind kind, std::string_view name) const {
     if (name.empty()) return nullptr;
-    if (index.sorted.empty()) return findLinear(definitions, kind, name);
+    if (!index.filled) return findLinear(definitions, kind, name);
     const auto before = [&](const Definition* d, std::string_view n) {
         return d->kind != kind ? d->kind < kind : d->name < n;
     };
     const auto found = std::lower_bound(index.sorted.begin(), index.sorted.end(), name, before);
     const bool hit = found != index.sorted.end() && (*found)->kind == kind && (*found)->name == name;
     return hit ? *found : nullptr;
+}
+
+std::string_view SceneTree::nearestName(std::span<const Kind> kinds, std::string_view word) const {
+    if (index.compared >= kMostCompared) return {};
+    std::vector<std::string_view> names;
+    for (const Definition* d : index.sorted)
+        if (std::ranges::find(kinds, d->kind) != kinds.end()) names.push_back(d->name);
+    index.compared += index.sorted.size() + names.size() * word.size();
+    return nearest(word, names);
 }
 
 SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& table, std::filesystem::path directory,
@@ -53,6 +62,7 @@ SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& tab
         if (!isHeader(node)) reader.read(node, tree.definitions, Place::top);
     collectNamed(tree.definitions, tree.index.sorted);
     std::ranges::stable_sort(tree.index.sorted, byName);
+    tree.index.filled = true;
     checkNames(tree, table, diagnostics);
     checkSpectra(tree, diagnostics);
     checkUsage(tree, diagnostics);

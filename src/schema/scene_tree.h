@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,11 @@ struct NameIndex {
     NameIndex() = default;
     NameIndex(const NameIndex&) noexcept {}
     NameIndex(NameIndex&&) noexcept = default;
-    NameIndex& operator=(const NameIndex&) noexcept { return sorted.clear(), *this; }
+    NameIndex& operator=(const NameIndex&) noexcept { return *this = NameIndex(); }
     NameIndex& operator=(NameIndex&&) noexcept = default;
     std::vector<const Definition*> sorted;
+    bool filled = false;             // a scene without names has an empty one
+    mutable std::size_t compared = 0; // letters, by SceneTree::nearestName
 };
 
 // Everything that one file defines. Holds views into `document`.
@@ -63,6 +66,12 @@ struct SceneTree {
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
+
+    // What is compared with names for suggestions, in all: about a second. More unknown names are told without one.
+    static constexpr std::size_t kMostCompared = 10'000'000;
+    // The nearest name (see nearest) of a definition of one of the kinds; nothing once kMostCompared is spent. Requires:
+    // the index is filled.
+    std::string_view nearestName(std::span<const Kind>, std::string_view word) const;
 };
 
 // The spectrum values of the language, as written and checked for arity and units, not yet a curve.

@@ -107,12 +107,11 @@ class SpectrumReader {
     void unknownForm(const Value& word) {
         for (const std::string_view future : kFutureForms)
             if (word.text == future) return reportPlanned(word.text, place(word), diagnostics_);
-        std::vector<std::string_view> names, forms;
-        for (const Definition* d : tree_.index.sorted)
-            if (d->kind == Kind::spectrum && use_.role) names.push_back(d->name);
+        constexpr std::array kinds = {Kind::spectrum};
+        std::vector<std::string_view> forms;
         for (const SpectrumForm& form : spectrumForms()) forms.push_back(form.name);
         const bool name = entry_.count() == 1;
-        auto meant = name ? nearest(word.text, names) : std::string_view();
+        auto meant = name && use_.role ? tree_.nearestName(kinds, word.text) : std::string_view();
         if (meant.empty()) meant = nearest(word.text, forms);
         auto& d = reportAt(diagnostics_, word, name ? "E0202" : "E0311",
                            name ? fmt::format("no spectrum is named `{}`", word.text)

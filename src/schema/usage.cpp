@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -53,10 +54,7 @@ void collectPlaced(const Definition& owner, std::vector<const Definition*>& out)
 // Reports that nothing of this kind has the name that `asker` asks for, with the nearest one. `help` if there is none.
 void reportTarget(const SceneTree& tree, const Definition& asker, Kind kind, const std::string& help,
                   Diagnostics& diagnostics) {
-    std::vector<std::string_view> names;
-    for (const Definition* d : tree.index.sorted)
-        if (d->kind == kind) names.push_back(d->name);
-    const auto meant = nearest(asker.target, names);
+    const auto meant = tree.nearestName({&kind, 1}, asker.target);
     auto& d =
         report(diagnostics, asker.targetSpan, "E0202", fmt::format("no {} is named `{}`", keyword(kind), asker.target),
                meant.empty() ? "unknown name" : didYouMean(meant));
@@ -120,15 +118,18 @@ class CycleCheck {
 
     void enter(const Definition* object) {
         state_[object] = State::open;
+        depth_[object] = stack_.size();
         Level level{object, {}};
         collectPlaced(*object, level.placed);
         stack_.push_back(std::move(level));
     }
 
     void reportCycle(const Definition& instance, const Definition* target) {
+        constexpr std::size_t kShown = 12;
+        const auto cycle = std::span(stack_).subspan(depth_[target]);
         std::string chain;
-        const auto first = std::ranges::find(stack_, target, &Level::object);
-        for (auto level = first; level != stack_.end(); ++level) chain += level->object->name + " → ";
+        for (const Level& level : cycle.first(std::min(cycle.size(), kShown))) chain += level.object->name + " → ";
+        if (cycle.size() > kShown) chain += "… → ";
         auto& d = report(diagnostics_, instance.targetSpan, "E0213",
                          fmt::format("object `{}` contains itself", target->name), "placed inside of itself");
         d.related.push_back({target->nameSpan, "the object"});
@@ -138,6 +139,7 @@ class CycleCheck {
     const SceneTree& tree_;
     Diagnostics& diagnostics_;
     std::unordered_map<const Definition*, State> state_;
+    std::unordered_map<const Definition*, std::size_t> depth_; // of those open
     std::vector<Level> stack_;
 };
 

@@ -192,3 +192,21 @@ TEST_CASE("fixes: all of a diagnostic or none, the first of two that overlap") {
     CHECK(result.text == "A, def GGGG");
     CHECK(result.applied == 2);
 }
+
+TEST_CASE("of one code a thousand are listed, the others counted") {
+    Fixture f("a b");
+    for (int i = 0; i < 3000; ++i) f.diagnostics.error("E0202", f.at("b"), "no such name").help = "help";
+    for (int i = 0; i < 10; ++i) f.diagnostics.warning("W0201", f.at("a"), "unused");
+    CHECK(f.diagnostics.errorCount() == 3000);
+    CHECK(f.diagnostics.warningCount() == 11);
+    CHECK(f.diagnostics.all().size() == 1011);
+    CHECK(f.diagnostics.all()[1000].code == "W0199");
+    CHECK(f.human().find("… and 2980 more") != std::string::npos);
+    CHECK(f.human().find("3000 errors, 11 warnings") != std::string::npos);
+
+    Diagnostics both;
+    both.addAll(f.diagnostics);
+    CHECK(both.errorCount() == 3000);
+    CHECK(both.warningCount() == 11);
+    CHECK(both.all().size() == 1011);
+}

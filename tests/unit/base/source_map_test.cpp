@@ -31,3 +31,21 @@ TEST_CASE("an empty text has one empty line") {
     CHECK(sources.lineColumn(file, 0).line == 1);
     CHECK(sources.line(file, 1).empty());
 }
+
+TEST_CASE("columns of long lines are those of short ones, in code points and in units of UTF-16") {
+    SourceMap sources;
+    std::string text = "first\n";
+    for (int i = 0; i < 3000; ++i) text += i % 3 == 0 ? "\U0001F600" : i % 3 == 1 ? "\u00e9" : "x";
+    const FileId file = sources.add("a", text + "\nlast");
+    std::uint32_t offset = 6;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+        const std::uint32_t units = i + (i + 2) / 3; // every third has two
+        const LineColumn place = sources.lineColumn(file, offset);
+        if (place.line != 2 || place.column != i + 1 || sources.utf16Column(file, offset) != units)
+            FAIL("character " << i << ": column " << place.column);
+        offset += i % 3 == 0 ? 4 : i % 3 == 1 ? 2 : 1;
+    }
+    CHECK(sources.lineColumn(file, offset + 3).line == 3);
+    CHECK(sources.lineColumn(file, offset + 3).column == 3);
+    CHECK(sources.utf16Column(file, offset + 3) == 2);
+}

@@ -13,7 +13,7 @@ TEST_CASE("nodes, values, keys and blocks") {
           "a 1 \"b\" c d k=2 {\n    e\n    f {\n        g\n    }\n}\nh\n");
     CHECK(printedText("").empty());
     CHECK(printedText("\n;;\n // nothing\n").empty());
-    CHECK(printedText("a{}") != "a {\n}\n"); // a space is missing
+    CHECK(printedText("a{}") == "a {\n}\n");
     CHECK(printedText("a {}") == "a {\n}\n");
     CHECK(printedText("a {b}") == "a {\n    b\n}\n");
     CHECK(printedText("a { b; }; c") == "a {\n    b\n}\nc\n");
@@ -72,6 +72,15 @@ TEST_CASE("of equal keys the last one counts, with a warning") {
     CHECK(parsed.printed() == "a l=2 k=3\n");
     CHECK(parsed.codes() == "W0101@2-3");
     CHECK(parsed.diagnostics.warningCount() == 1);
+}
+
+TEST_CASE("a key that is given often is one warning with a count, and the names of a node one each") {
+    const auto parsed = parseText("a k=1 l=1 k=2 k=3 l=2 m=1 k=4\nb k=1 k=2");
+    CHECK(parsed.printed() == "a l=2 m=1 k=4\nb k=2\n");
+    CHECK(parsed.codes() == "W0101@2-3 W0101@6-7 W0101@32-33");
+    CHECK(parsed.diagnostics.all()[0].message == "the key `k` is given 4 times");
+    CHECK(parsed.diagnostics.all()[0].related[0].span.begin == 26);
+    CHECK(parsed.diagnostics.all()[1].message == "the key `l` is given twice");
 }
 
 TEST_CASE("spans") {
