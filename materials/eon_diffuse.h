@@ -13,9 +13,10 @@ class EonDiffuse {
   public:
     // Colour of the single grain, 0 … 1; roughness 0 (Lambert) … 1.
     EonDiffuse(const Spectrum& color, float roughness)
-        : color_(color), roughness_(roughness), a_(1 / (1 + kSlope * roughness)), b_(roughness * a_) {
-        if (roughness == 0) return;
-        const float average = a_ * (1 + (2.f / 3 - 28 / (15 * kPi)) * roughness);
+        : color_(color), roughness_(roughness < kLeast ? 0 : roughness), a_(1 / (1 + kSlope * roughness_)),
+          b_(roughness_ * a_) {
+        if (roughness_ == 0) return;
+        const float average = a_ * (1 + (2.f / 3 - 28 / (15 * kPi)) * roughness_);
         const Spectrum lost(1 - average);
         multiple_ = color * color * (average / (1 - average)) / (Spectrum(1.f) - color * lost);
     }
@@ -37,6 +38,7 @@ class EonDiffuse {
 
   private:
     static constexpr float kSlope = 0.5f - 2 / (3 * kPi);
+    static constexpr float kLeast = 1e-6f; // what less takes from the single reflection is lost in rounding
 
     // Of white grains, after one reflection: a + (b/π) G(μ), where G → 0.66 as μ → 0 [Portsmouth2025, eq. 17]. With
     // sine = S, S/μ (1 - S³) is written so that nothing cancels: 1 - S³ = μ² (1 + S + S²)/(1 + S).

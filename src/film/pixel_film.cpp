@@ -249,9 +249,10 @@ ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale) const {
             image.r[i] = static_cast<float>(rgb.x);
             image.g[i] = static_cast<float>(rgb.y);
             image.b[i] = static_cast<float>(rgb.z);
-            if (replicates_ > 1)
-                image.variance[i] = static_cast<float>(
-                    variance(x, y).value_or(std::numeric_limits<double>::infinity()) * square(scale));
+            if (replicates_ < 2) continue;
+            const std::optional<double> known = variance(x, y);
+            image.variance[i] =
+                known ? static_cast<float>(*known * square(scale)) : std::numeric_limits<float>::infinity();
         }
     });
     return image;

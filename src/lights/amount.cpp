@@ -2,6 +2,7 @@
 
 #include "spectrum/observer.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -46,10 +47,33 @@ std::optional<double> scaleFor(const schema::Quantity& quantity, const Curve& sh
     return scale;
 }
 
+bool checkLightRange(const ScaledCurve& light, const LightRange& range, Span span, Diagnostics& diagnostics) {
+    double most = 0;
+    for (int nm = static_cast<int>(kMinWavelength); nm <= static_cast<int>(kMaxWavelength); ++nm)
+        most = std::max(most, light.at(static_cast<double>(nm)));
+    if (most == 0 || (most >= range.least && most <= range.most)) return true;
+    diagnostics
+        .error("E0349", span,
+               fmt::format("the light is too {} to be calculated with", most > range.most ? "bright" : "dim"),
+               fmt::format("comes to {:.3g} {}", most, range.unit))
+        .notes.push_back(fmt::format("light is 0, or between {:g} and {:g} {}", range.least, range.most, range.unit));
+    return false;
+}
+
+namespace {
+
+std::optional<ScaledCurve> withinRange(const ScaledCurve& light, const LightRange& range, Span span,
+                                       Diagnostics& diagnostics) {
+    return checkLightRange(light, range, span, diagnostics) ? std::optional(light) : std::nullopt;
+}
+
+} // namespace
+
 std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Curve& defaultColor,
                                             const EmitterFactors& factors, Span span, Diagnostics& diagnostics) {
     if (params.radiance.curve) {
-        if (!params.color) return ScaledCurve{params.radiance.curve, 1};
+        const Span place = params.radiance.span.valid() ? params.radiance.span : span;
+        if (!params.color) return withinRange({params.radiance.curve, 1}, factors.range, place, diagnostics);
         Diagnostic& d = diagnostics.error("E0341", span, "`color` has no effect beside `radiance`");
         d.notes.push_back("`radiance` is an absolute spectrum; `color` shapes the spectrum of the other amounts");
         return std::nullopt;
@@ -69,7 +93,7 @@ std::optional<ScaledCurve> absoluteSpectrum(const AmountParams& params, const Cu
                                                          : "the spectrum is zero between 360 and 830 nm");
         return std::nullopt;
     }
-    return ScaledCurve{&color, *scale};
+    return withinRange({&color, *scale}, factors.range, place, diagnostics);
 }
 
 void reportMissingAmount(AmountFields allowed, Span span, Diagnostics& diagnostics) {

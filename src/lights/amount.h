@@ -54,10 +54,26 @@ double visibleIntegral(const Curve&);
 // Requires: factor > 0.
 std::optional<double> scaleFor(const schema::Quantity&, const Curve& shape, double factor);
 
+// What there may be of light at any wavelength, if there is any. Sums of pixels resolve 2e-22 and hold samples up to
+// 4e12 (math/exact_sum.h), and nothing is seen brighter than what shines: so much for what fills the view. What is
+// small may be brighter, as it is hardly ever met but lights other things; there single precision sets the bounds.
+struct LightRange {
+    double least, most;
+    std::string_view unit;
+};
+inline constexpr LightRange kSkyRadiance = {1e-18, 1e12, "W/m²/sr/nm"};
+inline constexpr LightRange kSurfaceRadiance = {1e-18, 1e30, "W/m²/sr/nm"};
+inline constexpr LightRange kIntensityRange = {1e-30, 1e30, "W/sr/nm"};
+inline constexpr LightRange kIrradianceRange = {1e-30, 1e30, "W/m²/nm"};
+
+// False, after an error, if the largest value between 360 and 830 nm is neither 0 nor in the range.
+bool checkLightRange(const ScaledCurve&, const LightRange&, Span, Diagnostics&);
+
 // What the geometry of a light makes of its radiance (point and spot: of its intensity on the axis).
 struct EmitterFactors {
-    double power = 0;      // flux over radiance, m²·sr, or over intensity, sr
-    double irradiance = 0; // sr
+    double power = 0;                    // flux over radiance, m²·sr, or over intensity, sr
+    double irradiance = 0;               // sr
+    LightRange range = kSurfaceRadiance; // of the spectrum that is asked for
 };
 
 // The absolute spectrum of a light: radiance, or intensity for lights without extent. Says what is missing, set twice

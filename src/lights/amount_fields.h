@@ -11,7 +11,7 @@ template <typename Params> void addAmountFields(std::vector<schema::FieldInfo>& 
     using schema::Dimension;
     using schema::FieldType;
     using OptionalQuantity = std::optional<schema::Quantity>;
-    constexpr double kMost = std::numeric_limits<double>::max();
+    constexpr double kMost = std::numeric_limits<double>::infinity();
     const auto quantity = [](std::string_view name, OptionalQuantity Params::*member) {
         return schema::field<Params, OptionalQuantity>(FieldType::quantity, name, member)
             .group("amount")

@@ -10,7 +10,9 @@ using schema::Dimension;
 using schema::FieldInfo;
 using schema::FieldType;
 
-constexpr double kLargest = 1e12; // m: far beyond any scene, far from overflow
+// m: far beyond any scene, far from overflow; and far below an atom, so that the solid angle of the smallest light at
+// 10 000 km is a number of single precision.
+constexpr double kLargest = 1e12, kSmallest = 1e-12;
 
 template <typename Params> void addCommonFields(std::vector<FieldInfo>& fields) {
     addAmountFields<Params>(fields, kAreaAmounts);
@@ -47,7 +49,7 @@ template <typename Params> schema::Field<Params, double> radiusField() {
     return schema::field(FieldType::quantity, "radius", &Params::radius)
         .unit({Dimension::length})
         .byDefault("0.5 m")
-        .range(std::numeric_limits<double>::min(), kLargest)
+        .range(kSmallest, kLargest)
         .doc("Radius.")
         .example("radius 15 cm")
         .synonyms({"r"});
@@ -71,7 +73,7 @@ schema::TypeInfo lightQuadType() {
     type.fields.push_back(schema::field(FieldType::vector2, "size", &LightQuadParams::size)
                               .unit({Dimension::length})
                               .group("extent")
-                              .range(std::numeric_limits<double>::min(), kLargest)
+                              .range(kSmallest, kLargest)
                               .doc("Width and height of a rectangle about the origin that faces +z. Default 1 1 m.")
                               .example("size 60 120 cm")
                               .synonyms({"width", "height", "extent"}));

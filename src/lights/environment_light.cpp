@@ -6,6 +6,7 @@
 #include "spectrum/observer.h"
 #include "spectrum/sampled_curve.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -274,7 +275,28 @@ float EnvironmentLight::pdfImage(Vec3 w) const noexcept {
     return static_cast<float>(p / cellSolidAngle(row));
 }
 
-bool checkEnvironmentImage(EnvironmentImage& image, Span span, Diagnostics& diagnostics) {
+namespace {
+
+// Of the brightest pixel: dark ones may be as dark as they like. A triple of 1 has a radiance of about 1.
+bool checkBrightestPixel(const EnvironmentImage& image, double scale, Span span, Diagnostics& diagnostics) {
+    const auto brightest = std::ranges::max_element(image.rgb);
+    const double most = static_cast<double>(*brightest) * scale;
+    if (most == 0 || (most >= kSkyRadiance.least && most <= kSkyRadiance.most)) return true;
+    const auto pixel = (brightest - image.rgb.begin()) / 3;
+    Diagnostic& d = diagnostics.error(
+        "E0349", span,
+        fmt::format("the environment image is too {} to be calculated with", most > 1 ? "bright" : "dim"),
+        fmt::format("pixel {},{} is {:.3g}", pixel % image.width, pixel / image.width, *brightest));
+    d.notes.push_back(fmt::format("times `luminance` and `exposure` that comes to {:.3g}; between {:g} and {:g} can be "
+                                  "calculated with",
+                                  most, kSkyRadiance.least, kSkyRadiance.most));
+    d.help = "`exposure` brightens or darkens the image; a single odd pixel is mended in the program that wrote it";
+    return false;
+}
+
+} // namespace
+
+bool checkEnvironmentImage(EnvironmentImage& image, double scale, Span span, Diagnostics& diagnostics) {
     const std::size_t count =
         static_cast<std::size_t>(std::max(image.width, 0)) * static_cast<std::size_t>(std::max(image.height, 0));
     if (count == 0 || image.rgb.size() != 3 * count) {
@@ -297,7 +319,7 @@ bool checkEnvironmentImage(EnvironmentImage& image, Span span, Diagnostics& diag
     if (negative > 0)
         diagnostics.warning("W0440", span,
                             fmt::format("{} negative values of the environment image are taken as 0", negative));
-    return true;
+    return checkBrightestPixel(image, scale, span, diagnostics);
 }
 
 namespace {
@@ -330,7 +352,9 @@ bool portalCorners(const EnvironmentLightParams& params, const LightContext& con
 std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
                                             std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
                                             const LightContext& context, Diagnostics& diagnostics) {
-    if (!checkEnvironmentImage(image, context.span, diagnostics)) return nullptr;
+    const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;
+    const double scale = luminance / kUnitLuminance * std::exp2(params.exposure);
+    if (!checkEnvironmentImage(image, scale, context.span, diagnostics)) return nullptr;
     const Transform upright = context.zUp ? Transform::rotate({1, 0, 0}, kPiD / 2) : Transform{};
     const Transform toRender = upright.then(params.transform.at(context.time)).then(context.toRender);
     if (!toRender.uniformScale()) {
@@ -339,8 +363,6 @@ std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params
     }
     std::vector<std::array<Vec3d, 4>> windows;
     if (!portalCorners(params, context, windows, diagnostics)) return nullptr;
-    const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;
-    const double scale = luminance / kUnitLuminance * std::exp2(params.exposure);
     auto light =
         std::make_unique<EnvironmentLight>(std::move(image), std::move(upsampling), scale, toRender, compensated);
     std::vector<Portal> portals;

@@ -101,9 +101,10 @@ class EnvironmentLight final : public Light {
     double power_;
 };
 
-// Rejects sizes that do not fit, values that are not finite, and counts negative ones, which are set to zero with a
-// warning. False after an error.
-bool checkEnvironmentImage(EnvironmentImage&, Span, Diagnostics&);
+// Rejects sizes that do not fit, values that are not finite, and pixels that make too much or too little light for
+// kSkyRadiance when they are multiplied by `scale`; counts negative ones, which are set to zero with a warning. False
+// after an error.
+bool checkEnvironmentImage(EnvironmentImage&, double scale, Span, Diagnostics&);
 
 // Null after an error.
 std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,

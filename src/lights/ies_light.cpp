@@ -250,7 +250,8 @@ std::unique_ptr<Light> makeIesLight(const IesLightParams& params, IntensityTable
     AmountParams amount = params;
     if (!amount.power) amount.power = schema::Quantity{profile.lumens(), Dimension::luminousFlux, context.span};
     const auto perCandela =
-        absoluteSpectrum(amount, *context.defaultColor, {.power = profile.lumens()}, context.span, diagnostics);
+        absoluteSpectrum(amount, *context.defaultColor, {.power = profile.lumens(), .range = kIntensityRange},
+                         context.span, diagnostics);
     if (!perCandela) return nullptr;
     // The frame turns about the axis with the lamp's own x, as far as the axis allows.
     const Vec3d axis = local * (1 / norm);

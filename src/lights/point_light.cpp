@@ -50,8 +50,8 @@ std::unique_ptr<Light> makePointLight(const PointLightParams& params, const Ligh
         reportMissingAmount(kPointAmounts, context.span, diagnostics);
         return nullptr;
     }
-    const auto intensity =
-        absoluteSpectrum(params, *context.defaultColor, {.power = 4 * kPiD}, context.span, diagnostics);
+    const auto intensity = absoluteSpectrum(params, *context.defaultColor,
+                                            {.power = 4 * kPiD, .range = kIntensityRange}, context.span, diagnostics);
     if (!intensity) return nullptr;
     const Vec3d position = params.transform.at(context.time).then(context.toRender).point(params.position);
     return std::make_unique<PointLight>(Vec3(position), *intensity);

@@ -53,8 +53,8 @@ std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightCon
                                     Diagnostics& diagnostics) {
     AmountParams amount = params;
     if (!amount.stated()) amount.luminance = {kDefaultSkyLuminance, schema::Dimension::luminance, {}};
-    const auto radiance =
-        absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD}, context.span, diagnostics);
+    const auto radiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD, .range = kSkyRadiance},
+                                           context.span, diagnostics);
     if (!radiance) return nullptr;
     return std::make_unique<SkyLight>(*radiance);
 }

@@ -174,7 +174,8 @@ std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightC
         return nullptr;
     }
     const auto intensity = absoluteSpectrum(params, *context.defaultColor,
-                                            {.power = SpotLight::solidAngle(inner, outer)}, context.span, diagnostics);
+                                            {.power = SpotLight::solidAngle(inner, outer), .range = kIntensityRange},
+                                            context.span, diagnostics);
     if (!intensity) return nullptr;
     return std::make_unique<SpotLight>(Vec3(toRender.point(params.position)), Vec3(axis / norm), inner, outer,
                                        *intensity);

@@ -102,7 +102,8 @@ std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightCon
     AmountParams amount = params;
     if (!amount.stated()) amount.irradiance = {kDefaultIrradiance, Dimension::illuminance, {}};
     // The spectrum of the irradiance: for the other amounts, radiance times the projected solid angle.
-    auto irradiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = 1}, context.span, diagnostics);
+    auto irradiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = 1, .range = kIrradianceRange},
+                                       context.span, diagnostics);
     if (!irradiance) return nullptr;
     if (!amount.irradiance) irradiance->scale *= projected;
     return std::make_unique<SunLight>(direction, halfAngle, *irradiance);

@@ -23,6 +23,7 @@ template <typename P> void addGlowFields(std::vector<schema::FieldInfo>& fields)
     using namespace schema;
     fields.push_back(field<P, const Curve*>(FieldType::spectrum, "emission", &P::emission)
                          .role(SpectrumRole::emission)
+                         .range(0, 1e12)
                          .synonyms({"Le", "emission_color", "glow"})
                          .doc("What it gives off by itself where its amount is 1, in W per m³, sr and nm: radiance per "
                               "metre of the way.")

@@ -28,10 +28,24 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
     return context;
 }
 
+// Lights with a place are chosen by their power, in single precision.
+bool SceneBuilder::checkPower(const Light& light, Span span) {
+    constexpr double kLeast = 1e-30, kMost = 1e35;
+    const double power = light.power();
+    if (power == 0 || !light.bounds(0) || (power >= kLeast && power <= kMost)) return true;
+    diagnostics_
+        .error("E0349", span,
+               fmt::format("the light is too {} to be calculated with", power > kMost ? "bright" : "dim"),
+               fmt::format("gives off {:.3g} W", power))
+        .notes.push_back(fmt::format("the power of a light is 0, or between {:g} and {:g} W", kLeast, kMost));
+    return false;
+}
+
 void SceneBuilder::addLight(std::unique_ptr<Light> light, const Definition& d, Visibility visible) {
     if (!light) return;
     light->setVisible(visible);
     if (!(light->power() > 0)) diagnostics_.warning("W0740", d.span, "this light is dark; no light is asked of it");
+    if (!checkPower(*light, d.span)) return;
     built_->scene.names[light.get()] = nameOf(d);
     if (const MediumEmission* glow = light->emission()) built_->scene.names[glow] = nameOf(d);
     lights_.push_back(std::move(light));
@@ -65,6 +79,9 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
     const Definition& d = *shape.definition;
     std::optional<LightMotion> motion;
     if (!emission.radiance.curve || !lightMotion(toRender, d.span, motion)) return nullptr;
+    if (!checkLightRange(emission.radiance, kSurfaceRadiance, emission.span.valid() ? emission.span : d.span,
+                         diagnostics_))
+        return nullptr;
     // A light that is sampled would shine from its holes, too.
     if (const Material* material = materialOf(shape.common); material && material->mayBeOpen()) {
         diagnostics_.error("E0754", d.span, "a shape that shines has a material with holes", "its `opacity` is below 1")
@@ -86,6 +103,7 @@ const Light* SceneBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
     else
         lights_.push_back(
             std::make_unique<AreaLight>(placed, emission.radiance, both, std::move(texture), emission.veil));
+    if (!checkPower(*lights_.back(), d.span)) return lights_.pop_back(), nullptr;
     lights_.back()->setVisible(visible);
     lightNames_.emplace_back(d.name, "shape");
     built_->scene.names[lights_.back().get()] = nameOf(d);
@@ -257,7 +275,7 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
         context.toOwn = toOwn.value_or(Transform{});
         if (motion) context.motion = &*motion;
         auto light = makeAreaLight(amount, *shape, context, diagnostics_);
-        if (!light) return;
+        if (!light || !checkPower(*light, d.span)) return;
         // A lamp emits and reflects nothing.
         const Shape* const placed = keepShape(std::move(shape));
         built_->scene.names[placed] = nameOf(d);

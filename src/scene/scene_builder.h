@@ -309,6 +309,7 @@ class SceneBuilder final : public schema::Resolver {
     void checkLightGroups(const BuiltScene&);
     // Its name or, without one, its type and a number.
     const std::string& nameOf(const Definition&);
+    bool checkPower(const Light&, Span);
     void addLight(std::unique_ptr<Light>, const Definition&, Visibility = kVisibleToAll);
     struct Emission {
         ScaledCurve radiance; // no curve: none

@@ -206,12 +206,17 @@ std::optional<double> MeasureReader::number(const Value& value) const {
 }
 
 bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) const {
-    if (value >= measure_.lower && value <= measure_.upper) return true;
+    double lower = lowest(scale.dimension), upper = highest(scale.dimension);
+    if (value >= lower && value <= upper) return true;
+    if (value < measure_.lower || value > measure_.upper) { // else it is beyond all numbers of scenes
+        lower = measure_.lower;
+        upper = measure_.upper;
+    }
     const std::string shown =
         scale.unit.empty() || at.text.empty() ? plain(value / scale.factor) : fmt::format("{} {}", at.text, scale.unit);
     auto& d = reportAt(
         diagnostics_, at, "E0303",
-        fmt::format("`{}` {}", measure_.name, rangeText(measure_.lower, measure_.upper, scale.factor, scale.unit)),
+        fmt::format("`{}` {}", measure_.name, rangeText(lower, upper, scale.factor, scale.unit)),
         fmt::format("is {}", shown));
     if (!measure_.note.empty()) d.notes.emplace_back(measure_.note);
     d.help = measure_.remedy;
@@ -286,6 +291,7 @@ std::optional<Row> MeasureReader::row(const Entry& entry, std::size_t first, std
 
 bool MeasureReader::appendPacked(const Entry& entry, std::vector<double>& out) const {
     const Scale scale = defaultScale();
+    const double lower = lowest(scale.dimension), upper = highest(scale.dimension);
     const auto numbers = entry.numbers();
     const std::size_t start = out.size();
     out.resize(start + numbers.size());
@@ -293,7 +299,7 @@ bool MeasureReader::appendPacked(const Entry& entry, std::vector<double>& out) c
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const double x = numbers[i] * scale.factor;
         out[start + i] = x;
-        if (std::isfinite(x) && x >= measure_.lower && x <= measure_.upper) continue;
+        if (x >= lower && x <= upper) continue;
         const Value value = entry.value(i); // found again in the text: only for the message
         good = false;
         if (number(value)) inRange(x, scale, value);

@@ -3,6 +3,7 @@
 
 #include "schema/entry.h"
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <string>
@@ -63,6 +64,9 @@ class MeasureReader {
     bool inRange(double value, const Scale&, const Value& at) const;
 
   private:
+    // In SI units: those of the measure, within what there may be of the dimension at all.
+    double lowest(Dimension d) const { return std::max(measure_.lower, -largest(d)); }
+    double highest(Dimension d) const { return std::min(measure_.upper, largest(d)); }
     bool appendPacked(const Entry&, std::vector<double>& out) const;
     void wrongDimension(const Value& word, const Unit&) const;
     bool isPercent(const Value& number, const Value& word) const;

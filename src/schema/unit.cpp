@@ -125,6 +125,32 @@ std::string_view describe(Dimension d) { return words(d).description; }
 
 std::string_view siUnit(Dimension d) { return words(d).si; }
 
+double largest(Dimension d) {
+    switch (d) {
+    case Dimension::length:
+    case Dimension::inverseLength:
+    case Dimension::time:
+        return 1e15;
+    case Dimension::temperature:
+    case Dimension::pixels:
+        return 1e9;
+    case Dimension::stops:
+        return 1000;
+    case Dimension::power:
+    case Dimension::luminousFlux:
+    case Dimension::luminousIntensity:
+    case Dimension::illuminance:
+    case Dimension::irradiance:
+    case Dimension::luminance:
+        return 1e35; // more than a star's; what it comes to is checked with the light (lights/amount.h)
+    case Dimension::none:
+    case Dimension::angle:
+    case Dimension::fraction:
+        break;
+    }
+    return 1e30;
+}
+
 std::span<const std::string_view> spellings(Dimension d) {
     switch (d) {
     case Dimension::none:

@@ -37,6 +37,9 @@ std::optional<Unit> findUnit(std::string_view name);
 // "a length", "an angle": for messages. "m", "rad": the SI unit a dimension is stored in.
 std::string_view describe(Dimension);
 std::string_view siUnit(Dimension);
+// The largest magnitude of an SI value that a scene may state; properties may allow less. Far beyond what there is, and
+// near enough that squares, products and sums of a few of them still fit single precision.
+double largest(Dimension);
 // Spellings offered for a dimension in messages and the manual, commonest first.
 std::span<const std::string_view> spellings(Dimension);
 

@@ -212,7 +212,7 @@ TEST_CASE("a sun of 1e9 in the image leaves the rest its probability") {
 TEST_CASE("broken images are reported") {
     const auto codes = [](EnvironmentImage im) {
         Diagnostics diagnostics;
-        const bool good = checkEnvironmentImage(im, {}, diagnostics);
+        const bool good = checkEnvironmentImage(im, 1, {}, diagnostics);
         CHECK(good == !diagnostics.hasErrors());
         return diagnostics.all().empty() ? "" : diagnostics.all()[0].code;
     };
@@ -221,6 +221,11 @@ TEST_CASE("broken images are reported") {
     CHECK(codes({1, 1, {1, NAN, 3}}) == "E0441");
     CHECK(codes({1, 1, {1, HUGE_VALF, 3}}) == "E0441");
     CHECK(codes({1, 1, {1, -2, 3}}) == "W0440");
+    CHECK(codes({2, 1, {1, 1, 1, 1, 1e38f, 1}}) == "E0349");
+    CHECK(codes({2, 1, {1, 1, 1, 1, 1e13f, 1}}) == "E0349");
+    CHECK(codes({2, 1, {1, 1, 1, 1, 1e11f, 1}}) == "");
+    CHECK(codes(image(2, 1, {1e-20f, 0, 1e-30f})) == "E0349");
+    CHECK(codes(image(2, 1, {0, 0, 0})) == "");
     CHECK(codes(image(2, 1, {1, 1, 1})) == "");
     Diagnostics diagnostics;
     EnvironmentLightParams stretched;

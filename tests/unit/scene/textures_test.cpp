@@ -169,7 +169,7 @@ TEST_CASE("attributes in place: a number or three for each point, on meshes that
     CHECK(codes(build(mesh + "attribute \"a\" 0 1 2; attribute \"a\" 0 1 2 }\n")) == "E0737");
     CHECK(codes(build(mesh + "attribute 0 1 2 }\n")) == "E0306");
     CHECK(codes(build(mesh + "attribute \"a\" }\n")) == "E0306");
-    CHECK(codes(build(mesh + "attribute \"a\" 0 1 1e300 }\n")) == "E0737");
+    CHECK(codes(build(mesh + "attribute \"a\" 0 1 1e300 }\n")) == "E0303");
     CHECK(codes(build(mesh + "uvs 0 0 1 0 }\n")) == "E0611");
     CHECK(codes(build("shape mesh { points 0 0 0  1 0 0  0 1 0; faces { - 0 1 2 }; uvs 0 0  1 0  0 1; "
                       "material diffuse { reflectance checker; normal checker } }\n"))
