@@ -39,8 +39,8 @@ struct Diagnostic {
     std::vector<FixIt> fixes;
 };
 
-// Collects the diagnostics of one run in the order found. Of one code a thousand are listed and the others counted: what
-// is done with the list takes no longer for a file of a million faults. Not thread-safe.
+// Collects the diagnostics of one run in the order found. Of one code a thousand are listed and the others counted:
+// what is done with the list takes no longer for a file of a million faults. Not thread-safe.
 class Diagnostics {
   public:
     static constexpr std::size_t kMostOfACode = 1000;

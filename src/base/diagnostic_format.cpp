@@ -133,8 +133,7 @@ std::string formatHuman(const Diagnostics& diagnostics, const SourceMap& sources
     for (const Diagnostic* d : shown) writer.write(*d);
     std::string text = writer.take();
     const std::size_t found = diagnostics.errorCount() + diagnostics.warningCount();
-    if (const std::size_t hidden = found - shown.size(); hidden > 0)
-        text += fmt::format("… and {} more\n\n", hidden);
+    if (const std::size_t hidden = found - shown.size(); hidden > 0) text += fmt::format("… and {} more\n\n", hidden);
     return text + summary(diagnostics, sorted, sources, options.summaryName);
 }
 

@@ -214,10 +214,9 @@ bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) c
     }
     const std::string shown =
         scale.unit.empty() || at.text.empty() ? plain(value / scale.factor) : fmt::format("{} {}", at.text, scale.unit);
-    auto& d = reportAt(
-        diagnostics_, at, "E0303",
-        fmt::format("`{}` {}", measure_.name, rangeText(lower, upper, scale.factor, scale.unit)),
-        fmt::format("is {}", shown));
+    auto& d = reportAt(diagnostics_, at, "E0303",
+                       fmt::format("`{}` {}", measure_.name, rangeText(lower, upper, scale.factor, scale.unit)),
+                       fmt::format("is {}", shown));
     if (!measure_.note.empty()) d.notes.emplace_back(measure_.note);
     d.help = measure_.remedy;
     return false;

@@ -52,7 +52,7 @@ struct NameIndex {
     NameIndex& operator=(const NameIndex&) noexcept { return *this = NameIndex(); }
     NameIndex& operator=(NameIndex&&) noexcept = default;
     std::vector<const Definition*> sorted;
-    bool filled = false;             // a scene without names has an empty one
+    bool filled = false;              // a scene without names has an empty one
     mutable std::size_t compared = 0; // letters, by SceneTree::nearestName
 };
 
@@ -69,8 +69,8 @@ struct SceneTree {
 
     // What is compared with names for suggestions, in all: about a second. More unknown names are told without one.
     static constexpr std::size_t kMostCompared = 10'000'000;
-    // The nearest name (see nearest) of a definition of one of the kinds; nothing once kMostCompared is spent. Requires:
-    // the index is filled.
+    // The nearest name (see nearest) of a definition of one of the kinds; nothing once kMostCompared is spent.
+    // Requires: the index is filled.
     std::string_view nearestName(std::span<const Kind>, std::string_view word) const;
 };
 
