@@ -208,10 +208,9 @@ std::optional<double> MeasureReader::number(const Value& value) const {
 bool MeasureReader::inRange(double value, const Scale& scale, const Value& at) const {
     double lower = lowest(scale.dimension), upper = highest(scale.dimension);
     if (value >= lower && value <= upper) return true;
-    if (value < measure_.lower || value > measure_.upper) { // else it is beyond all numbers of scenes
-        lower = measure_.lower;
-        upper = measure_.upper;
-    }
+    // Beyond all numbers of scenes only the bound that is exceeded is of interest.
+    if (value < measure_.lower || value > measure_.upper || value > 0) lower = measure_.lower;
+    if (value < measure_.lower || value > measure_.upper || value < 0) upper = measure_.upper;
     const std::string shown =
         scale.unit.empty() || at.text.empty() ? plain(value / scale.factor) : fmt::format("{} {}", at.text, scale.unit);
     auto& d = reportAt(diagnostics_, at, "E0303",

@@ -100,6 +100,7 @@ TEST_CASE("noise needs two replicates with samples") {
     const auto image = two.resolve(rgb::ap0.fromXyz(), 1);
     CHECK(image.variance[0] == doctest::Approx(1));
     CHECK(std::isinf(image.variance[1]));
+    CHECK(std::isinf(two.resolve(rgb::ap0.fromXyz(), 1e-200).variance[1])); // and not infinity times 0
     PixelFilm black({0, 0, 2, 2}, box(), 2);
     for (int i = 0; i < 8; ++i) black.add(i % 2, i / 2 % 2, i / 4, {}, 4);
     CHECK(black.relativeNoise() == 0);
