@@ -18,7 +18,7 @@ namespace abbe {
 namespace {
 
 constexpr char kCheckpointMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kCheckpointVersion = 5;
+constexpr std::uint32_t kCheckpointVersion = 6;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
@@ -146,7 +146,8 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
 
 void writeTile(const TileState& tile, ByteWriter& out) {
     const PathTally& t = tile.tally;
-    out.number(tile.reached);
+    const CutPortion cut = tile.cut.value_or(CutPortion{});
+    for (const std::uint32_t v : {tile.reached, cut.end, cut.at.unit, cut.at.done}) out.number(v);
     for (const std::uint64_t v :
          {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1], t.dropped[2], t.excess.lookups,
           t.excess.above, t.lightPaths, t.lightRays, t.splats, t.rounds})
@@ -190,7 +191,10 @@ void copyTile(std::size_t i, const RenderState& state, const FilmPlanes& planes,
 // False if it makes no sense.
 bool readTile(ByteReader& in, TileState& tile) {
     PathTally& t = tile.tally;
-    tile.reached = in.number<std::uint32_t>();
+    CutPortion cut;
+    for (std::uint32_t* v : {&tile.reached, &cut.end, &cut.at.unit, &cut.at.done}) *v = in.number<std::uint32_t>();
+    if (cut.end > 0) tile.cut = cut;
+    if (tile.cut && cut.end <= tile.reached) return false;
     for (std::uint64_t* v :
          {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1], &t.dropped[2],
           &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.lightRays, &t.splats, &t.rounds})
@@ -339,7 +343,10 @@ void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, Ren
     if (block.kind != tileBlock || i >= state.pixelTileCount() || seen[i]) damaged(block.begin, "an unexpected block");
     seen[i] = true;
     if (!readTile(in, state.tile(i))) damaged(block.begin, "a tile of another size");
-    if (state.tile(i).reached < header_.first) damaged(block.begin, "a tile before its first sample");
+    const TileState& tile = state.tile(i);
+    if (tile.reached < header_.first) damaged(block.begin, "a tile before its first sample");
+    const auto units = static_cast<std::uint64_t>(state.pixels(i).area() * header_.replicates);
+    if (tile.cut && tile.cut->at.unit >= units) damaged(block.begin, "a portion that was cut behind its end");
     addPlanes(in, block, planes, false, state.pixels(i));
 }
 

@@ -80,6 +80,8 @@ void RenderCheckpoint::keep(double interval) {
         // From beginning to beginning, so that no more than the interval and the writing is lost; where that takes the
         // whole interval a pause all the same.
         due = std::chrono::steady_clock::now() + period;
+        // Before anything is planned there is nothing to keep, and perhaps an earlier render to lose.
+        if (state_->pilot() < 0) continue;
         try {
             write();
             lastFault_.clear();

@@ -1,5 +1,6 @@
 #include "app/bill_text.h"
 #include "app/display_view.h"
+#include "app/long_path_warnings.h"
 #include "app/machine.h"
 #include "app/render_parts.h"
 #include "app/render_run.h"
@@ -127,6 +128,7 @@ ExitCode RenderRun::renderPixel() {
     summary_.statistics = statistics;
     findDropped(film);
     warnOfDroppedSamples(statistics, summary_.faults, replayCommand(), warnings);
+    warnOfCappedPaths(statistics, built_, warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
     report_->diagnostics(warnings, loaded_->sources);
     return ExitCode::done;
@@ -160,9 +162,13 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
     RenderControl control{&interrupt.stop(), progress, &state, &interrupt.snapshot(), onSnapshot};
-    control.firstLook = [this](const FirstLook& look) {
+    control.firstLook = [this, &interrupt](const FirstLook& look) {
         look_ = look;
-        if (preview_ && preview_->show(look)) report_->preview(preview_->path());
+        Diagnostics found;
+        warnOfEndlessPaths(look, built_, settings_.timeLimit > 0 ? 0 : static_cast<double>(settings_.samples), found);
+        report_->diagnostics(found, loaded_->sources);
+        summary_.warnings += found.warningCount();
+        if (preview_ && !interrupt.stop() && preview_->show(look)) report_->preview(preview_->path());
     };
     control.passEnded = [&] {
         const bool last = state.reached() >= settings_.range(film.replicates()).last;
@@ -191,6 +197,8 @@ void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& inte
     renderFrom(film, state, interrupt);
     summary_.partial = summary_.statistics.stopped || lostTexture_ || outOfMemory_;
     summary_.statistics.stopped = summary_.partial;
+    hasSamples_ = !state.empty() || state.reached() >= settings_.range(film.replicates()).last;
+    hasPicture_ = hasSamples_ || (!summary_.partial && !options_.part && look_ && !look_->cells.empty());
     closeCheckpoint();
     endPhase("rendering", watch_.lap());
     summary_.noise = film.relativeNoise();
@@ -220,22 +228,40 @@ ExitCode RenderRun::merge() {
     return finish(0);
 }
 
-ExitCode RenderRun::finish(int signal) {
-    summary_.exit = ExitCode::done;
+// A render that came to nothing writes nothing: what an earlier one left is worth more than a black picture.
+ExitCode RenderRun::leaveFiles() {
+    std::error_code ignored;
+    const std::string path = std::exchange(summary_.image, {});
+    const std::string file =
+        fmt::format("`{}` {}", path, std::filesystem::exists(path, ignored) ? "stays as it was" : "was not written");
+    summary_.deep.clear();
+    if (!summary_.partial)
+        return refuse("E0669", fmt::format("the time ended before anything was seen; {}", file),
+                      "give it more `--time`, or a smaller `--size`", ExitCode::threshold);
+    if (!outOfMemory_ && !lostTexture_)
+        warn("W0648", fmt::format("the render was ended before its first sample; {}", file),
+             "let it render a little longer; `--time` ends a render with a picture");
+    return ExitCode::done;
+}
+
+ExitCode RenderRun::finish(int signal, ExitCode otherwise) {
+    summary_.exit = otherwise;
     if (options_.strict && summary_.warnings > 0) summary_.exit = ExitCode::threshold;
     if (outOfMemory_) summary_.exit = refuseForMemory();
     if (outOfMemory_ && !imageWritten_) summary_.image.clear();
     if (lostTexture_)
         summary_.exit = refuse("E0666",
-                               fmt::format("a texture could not be read any more (W0458), so the render was ended; the "
-                                           "image so far is in `{}`, black where the texture should be",
-                                           summary_.image),
+                               "a texture could not be read any more (W0458), so the render was ended" +
+                                   (hasPicture_ ? fmt::format("; the image so far is in `{}`, black where the texture "
+                                                              "should be",
+                                                              summary_.image)
+                                                : std::string()),
                                checkpoint_ && checkpoint_->writes() > 0
                                    ? "the checkpoint is of before that: bring the file back and go on with `--resume`"
                                    : "bring the file back and render again",
                                ExitCode::faulty);
     if (signal != 0) summary_.exit = static_cast<ExitCode>(128 + signal);
-    if (checkpoint_ && summary_.partial && !options_.checkpoint.off)
+    if (checkpoint_ && summary_.partial && hasSamples_ && !options_.checkpoint.off)
         tellHowToResume();
     else if (checkpoint_ && !options_.part && !options_.checkpoint.keep)
         checkpoint_->remove();

@@ -45,8 +45,8 @@ class RenderRun {
         if (const ExitCode code = openCheckpoint(film, state); code != ExitCode::done) return code;
         openPreview();
         render(film, state, interrupt);
-        if (!options_.part) writeInMemory(film);
-        return finish(interrupt.signal());
+        if (hasPicture_ && !options_.part) writeInMemory(film);
+        return hasPicture_ ? finish(interrupt.signal()) : finish(interrupt.signal(), leaveFiles());
     }
 
   private:
@@ -103,7 +103,8 @@ class RenderRun {
     void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
     FilmPicture pictureOf(const PixelFilm&);
     void openPreview();
-    ExitCode finish(int signal);
+    ExitCode leaveFiles();
+    ExitCode finish(int signal, ExitCode otherwise = ExitCode::done);
 
     void endPhase(const char* name, double seconds) {
         summary_.phases.emplace_back(name, seconds);
@@ -123,6 +124,8 @@ class RenderRun {
     std::optional<RenderCheckpoint> checkpoint_;
     std::optional<RenderPreview> preview_;
     std::optional<FirstLook> look_; // of this run
+    bool hasSamples_ = true;        // that it was to take, at least one
+    bool hasPicture_ = true;        // these, or a first look where the time was up
     std::size_t lookedAt_ = 0;      // pixels that were written without a sample, as they looked at first
     bool outOfMemory_ = false;      // while rendering or writing
     bool imageWritten_ = false;     // in the end

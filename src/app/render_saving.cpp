@@ -2,6 +2,7 @@
 #include "app/bill_text.h"
 #include "app/certificate_file.h"
 #include "app/display_view.h"
+#include "app/long_path_warnings.h"
 #include "app/provenance.h"
 #include "app/render_identity.h"
 #include "app/render_run.h"
@@ -75,6 +76,7 @@ void RenderRun::closeCheckpoint() {
     if (!checkpoint_) return;
     checkpoint_->stop();
     tellFault();
+    if (!hasSamples_) return;
     if (options_.part) {
         checkpoint_->save();
         report_->image(summary_.image, summary_.partial);
@@ -184,10 +186,11 @@ void RenderRun::write(const PixelFilm& film) {
     writePng(picture.image);
     endPhase("writing", watch_.lap());
     warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
+    warnOfCappedPaths(summary_.statistics, built_, warnings);
     warnOfDensities(summary_.statistics.excess, warnings);
     if (!summary_.partial) warnOfMissingSamples(lookedAt_, film.bounds(), warnings);
     for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
-    if (summary_.partial && summary_.certificate->most == 0) warnOfNoSamples(summary_.image, lookedAt_ > 0, warnings);
+    warnOfMissingLight(summary_.statistics, warnings);
     // What was not begun says nothing of the scene.
     if (summary_.certificate->fewest > 0) warnOfBlackImage(picture.image, warnings);
     judgePicture(film, picture.image, warnings);

@@ -35,11 +35,6 @@ void warnOfDroppedSamples(const RenderStatistics& statistics, std::span<const Fo
             d.help = fmt::format("`{} --pixel {} --sample {}` repeats the first one vertex by vertex", command,
                                  pixelText(statistics.examples[0]), sampleText(statistics.examples[0]));
     }
-    if (statistics.cappedPaths > 0)
-        diagnostics.warning("W0642", {},
-                            fmt::format("{} paths were cut at the safety cap on vertices; the image is a "
-                                        "little too dark there",
-                                        statistics.cappedPaths));
 }
 
 void warnOfDensities(const DensityExcess& excess, Diagnostics& diagnostics) {
@@ -62,12 +57,16 @@ void warnOfMissingSamples(std::size_t pixels, PixelBounds bounds, Diagnostics& d
         .help = "give it more `--time`, or a smaller `--size`";
 }
 
-void warnOfNoSamples(const std::string& image, bool firstLook, Diagnostics& diagnostics) {
-    Diagnostic& d = diagnostics.warning(
-        "W0648", {},
-        fmt::format("the render was ended before the first sample of `{}`: {}", image,
-                    firstLook ? "it shows a rough first look" : "it is black, which says nothing of the scene"));
-    d.help = "let it render a little longer; `--time` ends a render with an image";
+void warnOfMissingLight(const RenderStatistics& statistics, Diagnostics& diagnostics) {
+    const LightPathFindings& plan = statistics.lightPlan;
+    const bool noLightPaths = plan.used() && statistics.splats == 0 && statistics.lightPaths == 0;
+    const bool noRounds = plan.merging.used && statistics.rounds == 0;
+    if (!noLightPaths && !noRounds) return;
+    diagnostics
+        .warning("W0669", {},
+                 fmt::format("the render was ended before {}; their light is missing",
+                             noLightPaths ? "its first light paths" : "its first round of merged light paths"))
+        .help = "give it more time, or `light-paths off` and `merging off`";
 }
 
 void warnOfHeavyTail(const ErrorFigure& error, Diagnostics& diagnostics) {

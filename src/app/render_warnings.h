@@ -10,16 +10,16 @@
 
 namespace abbe {
 
-// Samples left out because they were not finite or negative, and paths that met the safety cap. `faults`: what was
-// found of the examples, if it was looked for; `command`: what repeats a sample that is named behind it.
+// Samples left out because they were not finite or negative. `faults`: what was found of the examples, if it was looked
+// for; `command`: what repeats a sample that is named behind it.
 void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> faults, const std::string& command,
                           Diagnostics&);
 // That bounds of procedural density are too low to be of use.
 void warnOfDensities(const DensityExcess&, Diagnostics&);
 // Of pixels that show the first look, in an image of these bounds, because the time was too short for a sample of them.
 void warnOfMissingSamples(std::size_t pixels, PixelBounds, Diagnostics&);
-// Of a render that was ended before any pixel had a sample. `image`: its path; `firstLook`: whether it shows that.
-void warnOfNoSamples(const std::string& image, bool firstLook, Diagnostics&);
+// That what only light paths or merging bring is missing, because the render was ended before their first.
+void warnOfMissingLight(const RenderStatistics&, Diagnostics&);
 // Of an image whose error is mostly carried by samples that are too rare.
 void warnOfHeavyTail(const ErrorFigure&, Diagnostics&);
 void warnOfBlackImage(const ResolvedImage&, Diagnostics&);

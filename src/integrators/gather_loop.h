@@ -110,6 +110,7 @@ void GatherLoop<E>::gather(Ray ray, const Wavelengths& lambda, const RoundPhoton
         if (!next || !next->lobe.has(Lobe::delta)) return;
         if (!this->scatter(hit, *next, eye, ray) || !goesOn(depth_)) return;
     }
+    if (settings.maxDepth == 0) this->cap(&hit);
 }
 
 template <EffectBits E>
@@ -185,7 +186,10 @@ template <EffectBits E> Spectrum GatherLoop<E>::joined(const Photon& photon) con
 template <EffectBits E> bool GatherLoop<E>::goesOn(std::uint32_t depth) {
     if (depth < 4) return true;
     float p = std::clamp(this->throughput(), RouletteReference::kFloor, 1.f);
-    if (depth >= Base::kLongPath) p = std::min(p, Base::longPathSurvival(depth));
+    if (depth >= Base::kLongPath) {
+        if (this->toldToLeave(depth)) return false;
+        p = std::min(p, Base::longPathSurvival(depth));
+    }
     if (p >= 1) return true;
     if (this->sampler_.roulette(depth) >= p) return false;
     this->path_.beta *= 1 / p;

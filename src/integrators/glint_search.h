@@ -26,7 +26,7 @@ void searchGlints(const PathContext& context, std::span<const GlintQuery> querie
                   const GlintHearer& hear) {
     Sampler sampler;
     Arena arena;
-    auto media = GlintLoop<E>::makeMedia(context.scene);
+    auto media = GlintLoop<E>::makeMedia(context.scene, *context.stop);
     CameraSurroundings around;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const GlintQuery& query = queries[i];

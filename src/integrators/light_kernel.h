@@ -10,13 +10,16 @@
 #include "render/splat.h"
 
 #include <array>
+#include <vector>
 
 namespace abbe {
 
-// Of the light paths of each of the samples [first, last) of each replicate those of the numbers [begin, end).
+// Of the light paths of each of the samples [first, last) of each replicate those of the numbers [begin, end); but for
+// those before `from`.
 struct LightJob {
     std::uint32_t begin = 0, end = 0;
     std::uint32_t first = 0, last = 0;
+    PortionPlace from = {};
 };
 
 // All paths of a replicate are points of one sequence, so that they are spread evenly over lights and directions as
@@ -24,7 +27,7 @@ struct LightJob {
 template <EffectBits E> class LightKernel {
   public:
     LightKernel(const PathContext& context, Film& film, const LightJob& job)
-        : context_(context), film_(film), job_(job), media_(LightLoop<E>::makeMedia(context.scene)) {
+        : context_(context), film_(film), job_(job), media_(LightLoop<E>::makeMedia(context.scene, *context.stop)) {
         ABBE_CHECK(2 * film.filterRadius() + 1 <= static_cast<float>(kMostReach));
     }
 
@@ -32,12 +35,13 @@ template <EffectBits E> class LightKernel {
     template <typename Listener> TileResult run(Listener& listener) {
         const WorkScope work(Work::lights);
         addWorkFlag(WorkFlag::light);
+        std::uint32_t unit = 0;
         for (int r = 0; r < film_.replicates(); ++r) {
             startedAs_ = ~std::uint64_t{0};
-            for (std::uint32_t i = job_.first; i < job_.last; ++i)
-                for (std::uint32_t j = job_.begin; j < job_.end; ++j)
-                    trace(r, i, std::uint64_t{i} * context_.traced->paths + j, listener);
-            film_.countLightPaths(r, std::uint64_t{job_.last - job_.first} * (job_.end - job_.begin));
+            const std::uint64_t before = result_.lightPaths;
+            for (std::uint32_t i = job_.first; i < job_.last && !result_.rest; ++i, ++unit)
+                if (unit >= job_.from.unit) traceSample(r, i, unit, listener);
+            film_.countLightPaths(r, result_.lightPaths - before);
         }
         removeWorkFlag(WorkFlag::light);
         if constexpr (PathLoop<E>::kMedia) result_.excess = media_.tracker.counters.excess();
@@ -48,30 +52,54 @@ template <EffectBits E> class LightKernel {
     static constexpr std::uint64_t kKey = 0x6c69676874;        // "light"
     static constexpr std::size_t kMostReach = 33;              // pixels, for filters of the largest radius
     static constexpr std::uint32_t kPixelNumbers = 0x40000000; // beyond those of vertices
+    struct Waiting {
+        LensSplat splat;
+        Xyz value;
+        Wavelengths lambda;
+        const Light* light;
+    };
 
+    // A light path of which something is left out is left out itself: its splats wait until it is through.
     template <typename Listener>
-    void trace(int replicate, std::uint32_t sample, std::uint64_t number, Listener& listener) {
+    void traceSample(int replicate, std::uint32_t sample, std::uint32_t unit, Listener& listener) {
+        std::uint32_t j = job_.begin + (unit == job_.from.unit ? job_.from.done : 0);
+        for (; j < job_.end; ++j) {
+            if (context_.toldToStop()) break;
+            waiting_.clear();
+            trace(replicate, std::uint64_t{sample} * context_.traced->paths + j, listener);
+            if (left()) break;
+            for (const Waiting& w : waiting_) add(replicate, sample, w);
+            ++result_.lightPaths;
+        }
+        if (j < job_.end) result_.rest = {unit, j - job_.begin};
+    }
+
+    bool left() const {
+        if constexpr (PathLoop<E>::kMedia)
+            if (media_.tracker.counters.left) return true;
+        return result_.counters.left;
+    }
+
+    template <typename Listener> void trace(int replicate, std::uint64_t number, Listener& listener) {
         if (number >> 32 != startedAs_) { // sequences have 2^32 points
             startedAs_ = number >> 32;
             const std::uint64_t key = combine64(combine64(context_.settings.seed, kKey), startedAs_);
             sampler_.startPixel(combine64(key, static_cast<std::uint64_t>(replicate)), Technique::Numbers::sobol, true);
         }
         sampler_.start(static_cast<std::uint32_t>(number));
-        ++result_.lightPaths;
         const Scene& scene = context_.scene;
         const Wavelengths lambda = scene.wavelengths.sample(sampler_.wavelength());
         const float time = scene.camera->rayTime(sampler_.time());
         const auto start = startOfLightPath(context_.traced->emission, sampler_, lambda, time);
         if (!start) return;
         listener.starts(*start);
-        splats_ = 0;
         if (isShaded(scene, *start)) return;
         LightLoop<E> loop(context_, sampler_, arena_, view_, result_.counters, media_);
         loop.startIn(surroundingsOf(scene, *start));
         loop.trace(*start, lambda, [&](const LensSplat& splat) {
             const Xyz value = scene.sensor(splat.value, lambda);
             listener.sees(*start, splat, value.y);
-            add(replicate, sample, splat, value, lambda, *start);
+            waiting_.push_back({splat, value, lambda, start->light});
         });
         result_.raysAfterSpread += loop.raysAfterSpread();
         removeWorkFlag(WorkFlag::heroOnly);
@@ -82,9 +110,9 @@ template <EffectBits E> class LightKernel {
     // To one of the pixels whose filter reaches the place, drawn in proportion to the filter: so no two pixels share a
     // splat, and their errors stay independent, as those of samples are. Pixels beyond the film are drawn like all
     // others, or a crop would have other splats than the whole.
-    void add(int replicate, std::uint32_t sample, const LensSplat& splat, const Xyz& value, const Wavelengths& lambda,
-             const EmittedRay& start) {
-        const std::uint32_t number = splats_++;
+    void add(int replicate, std::uint32_t sample, const Waiting& waiting) {
+        const auto& [splat, value, lambda, light] = waiting;
+        const auto number = static_cast<std::uint32_t>(&waiting - waiting_.data());
         const PixelBounds bounds = film_.bounds();
         const float radius = film_.filterRadius(), x = splat.film.x - 0.5f, y = splat.film.y - 0.5f;
         const int x0 = static_cast<int>(std::ceil(x - radius)), x1 = static_cast<int>(std::floor(x + radius));
@@ -98,8 +126,7 @@ template <EffectBits E> class LightKernel {
         if (u.pixel < bounds.x0 || v.pixel < bounds.y0 || u.pixel >= bounds.x1 || v.pixel >= bounds.y1) return;
         const auto factor = static_cast<double>(u.factor * v.factor);
         if (factor == 0) return;
-        film_.splat(u.pixel, v.pixel, replicate,
-                    {value * factor, splat.value, lambda, factor, start.light, splat.component});
+        film_.splat(u.pixel, v.pixel, replicate, {value * factor, splat.value, lambda, factor, light, splat.component});
         ++result_.splats;
     }
 
@@ -136,7 +163,7 @@ template <EffectBits E> class LightKernel {
     TracedView view_;
     typename LightLoop<E>::Media media_;
     std::uint64_t startedAs_ = 0;
-    std::uint32_t splats_ = 0; // of this path
+    std::vector<Waiting> waiting_; // of this path
     TileResult result_;
 };
 

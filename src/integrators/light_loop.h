@@ -157,6 +157,7 @@ void LightLoop<E>::walk(const EmittedRay& start, const Wavelengths& lambda, Surf
         if (!scatter(start, hit, vertex, sample, ray) || !survives(depth)) return;
         if (photons_ && !mirroredFirst_) return;
     }
+    if (settings.maxDepth == 0) this->cap(&hit);
 }
 
 template <EffectBits E> void LightLoop<E>::arriveAt(const EmittedRay& start, Vec3 p, double cosine) {
@@ -346,6 +347,7 @@ bool LightLoop<E>::scatterInMedium(const EmittedRay& start, Ray& ray, const Vert
 
 template <EffectBits E> bool LightLoop<E>::survives(std::uint32_t depth) {
     float p = 1;
+    if (depth >= Base::kLongPath && this->toldToLeave(depth)) return false;
     if (depth >= 3) {
         float throughput = mean(abs(this->path_.beta)) / startThroughput_;
         if constexpr (Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);

@@ -31,7 +31,8 @@ double shareOf(const Light& light, const std::optional<LightBounds>& part) {
 
 } // namespace
 
-LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights, Technique::LightChoice choice) {
+LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights, Technique::LightChoice choice,
+                           const StopFlag& stop) {
     using enum Technique::LightChoice;
     std::vector<LightBounds> near;
     std::vector<Source> far;
@@ -55,7 +56,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
         }
     }
     near_ = static_cast<std::uint32_t>(near.size());
-    if (near_ > 0) tree_.emplace(near);
+    if (near_ > 0) tree_.emplace(near, stop);
     lights_.insert(lights_.end(), far.begin(), far.end());
     weighFar(farAmounts);
     number(lights);

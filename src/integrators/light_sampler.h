@@ -23,12 +23,13 @@ struct PickedLight {
 // give and half evenly. Between the two an estimate of the irradiance by each decides, but neither gets less than
 // kLeastShare of the picks: a tree's estimate knows nothing of walls, and inside its bounds next to nothing at all.
 // Dark lights are never picked. Refers to the scene's lights, which must outlive it.
+// Once `stop` is set while it is made it is good for nothing.
 class LightSampler {
   public:
     static constexpr float kLeastShare = 0.1f;
 
     explicit LightSampler(const std::vector<std::unique_ptr<const Light>>&,
-                          Technique::LightChoice = Technique::LightChoice::tree);
+                          Technique::LightChoice = Technique::LightChoice::tree, const StopFlag& stop = kNeverStop);
 
     bool empty() const { return lights_.empty(); }
     bool needsChoice() const { return lights_.size() > 1; }

@@ -166,8 +166,8 @@ float LightTree::irradiance(const Receiver& at) const noexcept {
     return std::min(sum(importance(nodes_[0], at)), kMostImportance) * (0.5f * kInvPi);
 }
 
-LightTree::LightTree(std::span<const LightBounds> lights) : places_(lights.size()) {
-    light_tree::Builder builder(lights);
+LightTree::LightTree(std::span<const LightBounds> lights, const StopFlag& stop) : places_(lights.size()) {
+    light_tree::Builder builder(lights, stop);
     struct Task {
         Branch parent;
         light_tree::Run run;

@@ -2,6 +2,7 @@
 // eight branches, which are weighed at once.
 #pragma once
 
+#include "base/stop_flag.h"
 #include "integrators/glossy_receiver.h"
 #include "render/light_bounds.h"
 #include "render/ray.h"
@@ -24,8 +25,8 @@ class LightTree {
         float probability = 0;
     };
 
-    // Requires at least one light, all with power > 0 and finite boxes.
-    explicit LightTree(std::span<const LightBounds>);
+    // Requires at least one light, all with power > 0 and finite boxes. `stop`: see light_tree::Builder.
+    explicit LightTree(std::span<const LightBounds>, const StopFlag& stop = kNeverStop);
 
     // u in [0, 1), with more digits than the least probability. A surface whose lobes are told prefers lights that they
     // see; Requires a receiver with a normal, on the side of the view.

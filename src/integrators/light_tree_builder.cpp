@@ -119,12 +119,14 @@ double cost(const LightBounds& b) {
     return static_cast<double>(b.power) * surface * orientation(b);
 }
 
-Builder::Builder(std::span<const LightBounds> lights) : lights_(lights), order_(lights.size()) {
+Builder::Builder(std::span<const LightBounds> lights, const StopFlag& stop)
+    : lights_(lights), stop_(stop), order_(lights.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
 }
 
 Run Builder::run(std::uint32_t first, std::uint32_t count, int depth) const {
     Run r{first, count, depth, lights_[order_[first]]};
+    if (toldToStop()) return r;
     for (std::uint32_t i = 1; i < count; ++i) r.bounds = merged(r.bounds, lights_[order_[first + i]]);
     return r;
 }
@@ -150,6 +152,7 @@ std::vector<Run> Builder::branches(const Run& whole) {
 
 std::uint32_t Builder::split(const Run& whole) {
     const std::uint32_t first = whole.first, count = whole.count;
+    if (toldToStop()) return count / 2;
     const int depth = whole.depth;
     const auto begin = order_.begin() + first, end = begin + count;
     const auto middle = [&](std::uint32_t i) { return lights_[i].box.centre(); };

@@ -1,6 +1,7 @@
 // Where to divide the lights of a LightTree.
 #pragma once
 
+#include "base/stop_flag.h"
 #include "render/light_bounds.h"
 
 #include <cstdint>
@@ -30,8 +31,8 @@ class Builder {
     static constexpr int kMaxDepth = 64;
     static constexpr std::size_t kBranches = 8;
 
-    // Requires at least one light.
-    explicit Builder(std::span<const LightBounds>);
+    // Requires at least one light. Once `stop` is set it divides them anyhow, so that it comes to an end.
+    explicit Builder(std::span<const LightBounds>, const StopFlag& stop = kNeverStop);
 
     Run all() const { return run(0, static_cast<std::uint32_t>(order_.size()), 0); }
     // Divides a run into eight, or into single lights if they are fewer, none empty.
@@ -43,7 +44,10 @@ class Builder {
     // Sorts a run of at least two into two and returns the size of the first, neither empty.
     std::uint32_t split(const Run&);
 
+    bool toldToStop() const { return stop_.load(std::memory_order_relaxed); }
+
     std::span<const LightBounds> lights_;
+    const StopFlag& stop_;
     std::vector<std::uint32_t> order_;
 };
 

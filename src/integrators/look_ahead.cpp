@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "base/work.h"
+#include "integrators/endless_paths.h"
 #include "render/render_state.h"
 
 #include <atomic>
@@ -72,17 +73,33 @@ class Looker {
         return pilot;
     }
 
-    void describe(const PilotFilm& pilot, double seconds) {
-        FirstLook& first = result_.first;
-        first = {frame_, pilot.cellSize(), pilot.columns(), pilot.rows(), {}, 0};
+    // Those that there was no time for look as the others do in the mean. None if nothing was seen.
+    static std::vector<Xyz> cellsOf(const PilotFilm& pilot) {
+        std::vector<Xyz> cells;
+        std::vector<std::size_t> unseen;
+        Xyz sum;
         for (int row = 0; row < pilot.rows(); ++row)
             for (int column = 0; column < pilot.columns(); ++column) {
+                if (!pilot.seen(column, row)) unseen.push_back(cells.size());
                 const PixelBounds pixel = pilot.pixelOf(column, row);
-                first.cells.push_back(pilot.mean(pixel.x0, pixel.y0));
+                cells.push_back(pilot.mean(pixel.x0, pixel.y0));
+                sum += cells.back();
             }
-        const double paths = static_cast<double>(first.cells.size()) * PilotFilm::kSamples;
+        if (unseen.size() == cells.size()) return {};
+        const Xyz mean = sum * (1 / static_cast<double>(cells.size() - unseen.size()));
+        for (const std::size_t i : unseen) cells[i] = mean;
+        return cells;
+    }
+
+    void describe(const PilotFilm& pilot, double seconds) {
+        FirstLook& first = result_.first;
+        first = {frame_, pilot.cellSize(), pilot.columns(), pilot.rows(), {}, 0, 0, {}};
+        first.cells = cellsOf(pilot);
+        const double paths = static_cast<double>(pilot.columns()) * pilot.rows() * PilotFilm::kSamples;
         first.secondsForSample = seconds / paths * static_cast<double>(frame_.area());
-        result_.raysOfPath = static_cast<double>(rays_) / paths;
+        result_.raysOfPath = first.raysOfPath = static_cast<double>(rays_) / paths;
+        if (result_.raysOfPath > kManyRays && !stop_())
+            first.endless = findEndlessPaths(reseeded(kPilot), render_, pilot, result_.roulette);
     }
 
     // With the roulette of the image.

@@ -9,14 +9,16 @@ namespace {
 // After so many lookups a transmittance below kSmall goes on in one case of two, at twice the weight.
 constexpr int kRouletteEvery = 16;
 constexpr float kSmall = 0.02f;
+// A ray may collide without end where bounds are far above densities: it looks up so often.
+constexpr std::uint32_t kLookUpEvery = 1024;
 
 // Optical lengths of rays without an end: large, but 0 times it is 0.
 float finite(double length) { return static_cast<float>(std::min(length, 1e30)); }
 
 } // namespace
 
-MediumTracker::MediumTracker(std::span<const Medium* const> open)
-    : open_(open), spaces_(open.size() + MediumStack::kMax), glowSpaces_(spaces_.size()) {
+MediumTracker::MediumTracker(std::span<const Medium* const> open, const StopFlag& stop)
+    : open_(open), stop_(stop), spaces_(open.size() + MediumStack::kMax), glowSpaces_(spaces_.size()) {
     active_.reserve(spaces_.size());
     glows_.reserve(spaces_.size());
 }
@@ -65,7 +67,8 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
         a.optical = random.exponential();
         schedule(a, a.segment.tNear);
     }
-    for (;;) {
+    for (std::uint32_t events = 1;; ++events) {
+        if (events % kLookUpEvery == 0 && toldToLeave()) break;
         Active* a = earliest(active_);
         if (Glow* glow = earliest(glows_); glow && (!a || glow->next < a->next)) {
             shine(*glow, lambda, weights, *listener);
@@ -150,6 +153,12 @@ bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& 
     return real;
 }
 
+bool MediumTracker::toldToLeave() {
+    if (!stop_.load(std::memory_order_relaxed)) [[likely]]
+        return false;
+    return counters.left = true;
+}
+
 void MediumTracker::note(float density, float bound, const Medium& medium) {
     if (density >= 0 && density <= bound) [[likely]]
         return;
@@ -231,6 +240,7 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
         // Below the bound only rounding makes it negative.
         result *= density <= s.maximum ? max(Spectrum(0.f), kept) : kept;
         if (++count % kRouletteEvery != 0) continue;
+        if (toldToLeave()) return false;
         const float soFar =
             maxLane(abs(result) * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
         if (soFar > kSmall) continue;

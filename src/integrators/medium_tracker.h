@@ -1,6 +1,7 @@
 // Collisions of one ray with all media along it, by tracking against bounds on their density [Miller2019; Novak2018].
 #pragma once
 
+#include "base/stop_flag.h"
 #include "integrators/medium_stack.h"
 #include "math/random_stream.h"
 #include "render/effect_counts.h"
@@ -54,6 +55,7 @@ struct MediumCounters {
     std::uint64_t faults = 0;                         // densities that are negative or not finite
     float fault = 0;                                  // the last of them
     const Medium* faulty = nullptr;                   // where it was found
+    bool left = false;                                // a ray was left before its end, since it was told to stop
     std::array<VolumeCounts, kVolumeWorks> volumes{}; // collisions and lookups alone
 
     DensityExcess excess() const { return {collisions + lookups, exceeded, mostExceeded}; }
@@ -62,8 +64,9 @@ struct MediumCounters {
 // One per thread; keeps its memory. Media collide independently of each other, which adds them up.
 class MediumTracker {
   public:
-    // `open`: the media that no shape bounds.
-    explicit MediumTracker(std::span<const Medium* const> open);
+    // `open`: the media that no shape bounds. Told to stop, it leaves a ray where it is, and says so in its
+    // counters.
+    explicit MediumTracker(std::span<const Medium* const> open, const StopFlag& stop = kNeverStop);
 
     // Follows a ray to tMax or to where it is scattered, whichever comes first. Absorption is never an event: it is a
     // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
@@ -131,10 +134,12 @@ class MediumTracker {
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
     void shareDistance(float t, TrackedWeights) const;
     void note(float density, float bound, const Medium&);
+    bool toldToLeave();
     Spectrum ratioTracking(Active&, RandomStream&);
     bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
 
     std::span<const Medium* const> open_;
+    const StopFlag& stop_;
     std::vector<WalkSpace> spaces_, glowSpaces_;
     std::vector<Active> active_;
     std::vector<Glow> glows_;

@@ -10,11 +10,13 @@
 
 namespace abbe {
 
-// Of the samples [first, last) of each replicate those that begin a round whose number is `block` modulo `blocks`.
+// Of the samples [first, last) of each replicate those that begin a round whose number is `block` modulo `blocks`; but
+// for the first `from` of all, which take up rounds or do not.
 struct MergeJob {
     std::uint32_t first = 0, last = 0;
     std::uint32_t block = 0, blocks = 1;
     int step = 1; // of pixels, along each axis: pilots look at some of them alone
+    std::uint32_t from = 0;
 };
 
 // Hears what photons bring, pixel by pixel.
@@ -32,14 +34,16 @@ template <EffectBits E> class MergeKernel {
   public:
     MergeKernel(const PathContext& context, Film& film, const MergeJob& job, MergeListener* listener)
         : context_(context), plan_(*context.merging), film_(film), job_(job), listener_(listener),
-          media_(LightLoop<E>::makeMedia(context.scene)) {}
+          media_(LightLoop<E>::makeMedia(context.scene, *context.stop)) {}
 
     TileResult run() {
         const WorkScope work(Work::lights);
         addWorkFlag(WorkFlag::light);
+        std::uint32_t unit = 0;
         for (int r = 0; r < film_.replicates(); ++r)
-            for (std::uint32_t i = job_.first; i < job_.last; ++i)
-                if (i % plan_.every == 0 && i / plan_.every % job_.blocks == job_.block) round(r, i / plan_.every);
+            for (std::uint32_t i = job_.first; i < job_.last && !result_.rest; ++i, ++unit)
+                if (unit >= job_.from && i % plan_.every == 0 && i / plan_.every % job_.blocks == job_.block)
+                    if (!round(r, i / plan_.every)) result_.rest = {unit, 0};
         removeWorkFlag(WorkFlag::light);
         if constexpr (PathLoop<E>::kMedia) result_.excess = media_.tracker.counters.excess();
         return std::move(result_);
@@ -52,30 +56,52 @@ template <EffectBits E> class MergeKernel {
         return combine64(combine64(context_.settings.seed, purpose), static_cast<std::uint64_t>(replicate));
     }
 
-    void round(int replicate, std::uint32_t number) {
+    // Whether it came to its end. A round of which something is left out would be too dark: it is left out as a whole.
+    bool round(int replicate, std::uint32_t number) {
         sampler_.startPixel(key(kRound, replicate), Technique::Numbers::sobol, true);
         sampler_.start(number);
         lambda_ = context_.scene.wavelengths.sample(sampler_.wavelength());
         time_ = sampler_.time();
         radius_ = MergePlan::radius(number);
-        const PathCounters& counters = result_.counters;
-        const std::uint64_t before = counters.vertices + counters.shadowRays;
+        const PathCounters before = result_.counters;
         const RoundPhotons photons(trace(replicate, number));
-        result_.photonRays += counters.vertices + counters.shadowRays - before;
-        result_.photons += photons.size();
-        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
-        for (int y = pixels.y0; y < pixels.y1; ++y)
-            for (int x = pixels.x0; x < pixels.x1; ++x)
-                if ((x - frame.x0) % job_.step == job_.step / 2 && (y - frame.y0) % job_.step == job_.step / 2)
-                    gather(x, y, replicate, number, photons);
+        const std::uint64_t photonRays = raysOf(result_.counters) - raysOf(before);
+        if (!gatherAll(replicate, number, photons)) {
+            result_.counters = before;
+            return false;
+        }
+        for (const Gathered& g : gathered_) add(g, replicate, number);
         film_.countRounds(replicate, 1);
         ++result_.rounds;
+        result_.photonRays += photonRays;
+        result_.photons += photons.size();
+        result_.lightPaths += plan_.photons;
+        return true;
+    }
+
+    static std::uint64_t raysOf(const PathCounters& c) { return c.vertices + c.shadowRays; }
+
+    // In all pixels, unless it is told to stop.
+    bool gatherAll(int replicate, std::uint32_t number, const RoundPhotons& photons) {
+        const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
+        gathered_.clear();
+        for (int y = pixels.y0; y < pixels.y1; ++y)
+            for (int x = pixels.x0; x < pixels.x1 && !left(); ++x)
+                if ((x - frame.x0) % job_.step == job_.step / 2 && (y - frame.y0) % job_.step == job_.step / 2)
+                    gather(x, y, replicate, number, photons);
+        return !left();
+    }
+
+    bool left() const {
+        if constexpr (PathLoop<E>::kMedia)
+            if (media_.tracker.counters.left) return true;
+        return result_.counters.left || context_.toldToStop();
     }
 
     std::vector<Photon> trace(int replicate, std::uint32_t number) {
         std::vector<Photon> photons;
         std::uint64_t startedAs = ~std::uint64_t{0};
-        for (std::uint32_t j = 0; j < plan_.photons; ++j) {
+        for (std::uint32_t j = 0; j < plan_.photons && !left(); ++j) {
             const std::uint64_t path = std::uint64_t{number} * plan_.photons + j;
             if (path >> 32 != startedAs) { // sequences have 2^32 points
                 startedAs = path >> 32;
@@ -84,7 +110,6 @@ template <EffectBits E> class MergeKernel {
             sampler_.start(static_cast<std::uint32_t>(path));
             traceOne(photons);
         }
-        result_.lightPaths += plan_.photons;
         return photons;
     }
 
@@ -130,7 +155,7 @@ template <EffectBits E> class MergeKernel {
             sum.closer += light.value * light.closer;
         });
         removeWorkFlag(WorkFlag::heroOnly);
-        for (const Sum& sum : sums_) add({x, y, replicate, number * plan_.every}, sum, factor);
+        for (const Sum& sum : sums_) gathered_.push_back({x, y, factor, sum});
     }
 
     // Of one lamp, for light groups.
@@ -151,7 +176,15 @@ template <EffectBits E> class MergeKernel {
         listener_->gathers(light.photon, found, odds > 0 ? one / odds : 0);
     }
 
-    void add(const SampleId& sample, const Sum& sum, double factor) {
+    // What a pixel is to have of the round.
+    struct Gathered {
+        int x = 0, y = 0;
+        double factor = 0;
+        Sum sum;
+    };
+    void add(const Gathered& gathered, int replicate, std::uint32_t number) {
+        const auto& [x, y, factor, sum] = gathered;
+        const SampleId sample{x, y, replicate, number * plan_.every};
         const Xyz value = context_.scene.sensor(sum.radiance, lambda_) * factor;
         const double closer = context_.scene.sensor(sum.closer, lambda_).y * factor;
         const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z) + std::abs(closer);
@@ -173,10 +206,11 @@ template <EffectBits E> class MergeKernel {
     TracedView view_;
     CameraSurroundings around_;
     typename LightLoop<E>::Media media_;
-    std::vector<Sum> sums_; // of this pixel
-    Wavelengths lambda_;    // of the round
-    float time_ = 0;        // likewise, as CameraSample::time
-    float radius_ = 0;      // likewise, over that of cones
+    std::vector<Sum> sums_;          // of this pixel
+    std::vector<Gathered> gathered_; // of the round
+    Wavelengths lambda_;             // of the round
+    float time_ = 0;                 // likewise, as CameraSample::time
+    float radius_ = 0;               // likewise, over that of cones
     TileResult result_;
 };
 

@@ -1,6 +1,7 @@
 // What paths are made of.
 #pragma once
 
+#include "base/stop_flag.h"
 #include "integrators/glint_plan.h"
 #include "integrators/light_path_plan.h"
 #include "integrators/light_sampler.h"
@@ -27,6 +28,10 @@ struct PathContext {
     ManifoldListener* hears = nullptr;
     const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
     const GlintPlan* glints = nullptr;  // likewise by probes
+    // Set: what is in hand is left where it is, and does not count (PathCounters::left).
+    const StopFlag* stop = &kNeverStop;
+
+    bool toldToStop() const { return stop->load(std::memory_order_relaxed); }
 };
 
 } // namespace abbe

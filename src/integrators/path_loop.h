@@ -26,7 +26,7 @@ struct TracedView;
 
 // What paths through media need and keep from one to the next.
 struct MediaState {
-    explicit MediaState(const Scene& scene) : tracker(scene.openMedia) {}
+    MediaState(const Scene& scene, const StopFlag& stop) : tracker(scene.openMedia, stop) {}
 
     // The way that the path is on, from a vertex or a boundary; `media` is empty where near lights are not looked for.
     struct Leg {
@@ -66,9 +66,9 @@ template <EffectBits E> class PathLoop {
     }
     using Media = std::conditional_t<kMedia, MediaState, path_detail::Nothing>;
 
-    static Media makeMedia([[maybe_unused]] const Scene& scene) {
+    static Media makeMedia([[maybe_unused]] const Scene& scene, [[maybe_unused]] const StopFlag& stop = kNeverStop) {
         if constexpr (kMedia)
-            return Media(scene);
+            return Media(scene, stop);
         else
             return {};
     }
@@ -106,6 +106,8 @@ template <EffectBits E> class PathLoop {
         Vec3 woRender;
     };
 
+    bool toldToLeave(std::uint32_t count), leavesIfTold(); // path_loop_throughput.h
+    void cap(const SurfaceHit*);
     // Where a ray ended.
     enum class Arrival : std::uint8_t { surface, collision, nowhere };
 
@@ -280,7 +282,7 @@ template <EffectBits E> Spectrum PathLoop<E>::radiance(Ray ray, const Wavelength
         }
         if (arrival == Arrival::surface) meetSurface(hit, ray.direction, depth);
         if (depth >= maxDepth) {
-            counters_.capped += context_.settings.maxDepth == 0;
+            if (context_.settings.maxDepth == 0) cap(arrival == Arrival::collision ? nullptr : &hit);
             break;
         }
         if constexpr (kMedia) {

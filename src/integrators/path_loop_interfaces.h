@@ -45,6 +45,7 @@ template <EffectBits E>
 typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
     RandomStream random = sampler_.stream(2 * depth);
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
+        if (toldToLeave(crossings)) return Arrival::nowhere;
         const bool met = context_.scene.intersector->intersect(ray, hit);
         if constexpr (kMedia) {
             if (collides(ray, met ? &hit : nullptr, random, depth, crossings)) return Arrival::collision;
@@ -58,7 +59,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& h
         ray.origin = spawnOrigin(hit, ray.direction);
         ++counters_.effects.crossings;
     }
-    ++counters_.capped;
+    cap(&hit);
     path_.beta = Spectrum(0.f);
     return Arrival::nowhere;
 }
@@ -91,6 +92,7 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
     Spectrum result(1.f);
     SurfaceHit hit;
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
+        if (toldToLeave(crossings)) return Spectrum(0.f);
         // The direction is made anew: rounding would let long chains of boundaries miss the light's own point.
         if (!infinite) {
             const Vec3 way = light.p - ray.origin;
@@ -108,7 +110,7 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
         ray.origin = spawnOrigin(hit, ray.direction);
         ++counters_.effects.shadowCrossings;
     }
-    ++counters_.capped;
+    cap(&hit);
     return Spectrum(0.f);
 }
 

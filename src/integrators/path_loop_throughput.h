@@ -2,6 +2,8 @@
 // one wavelength. Included by path_loop.h.
 #pragma once
 
+#include <limits>
+
 namespace abbe {
 
 template <EffectBits E> float PathLoop<E>::throughput() const {
@@ -12,13 +14,40 @@ template <EffectBits E> float PathLoop<E>::throughput() const {
     return mean(path_.beta) * path_.etaScale;
 }
 
+// Asked by loops that may be long, whose body has run so often.
+template <EffectBits E> bool PathLoop<E>::toldToLeave(std::uint32_t count) {
+    constexpr std::uint32_t kLongLoop = 64;
+    if (count % kLongLoop != kLongLoop - 1) [[likely]]
+        return false;
+    return leavesIfTold();
+}
+
+// If the render is to end the path is left: what it has gathered is no number, which its gate (tile_kernel.h) does not
+// let through.
+template <EffectBits E> [[gnu::cold, gnu::noinline]] bool PathLoop<E>::leavesIfTold() {
+    if (!context_.toldToStop()) return false;
+    counters_.left = true;
+    path_.beta = Spectrum(0.f);
+    path_.radiance = Spectrum(std::numeric_limits<float>::quiet_NaN());
+    return true;
+}
+
+// At a surface, or else where it collided last.
+template <EffectBits E> [[gnu::cold, gnu::noinline]] void PathLoop<E>::cap(const SurfaceHit* hit) {
+    ++counters_.capped;
+    counters_.cappedIn = hit ? static_cast<const void*>(hit->shape) : collided_;
+}
+
 template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
     const float scale = path_.delta ? std::max(rouletteScale, context_.how.leastAfterDelta) : rouletteScale;
     float p = RouletteReference::survival(throughput(), scale);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
-    if (depth >= kLongPath) p = std::min(p, longPathSurvival(depth));
+    if (depth >= kLongPath) [[unlikely]] {
+        if (toldToLeave(depth)) return false;
+        p = std::min(p, longPathSurvival(depth));
+    }
     if (p >= 1) return true;
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;

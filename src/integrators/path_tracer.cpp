@@ -2,13 +2,16 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "integrators/end_watch.h"
 #include "integrators/pass_schedule.h"
+#include "integrators/path_kernels.h"
 #include "integrators/plan_film.h"
 #include "integrators/render_plans.h"
 #include "integrators/time_left.h"
 #include "render/render_state.h"
 
-#include <array>
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <mutex>
@@ -21,53 +24,14 @@ namespace {
 
 // At most about this long is a tile in one thread's hands, so that a render ends soon when it is told to.
 constexpr double kPortionSeconds = 0.4;
-// s: a portion that is foretold to go on for longer than this after the time limit is not begun.
+// s: a portion that is foretold to go on for longer than this after the time limit is not begun, and what goes on then
+// is cut short.
 constexpr double kOvertime = 0.1;
-
-struct Kernel {
-    Effects effects;
-    const char* name;
-    TileFunction render;
-    const TracedKernel& traced() const { return effects.has(Effect::media) ? kTracedFull : kTracedInterfaces; }
-};
-template <EffectBits E> constexpr Kernel kernel(const char* name) {
-    return {Effects::fromBits(E), name, renderTile<E>};
-}
-// The cheapest first.
-constexpr Kernel kAllKernels[] = {
-    kernel<kPlainKernel.bits()>("plain"),
-    kernel<kTexturesKernel.bits()>("textures"),
-    kernel<kAbsorptionKernel.bits()>("absorption"),
-    kernel<kInterfacesKernel.bits()>("absorption+textures+interfaces"),
-    kernel<kDispersionKernel.bits()>("absorption+dispersion"),
-    kernel<kSpectralInterfacesKernel.bits()>("absorption+textures+interfaces+dispersion"),
-    kernel<kMediaKernel.bits()>("absorption+textures+interfaces+media"),
-    kernel<kFullKernel.bits()>("all"),
-};
-
-// Those that this build has.
-template <std::size_t... I> constexpr auto compiledKernels(std::index_sequence<I...>) {
-    constexpr std::size_t count = (std::size_t{kCompiledEffects.contains(kAllKernels[I].effects)} + ...);
-    std::array<Kernel, count> kernels{};
-    std::size_t next = 0;
-    for (const Kernel& k : kAllKernels)
-        if (kCompiledEffects.contains(k.effects)) kernels[next++] = k;
-    return kernels;
-}
-constexpr auto kKernels = compiledKernels(std::make_index_sequence<std::size(kAllKernels)>());
 
 double threadSeconds() {
     timespec t;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
-
-PathTally tallyOf(const TileResult& r, double seconds) {
-    const PathCounters& c = r.counters;
-    if (r.lightPaths == 0)
-        return {c.paths, c.vertices, c.shadowRays, c.capped, r.dropped, r.excess, c.effects, seconds, 0, 0, 0, 0};
-    const std::uint64_t rays = c.vertices + c.shadowRays + c.effects.crossings + c.effects.shadowCrossings;
-    return {0, 0, 0, c.capped, r.dropped, r.excess, {}, seconds, r.lightPaths, rays, r.splats, r.rounds};
 }
 
 bool drawsChoices(const Scene& scene, const LightSampler& lights, const Technique& technique) {
@@ -82,19 +46,20 @@ class RenderJob {
     RenderJob(const Kernel& kernel, const Scene& scene, Film& film, const RenderSettings& settings,
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
-          lights_(scene.lights, settings.technique.lightChoice),
+          watch_(control.stop, settings.timeLimit > 0 ? settings.timeLimit + kOvertime : 0),
+          lights_(scene.lights, settings.technique.lightChoice, watch_.over()),
           context_{scene, lights_, settings, drawsChoices(scene, lights_, settings.technique),
                    settings.samplesPerReplicate(film.replicates())},
           range_(settings.range(film.replicates())), ownState_(ownState(scene, film, settings, control)),
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
         statistics_.kernel = kernel.name;
+        context_.stop = &watch_.over();
         count(state_.tally());
     }
 
     RenderStatistics run() {
         plan(context_);
         beginTiming();
-        rendering_ = true;
         if (pass_ > 0 && state_.even()) endPass();
         while (state_.reached() < range_.last && !ended()) {
             runPass(std::min(nextEnd(), range_.last));
@@ -150,15 +115,17 @@ class RenderJob {
         for (std::uint32_t end = range_.first; (end = endOfPassWith(end)) <= sample;) ++count;
         return count;
     }
-    bool snapshotRequested() const { return control_.snapshot && control_.snapshot->load(std::memory_order_relaxed); }
+    // Without a sample there is nothing to show or to keep yet.
+    bool snapshotRequested() const {
+        return control_.snapshot && begun_ && control_.snapshot->load(std::memory_order_relaxed);
+    }
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     bool stopRequested() const {
         if (control_.stop && control_.stop->load(std::memory_order_relaxed)) return true;
-        return mayEndInTime() && timeLeft() < 0;
+        return isTimed() && timeLeft() < 0;
     }
     double timeLeft() const { return settings_.timeLimit - elapsed(); } // s, if there is a limit
-    // Whether the time limit counts by now.
-    bool mayEndInTime() const { return settings_.timeLimit > 0 && rendering_ && (pass_ > 0 || !plans_.caustics.any()); }
+    bool isTimed() const { return settings_.timeLimit > 0; }
     bool quietEnough() const {
         return settings_.noiseTarget > 0 && statistics_.noise > 0 && statistics_.noise <= settings_.noiseTarget &&
                state_.reached() >= state_.first() + 2; // two samples alike are chance
@@ -178,7 +145,7 @@ class RenderJob {
     // Where time is short, the first pass has but one sample of each replicate.
     std::uint32_t nextEnd() const {
         const std::uint32_t reached = state_.reached();
-        return settings_.timeLimit > 0 && reached == state_.first() ? reached + 1 : endOfPassWith(reached);
+        return isTimed() && reached == state_.first() ? reached + 1 : endOfPassWith(reached);
     }
 
     // All tiles up to sample `last`, as far as nobody ends it.
@@ -186,10 +153,13 @@ class RenderJob {
         std::vector<std::size_t> open;
         for (std::size_t i = 0; i < state_.tileCount(); ++i)
             if (state_.tile(i).reached < last) open.push_back(i);
+        // In this order: a picture that is ended before its first light paths would lack all of their light.
+        std::ranges::stable_partition(open, [this](std::size_t i) { return state_.isLightBlock(i); });
         bool goesOn = true; // else what is left of the pass would end after the time limit
         do {
             advanced_ = false;
-            parallelFor(open.size(), [&](std::size_t i) { advance(open[i], last); });
+            std::atomic<std::size_t> next = 0;
+            parallelFor(open.size(), [&](std::size_t) { advance(open[next++], last); });
             goesOn = advanced_ || snapshotRequested();
             if (snapshotRequested()) takeSnapshot();
             std::erase_if(open, [&](std::size_t i) { return state_.tile(i).reached >= last; });
@@ -202,18 +172,22 @@ class RenderJob {
         while (tile.reached < last && !stopRequested() && !snapshotRequested()) {
             PathTally tally;
             ManifoldCounts chains;
+            const void* cappedIn = nullptr;
             const std::uint32_t first = tile.reached;
             {
                 const auto hold = state_.hold(i);
-                const std::uint32_t end = std::min(last, tile.reached + portion(tile));
+                const std::uint32_t end = tile.cut ? tile.cut->end : std::min(last, tile.reached + portion(tile));
                 if (end == tile.reached) return;
                 advanced_ = true;
                 const double before = threadSeconds();
-                const TileResult result = work(i, first, end);
+                const TileResult result = work(i, {end, tile.cut ? tile.cut->at : PortionPlace()});
                 tally = tallyOf(result, threadSeconds() - before);
                 chains = result.counters.manifold;
+                cappedIn = result.counters.cappedIn;
                 tile.tally.add(tally);
-                tile.reached = end;
+                tile.cut = result.rest ? std::optional(CutPortion{end, *result.rest}) : std::nullopt;
+                if (!tile.cut) tile.reached = end;
+                if (!state_.isLightBlock(i)) begun_ = true;
                 for (const DroppedSample& s : result.examples)
                     if (tile.examples.size() < TileState::kExamples) tile.examples.push_back(s);
             }
@@ -222,30 +196,40 @@ class RenderJob {
             statistics_.manifoldEstimates += chains.estimates;
             statistics_.manifoldTrials += chains.trials;
             statistics_.manifoldCapped += chains.capped;
+            if (cappedIn) statistics_.cappedIn[cappedIn] += tally.cappedPaths;
             timeLeft_->advanced(i, tile.reached - first, tally.coreSeconds);
             pixelSamples_ += state_.pixels(i).area() * (tile.reached - first);
             maybeReport();
         }
     }
 
-    TileResult work(std::size_t i, std::uint32_t first, std::uint32_t end) {
-        if (!state_.isLightBlock(i))
-            return render_(context_, film_, {state_.pixels(i), first, end, &plans_.ahead.roulette, samplePlan()});
-        return workOnBlock(static_cast<std::uint32_t>(state_.lightBlock(i)), first, end);
+    // A portion of the samples of a tile, from where it was cut short, if it was.
+    TileResult work(std::size_t i, const CutPortion& portion) {
+        const std::uint32_t first = state_.tile(i).reached;
+        if (state_.isLightBlock(i))
+            return workOnBlock(static_cast<std::uint32_t>(state_.lightBlock(i)), first, portion);
+        return render_(context_, film_,
+                       {state_.pixels(i), first, portion.end, &plans_.ahead.roulette, samplePlan(), portion.at});
     }
 
-    // A share of the light paths, and some of the rounds of merging.
-    TileResult workOnBlock(std::uint32_t block, std::uint32_t first, std::uint32_t end) {
+    // A share of the light paths, and then some of the rounds of merging.
+    TileResult workOnBlock(std::uint32_t block, std::uint32_t first, const CutPortion& portion) {
+        const auto [end, at] = portion;
+        const std::uint32_t units = (end - first) * static_cast<std::uint32_t>(film_.replicates());
         const auto blocks = static_cast<std::uint32_t>(state_.lightBlockCount());
         TileResult result;
-        if (plans_.caustics.light.plan) {
+        if (plans_.caustics.light.plan && at.unit < units) {
             const std::uint64_t paths = plans_.caustics.light.plan->paths;
             result = kernel_.traced().trace(context_, film_,
                                             {static_cast<std::uint32_t>(paths * block / blocks),
-                                             static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end});
+                                             static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end, at});
+            if (result.rest) return result;
         }
-        if (plans_.caustics.merging.plan)
-            result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks}, nullptr));
+        if (plans_.caustics.merging.plan) {
+            const std::uint32_t begun = std::max(at.unit, units) - units;
+            result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks, 1, begun}, nullptr));
+            if (result.rest) result.rest->unit += units;
+        }
         return result;
     }
 
@@ -254,10 +238,10 @@ class RenderJob {
     // How many samples of each replicate are taken in one go; none if even one would end after the time limit.
     std::uint32_t portion(const TileState& tile) const {
         const std::uint32_t done = tile.reached - state_.first();
-        if (done == 0) return settings_.timeLimit > 0 ? 1 : 2;
+        if (done == 0) return isTimed() ? 1 : 2;
         const double each = std::max(tile.tally.coreSeconds, 1e-6) / done;
         double seconds = kPortionSeconds;
-        if (mayEndInTime()) {
+        if (isTimed()) {
             if (each > timeLeft() + kOvertime) return 0;
             seconds = std::min(seconds, timeLeft());
         }
@@ -335,6 +319,8 @@ class RenderJob {
     Film& film_;
     RenderSettings settings_;
     const RenderControl& control_;
+    const Clock::time_point start_ = Clock::now();
+    EndWatch watch_;
     LightSampler lights_;
     PathContext context_;
     RenderPlans plans_;
@@ -347,12 +333,11 @@ class RenderJob {
     std::optional<TimeLeft> timeLeft_; // from the first sample on
     std::int64_t pixelSamples_ = 0;    // of each replicate, in all pixels, as if they were even
     std::mutex mutex_;
-    Clock::time_point start_ = Clock::now();
     double lastReport_ = 0;
     std::uint64_t pathsBefore_ = state_.tally().paths; // of earlier runs
     bool unfinished_ = false;                          // the last pass was cut short
-    bool rendering_ = false;                           // samples are taken
     std::atomic<bool> advanced_ = false;               // any tile, since asked last
+    std::atomic<bool> begun_ = !state_.empty();        // any sample of a pixel
 };
 
 class PathTracer final : public Integrator {

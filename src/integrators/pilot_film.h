@@ -22,6 +22,8 @@ class PilotFilm final : public Film {
     PixelBounds frame() const { return frame_; }
     // The pixel of a cell, and nothing else, as bounds for a tile.
     PixelBounds pixelOf(int column, int row) const;
+    // Whether any of its samples was taken.
+    bool seen(int column, int row) const { return samples_[cell(column, row)] > 0; }
     // Y of a cell.
     float luminance(int column, int row) const;
     // What all samples of a cell took. Different cells may be told of from different threads at once.

@@ -4,11 +4,14 @@
 #include "integrators/camera_start.h"
 #include "integrators/glint_loop.h"
 #include "integrators/path_loop.h"
+#include "render/portion.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 
 namespace abbe {
 
@@ -16,12 +19,14 @@ class SamplingPlan;
 // What samples a pixel takes when `nominal` ones are asked for: those, without a plan.
 SampleRange plannedRange(const SamplingPlan*, int x, int y, SampleRange nominal);
 
-// Samples [first, last) of every replicate of every pixel of `pixels`, or what the plan makes of them.
+// Samples [first, last) of every replicate of every pixel of `pixels`, or what the plan makes of them; but for those
+// before `from`.
 struct TileJob {
     PixelBounds pixels;
     std::uint32_t first = 0, last = 0;
     const RouletteReference* roulette = nullptr;
     const SamplingPlan* plan = nullptr;
+    PortionPlace from = {};
 };
 
 struct TileResult {
@@ -33,6 +38,8 @@ struct TileResult {
     // Of all rays that counters tell: of light paths after they were spread, and of those for merging.
     std::uint64_t raysAfterSpread = 0, photonRays = 0;
     std::uint64_t photons = 0; // that these left
+    // Nothing unless it was told to stop: the rest of the job.
+    std::optional<PortionPlace> rest;
 
     void drop(const DroppedSample& sample) {
         ++dropped[static_cast<std::size_t>(sample.cause)];
@@ -50,6 +57,7 @@ struct TileResult {
         raysAfterSpread += r.raysAfterSpread;
         photonRays += r.photonRays;
         photons += r.photons;
+        if (r.rest) rest = r.rest;
     }
 };
 
@@ -59,15 +67,13 @@ struct TileResult {
 template <EffectBits E> class TileKernel {
   public:
     TileKernel(const PathContext& context, Film& film, const TileJob& job)
-        : context_(context), film_(film), job_(job), media_(PathLoop<E>::makeMedia(context.scene)),
+        : context_(context), film_(film), job_(job), media_(PathLoop<E>::makeMedia(context.scene, *context.stop)),
           recorder_(film.makeRecorder()) {}
 
     TileResult run() {
         const WorkScope work(Work::film);
         const std::uint64_t lookups = workState.textureLookups, moving = workState.movingHits;
-        for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
-            for (int x = job_.pixels.x0; x < job_.pixels.x1; ++x)
-                for (int r = 0; r < film_.replicates(); ++r) replicate(x, y, r);
+        takeSamples();
         if constexpr (PathLoop<E>::kMedia) {
             const MediumCounters& media = media_.tracker.counters;
             result_.excess = media.excess();
@@ -81,8 +87,24 @@ template <EffectBits E> class TileKernel {
   private:
     using Media = typename PathLoop<E>::Media;
     using Clock = std::chrono::steady_clock;
+
+    void takeSamples() {
+        for (int y = job_.pixels.y0; y < job_.pixels.y1; ++y)
+            for (int x = job_.pixels.x0; x < job_.pixels.x1; ++x)
+                for (int r = 0; r < film_.replicates(); ++r, ++unit_) {
+                    if (unit_ < job_.from.unit) continue;
+                    if (context_.toldToStop()) return void(result_.rest = {unit_, takenBefore()});
+                    replicate(x, y, r);
+                    if (result_.rest) return;
+                }
+    }
+
+    // Of the samples of this unit.
+    std::uint32_t takenBefore() const { return unit_ == job_.from.unit ? job_.from.done : 0; }
+
     void replicate(int x, int y, int r) {
-        const SampleRange range = plannedRange(job_.plan, x, y, {job_.first, job_.last});
+        SampleRange range = plannedRange(job_.plan, x, y, {job_.first, job_.last});
+        range.first = std::min(range.first + takenBefore(), range.last);
         if (range.first == range.last) return;
         const std::uint64_t place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
@@ -99,6 +121,11 @@ template <EffectBits E> class TileKernel {
             sampler_.start(i);
             const Xyz value = sample(x, y, rouletteScale);
             if (const auto cause = fault(value); cause < 3) {
+                if (result_.counters.left) {
+                    result_.rest = {unit_, takenBefore() + i - range.first};
+                    range.last = i;
+                    break;
+                }
                 result_.drop({{x, y, r, i}, static_cast<DropCause>(cause)});
                 if (recorder_) tellDrop();
                 continue;
@@ -152,7 +179,15 @@ template <EffectBits E> class TileKernel {
             if (-maxLane(-loop.least()) < most && allFinite(radiance_)) radiance_ = Spectrum(kNegativeFault);
             condemnDensities();
         }
+        if constexpr (PathLoop<E>::kMedia || PathLoop<E>::kTraced) leaveWithParts();
         return context_.scene.sensor(radiance_, lambda) * factor_;
+    }
+
+    // A sample of which a probe, or a ray in a medium, was left is left itself.
+    void leaveWithParts() {
+        if constexpr (PathLoop<E>::kMedia) result_.counters.left |= media_.tracker.counters.left;
+        if (result_.counters.left) [[unlikely]]
+            radiance_ = Spectrum(std::numeric_limits<float>::quiet_NaN());
     }
 
     // Lanes that are at fault stay as they are.
@@ -277,7 +312,8 @@ template <EffectBits E> class TileKernel {
     [[no_unique_address]] std::conditional_t<PathLoop<E>::kTraced, TracedView, path_detail::Nothing> view_;
     std::span<const std::uint32_t> glints_; // of the row
     TileResult result_;
-    Spectrum radiance_; // of the last sample
+    std::uint32_t unit_ = 0; // PortionPlace::unit
+    Spectrum radiance_;      // of the last sample
     std::uint64_t densityFaults_ = 0;
     double factor_ = 0; // of the camera and the pixel filter, likewise
 };

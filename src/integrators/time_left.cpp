@@ -25,7 +25,6 @@ void TimeLeft::advanced(std::size_t tile, std::uint32_t samples, double coreSeco
 }
 
 void TimeLeft::passEnded(std::uint32_t reached, double noise) {
-    passed_ = true;
     const double samples = static_cast<double>(reached) - goals_.range.first;
     if (noise > 0 && samples > 0) points_.push_back({samples, noise});
 }
@@ -86,10 +85,7 @@ TimeLeft::Outlook TimeLeft::at(double now) const {
     const double work = workUntil(end);
     Outlook outlook{spent_ / (spent_ + work), work / speed};
     if (goals_.timeLimit > 0) {
-        // The first pass is finished in any case.
-        double least = 0;
-        if (!passed_) least = workUntil(std::min(endOfPassWith(goals_.range.first), goals_.range.last)) / speed;
-        const double left = std::max(goals_.timeLimit - now, least);
+        const double left = std::max(goals_.timeLimit - now, 0.0);
         if (left < outlook.left) outlook = {now / (now + left), left};
     }
     return outlook;

@@ -52,7 +52,6 @@ class TimeLeft {
     Goals goals_;
     std::vector<Tile> tiles_;
     std::vector<Point> points_; // of ended passes
-    bool passed_ = false;       // one at least
     double began_ = 0;
     double foretold_ = 0, spent_ = 0; // of samples taken: in the unit of costs, and core seconds
     double spentNow_ = 0;             // core seconds of this run

@@ -1,5 +1,7 @@
 #include "media/homogeneous.h"
 
+#include "media/limited_curve.h"
+
 namespace abbe {
 
 namespace {
@@ -47,6 +49,10 @@ class EvenGlow final : public EmissionWalk {
 HomogeneousMedium::HomogeneousMedium(MediumOptics optics, std::optional<Glow> glow, double kelvin)
     : OpticalMedium(std::move(optics)) {
     if (glow) emission_.emplace(*glow, static_cast<float>(kelvin));
+}
+
+void HomogeneousMedium::limitExtinction(double most) {
+    replaceExtinction(std::make_shared<LimitedCurve>(extinction(), most));
 }
 
 EmissionWalk* HomogeneousMedium::Emission::walk(const Ray&, float tMax, WalkSpace& space) const noexcept {

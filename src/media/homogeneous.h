@@ -14,6 +14,9 @@ class HomogeneousMedium final : public OpticalMedium {
     // Shines with a glow; `kelvin` is its temperature, if the glow asks for one. Its curves must outlive the medium.
     explicit HomogeneousMedium(MediumOptics, std::optional<Glow> = {}, double kelvin = 0);
 
+    // Before anyone looks: it is to be no denser than this, 1/m. Requires that it does not shine.
+    void limitExtinction(double most);
+
     Bounds3 bounds() const override;
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     const MediumEmission* emission() const override { return emission_ ? &*emission_ : nullptr; }

@@ -15,6 +15,10 @@ class OpticalMedium : public Medium {
 
   protected:
     explicit OpticalMedium(MediumOptics optics) : optics_(std::move(optics)) {}
+    void replaceExtinction(std::shared_ptr<const Curve> curve) {
+        optics_.extinction = curve.get();
+        optics_.own.push_back(std::move(curve));
+    }
 
   private:
     MediumOptics optics_;

@@ -8,6 +8,15 @@
 
 namespace abbe {
 
+class Shape;
+
+// Paths that surfaces take no light from, so that chance alone ends them (PathLoop::longPathSurvival).
+struct EndlessPaths {
+    double share = 0; // of the paths where they are the longest
+    std::vector<const Shape*>
+        shapes; // between which they go, those that are met most often first; empty: there are none
+};
+
 // The frame in square cells, row by row, of a few samples each. For people to see while plans are made: no sample of it
 // is in the image.
 struct FirstLook {
@@ -16,6 +25,8 @@ struct FirstLook {
     int columns = 0, rows = 0;
     std::vector<Xyz> cells;
     double secondsForSample = 0; // of the clock, that a sample of every pixel of the frame takes, as far as this tells
+    double raysOfPath = 0;       // in the mean over the frame
+    EndlessPaths endless = {};
 
     // Of a pixel; beyond the frame, of the cell next to it. Requires a cell.
     const Xyz& at(int x, int y) const {

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -94,12 +95,13 @@ struct RenderStatistics {
     std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
     LightPathFindings lightPlan;
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
-    std::uint64_t pilotRays = 0;            // of looks ahead that are not in the image, of this run alone
-    double pilotSeconds = 0;                // wall clock of these
-    std::uint32_t samplesPerPixel = 0;      // finished in all pixels; adaptive: as if they were even
-    std::array<std::uint64_t, 3> dropped{}; // by DropCause
-    std::vector<DroppedSample> examples;    // the first few
-    std::uint64_t cappedPaths = 0;          // reached the safety cap on vertices (PathLoop::kMaxVertices)
+    std::uint64_t pilotRays = 0;                   // of looks ahead that are not in the image, of this run alone
+    double pilotSeconds = 0;                       // wall clock of these
+    std::uint32_t samplesPerPixel = 0;             // finished in all pixels; adaptive: as if they were even
+    std::array<std::uint64_t, 3> dropped{};        // by DropCause
+    std::vector<DroppedSample> examples;           // the first few
+    std::uint64_t cappedPaths = 0;                 // reached the safety cap on vertices (PathLoop::kMaxVertices)
+    std::map<const void*, std::uint64_t> cappedIn; // of this run alone: in which shapes or media, roughly how many
     DensityExcess excess;
     EffectCounts effects;
     double seconds = 0;     // wall clock, with that of earlier runs
@@ -122,12 +124,12 @@ struct Progress {
 // How a caller watches, ends and continues a render. Functions are called from the calling thread or from workers, one
 // at a time.
 struct RenderControl {
-    const std::atomic<bool>* stop = nullptr;            // set: finish the portions of tiles in hand and return
+    const std::atomic<bool>* stop = nullptr;            // set: leave what is in hand and return
     std::function<void(const Progress&)> progress = {}; // a few times a second
     // Where the render begins, in step with the film given beside it; changed as it goes on. Null: at nothing.
     RenderState* state = nullptr;
-    // Set by anyone to have takeSnapshot called between two portions of tiles, with no thread at work on the film; the
-    // render then goes on. Both or neither.
+    // Set by anyone to have takeSnapshot called between two portions of tiles, with no thread at work on the film, once
+    // there are samples; the render then goes on. Both or neither.
     std::atomic<bool>* snapshot = nullptr;
     std::function<void(const RenderStatistics&)> takeSnapshot = {};
     // From the calling thread: once, before the first sample and before anything is planned; and after each pass, with

@@ -5,16 +5,19 @@
 #include "base/work_reading.h"
 #include "render/integrator.h"
 #include "render/light_gate.h"
+#include "render/portion.h"
 
 #include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace abbe {
 
-// What the samples of a tile, or of a block of light paths, came to. Whole numbers: the same in any order.
+// What the samples of a tile, or of a block of light paths, came to. Whole numbers: the same in any order, but for rays
+// of paths that were left because the render was to end (PathCounters::left) and were taken again.
 struct PathTally {
     std::uint64_t paths = 0, vertices = 0, shadowRays = 0, cappedPaths = 0;
     std::array<std::uint64_t, 3> dropped{}; // by DropCause
@@ -41,12 +44,14 @@ struct PathTally {
     }
 };
 
-// The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and no
-// others; of a block of light paths, its paths of these samples.
+// The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and of a
+// portion that was cut short those before the place where it was; no others. Of a block of light paths, its paths of
+// these samples.
 struct TileState {
     static constexpr std::size_t kExamples = 4;
 
     std::uint32_t reached = 0;
+    std::optional<CutPortion> cut; // to be finished before anything else
     PathTally tally;
     std::vector<DroppedSample> examples = {}; // kExamples at most
 };
@@ -107,10 +112,17 @@ class RenderState {
                                 [](const TileState& a, const TileState& b) { return a.reached < b.reached; })
             ->reached;
     }
-    // Whether all entries stand at the same sample.
+    // Whether all entries stand at the same sample, and no portion was cut short.
     bool even() const {
         return std::all_of(tiles_.begin(), tiles_.end(),
-                           [&](const TileState& t) { return t.reached == tiles_[0].reached; });
+                           [&](const TileState& t) { return t.reached == tiles_[0].reached && !t.cut; });
+    }
+    // Whether no pixel has a sample.
+    bool empty() const {
+        const auto end = tiles_.begin() + static_cast<std::ptrdiff_t>(pixelTiles_);
+        return std::all_of(tiles_.begin(), end, [&](const TileState& t) {
+            return t.reached == first_ && (!t.cut || (t.cut->at.unit == 0 && t.cut->at.done == 0));
+        });
     }
     PathTally tally() const {
         PathTally sum;

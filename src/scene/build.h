@@ -13,6 +13,7 @@
 
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace abbe {
@@ -66,8 +67,9 @@ struct BuiltScene {
     Span cameraSpan;     // of the camera's definition
     double exposure = 1; // factor of the camera's exposure
     SceneFacts facts;
-    std::vector<EffectAsker> askers; // of what can be left out, be it so or not
-    double commitSeconds = 0;        // of the building, what the acceleration structure took
+    std::unordered_map<const void*, Span> declared; // where, of shapes and of media
+    std::vector<EffectAsker> askers;                // of what can be left out, be it so or not
+    double commitSeconds = 0;                       // of the building, what the acceleration structure took
 };
 
 // Builds everything, or returns what could be built together with errors in `diagnostics`: the caller must not render

@@ -279,6 +279,7 @@ void SceneBuilder::placeAreaLight(const Definition& d, const Place& outer) {
         // A lamp emits and reflects nothing.
         const Shape* const placed = keepShape(std::move(shape));
         built_->scene.names[placed] = nameOf(d);
+        built_->declared[placed] = d.nameSpan;
         noteBounds(d, placed->bounds(), place);
         const Visibility visible = place.visible & visibilityOf(amount.visibleTo);
         noteVisible(visible, {}, d);

@@ -63,7 +63,9 @@ std::unique_ptr<const Material> SceneBuilder::translucent(std::unique_ptr<const 
     optics.albedo = inside.albedo.get();
     optics.phase = std::make_shared<HenyeyGreenstein>(inside.anisotropy);
     optics.own = {inside.extinction, inside.albedo};
-    const std::uint32_t medium = keepMedium(std::make_unique<HomogeneousMedium>(std::move(optics)), d);
+    auto filling = std::make_unique<HomogeneousMedium>(std::move(optics));
+    evenMedia_.push_back(filling.get());
+    const std::uint32_t medium = keepMedium(std::move(filling), d);
     if (leavesOut({SwitchedEffect::medium, nameOf(d)}, d.span)) return surface;
     const Material& inner = *undressed_.emplace_back(std::move(surface));
     return std::make_unique<FilledMaterial>(inner, *media_[medium]);

@@ -25,11 +25,14 @@ schema::Reference SceneBuilder::mediumReference(const Definition& d) {
         return {};
     }
     const auto glow = makeGlow(*params, *optics, params->temperature > 0);
-    return {keepMedium(std::make_unique<HomogeneousMedium>(*optics, glow, params->temperature), d)};
+    auto medium = std::make_unique<HomogeneousMedium>(*optics, glow, params->temperature);
+    evenMedia_.push_back(medium.get());
+    return {keepMedium(std::move(medium), d)};
 }
 
 std::uint32_t SceneBuilder::keepMedium(std::unique_ptr<Medium> medium, const Definition& d) {
     medium->number = static_cast<std::uint16_t>(media_.size());
+    built_->declared[medium.get()] = d.nameSpan;
     media_.push_back(std::move(medium));
     mediumSpans_.push_back(d.span);
     built_->scene.mediumUses.push_back({nameOf(d), MediumUse::Place::nowhere});
@@ -148,6 +151,7 @@ bool SceneBuilder::mayLieInDielectric(bool dielectrics) const {
 
 void SceneBuilder::noteMedia(Scene& scene) {
     placeNoise(scene.origin);
+    limitDenseMedia();
     const auto note = [&](const Medium& medium, Span span, std::string_view what) {
         noteEffect(Effect::media, span, fmt::format("light is scattered in {}", what));
         if (medium.needs().has(Effect::dispersion))

@@ -157,6 +157,7 @@ void SceneBuilder::placeLoaded(LoadedShape& loaded, const Place& place) {
     if (place.object) place.object->hasShapes = true;
     const Shape* placed = keepShape(std::move(shape));
     built_->scene.names[placed] = nameOf(*loaded.definition);
+    built_->declared[placed] = loaded.definition->nameSpan;
     noteBounds(*loaded.definition, loaded.infinite ? kEverything : placed->bounds(), place);
     if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
     const Visibility visible = place.visible & visibilityOf(loaded.common.visibleTo);

@@ -261,7 +261,7 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<FocusingShape>& focusingIn(Assembly* into) { return into ? into->focusing : built_->scene.focusing; }
     void placeFocusing(const std::vector<FocusingShape>& shared, const std::vector<Placement>&, Assembly* into);
     bool mayLieInDielectric(bool dielectrics) const;
-    void noteMedia(Scene&);
+    void noteMedia(Scene&), limitDenseMedia(); // the second: dense_media.cpp
     void countShape(const LoadedShape&);
     void noteBounds(const Definition&, const Bounds3&, const Place&, std::size_t places = 1); // shape_facts.cpp
     void noteShape(const LoadedShape&);
@@ -362,8 +362,9 @@ class SceneBuilder final : public schema::Resolver {
     std::vector<std::shared_ptr<const PhaseFunction>> phases_;
     std::vector<const Definition*> openMixes_; // being made
     std::vector<std::unique_ptr<const Medium>> media_;
-    std::vector<NoiseMedium*> noiseMedia_; // those of media_
-    std::vector<Span> mediumSpans_;        // where each of media_ is defined
+    std::vector<NoiseMedium*> noiseMedia_;            // those of media_
+    std::vector<class HomogeneousMedium*> evenMedia_; // likewise
+    std::vector<Span> mediumSpans_;                   // where each of media_ is defined
     std::vector<std::pair<const Medium*, Span>> openMedia_, interiorAskers_;
     struct PlacedShape {
         Bounds3 box; // render space; of what is placed in objects or moves: everything

@@ -66,6 +66,30 @@ TEST_CASE("subsurface: what is white loses nothing, and nothing leaks out of clo
     }
 }
 
+// Positions at 4.6 m are told apart to half a micrometre.
+TEST_CASE("subsurface: a mean free path that is next to nothing gives the picture of a longer one, and says so") {
+    const auto seen = [](const std::string& material) {
+        const TestScene scene = TestScene::parse(
+            kSubsurfaceFilm + "camera { from 0 0.6 4; look-at 0 0 0; fov 18 deg }\nlight sky { radiance 1 }\n" +
+            fmt::format("shape sphere {{ material subsurface {{ {} }} }}\n", material));
+        CHECK((scene.report().find("W0697") != std::string::npos) == (material.find("1e-9") != std::string::npos));
+        const TestImage image = render(scene, nightly() ? 4096 : 512);
+        // A path of white light has more than a million collisions in one case of a thousand.
+        CHECK(static_cast<double>(image.statistics.cappedPaths) < 3e-3 * static_cast<double>(image.statistics.paths));
+        return image.film.image();
+    };
+    for (const std::string boundary : {"diffuse", "dielectric"}) {
+        const std::string path = "; ior 1.5; roughness 0; boundary " + boundary + "; mean-free-path ";
+        const Estimate white = seen("reflectance 1" + path + "1e-9 m");
+        MESSAGE(boundary, ", white: ", white.mean, " ± ", std::sqrt(white.variance));
+        CHECK(std::sqrt(white.variance) < 0.02);
+        CHECK(std::abs(white.mean - 1) < 0.003 + 4 * std::sqrt(white.variance));
+        const Estimate none = seen("reflectance 0.5" + path + "1e-9 m"), some = seen("reflectance 0.5" + path + "1 mm");
+        MESSAGE(boundary, ", grey: ", none.mean, ", of 1 mm ", some.mean);
+        CHECK(std::abs(none.mean / some.mean - 1) < 0.025 + 4 * std::sqrt(none.variance + some.variance) / some.mean);
+    }
+}
+
 TEST_CASE("subsurface: eight wavelengths to a path agree with one, where red goes far and blue does not") {
     for (const std::string boundary : {"diffuse", "dielectric"}) {
         INFO(boundary);

@@ -108,6 +108,7 @@ TEST_CASE("a checkpoint holds film, tiles and header") {
     RenderState state(bounds, 2);
     fill(film, state, 7);
     state.tile(4).reached = 7;
+    state.tile(3).cut = CutPortion{9, {100, 1}};
     FilmPlanes planes = film.planes();
     const CheckpointHeader header = headerOf(film, planes, 2, 8);
     writeCheckpoint(path, header, planes, state);
@@ -125,6 +126,12 @@ TEST_CASE("a checkpoint holds film, tiles and header") {
     CHECK(sameFilm(film, again));
     CHECK(read.seconds == 2.5);
     CHECK(read.reached() == 7);
+    REQUIRE(read.tile(3).cut);
+    CHECK(read.tile(3).cut->end == 9);
+    CHECK(read.tile(3).cut->at.unit == 100);
+    CHECK(read.tile(3).cut->at.done == 1);
+    CHECK_FALSE(read.tile(4).cut);
+    CHECK_FALSE(read.even());
     CHECK(read.tally().paths == state.tally().paths);
     CHECK(read.tally().dropped == std::array<std::uint64_t, 3>{6, 12, 18});
     CHECK(read.tally().excess.above == 12);
@@ -224,6 +231,7 @@ TEST_CASE("checkpoints in the background are of a moment: every tile in step wit
     header.identity.clear();
     int identified = 0;
     {
+        state.setPilot(0); // nothing is written before all is planned
         RenderCheckpoint checkpoint(path, header, [&] { return ++identified, std::vector<Fact>{{"seed", "7"}}; });
         checkpoint.start(film.planes(), state, 0.002);
         int read = 0, mismatches = 0;

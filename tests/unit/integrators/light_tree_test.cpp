@@ -5,6 +5,7 @@
 #include "support/scene_test.h"
 #include "support/statistics.h"
 
+#include <chrono>
 #include <ctime>
 #include <doctest/doctest.h>
 
@@ -195,6 +196,17 @@ TEST_CASE("light tree: the scale of the scene does not matter (T3.3)") {
         CHECK(worst < 1e-4);
         CHECK(worstRelative < 2e-3);
     }
+}
+
+TEST_CASE("light tree: a render that is to end does not wait for it") {
+    const auto lights = randomLights(200'000, 10, 12);
+    const auto secondsOf = [&](const StopFlag& stop) {
+        const auto begin = std::chrono::steady_clock::now();
+        const LightTree tree(lights, stop);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const StopFlag ended{true};
+    CHECK(secondsOf(ended) < 0.2 * secondsOf(kNeverStop));
 }
 
 // What the choice is for: the variance of an estimate by one light of a thousand, walls apart, relative to its mean².
