@@ -108,6 +108,7 @@ template <EffectBits E> class PathLoop {
 
     bool toldToLeave(std::uint32_t count), leavesIfTold(); // path_loop_throughput.h
     void cap(const SurfaceHit*);
+    float longSurvival(std::uint32_t depth);
     // Where a ray ended.
     enum class Arrival : std::uint8_t { surface, collision, nowhere };
 

@@ -38,16 +38,19 @@ template <EffectBits E> [[gnu::cold, gnu::noinline]] void PathLoop<E>::cap(const
     counters_.cappedIn = hit ? static_cast<const void*>(hit->shape) : collided_;
 }
 
+// 0 where the render is to end. Out of line, so that short paths do not pay for it.
+template <EffectBits E> [[gnu::noinline]] float PathLoop<E>::longSurvival(std::uint32_t depth) {
+    return toldToLeave(depth) ? 0 : longPathSurvival(depth);
+}
+
 template <EffectBits E> bool PathLoop<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
     const float scale = path_.delta ? std::max(rouletteScale, context_.how.leastAfterDelta) : rouletteScale;
     float p = RouletteReference::survival(throughput(), scale);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
-    if (depth >= kLongPath) [[unlikely]] {
-        if (toldToLeave(depth)) return false;
-        p = std::min(p, longPathSurvival(depth));
-    }
+    if (depth >= kLongPath) [[unlikely]]
+        p = std::min(p, longSurvival(depth));
     if (p >= 1) return true;
     if (sampler_.roulette(depth) >= p) return false;
     path_.beta *= 1 / p;
