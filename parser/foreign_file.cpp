@@ -1,5 +1,7 @@
 #include "parser/foreign_file.h"
 
+#include "schema/scene_tree.h"
+#include "schema/suggest.h"
 #include "schema/type.h"
 
 #include <algorithm>
@@ -221,22 +223,39 @@ std::optional<ForeignFile> byText(std::string_view text) {
     return std::nullopt;
 }
 
-// Text of many lines none of which begins like one of a scene, or no text at all.
+enum class Likeness { none, misspelt, word };
+
+// Of a line's first word to those that begin one in a scene.
+Likeness likenessOf(std::string_view line, bool mayBeMisspelt) {
+    const std::string_view word = line.substr(0, std::min(line.find_first_of(" \t{;("), line.size()));
+    if (word == "scene" || word == "param" || word.starts_with("x-") || schema::findKind(word) ||
+        line.starts_with("/-"))
+        return Likeness::word;
+    if (!mayBeMisspelt) return Likeness::none;
+    const bool cut = !word.empty() && "scene"sv.starts_with(word);
+    const bool near = schema::suggestKind(word) || !schema::nearest(word, {"scene", "param"}).empty();
+    return cut || near ? Likeness::misspelt : Likeness::none;
+}
+
+// No text at all, or one none of whose lines begins like one of a scene; in a short one the words may be misspelt. What
+// stands in it is nobody's business: a scene's diagnostics would quote it.
 std::optional<ForeignFile> byWhatIsMissing(std::string_view text) {
-    constexpr std::size_t kEnough = 20;                                                    // lines
-    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return std::nullopt; // UTF-16: said elsewhere
+    constexpr std::size_t kEnough = 20; // lines
     if (text.substr(0, 1024).find('\0') != std::string_view::npos) return ForeignFile{"no text", std::string(kNothing)};
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     std::size_t lines = 0;
+    bool misspelt = false;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
         const std::string_view line = trimmed(text.substr(0, end));
         text.remove_prefix(std::min(end + 1, text.size()));
-        const std::string_view word = line.substr(0, std::min(line.find_first_of(" \t{;("), line.size()));
-        const bool ours = word == "scene" || word == "param" || word.starts_with("x-") || schema::findKind(word);
-        if (ours || line.starts_with("/-")) return std::nullopt;
-        lines += line.empty() ? 0 : 1;
+        if (line.empty()) continue;
+        const Likeness likeness = likenessOf(line, lines < kEnough);
+        if (likeness == Likeness::word) return std::nullopt;
+        misspelt = misspelt || likeness == Likeness::misspelt;
+        ++lines;
     }
-    if (lines < kEnough) return std::nullopt;
+    if (lines == 0 || (misspelt && lines < kEnough)) return std::nullopt;
     return ForeignFile{"a text without any `camera`, `light` or `shape`", std::string(kNothing)};
 }
 

@@ -44,6 +44,10 @@ std::optional<FileId> readText(SourceMap& sources, const std::filesystem::path& 
     }
     if (stream.bad())
         return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
+    // Nothing of these is quoted.
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+        return refuse(sources, path, diagnostics, "E0412", fmt::format("`{}` is not UTF-8 text", path.string()),
+                      "this looks like UTF-16; save the file as UTF-8");
     if (const auto foreign = parser::recogniseForeign(text, path.filename().string()))
         return refuse(sources, path, diagnostics, "E0413",
                       fmt::format("`{}` is {}, not a scene", path.string(), foreign->what), foreign->help);

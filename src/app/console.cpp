@@ -1,8 +1,9 @@
 #include "app/console.h"
 
 #include "base/diagnostic_format.h"
+#include "base/shown_text.h"
+#include "base/text_output.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <fmt/color.h>
 #include <fmt/format.h>
@@ -13,6 +14,8 @@ namespace abbe {
 
 namespace {
 
+constexpr const char* kClear = "\r\x1b[K"; // to the beginning of the line, which is blank then
+
 bool isSet(const char* variable) {
     const char* value = std::getenv(variable);
     return value && *value;
@@ -22,6 +25,8 @@ bool dumbTerminal() {
     const char* term = std::getenv("TERM");
     return term && std::string_view(term) == "dumb";
 }
+
+void writeMessage(const std::string& text) { writeText(TextStream::err, text); }
 
 } // namespace
 
@@ -36,20 +41,25 @@ int Console::width() const {
     return 80;
 }
 
-void Console::line(std::string_view text) const { fmt::print(stderr, "{}\n", text); }
+void Console::line(std::string_view text) const { writeMessage(shownLine(text) + "\n"); }
+
+void Console::lines(std::string_view text) const { writeMessage(shownLines(text) + "\n"); }
 
 void Console::error(std::string_view text) const {
-    if (color_)
-        fmt::print(stderr, "{} {}\n", fmt::styled("abbe:", fmt::emphasis::bold | fmt::fg(fmt::terminal_color::red)),
-                   text);
-    else
-        fmt::print(stderr, "abbe: {}\n", text);
+    const auto style = fmt::emphasis::bold | fmt::fg(fmt::terminal_color::red);
+    const std::string name = color_ ? fmt::format("{}", fmt::styled("abbe:", style)) : "abbe:";
+    writeMessage(fmt::format("{} {}\n", name, shownLines(text)));
 }
 
-void Console::data(std::string_view text) const {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
+bool Console::status(std::string_view text) const {
+    if (!takesText(TextStream::err)) return false;
+    writeMessage(kClear + shownLine(text));
+    return true;
 }
+
+void Console::clearStatus() const { writeMessage(kClear); }
+
+void Console::data(std::string_view text) const { writeText(TextStream::out, shownLines(text)); }
 
 void Console::report(const Diagnostics& diagnostics, const SourceMap& sources) const {
     if (format_ == MessageFormat::json) return data(formatJson(diagnostics, sources) + "\n");
@@ -57,8 +67,7 @@ void Console::report(const Diagnostics& diagnostics, const SourceMap& sources) c
     FormatOptions options;
     options.color = color_;
     const bool brief = format_ == MessageFormat::brief;
-    const std::string text = brief ? formatShort(diagnostics, sources) : formatHuman(diagnostics, sources, options);
-    std::fwrite(text.data(), 1, text.size(), stderr);
+    writeMessage(brief ? formatShort(diagnostics, sources) : formatHuman(diagnostics, sources, options));
 }
 
 } // namespace abbe

@@ -13,7 +13,8 @@ namespace abbe {
 enum class ColorMode : std::uint8_t { automatic, always, never };
 enum class MessageFormat : std::uint8_t { human, brief, json };
 
-// Where messages go: everything but data goes to stderr, data to stdout. Cheap to copy.
+// Where messages go: everything but data goes to stderr, data to stdout. What cannot be written is lost and ends
+// nothing (base/text_output.h). Control characters of names, paths and files are shown as `\u001b`. Cheap to copy.
 class Console {
   public:
     Console() = default;
@@ -25,10 +26,15 @@ class Console {
     MessageFormat format() const { return format_; }
     int width() const; // of the terminal, columns
 
-    // One line on stderr, led by the program's name when it is about the program itself.
+    // One line on stderr, or several; led by the program's name when it is about the program itself.
     void line(std::string_view text) const;
+    void lines(std::string_view text) const;
     void error(std::string_view text) const;
-    // Text on stdout.
+    // The last line of an interactive terminal, without a line end: in place of the one before, or blank. Not shown,
+    // and false, while the terminal takes nothing: progress must not wait for somebody who stopped it.
+    bool status(std::string_view text) const;
+    void clearStatus() const;
+    // Text on stdout, or JSON, which stays the same to those who read it.
     void data(std::string_view text) const;
     // All diagnostics of a run; in JSON on stdout, else on stderr. Nothing for an empty list, except in JSON.
     void report(const Diagnostics&, const SourceMap&) const;

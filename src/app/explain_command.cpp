@@ -81,7 +81,7 @@ ExitCode explainWords(const std::string& topic, const Console& console) {
         console.data(hint.empty() ? explanation.text : explanation.text + "\n" + hint + "\n");
         return ExitCode::done;
     }
-    if (!isCommand(topic)) console.line(std::string_view(explanation.text).substr(0, explanation.text.size() - 1));
+    if (!isCommand(topic)) console.lines(std::string_view(explanation.text).substr(0, explanation.text.size() - 1));
     if (!hint.empty()) console.line(hint);
     return ExitCode::faulty;
 }

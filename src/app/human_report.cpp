@@ -4,7 +4,6 @@
 #include "app/progress_text.h"
 #include "app/render_report.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <utility>
 
@@ -59,9 +58,7 @@ class HumanReport final : public RenderReport {
     void showBar(const Progress& p) {
         if (p.elapsed - lastShown_ < (p.elapsed < 60 ? 0.25 : 1.0)) return;
         lastShown_ = p.elapsed;
-        fmt::print(stderr, "\r\x1b[K{}", progressBar(p, noiseTarget_, console_.width()));
-        std::fflush(stderr);
-        barShown_ = true;
+        if (console_.status(progressBar(p, noiseTarget_, console_.width()))) barShown_ = true;
     }
 
     void showLine(const Progress& p) {
@@ -75,8 +72,7 @@ class HumanReport final : public RenderReport {
 
     void clearBar() {
         if (!barShown_) return;
-        fmt::print(stderr, "\r\x1b[K");
-        std::fflush(stderr);
+        console_.clearStatus();
         barShown_ = false;
     }
 

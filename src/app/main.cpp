@@ -1,9 +1,11 @@
 #include "app/command_line.h"
 #include "base/parallel.h"
+#include "base/shown_text.h"
+#include "base/text_output.h"
 #include "io/io_error.h"
 
 #include <csignal>
-#include <cstdio>
+#include <cstring>
 #include <fmt/format.h>
 #include <system_error>
 #include <unistd.h>
@@ -41,16 +43,34 @@ ExitCode guarded(const Command& command) {
     }
 }
 
+// Whether what a command has to say on stdout is only beside the files that it makes.
+bool makesFiles(const Command& command) {
+    const auto* const render = std::get_if<RenderOptions>(&command.options);
+    return (render && !render->pixel) || std::holds_alternative<MergeOptions>(command.options) ||
+           std::holds_alternative<StudyOptions>(command.options);
+}
+
+// Who has the text written into a file must learn that it is incomplete.
+ExitCode withText(ExitCode code, const Command& command) {
+    if (code != ExitCode::done || makesFiles(command) || lostText() == 0) return code;
+    command.common.console.error(fmt::format("cannot write to stdout: {}", std::strerror(lostText())));
+    return ExitCode::system;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
+    keepStandardStreams();
     std::signal(SIGABRT, onAbort);
     std::signal(SIGPIPE, SIG_IGN); // a closed reader must not lose the image
     std::signal(SIGXFSZ, SIG_IGN); // nor a limit on the size of files, which is a full disk
     const auto result = readCommandLine(std::span<const char* const>(argv, static_cast<std::size_t>(argc)).subspan(1));
     if (const auto* end = std::get_if<EarlyEnd>(&result)) {
-        std::fputs(end->text.c_str(), end->code == ExitCode::done ? stdout : stderr);
-        return static_cast<int>(end->code);
+        const bool wanted = end->code == ExitCode::done;
+        writeText(wanted ? TextStream::out : TextStream::err, shownLines(end->text));
+        return static_cast<int>(wanted && lostText() != 0 ? ExitCode::system : end->code);
     }
-    return static_cast<int>(guarded(std::get<Command>(result)));
+    const auto& command = std::get<Command>(result);
+    if (makesFiles(command)) std::signal(SIGHUP, SIG_IGN); // goes on without its terminal; saves once there is something
+    return static_cast<int>(withText(guarded(command), command));
 }

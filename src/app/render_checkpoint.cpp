@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 namespace abbe {
 
@@ -19,6 +20,17 @@ RenderCheckpoint::~RenderCheckpoint() { stop(); }
 bool RenderCheckpoint::exists() const {
     std::error_code error;
     return std::filesystem::exists(path_, error);
+}
+
+std::optional<RenderCheckpoint::FileStamp> RenderCheckpoint::stamp() const {
+    struct stat s {};
+    if (::stat(path_.c_str(), &s) != 0) return std::nullopt;
+    return FileStamp{s.st_dev, s.st_ino, s.st_mtim.tv_sec, s.st_mtim.tv_nsec};
+}
+
+bool RenderCheckpoint::isThere() const {
+    const std::lock_guard lock(mutex_);
+    return ours_ && stamp() == ours_;
 }
 
 void RenderCheckpoint::identify() {
@@ -59,7 +71,7 @@ void RenderCheckpoint::resume(const FilmPlanes& planes, RenderState& state) {
     identify();
     describe(planes, state);
     check(reader.header());
-    ours_ = true;
+    ours_ = stamp();
     state = reader.addTo(planes);
 }
 
@@ -93,17 +105,22 @@ void RenderCheckpoint::keep(double interval) {
 }
 
 // Requires the mutex.
-void RenderCheckpoint::write() {
-    const Stopwatch writing;
-    const WorkScope work(Work::saving);
+bool RenderCheckpoint::writeTo(const std::string& path) {
     identify();
     CheckpointHeader header = header_;
     header.seconds = state_->seconds + watch_.seconds();
     header.work = state_->work;
     header.pilot = state_->pilot();
     if (work_) header.work.add(work_());
-    if (!writeCheckpoint(path_, header, planes_, *state_, sound_)) return;
-    ours_ = true;
+    return writeCheckpoint(path, header, planes_, *state_, sound_);
+}
+
+// Requires the mutex.
+void RenderCheckpoint::write() {
+    const Stopwatch writing;
+    const WorkScope work(Work::saving);
+    if (!writeTo(path_)) return;
+    ours_ = stamp();
     writingSeconds_ += writing.seconds();
     ++writes_;
 }
@@ -111,6 +128,11 @@ void RenderCheckpoint::write() {
 void RenderCheckpoint::save() {
     const std::lock_guard lock(mutex_);
     write();
+}
+
+void RenderCheckpoint::saveAs(const std::string& path) {
+    const std::lock_guard lock(mutex_);
+    writeTo(path);
 }
 
 void RenderCheckpoint::stop() {
@@ -129,7 +151,7 @@ std::optional<std::string> RenderCheckpoint::takeFault() {
 
 void RenderCheckpoint::remove() {
     std::error_code ignored;
-    if (ours_) std::filesystem::remove(path_, ignored);
+    if (isThere()) std::filesystem::remove(path_, ignored);
 }
 
 } // namespace abbe

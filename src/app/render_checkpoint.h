@@ -27,6 +27,9 @@ class RenderCheckpoint {
     const std::string& path() const { return path_; }
     // Whether there is a file to go on from.
     bool exists() const;
+    // Whether that is still the one that this render wrote last or went on from: another render to the same image
+    // may have removed or replaced it.
+    bool isThere() const;
     // Adds what the file holds to an empty film, and takes the state to where it had come, which is at nothing. Throws
     // CheckpointFault, IoError.
     void resume(const FilmPlanes&, RenderState&);
@@ -40,11 +43,13 @@ class RenderCheckpoint {
     void writeOnlyIf(std::function<bool()> sound) { sound_ = std::move(sound); }
     // Writes now. Requires start() and that nobody holds a tile's mutex. Throws IoError.
     void save();
+    // The same to another place, where nobody looks for it unless told; does not count as written.
+    void saveAs(const std::string& path);
     // Nothing is written any more.
     void stop();
     // The last sentence about why it could not be written in the background, once. Of any thread.
     std::optional<std::string> takeFault();
-    // The file is not needed any more, if this render made it or went on from it.
+    // The file is not needed any more, if it is there.
     void remove();
 
     // What writing took so far, in seconds of the clock, and how often it was.
@@ -52,10 +57,18 @@ class RenderCheckpoint {
     int writes() const { return writes_; }
 
   private:
+    // Tells a file from one that another process put into its place.
+    struct FileStamp {
+        std::uint64_t device = 0, number = 0;
+        std::int64_t seconds = 0, nanoseconds = 0; // of its last change
+        bool operator==(const FileStamp&) const = default;
+    };
+    std::optional<FileStamp> stamp() const;
     void check(const CheckpointHeader& theirs) const;
     void identify();
     void describe(const FilmPlanes&, const RenderState&);
     void keep(double interval);
+    bool writeTo(const std::string& path);
     void write();
 
     std::string path_;
@@ -67,10 +80,10 @@ class RenderCheckpoint {
     RenderState* state_ = nullptr;
     Stopwatch watch_; // since start()
     std::thread thread_;
-    std::mutex mutex_; // of everything below, and of writing
+    mutable std::mutex mutex_; // of everything below, and of writing
     std::condition_variable changed_;
     bool stopping_ = false;
-    bool ours_ = false;                // the file
+    std::optional<FileStamp> ours_;    // the file when this render wrote it or went on from it
     std::optional<std::string> fault_; // not yet taken
     std::string lastFault_;            // so that a disk that stays full is told once
     double writingSeconds_ = 0;

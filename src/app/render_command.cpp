@@ -182,7 +182,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
         // A tile in hand may be in the film in part: good enough for the image, which says that it is partial, but not
         // to go on from. The checkpoint stays as it was written last.
         outOfMemory_ = true;
-        if (checkpoint_ && checkpoint_->exists()) olderCheckpoint_ = checkpoint_->path();
+        if (checkpoint_ && checkpoint_->isThere()) olderCheckpoint_ = checkpoint_->path();
         checkpoint_.reset();
         summary_.statistics.stopped = true;
         summary_.statistics.samplesPerPixel = (state.reached() - state.first()) * built_.render.replicates;
@@ -256,7 +256,7 @@ ExitCode RenderRun::finish(int signal, ExitCode otherwise) {
                                                               "should be",
                                                               summary_.image)
                                                 : std::string()),
-                               checkpoint_ && checkpoint_->writes() > 0
+                               checkpoint_ && checkpoint_->isThere()
                                    ? "the checkpoint is of before that: bring the file back and go on with `--resume`"
                                    : "bring the file back and render again",
                                ExitCode::faulty);

@@ -77,7 +77,7 @@ ExitCode RenderRun::refuseForMemory() {
                                                       options_.memory ? "`--memory` allows" : "there are")
                                         : std::string("memory ran out");
     if (imageWritten_) why += fmt::format("; the image so far is in `{}`", summary_.image);
-    if (checkpoint_ && checkpoint_->writes() > 0)
+    if (checkpoint_ && checkpoint_->writes() > 0 && checkpoint_->isThere())
         why += fmt::format("; the render was saved as `{}`", checkpoint_->path());
     if (!olderCheckpoint_.empty()) why += fmt::format("; an earlier state of the render is in `{}`", olderCheckpoint_);
     return refuse("E0665", std::move(why),

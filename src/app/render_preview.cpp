@@ -93,6 +93,7 @@ bool RenderPreview::show(const PixelFilm& film) {
 
 bool RenderPreview::write(DisplayPicture picture) {
     const WorkScope work(Work::writing);
+    if (!shown_ && isForeignPng(path_)) return false; // somebody's picture that is called so
     try {
         writeDisplayPng(path_, std::move(picture), how_.view, 8);
         return shown_ = true;

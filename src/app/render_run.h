@@ -82,6 +82,7 @@ class RenderRun {
     void renderFrom(PixelFilm&, RenderState&, InterruptGuard&);
     void snapshot(const PixelFilm&, const RenderStatistics&);
     void closeCheckpoint();
+    void savePart();
     void tellFault();
     bool texturesReadable() const;
     void watch(InterruptGuard&, const Progress&);

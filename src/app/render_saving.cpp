@@ -9,10 +9,43 @@
 #include "app/render_warnings.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
 
 namespace abbe {
+
+namespace {
+
+// One that only this user can look into, of a name that nobody could foresee: the folder of temporary files is
+// everybody's.
+std::filesystem::path makePrivateFolder() {
+    std::error_code error;
+    const auto temporary = std::filesystem::temp_directory_path(error);
+    std::string pattern = ((error ? "/tmp" : temporary) / "abbe-XXXXXX").string();
+    if (!::mkdtemp(pattern.data())) throw IoError(fmt::format("cannot make `{}`: {}", pattern, std::strerror(errno)));
+    return pattern;
+}
+
+// Has `write` put what could not be written beside the image where there may be room. What became of it, for the end of
+// a message.
+template <typename Write> std::string savedElsewhere(const std::string& name, const char* what, const Write& write) {
+    std::filesystem::path folder;
+    try {
+        folder = makePrivateFolder();
+        const std::string path = (folder / std::filesystem::path(name).filename()).string();
+        write(path);
+        return fmt::format("; the {} was saved as `{}`", what, path);
+    } catch (const IoError& e) {
+        std::error_code ignored;
+        if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
+        return fmt::format("; nor could it be saved elsewhere ({})", e.what());
+    }
+}
+
+} // namespace
 
 std::vector<Fact> RenderRun::identity() const {
     return renderIdentity(
@@ -77,11 +110,7 @@ void RenderRun::closeCheckpoint() {
     checkpoint_->stop();
     tellFault();
     if (!hasSamples_) return;
-    if (options_.part) {
-        checkpoint_->save();
-        report_->image(summary_.image, summary_.partial);
-        return;
-    }
+    if (options_.part) return savePart();
     if (!summary_.partial && !options_.checkpoint.keep) return; // it goes when the image is there
     if (options_.checkpoint.off) return;
     try {
@@ -91,8 +120,18 @@ void RenderRun::closeCheckpoint() {
     }
 }
 
+void RenderRun::savePart() {
+    try {
+        checkpoint_->save();
+    } catch (const IoError& e) {
+        const auto elsewhere = [this](const std::string& path) { checkpoint_->saveAs(path); };
+        throw IoError(e.what() + savedElsewhere(summary_.image, "part", elsewhere));
+    }
+    report_->image(summary_.image, summary_.partial);
+}
+
 void RenderRun::tellHowToResume() const {
-    if (options_.quiet) return;
+    if (options_.quiet || !checkpoint_->isThere()) return;
     common_.console.line(
         fmt::format("to go on:  {}{}", common_.commandLine, options_.checkpoint.resume ? "" : " --resume"));
 }
@@ -202,21 +241,16 @@ void RenderRun::write(const PixelFilm& film) {
 // The disk filled up or went away while rendering: what was computed is saved where temporary files go, and a
 // checkpoint beside the image if there is room for that.
 void RenderRun::writeRescued(const FilmPicture& picture, std::vector<ImageAttribute> attributes, const IoError& why) {
-    const auto rescued = std::filesystem::temp_directory_path() / std::filesystem::path(summary_.image).filename();
-    std::string saved;
-    try {
+    std::string saved = savedElsewhere(summary_.image, "image", [&](const std::string& path) {
         Diagnostics ignored;
-        writeImage(rescued.string(), picture, film_, std::move(attributes), ignored);
-        saved = fmt::format("; the image was saved as `{}`", rescued.string());
-    } catch (const IoError&) {
-        saved = "; nor is there room in the folder of temporary files";
-    }
+        writeImage(path, picture, film_, std::move(attributes), ignored);
+    });
     if (checkpoint_) {
         try {
             checkpoint_->save();
             saved += fmt::format("; the render was saved as `{}`", checkpoint_->path());
         } catch (const IoError&) {
-            if (checkpoint_->writes() > 0)
+            if (checkpoint_->isThere())
                 saved += fmt::format("; an earlier state of the render is in `{}`", checkpoint_->path());
         }
     }

@@ -3,7 +3,6 @@
 #include "app/json.h"
 #include "app/progress_text.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -35,15 +34,12 @@ void StudyProgressLine::show(const StudyProgress& p) {
         return;
     }
     if (static_cast<int>(text.size()) >= console_.width()) text.resize(static_cast<std::size_t>(console_.width()) - 1);
-    fmt::print(stderr, "\r\x1b[K{}", text);
-    std::fflush(stderr);
-    shown_ = true;
+    if (console_.status(text)) shown_ = true;
 }
 
 void StudyProgressLine::clear() {
     if (!shown_) return;
-    fmt::print(stderr, "\r\x1b[K");
-    std::fflush(stderr);
+    console_.clearStatus();
     shown_ = false;
 }
 

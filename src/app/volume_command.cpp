@@ -211,7 +211,7 @@ ExitCode write(std::vector<std::string> arguments, std::size_t outputPlace, cons
     if (options.quiet) return ExitCode::done;
     std::string notes = std::get<std::string>(result);
     while (!notes.empty() && notes.back() == '\n') notes.pop_back();
-    if (!notes.empty()) common.console.line(notes);
+    if (!notes.empty()) common.console.lines(notes);
     const double megabytes = static_cast<double>(std::filesystem::file_size(options.output)) * 1e-6;
     common.console.line(fmt::format("volume {}  ({:.1f} MB, {:.1f} s)", options.output, megabytes, seconds()));
     return ExitCode::done;

@@ -1,13 +1,16 @@
 #include "base/check.h"
 
-#include <cstdio>
+#include "base/text_output.h"
+
 #include <cstdlib>
+#include <fmt/format.h>
 
 namespace abbe {
 
 void checkFailed(const char* condition, const char* file, int line) {
-    std::fprintf(stderr, "abbe: internal error: %s does not hold (%s:%d). This is a bug; please report it.\n",
-                 condition, file, line);
+    writeText(TextStream::err,
+              fmt::format("abbe: internal error: {} does not hold ({}:{}). This is a bug; please report it.\n",
+                          condition, file, line));
     std::abort();
 }
 

@@ -109,7 +109,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0410", "the scene file cannot be read", "The file does not exist, is a directory, or its permissions forbid reading it."},
     {"E0411", "the scene file is too large", "Scene files are limited to 4 GiB of text. Keep meshes in PLY or OBJ files and volumes in VDB files."},
     {"E0412", "the file is not UTF-8 text", "Scene files are UTF-8. Save the file again with that encoding; binary files are named in a scene, not read as one."},
-    {"E0413", "a file of another program", "The file is known by how it begins: a mesh, a picture, a volume, a lamp, or a scene of another program. Meshes, pictures, volumes and lamps are named in a scene; scenes of other programs are not read. The message says what to write."},
+    {"E0413", "a file of another program", "The file is known by how it begins: a mesh, a picture, a volume, a lamp, or a scene of another program; or no line of it begins with a word that begins one in a scene, and then nothing of it is quoted. Meshes, pictures, volumes and lamps are named in a scene; scenes of other programs are not read. The message says what to write."},
     {"E0403", "the environment cannot be used", "The image was read, but no environment can be made of it; the message says why."},
     {"E0404", "a file does not fit into memory", "The mesh is larger than the memory of this machine."},
     {"E0430", "the image cannot be written", "Found out before rendering: the folder does not exist, or it cannot be written to, or the name belongs to a folder or a device. `-o FILE` writes the image elsewhere."},

@@ -1,6 +1,7 @@
 #include "base/diagnostic_format.h"
 
 #include "base/diagnostic_order.h"
+#include "base/shown_text.h"
 #include "base/source_excerpt.h"
 
 #include <algorithm>
@@ -10,6 +11,14 @@ namespace abbe {
 
 namespace {
 
+// What comes from a scene must not reach the terminal as commands.
+Diagnostic asShown(Diagnostic d) {
+    for (std::string* text : {&d.message, &d.label, &d.help}) *text = shownLine(*text);
+    for (Label& label : d.related) label.text = shownLine(label.text);
+    for (std::string& note : d.notes) note = shownLine(note);
+    return d;
+}
+
 enum class Style { error, warning, frame, strong };
 
 // Writes diagnostics in the manner of compilers, all with one width of line numbers.
@@ -18,7 +27,8 @@ class HumanWriter {
     HumanWriter(const SourceMap& sources, bool color, std::size_t width)
         : sources_(sources), color_(color), width_(width) {}
 
-    void write(const Diagnostic& d) {
+    void write(const Diagnostic& found) {
+        const Diagnostic d = asShown(found);
         const bool isError = d.severity == Severity::error;
         const Style style = isError ? Style::error : Style::warning;
         out_ += paint(style, fmt::format("{}[{}]", isError ? "error" : "warning", d.code));
@@ -58,7 +68,7 @@ class HumanWriter {
 
     void writeArrow(FileId file, LineColumn place) {
         out_ += std::string(width_, ' ') + paint(Style::frame, "--> ");
-        out_ += fmt::format("{}:{}:{}\n", sources_.path(file), place.line, place.column);
+        out_ += fmt::format("{}:{}:{}\n", shownLine(sources_.path(file)), place.line, place.column);
     }
     void writeGutter(std::string_view number, std::string_view text = {}) {
         out_ += paint(Style::frame, fmt::format("{:>{}} |", number, width_));
@@ -103,7 +113,7 @@ std::string summary(const Diagnostics& diagnostics, const std::vector<const Diag
     const auto connected =
         std::find_if(sorted.begin(), sorted.end(), [](const Diagnostic* d) { return !d->related.empty(); });
     const Diagnostic& explained = connected == sorted.end() ? *sorted[0] : **connected;
-    std::string line = name.empty() ? std::string{} : name + ": ";
+    std::string line = name.empty() ? std::string{} : shownLine(name) + ": ";
     line += fmt::format("{}, {}. ", counted(diagnostics.errorCount(), "error"),
                         counted(diagnostics.warningCount(), "warning"));
     const std::string all = sorted.size() == 1 ? "it" : fmt::format("{} of them", fixable);
@@ -139,13 +149,14 @@ std::string formatHuman(const Diagnostics& diagnostics, const SourceMap& sources
 
 std::string formatShort(const Diagnostics& diagnostics, const SourceMap& sources) {
     std::string text;
-    for (const Diagnostic* d : sortedByPlace(diagnostics)) {
-        if (d->span.valid()) {
-            const LineColumn place = sources.lineColumn(d->span.file, d->span.begin);
-            text += fmt::format("{}:{}:{}: ", sources.path(d->span.file), place.line, place.column);
+    for (const Diagnostic* found : sortedByPlace(diagnostics)) {
+        const Diagnostic d = asShown(*found);
+        if (d.span.valid()) {
+            const LineColumn place = sources.lineColumn(d.span.file, d.span.begin);
+            text += fmt::format("{}:{}:{}: ", shownLine(sources.path(d.span.file)), place.line, place.column);
         }
-        text += fmt::format("{}[{}]: {}", d->severity == Severity::error ? "error" : "warning", d->code, d->message);
-        if (!d->label.empty()) text += fmt::format(" ({})", d->label);
+        text += fmt::format("{}[{}]: {}", d.severity == Severity::error ? "error" : "warning", d.code, d.message);
+        if (!d.label.empty()) text += fmt::format(" ({})", d.label);
         text += "\n";
     }
     return text;

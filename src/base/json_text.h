@@ -6,7 +6,7 @@
 
 namespace abbe {
 
-// In quotes, with what JSON or a terminal would stumble over escaped; other bytes stay, so UTF-8 does.
+// In quotes, with what JSON or a terminal would stumble over escaped; bytes that are no UTF-8 become U+FFFD.
 std::string jsonText(std::string_view);
 
 } // namespace abbe

@@ -1,5 +1,7 @@
 #include "base/source_excerpt.h"
 
+#include "base/shown_text.h"
+
 #include <algorithm>
 
 namespace abbe {
@@ -11,16 +13,6 @@ constexpr std::size_t kLongest = 120; // lines with more columns are cut
 constexpr std::size_t kBefore = 40;   // columns kept before the primary part of a cut line
 constexpr std::size_t kWindow = 100;  // columns kept in all
 
-// Code points that change the direction of writing, and the byte order mark, would disturb what is shown around them.
-bool isInvisible(std::string_view text) {
-    if (text.size() < 3) return false;
-    const auto last = static_cast<unsigned char>(text[2]);
-    const std::string_view lead = text.substr(0, 2);
-    if (lead == "\xe2\x80") return last == 0x8e || last == 0x8f || (last >= 0xaa && last <= 0xae);
-    if (lead == "\xe2\x81") return last >= 0xa6 && last <= 0xa9;
-    return text.starts_with("\xef\xbb\xbf");
-}
-
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; }
 
 // A line as shown, with the column of each of its bytes.
@@ -29,19 +21,14 @@ class ShownLine {
     // `from` and `to` are the bytes to show, on boundaries of characters.
     ShownLine(std::string_view line, std::size_t from, std::size_t to) : from_(from), to_(to) {
         if (from > 0) append("…");
-        std::size_t hiddenEnd = 0;
-        for (std::size_t i = from; i < to; ++i) {
-            if (!continues(line[i]) || i == from)
-                columns_.push_back(width_);
+        for (std::size_t i = from; i < to;) {
+            const auto [bytes, control] = firstCharacter(line.substr(i, to - i));
+            columns_.insert(columns_.end(), bytes, width_);
+            if (line[i] == '\t')
+                appendTab();
             else
-                columns_.push_back(columns_.back());
-            if (i < hiddenEnd) continue;
-            if (isInvisible(line.substr(i))) {
-                append("\xef\xbf\xbd");
-                hiddenEnd = i + 3;
-            } else {
-                appendByte(line[i]);
-            }
+                append(control ? "\xef\xbf\xbd" : line.substr(i, bytes)); // would disturb what is shown around it
+            i += bytes;
         }
         columns_.push_back(width_);
         if (to < line.size()) append("…");
@@ -55,18 +42,9 @@ class ShownLine {
         text_ += character;
         ++width_;
     }
-    void appendByte(char c) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '\t') {
-            do append(" ");
-            while (width_ % kTab != 0);
-        } else if (byte < 0x20 || byte == 0x7f) {
-            append("\xef\xbf\xbd"); // a control character would disturb the terminal
-        } else if (continues(c)) {
-            text_ += c;
-        } else {
-            append({&c, 1});
-        }
+    void appendTab() {
+        do append(" ");
+        while (width_ % kTab != 0);
     }
     std::size_t from_, to_;
     std::size_t width_ = 0;

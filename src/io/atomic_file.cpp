@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -14,71 +13,89 @@ namespace abbe {
 
 namespace {
 
+constexpr std::size_t kMostWaiting = 1 << 16;
+
+// In a folder where everybody may make files, a link may have been put in the way of what is written there. The rule is
+// that of Linux for opening files (protected_symlinks), which renaming does not have.
+bool isPlanted(const std::string& link) {
+    const auto folder = std::filesystem::path(link).parent_path();
+    struct stat own {
+    }, around{};
+    if (::lstat(link.c_str(), &own) != 0 || ::stat(folder.empty() ? "." : folder.c_str(), &around) != 0) return true;
+    const bool forEverybody = (around.st_mode & S_ISVTX) && (around.st_mode & S_IWOTH);
+    return forEverybody && own.st_uid != ::geteuid() && own.st_uid != around.st_uid;
+}
+
 // The file that a chain of links ends at, whether or not it exists.
 std::string resolveLinks(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_symlink(path, error)) return path;
+    if (isPlanted(path))
+        throw IoError(fmt::format("cannot write `{}`: it is a link of another user in a folder for everybody", path));
     const auto resolved = std::filesystem::weakly_canonical(path, error);
     return error ? path : resolved.string();
 }
 
-// Best effort: a rename is on disk once its folder is; some file systems cannot sync folders.
-void syncFolder(const std::string& file) {
-    const auto folder = std::filesystem::path(file).parent_path();
-    const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
-    ::close(descriptor);
+[[noreturn]] void failToWrite(const std::string& path, int error) {
+    throw IoError(fmt::format("cannot write `{}`: {}", path, std::strerror(error)));
+}
+
+std::string writableTarget(const std::string& path) {
+    std::string target = resolveLinks(path);
+    struct stat status {};
+    if (::stat(target.c_str(), &status) != 0) return target;
+    if (S_ISDIR(status.st_mode)) failToWrite(path, EISDIR);
+    if (!S_ISREG(status.st_mode))
+        throw IoError(fmt::format("cannot write `{}`: it exists and is not a regular file", path));
+    // Renaming would replace a write-protected file.
+    if (::access(target.c_str(), W_OK) != 0) failToWrite(path, errno);
+    return target;
 }
 
 } // namespace
 
-AtomicFile::AtomicFile(const std::string& path)
-    : path_(path), target_(resolveLinks(path)), temporary_(target_ + ".tmp") {
-    struct stat status {};
-    if (::stat(target_.c_str(), &status) == 0) {
-        if (S_ISDIR(status.st_mode)) fail(EISDIR);
-        if (!S_ISREG(status.st_mode))
-            throw IoError(fmt::format("cannot write `{}`: it exists and is not a regular file", path_));
-        if (::access(target_.c_str(), W_OK) != 0) fail(errno); // renaming would replace a write-protected file
-    }
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) fail(errno);
+AtomicFile::AtomicFile(const std::string& path) : path_(path), temporary_(writableTarget(path)) {
+    if (temporary_.error() != 0) failToWrite(path_, temporary_.error());
 }
 
-AtomicFile::~AtomicFile() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    ::unlink(temporary_.c_str());
-}
-
-void AtomicFile::fail(int error) const {
-    throw IoError(fmt::format("cannot write `{}`: {}", path_, std::strerror(error)));
-}
-
-void AtomicFile::write(std::span<const char> bytes) {
+void AtomicFile::put(std::span<const char> bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(position_));
+        const ssize_t written =
+            ::pwrite(temporary_.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(begin_));
         if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) fail(written < 0 ? errno : ENOSPC);
-        position_ += static_cast<std::uint64_t>(written);
+        if (written <= 0) failToWrite(path_, written < 0 ? errno : ENOSPC);
+        begin_ += static_cast<std::uint64_t>(written);
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
 }
 
-void AtomicFile::seek(std::uint64_t position) { position_ = position; }
+void AtomicFile::flush() {
+    put(waiting_);
+    waiting_.clear();
+}
+
+void AtomicFile::write(std::span<const char> bytes) {
+    if (waiting_.size() + bytes.size() > kMostWaiting) flush();
+    if (bytes.size() > kMostWaiting)
+        put(bytes);
+    else
+        waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+}
+
+void AtomicFile::seek(std::uint64_t position) {
+    if (position == this->position()) return;
+    flush();
+    begin_ = position;
+}
+
+const std::string& AtomicFile::temporaryPath() {
+    flush();
+    return temporary_.path();
+}
 
 void AtomicFile::commit() {
-    if (::fsync(descriptor_) != 0) fail(errno);
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    int error = ::close(descriptor) == 0 ? 0 : errno; // network file systems report lost data here
-    if (error == 0 && ::rename(temporary_.c_str(), target_.c_str()) != 0) error = errno;
-    if (error != 0) {
-        ::unlink(temporary_.c_str());
-        fail(error);
-    }
-    syncFolder(target_);
+    flush();
+    if (const int error = temporary_.commit(); error != 0) failToWrite(path_, error);
 }
 
 void writeAtomically(const std::string& path, std::span<const char> bytes) {

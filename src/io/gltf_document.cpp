@@ -47,8 +47,11 @@ bool readWhole(std::vector<unsigned char>* out, std::string* error, const std::s
 
 bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-// The library's messages end in line breaks and may be several.
+// The library's messages end in line breaks and may be several. What it read last is left out: the file may be of any
+// kind, and not for everybody to read.
 std::string oneLine(std::string text) {
+    if (const std::size_t quote = text.find("; last read: '"); quote != std::string::npos)
+        text.erase(quote, text.rfind('\'') + 1 - quote);
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ' || text.back() == '.')) text.pop_back();
     std::replace(text.begin(), text.end(), '\n', ';');
     return text.empty() ? "not a glTF file" : text;

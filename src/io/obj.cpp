@@ -265,7 +265,9 @@ void ObjParser::statement(std::string_view keyword) {
         skipLine();
         return;
     } else {
-        fail(fmt::format("`{}` is not a statement of polygon meshes", keyword.substr(0, 40)));
+        // Of a file that is perhaps none of these nothing is quoted.
+        const std::string what = v_.empty() ? "it" : fmt::format("`{}`", keyword.substr(0, 40));
+        fail(what + " is not a statement of polygon meshes");
     }
     if (!atLineEnd()) fail(fmt::format("`{}` at the end of the statement", word().substr(0, 40)));
     skipLine();

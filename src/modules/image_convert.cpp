@@ -23,7 +23,9 @@ struct Size {
 class Spool {
   public:
     // Removed at once: the file lives as long as it is open.
-    explicit Spool(const std::string& path) : file_(std::fopen(path.c_str(), "w+b")) { std::remove(path.c_str()); }
+    explicit Spool(const std::string& path) : file_(std::fopen(path.c_str(), "w+bx")) {
+        if (file_) std::remove(path.c_str());
+    }
     ~Spool() {
         if (file_) std::fclose(file_);
     }

@@ -1,6 +1,7 @@
 #include "spectrum/upsampling_table.h"
 
 #include "base/parallel.h"
+#include "base/temporary_file.h"
 #include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <cstring>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 namespace abbe {
 
@@ -188,17 +188,15 @@ std::optional<UpsamplingTable> UpsamplingTable::load(const std::filesystem::path
 bool UpsamplingTable::save(const std::filesystem::path& file, const RgbSpace& space) const {
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
-    const std::filesystem::path part = file.string() + "." + std::to_string(getpid()) + ".tmp";
+    TemporaryFile part(file.string());
+    if (part.error() != 0) return false;
     const Header header = headerFor(space, resolution_, entries_);
-    std::ofstream out(part, std::ios::binary);
+    std::ofstream out(part.path(), std::ios::binary);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
     out.write(reinterpret_cast<const char*>(entries_.data()),
               static_cast<std::streamsize>(entries_.size() * sizeof entries_[0]));
     out.close();
-    if (out) std::filesystem::rename(part, file, error);
-    if (out && !error) return true;
-    std::filesystem::remove(part, error);
-    return false;
+    return out && part.commit() == 0;
 }
 
 UpsamplingTable UpsamplingTable::loadOrBuild(const RgbSpace& space, const std::filesystem::path& directory,

@@ -1,16 +1,15 @@
 #include "textures/texture_file.h"
 
+#include "base/temporary_file.h"
 #include "math/hash.h"
 #include "spectrum/upsampling_table.h"
 #include "textures/texel_check.h"
 
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <optional>
-#include <unistd.h>
 
 namespace abbe {
 
@@ -125,26 +124,24 @@ struct Converted {
 // Into a file beside the final one, which no reader ever sees half written.
 Converted convert(const std::string& picture, const AbbeImageInfo& info, const ColorEncoding& encoding,
                   const fs::path& file, std::uint64_t key, const UpsamplingTable* upsampling) {
-    static std::atomic<unsigned> number{0};
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
-    const fs::path part = fmt::format("{}.{}-{}.part", file.string(), getpid(), number++);
-    if (!std::ofstream(part, std::ios::binary))
+    TemporaryFile part(file.string());
+    if (part.error() != 0)
         return {{}, fmt::format("the folder `{}` cannot be written to", file.parent_path().string())};
     TexelCheck check(info, encoding, upsampling);
     const AbbeConversion asked{info.channels, storedType(info, encoding), &check, checkTexels};
     AbbeImageFault fault{};
-    const bool good = imageModule().convert(picture.c_str(), part.c_str(), &asked, &fault);
+    const bool good = imageModule().convert(picture.c_str(), part.path().c_str(), &asked, &fault);
     Converted result{check.counts(), {}};
-    if (good && check.notFinite() == 0 && writeTrailer(part, key, result.counts)) {
-        fs::rename(part, file, error);
-        if (!error) return result;
+    int problem = 0;
+    if (good && check.notFinite() == 0 && writeTrailer(part.path(), key, result.counts)) {
+        problem = part.commit();
+        if (problem == 0) return result;
     }
-    std::error_code ignored;
-    fs::remove(part, ignored);
     if (check.notFinite() > 0) throw NotFiniteError(check.notFinite());
     if (!good && !fault.ofResult) throw ImageFileError(fault.reason);
-    result.problem = !good ? fault.reason : error ? error.message() : "the folder cannot be written to";
+    result.problem = !good ? fault.reason : problem != 0 ? std::strerror(problem) : "the folder cannot be written to";
     return result;
 }
 

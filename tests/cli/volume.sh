@@ -62,10 +62,11 @@ for size in 500 2000; do
     says_not err "Error:"
 done
 expect 3 volume convert cut.vdb out.vdb
-[[ ! -e out.vdb && ! -e out.vdb.tmp ]] || fault "a failed conversion left a file"
+[[ ! -e out.vdb && -z $(find . -name '*.tmp') ]] || fault "a failed conversion left a file"
 printf 'not a volume' >text.vdb
 expect 3 volume info text.vdb
-says err "\`text.vdb\` is not an OpenVDB file: it begins with \`not a vo\`"
+says err "\`text.vdb\` is not an OpenVDB file"
+says_not err "not a vo" # it is nobody's business what is in it
 says_not err "Error:"
 expect 3 volume make fire no/such/folder/x.vdb
 mkdir folder.vdb
@@ -82,6 +83,6 @@ wait "$child"
 code=$?
 [[ $code -eq 130 ]] || fault "an interrupted make ended with $code"
 cmp -s fire.vdb kept.vdb || fault "an interrupted make replaced its output"
-[[ ! -e kept.vdb.tmp ]] || fault "an interrupted make left a file"
+[[ -z $(find . -name '*.tmp') ]] || fault "an interrupted make left a file"
 
 finish

@@ -185,6 +185,7 @@ TEST_CASE("obj: faults are named with their line") {
     has("v 0,5 0 0\n", "line 1: `0,5` is not a number");
     has("v 1 2 3 4 5 6 7 8\n", "line 1: too many numbers");
     has("vn 0 0 1 2\n", "line 1: `2` at the end of the statement");
+    has("secret 3\n", "line 1: it is not a statement of polygon meshes");
     has("v 0 0 0\nverts 3\n", "line 2: `verts` is not a statement of polygon meshes");
     has("", "there is no mesh in it");
     has(v, "it has vertices but no faces");

@@ -62,14 +62,17 @@ TEST_CASE("what is no scene at all") {
     for (int i = 0; i < 25; ++i) prose += "Some words, and a number 7.\n";
     CHECK(whatIs(prose) == "a text without any `camera`, `light` or `shape`");
     CHECK(whatIs(prose + "  shape sphere\n") == "");
-    CHECK(whatIs(prose.substr(0, 100)) == "");
+    CHECK(whatIs(prose.substr(0, 100)) == "a text without any `camera`, `light` or `shape`");
+    for (const char* text : {"root:x:0:0:root:/root:/bin/sh\n", "hunter2", "- 0 1 4\n", "{ a }", "[1 2 3]",
+                             "from 0 1 3\nfov 40\n", "// all of it\n// is a comment\n", "key = value # camera\n"})
+        CHECK_MESSAGE(whatIs(text) == "a text without any `camera`, `light` or `shape`", text);
     CHECK(whatIs("abc\0def"sv) == "no text");
 }
 
 TEST_CASE("scenes are not taken for other files, however wrong they are") {
     for (const char* text :
-         {"", "scene 1\ncamera { }\n", "# a comment\ncamera { }\n", "camera\n{\n}\n", "shape sphere", "- 0 1 4\n",
-          "{ a }", "[1 2 3]", "from 0 1 3\nfov 40\n", "o 1\nshape plane\n", "param v 1\n", "\xef\xbb\xbfscene 1",
+         {"", "scene 1\ncamera { }\n", "# a comment\ncamera { }\n", "camera\n{\n}\n", "shape sphere", " \n",
+          "scnee 1\n", "s", "lihgt sky\n", "caemra{ }\n", "o 1\nshape plane\n", "param v 1\n", "\xef\xbb\xbfscene 1",
           "Camera { }", "film { }", "// 400 0.1\nlight sky { }", "x-tool { }\n", "material m diffuse\n"})
         CHECK_MESSAGE(whatIs(text) == "", text);
 }

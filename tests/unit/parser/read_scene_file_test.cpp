@@ -37,9 +37,25 @@ TEST_CASE("scene files are read as they are") {
     const Folder folder;
     CHECK(codeOf(folder.write("a.scene", "scene 1\r\n")) == "text: scene 1\r\n");
     CHECK(codeOf(folder.write("empty.scene", "")) == "text: ");
-    const std::string large(3'000'001, 'x');
+    const std::string large = "scene 1\n" + std::string(3'000'001, 'x');
     CHECK(codeOf(folder.write("large.scene", large)) == "text: " + large);
     CHECK(codeOf(folder.write("bom.scene", "\xef\xbb\xbfscene 1")) == "text: \xef\xbb\xbfscene 1");
+}
+
+// Whoever may give the program a path must not learn from it what stands in any file.
+TEST_CASE("nothing is quoted of a file that is no scene") {
+    const Folder folder;
+    const std::string_view texts[] = {"hunter2\n", "user:hunter2:x\n", "# my keys\nhunter2 hunter2\n",
+                                      "\xff\xfeh\0u\0hunter2\n", "hunter2 \xe9t\xe9\n"};
+    for (const std::string_view text : texts) {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        CHECK(!readSceneFile(sources, folder.write("secret", text), diagnostics));
+        CHECK(diagnostics.errorCount() == 1);
+        for (const std::string& shown :
+             {formatHuman(diagnostics, sources), formatShort(diagnostics, sources), formatJson(diagnostics, sources)})
+            CHECK_MESSAGE(shown.find("hunter") == std::string::npos, shown);
+    }
 }
 
 TEST_CASE("files that cannot be read") {
