@@ -22,13 +22,13 @@ class ShownLine {
     ShownLine(std::string_view line, std::size_t from, std::size_t to) : from_(from), to_(to) {
         if (from > 0) append("…");
         for (std::size_t i = from; i < to;) {
-            const auto [bytes, control] = firstCharacter(line.substr(i, to - i));
-            columns_.insert(columns_.end(), bytes, width_);
+            const FirstCharacter c = firstCharacter(line.substr(i, to - i));
+            columns_.insert(columns_.end(), c.bytes, width_);
             if (line[i] == '\t')
                 appendTab();
             else
-                append(control ? "\xef\xbf\xbd" : line.substr(i, bytes)); // would disturb what is shown around it
-            i += bytes;
+                append(c.control ? "\xef\xbf\xbd" : line.substr(i, c.bytes)); // would disturb what is shown around it
+            i += c.bytes;
         }
         columns_.push_back(width_);
         if (to < line.size()) append("…");

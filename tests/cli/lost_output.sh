@@ -55,7 +55,7 @@ if command -v script >/dev/null; then
     TERM=xterm script -qfc "$words" shown </dev/null >/dev/null 2>&1 &
     terminal=$!
     for _ in {1..300}; do
-        grep -q 'elapsed' shown 2>/dev/null && break
+        grep -q 'pass' shown 2>/dev/null && break
         sleep 0.1
     done
     job=$(cat pid)

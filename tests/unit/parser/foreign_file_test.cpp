@@ -72,7 +72,7 @@ TEST_CASE("what is no scene at all") {
 TEST_CASE("scenes are not taken for other files, however wrong they are") {
     for (const char* text :
          {"", "scene 1\ncamera { }\n", "# a comment\ncamera { }\n", "camera\n{\n}\n", "shape sphere", " \n",
-          "scnee 1\n", "s", "lihgt sky\n", "caemra{ }\n", "o 1\nshape plane\n", "param v 1\n", "\xef\xbb\xbfscene 1",
+          "scnee 1\n", "sc", "lihgt sky\n", "caemra{ }\n", "o 1\nshape plane\n", "param v 1\n", "\xef\xbb\xbfscene 1",
           "Camera { }", "film { }", "// 400 0.1\nlight sky { }", "x-tool { }\n", "material m diffuse\n"})
         CHECK_MESSAGE(whatIs(text) == "", text);
 }
