@@ -71,6 +71,6 @@ int main(int argc, char** argv) {
         return static_cast<int>(wanted && lostText() != 0 ? ExitCode::system : end->code);
     }
     const auto& command = std::get<Command>(result);
-    if (makesFiles(command)) std::signal(SIGHUP, SIG_IGN); // goes on without its terminal; saves once there is something
+    if (makesFiles(command)) std::signal(SIGHUP, SIG_IGN); // it goes on without its terminal
     return static_cast<int>(withText(guarded(command), command));
 }

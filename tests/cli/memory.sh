@@ -84,7 +84,7 @@ fi
     ulimit -f 16 # KiB
     expect 3 "$room" --size 200x200 --samples 2 --quiet -o full.exr
     says err "full.exr"
-    says err "nor is there room in the folder of temporary files"
+    says err "nor could it be saved elsewhere"
     exit "$faults"
 ) || faults=$((faults + 1))
 [[ ! -e full.exr ]] || fault "half an image"
