@@ -263,7 +263,7 @@ ExitCode RenderRun::finish(int signal, ExitCode otherwise) {
     if (signal != 0) summary_.exit = static_cast<ExitCode>(128 + signal);
     if (checkpoint_ && summary_.partial && hasSamples_ && !options_.checkpoint.off)
         tellHowToResume();
-    else if (checkpoint_ && !options_.part && !options_.checkpoint.keep)
+    else if (checkpoint_ && !summary_.partial && !options_.part && !options_.checkpoint.keep)
         checkpoint_->remove();
     preview_.reset();
     for (const auto& phase : summary_.phases) summary_.totalSeconds += phase.second;

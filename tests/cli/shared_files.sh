@@ -68,4 +68,11 @@ kill -CONT "$job"
 kill -INT "$job"
 ended_with 130
 
+# One that goes on from a checkpoint, is ended again and was told to write none leaves the one that it had.
+expect 0 "$scene" --size 32x32 --samples 4 -q -o off.exr --checkpoint keep
+start off.exr "$scene" --size 32x32 --resume --checkpoint off
+kill -INT "$job"
+ended_with 130
+[[ -s off.exr.ckpt ]] || fault "an unfinished render removed the checkpoint that it went on from"
+
 finish
