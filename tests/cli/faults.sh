@@ -83,7 +83,7 @@ wanted=$(pixels whole.exr)
 rm -rf base && mkdir base
 check_part() {
     local part=work/o.part1.abbe
-    killed && { [[ ! -e $part ]] || "$program" merge $part -o part.exr -q >/dev/null 2>&1 || fault "$where: half a part"; return; }
+    killed && { [[ ! -e $part ]] || "$program" merge $part -o part.exr --png off >/dev/null 2>&1 || fault "$where: half a part"; return; }
     grep -q E0430 err && return
     [[ $code -eq 0 ]] || part=$(saved_elsewhere part)
     rm -f part.exr
