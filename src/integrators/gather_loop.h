@@ -186,10 +186,7 @@ template <EffectBits E> Spectrum GatherLoop<E>::joined(const Photon& photon) con
 template <EffectBits E> bool GatherLoop<E>::goesOn(std::uint32_t depth) {
     if (depth < 4) return true;
     float p = std::clamp(this->throughput(), RouletteReference::kFloor, 1.f);
-    if (depth >= Base::kLongPath) {
-        if (this->toldToLeave(depth)) return false;
-        p = std::min(p, Base::longPathSurvival(depth));
-    }
+    if (depth >= Base::kLongPath) p = std::min(p, this->longSurvival(depth));
     if (p >= 1) return true;
     if (this->sampler_.roulette(depth) >= p) return false;
     this->path_.beta *= 1 / p;

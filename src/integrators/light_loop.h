@@ -347,11 +347,10 @@ bool LightLoop<E>::scatterInMedium(const EmittedRay& start, Ray& ray, const Vert
 
 template <EffectBits E> bool LightLoop<E>::survives(std::uint32_t depth) {
     float p = 1;
-    if (depth >= Base::kLongPath && this->toldToLeave(depth)) return false;
     if (depth >= 3) {
         float throughput = mean(abs(this->path_.beta)) / startThroughput_;
         if constexpr (Base::kMedia) throughput /= mean(this->path_.densities.unidirectional);
-        p = std::min(depth >= Base::kLongPath ? Base::longPathSurvival(depth) : 1.f,
+        p = std::min(depth >= Base::kLongPath ? this->longSurvival(depth) : 1.f,
                      std::clamp(throughput, RouletteReference::kFloor, 1.f));
     }
     if (spread_ > 0 && !raysAtSpread_) {

@@ -85,8 +85,8 @@ template <EffectBits E> class MergeKernel {
     bool gatherAll(int replicate, std::uint32_t number, const RoundPhotons& photons) {
         const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         gathered_.clear();
-        for (int y = pixels.y0; y < pixels.y1; ++y)
-            for (int x = pixels.x0; x < pixels.x1 && !left(); ++x)
+        for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x)
                 if ((x - frame.x0) % job_.step == job_.step / 2 && (y - frame.y0) % job_.step == job_.step / 2)
                     gather(x, y, replicate, number, photons);
         return !left();

@@ -45,7 +45,6 @@ template <EffectBits E>
 typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
     RandomStream random = sampler_.stream(2 * depth);
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        if (toldToLeave(crossings)) return Arrival::nowhere;
         const bool met = context_.scene.intersector->intersect(ray, hit);
         if constexpr (kMedia) {
             if (collides(ray, met ? &hit : nullptr, random, depth, crossings)) return Arrival::collision;
@@ -58,6 +57,7 @@ typename PathLoop<E>::Arrival PathLoop<E>::arriveThrough(Ray& ray, SurfaceHit& h
         if (share < 1 && !(share > 0 && random.uniform() < share)) return Arrival::surface;
         ray.origin = spawnOrigin(hit, ray.direction);
         ++counters_.effects.crossings;
+        if (toldToLeave(crossings)) return Arrival::nowhere;
     }
     cap(&hit);
     path_.beta = Spectrum(0.f);
@@ -92,7 +92,6 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
     Spectrum result(1.f);
     SurfaceHit hit;
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        if (toldToLeave(crossings)) return Spectrum(0.f);
         // The direction is made anew: rounding would let long chains of boundaries miss the light's own point.
         if (!infinite) {
             const Vec3 way = light.p - ray.origin;
@@ -109,6 +108,7 @@ Spectrum PathLoop<E>::transmittance(Vec3 origin, const LightSample& light, path_
         if (!anyNonZero(result)) return result;
         ray.origin = spawnOrigin(hit, ray.direction);
         ++counters_.effects.shadowCrossings;
+        if (toldToLeave(crossings)) return Spectrum(0.f);
     }
     cap(&hit);
     return Spectrum(0.f);
