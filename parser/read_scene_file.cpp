@@ -1,12 +1,11 @@
+#include "base/memory_limit.h"
+#include "base/regular_file.h"
 #include "parser/foreign_file.h"
 #include "parser/parse.h"
 #include "parser/source_text.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
+#include <istream>
 #include <limits>
 #include <system_error>
 
@@ -29,21 +28,30 @@ std::optional<FileId> refuseLarge(SourceMap& sources, const std::filesystem::pat
                   "keep meshes in PLY or OBJ files");
 }
 
-// All of a stream of that many bytes, as far as it is known: pipes have no size.
-std::optional<FileId> readText(SourceMap& sources, const std::filesystem::path& path, std::istream& stream,
-                               std::size_t size, Diagnostics& diagnostics) {
+std::optional<FileId> refuseUnread(SourceMap& sources, const std::filesystem::path& path, Diagnostics& diagnostics,
+                                   std::string_view why, std::string help = {}) {
+    return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: {}", path.string(), why),
+                  std::move(help));
+}
+
+// Of a stream, which may have no end: what is no text is not read on.
+std::string readStream(std::istream& stream) {
     std::string text;
-    if (size > 0) text.reserve(size + 1);
-    constexpr std::size_t step = std::size_t{1} << 20, largestStep = std::size_t{1} << 30;
-    while (stream) {
+    constexpr std::size_t step = std::size_t{1} << 20;
+    while (stream && text.size() < kTooLarge) {
         const std::size_t had = text.size();
-        text.resize(had + (had >= size ? step : std::min(size - had, largestStep)));
-        stream.read(text.data() + had, static_cast<std::streamsize>(text.size() - had));
+        if (had == step && text.find('\0') != std::string::npos) break;
+        requireMemory(static_cast<double>(2 * had)); // while it grows
+        text.resize(had + step);
+        stream.read(text.data() + had, step);
         text.resize(had + static_cast<std::size_t>(stream.gcount()));
-        if (text.size() >= kTooLarge) return refuseLarge(sources, path, diagnostics);
     }
-    if (stream.bad())
-        return refuse(sources, path, diagnostics, "E0410", fmt::format("cannot read `{}`: input error", path.string()));
+    return text;
+}
+
+std::optional<FileId> addText(SourceMap& sources, const std::filesystem::path& path, std::string text,
+                              Diagnostics& diagnostics) {
+    if (text.size() >= kTooLarge) return refuseLarge(sources, path, diagnostics);
     // Nothing of these is quoted.
     if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
         return refuse(sources, path, diagnostics, "E0412", fmt::format("`{}` is not UTF-8 text", path.string()),
@@ -67,18 +75,31 @@ std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::p
     if (std::filesystem::is_directory(status))
         return refuse(sources, path, diagnostics, "E0410", fmt::format("`{}` is a directory", path.string()),
                       "name the scene file in it");
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream)
-        return refuse(sources, path, diagnostics, "E0410",
-                      fmt::format("cannot read `{}`: {}", path.string(), std::strerror(errno)));
-    const std::uintmax_t size = std::filesystem::file_size(path, error); // pipes have none
-    if (!error && size >= kTooLarge) return refuseLarge(sources, path, diagnostics);
-    return readText(sources, path, stream, error ? 0 : static_cast<std::size_t>(size), diagnostics);
+    RegularFile file(path.string());
+    if (!file.good())
+        return refuseUnread(sources, path, diagnostics, file.why(),
+                            std::filesystem::is_regular_file(status) ? "" : "`abbe check -` reads standard input");
+    if (file.size() >= kTooLarge) return refuseLarge(sources, path, diagnostics);
+    try {
+        requireMemory(static_cast<double>(file.size()));
+        std::string text(file.size(), '\0');
+        text.resize(file.readAt(0, text));
+        if (!file.good()) return refuseUnread(sources, path, diagnostics, file.why());
+        return addText(sources, path, std::move(text), diagnostics);
+    } catch (const BeyondMemory& e) {
+        return refuseUnread(sources, path, diagnostics, e.what());
+    }
 }
 
 std::optional<FileId> readSceneText(SourceMap& sources, const std::string& name, std::istream& stream,
                                     Diagnostics& diagnostics) {
-    return readText(sources, name, stream, 0, diagnostics);
+    try {
+        std::string text = readStream(stream);
+        if (stream.bad()) return refuseUnread(sources, name, diagnostics, "input error");
+        return addText(sources, name, std::move(text), diagnostics);
+    } catch (const BeyondMemory& e) {
+        return refuseUnread(sources, name, diagnostics, e.what());
+    }
 }
 
 } // namespace abbe

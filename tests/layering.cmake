@@ -20,6 +20,7 @@ foreach(sibling geometry lights cameras film media materials textures integrator
     set(allowed_${sibling} ${below_render})
 endforeach()
 list(APPEND allowed_media volumes)
+list(APPEND allowed_textures io)
 set(allowed_modules textures)
 set(allowed_scene ${below_render} volumes geometry lights cameras film media materials textures integrators io)
 set(allowed_study ${allowed_scene} scene denoise)

@@ -56,13 +56,17 @@ class ByteReader {
     }
     std::span<const std::byte> take(std::uint64_t size) {
         if (size > bytes_.size()) {
-            sound_ = false;
-            bytes_ = {};
+            fail();
             return {};
         }
         const auto taken = bytes_.first(size);
         bytes_ = bytes_.subspan(size);
         return taken;
+    }
+    // As if the end had come.
+    void fail() {
+        sound_ = false;
+        bytes_ = {};
     }
     bool sound() const { return sound_; }
     bool atEnd() const { return bytes_.empty(); }

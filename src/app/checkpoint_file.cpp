@@ -2,6 +2,7 @@
 
 #include "app/checkpoint_bytes.h"
 #include "base/check.h"
+#include "base/memory_limit.h"
 #include "io/atomic_file.h"
 #include "io/io_error.h"
 #include "math/byte_hash.h"
@@ -274,42 +275,43 @@ bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, co
     return true;
 }
 
-CheckpointReader::CheckpointReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-    std::error_code error;
-    if (file_) size_ = std::filesystem::file_size(path, error);
-    if (!file_ || error)
-        throw IoError(fmt::format("cannot read `{}`: {}", path, error ? error.message() : std::strerror(errno)));
+CheckpointReader::CheckpointReader(const std::string& path) : path_(path), file_(path) {
+    if (!file_.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file_.why()));
     readHeader();
 }
 
 void CheckpointReader::damaged(std::uint64_t at, const char* how) const {
-    throw CheckpointFault("E0662", fmt::format("`{}` is damaged: {} at byte {} of {}", path_, how, at, size_),
+    throw CheckpointFault("E0662", fmt::format("`{}` is damaged: {} at byte {} of {}", path_, how, at, file_.size()),
                           "the render can only be begun again: leave out `--resume`, or render this part anew");
+}
+
+bool CheckpointReader::read(void* to, std::size_t size) {
+    const std::size_t got = file_.readAt(position_, {static_cast<char*>(to), size});
+    position_ += got;
+    return got == size;
 }
 
 const CheckpointReader::Block& CheckpointReader::next() {
     block_.begin = position_;
     BlockHead head;
     std::uint64_t hash = 0;
-    file_.read(reinterpret_cast<char*>(&head), sizeof head);
-    const std::uint64_t left = size_ - std::min(size_, position_ + sizeof head + sizeof hash);
-    if (!file_ || head.size > left) damaged(position_, "the file ends within a block");
+    if (!read(&head, sizeof head) || file_.size() - position_ < sizeof hash ||
+        head.size > file_.size() - position_ - sizeof hash)
+        damaged(block_.begin, "the file ends within a block");
+    requireMemory(static_cast<double>(head.size));
     block_.kind = head.kind;
     block_.bytes.resize(head.size);
-    file_.read(reinterpret_cast<char*>(block_.bytes.data()), static_cast<std::streamsize>(head.size));
-    file_.read(reinterpret_cast<char*>(&hash), sizeof hash);
-    if (!file_) damaged(position_, "the file ends within a block");
-    if (hash != hashOfBlock(head, block_.bytes)) damaged(position_, "the checksum of a block is wrong");
-    position_ += sizeof head + head.size + sizeof hash;
+    if (!read(block_.bytes.data(), block_.bytes.size()) || !read(&hash, sizeof hash))
+        damaged(block_.begin, "the file ends within a block");
+    if (hash != hashOfBlock(head, block_.bytes)) damaged(block_.begin, "the checksum of a block is wrong");
     return block_;
 }
 
 void CheckpointReader::readHeader() {
     char magic[sizeof kCheckpointMagic] = {};
     std::uint32_t version[2] = {};
-    file_.read(magic, sizeof magic);
-    file_.read(reinterpret_cast<char*>(version), sizeof version);
-    if (!file_ || std::memcmp(magic, kCheckpointMagic, sizeof magic) != 0)
+    if (!read(magic, sizeof magic) || !read(version, sizeof version) ||
+        std::memcmp(magic, kCheckpointMagic, sizeof magic) != 0)
         throw CheckpointFault("E0661", fmt::format("`{}` is no checkpoint of a render", path_),
                               "checkpoints end in `.ckpt`, parts of renders in `.abbe`");
     if (version[0] != kCheckpointVersion || version[1] != 0)
@@ -317,11 +319,11 @@ void CheckpointReader::readHeader() {
                               fmt::format("`{}` is a checkpoint of version {}; this program knows version {}", path_,
                                           version[0], kCheckpointVersion),
                               "continue it with the program that made it");
-    position_ = sizeof magic + sizeof version;
     const Block& block = next();
     if (block.kind != headerBlock || !readHeaderBytes(block.bytes, header_)) damaged(block.begin, "no header");
     // Before anything of that size is made: a tile takes far more than this.
-    if (static_cast<std::uint64_t>(header_.bounds.area()) / 256 > size_ / 64 || header_.lightBlocks > size_ / 64)
+    if (static_cast<std::uint64_t>(header_.bounds.area()) / 256 > file_.size() / 64 ||
+        header_.lightBlocks > file_.size() / 64)
         damaged(block.begin, "too few tiles");
 }
 
@@ -336,13 +338,22 @@ void CheckpointReader::addPlanes(ByteReader& in, const Block& block, const FilmP
     if (!in.atEnd()) damaged(block.begin, "a tile of another size");
 }
 
+// Of samples that there can be.
+bool CheckpointReader::hasExamples(const TileState& tile) const {
+    const PixelBounds& b = header_.bounds;
+    return std::ranges::all_of(tile.examples, [&](const DroppedSample& s) {
+        return s.x >= b.x0 && s.x < b.x1 && s.y >= b.y0 && s.y < b.y1 && s.replicate >= 0 &&
+               s.replicate < header_.replicates && s.cause <= DropCause::negative;
+    });
+}
+
 void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, RenderState& state,
                                std::vector<bool>& seen) {
     ByteReader in(block.bytes);
     const auto i = in.number<std::uint64_t>();
     if (block.kind != tileBlock || i >= state.pixelTileCount() || seen[i]) damaged(block.begin, "an unexpected block");
     seen[i] = true;
-    if (!readTile(in, state.tile(i))) damaged(block.begin, "a tile of another size");
+    if (!readTile(in, state.tile(i)) || !hasExamples(state.tile(i))) damaged(block.begin, "a tile of another size");
     const TileState& tile = state.tile(i);
     if (tile.reached < header_.first) damaged(block.begin, "a tile before its first sample");
     const auto units = static_cast<std::uint64_t>(state.pixels(i).area() * header_.replicates);
@@ -356,7 +367,7 @@ void CheckpointReader::addLight(const FilmPlanes& planes, RenderState& state) {
         const Block& block = next();
         ByteReader in(block.bytes);
         if (block.kind != lightBlock || in.number<std::uint64_t>() != i) damaged(block.begin, "an unexpected block");
-        if (!readTile(in, state.tile(i)) || !in.sound() || !in.atEnd())
+        if (!readTile(in, state.tile(i)) || !in.sound() || !in.atEnd() || !hasExamples(state.tile(i)))
             damaged(block.begin, "light paths of another size");
         if (state.tile(i).reached < header_.first) damaged(block.begin, "light paths before their first sample");
     }
@@ -374,7 +385,7 @@ RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
     std::vector<bool> seen(state.pixelTileCount());
     for (std::size_t i = 0; i < state.pixelTileCount(); ++i) addTile(next(), planes, state, seen);
     addLight(planes, state);
-    if (const Block& end = next(); end.kind != endBlock || position_ != size_) damaged(end.begin, "no end");
+    if (const Block& end = next(); end.kind != endBlock || position_ != file_.size()) damaged(end.begin, "no end");
     state.seconds = header_.seconds;
     state.work = header_.work;
     state.setPilot(header_.pilot);

@@ -1,12 +1,12 @@
 // Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
 #pragma once
 
+#include "base/regular_file.h"
 #include "base/work_reading.h"
 #include "film/film_planes.h"
 #include "render/render_state.h"
 
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -75,12 +75,16 @@ class CheckpointReader {
     [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
     void readHeader();
     void addTile(const Block&, const FilmPlanes&, RenderState&, std::vector<bool>& seen);
+    bool hasExamples(const TileState&) const;
     void addLight(const FilmPlanes&, RenderState&);
     void addPlanes(ByteReader&, const Block&, const FilmPlanes&, bool ofLightPaths, PixelBounds);
 
+    // False at the end of the file.
+    bool read(void* to, std::size_t size);
+
     std::string path_;
-    std::ifstream file_;
-    std::uint64_t size_ = 0, position_ = 0;
+    RegularFile file_;
+    std::uint64_t position_ = 0;
     Block block_;
     CheckpointHeader header_;
 };

@@ -1,8 +1,8 @@
 // What a render needs of machine and installation, one line each; with --numerics the measurements of src/doctor.
 #include "app/json.h"
-#include "app/machine.h"
 #include "app/options.h"
 #include "app/version.h"
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "doctor/numeric_check.h"
 #include "io/io_error.h"
@@ -44,7 +44,8 @@ Finding memory() {
     constexpr double mib = 1 << 20, least = 512;
     const double available = availableMemory() / mib, whole = physicalMemory() / mib;
     std::string detail = fmt::format("{:.0f} MiB", available);
-    if (available < whole) detail += fmt::format(" of {:.0f} MiB, the limit of this process' control group", whole);
+    if (available < whole)
+        detail += fmt::format(" of {:.0f} MiB, the limit of this process or its control group", whole);
     if (available < least) detail += "; below 512 MiB most pictures do not fit";
     return {"memory", available >= least, detail};
 }

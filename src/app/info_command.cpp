@@ -13,6 +13,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
+#include <span>
 
 namespace abbe {
 
@@ -176,12 +178,20 @@ std::string pixelHash(const std::string& path, const ExrInfo& info) {
     if (info.deep) return deepHash(path);
     Hash128 hash;
     std::vector<std::string> names;
-    for (const ExrInfo::Channel& channel : info.channels) names.push_back(channel.name);
+    for (const ExrInfo::Channel& channel : info.channels)
+        if (channel.name != "seconds.S") names.push_back(channel.name);
     std::ranges::sort(names);
-    for (const std::string& name : names) {
-        if (name == "seconds.S") continue;
-        hash.addField(name);
-        add(hash, readExrChannel(path, name));
+    // Every reading decodes all channels: as many are kept as memory is well spent on.
+    constexpr std::size_t kValues = std::size_t(1) << 28; // 1 GiB
+    const std::size_t most = std::max<std::size_t>(1, kValues / std::max<std::size_t>(1, info.window.area()));
+    for (std::size_t first = 0; first < names.size(); first += most) {
+        const auto group = std::span(names).subspan(first, std::min(most, names.size() - first));
+        const ExrPlanes planes = readExrChannels(
+            path, [&](std::string_view name) { return std::ranges::binary_search(group, name, std::less<>()); });
+        for (const std::string& name : group) {
+            hash.addField(name);
+            add(hash, *planes.find(name));
+        }
     }
     return hash.digits();
 }

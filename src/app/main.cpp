@@ -1,4 +1,5 @@
 #include "app/command_line.h"
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "base/shown_text.h"
 #include "base/text_output.h"
@@ -29,8 +30,8 @@ ExitCode guarded(const Command& command) {
     } catch (const IoError& e) {
         console.error(e.what());
         return ExitCode::system;
-    } catch (const std::bad_alloc&) {
-        console.error("out of memory");
+    } catch (const std::bad_alloc& e) {
+        console.error(fmt::format("out of memory: {}", memoryReason(e)));
         return ExitCode::memory;
     } catch (const std::exception& e) {
         const auto* const system = dynamic_cast<const std::system_error*>(&e);

@@ -5,6 +5,7 @@
 #include "app/render_parts.h"
 #include "app/render_run.h"
 #include "app/render_warnings.h"
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "integrators/path_tracer.h"
 
@@ -277,6 +278,9 @@ ExitCode RenderRun::finish(int signal, ExitCode otherwise) {
     return summary_.exit;
 }
 
-ExitCode run(const RenderOptions& options, const CommonOptions& common) { return RenderRun(options, common).run(); }
+ExitCode run(const RenderOptions& options, const CommonOptions& common) {
+    if (options.memory) setMemoryLimit(*options.memory * (1 << 20)); // for all readers, too
+    return RenderRun(options, common).run();
+}
 
 } // namespace abbe

@@ -1,24 +1,13 @@
 // How much memory a render may take, and what is said and saved when that is too little.
-#include "app/machine.h"
 #include "app/render_run.h"
+#include "base/memory_limit.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
 
-namespace {
-
-constexpr double kMebibyte = 1024.0 * 1024;
-
-std::string amount(double bytes) {
-    return bytes < 1024 * kMebibyte ? fmt::format("{:.0f} MiB", bytes / kMebibyte)
-                                    : fmt::format("{:.2f} GiB", bytes / kMebibyte / 1024);
-}
-
-} // namespace
-
-double RenderRun::memoryBudget() const { return options_.memory ? *options_.memory * kMebibyte : availableMemory(); }
+double RenderRun::memoryBudget() const { return memoryLimit(); }
 
 // Sums, what becomes of them when they are written, and layers.
 double RenderRun::filmBytes() const {
@@ -41,15 +30,16 @@ ExitCode RenderRun::checkMemory() {
     if (film > budget)
         return refuse("E0650",
                       fmt::format("an image of {}×{} pixels needs {}; {} {}", film_.crop.width(), film_.crop.height(),
-                                  amount(film), owner, amount(budget)),
+                                  memoryText(film), owner, memoryText(budget)),
                       "render parts of it with `crop` in the film", ExitCode::memory);
     if (film + scene <= budget) return ExitCode::done;
     const auto layers = static_cast<double>(FilmLayers::memoryBytes(film_.crop, built_.layers));
     return refuse("E0675",
                   fmt::format("this render needs {}: {} for the scene as it is built, {} for the sums of {}×{} pixels "
                               "with {} replicates, {} for layers; {} {}",
-                              amount(scene + film), amount(scene), amount(film - layers), film_.crop.width(),
-                              film_.crop.height(), built_.render.replicates, amount(layers), owner, amount(budget)),
+                              memoryText(scene + film), memoryText(scene), memoryText(film - layers),
+                              film_.crop.width(), film_.crop.height(), built_.render.replicates, memoryText(layers),
+                              owner, memoryText(budget)),
                   film > scene ? "`--crop` renders a part of the image; fewer layers and replicates take less"
                                : "coarser `dicing`, `instances` in place of copies and smaller grids take less",
                   ExitCode::memory);
@@ -73,7 +63,7 @@ void RenderRun::writeInMemory(const PixelFilm& film) {
 
 ExitCode RenderRun::refuseForMemory() {
     std::string why = beyondBudget_ > 0 ? fmt::format("the render came to {} of memory, more than the {} that {}",
-                                                      amount(beyondBudget_), amount(memoryBudget()),
+                                                      memoryText(beyondBudget_), memoryText(memoryBudget()),
                                                       options_.memory ? "`--memory` allows" : "there are")
                                         : std::string("memory ran out");
     if (imageWritten_) why += fmt::format("; the image so far is in `{}`", summary_.image);

@@ -3,14 +3,13 @@
 #include "app/checkpoint_bytes.h"
 #include "app/render_identity.h"
 #include "io/atomic_file.h"
+#include "io/file_bytes.h"
 #include "io/io_error.h"
 #include "math/byte_hash.h"
 
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 
 namespace abbe {
 
@@ -42,9 +41,7 @@ void writeFile(const std::string& path, std::span<const std::byte> bytes) {
 // Nothing if there is no such file.
 std::optional<std::vector<std::byte>> readFile(const std::string& path) {
     if (!fs::exists(path)) return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw IoError(fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
-    const std::vector<char> text((std::istreambuf_iterator<char>(file)), {});
+    const std::string text = readFileBytes(path);
     ByteReader in(std::as_bytes(std::span(text)));
     for (const char c : kStudyMagic)
         if (in.number<char>() != c) damaged(path);
@@ -61,7 +58,9 @@ template <typename Number> void writeNumbers(ByteWriter& out, const std::vector<
 }
 
 template <typename Number> std::vector<Number> readNumbers(ByteReader& in) {
-    const auto bytes = in.take(in.number<std::uint64_t>() * sizeof(Number));
+    const auto count = in.number<std::uint64_t>();
+    constexpr std::uint64_t kAll = ~std::uint64_t{0}; // which are never there
+    const auto bytes = in.take(count <= kAll / sizeof(Number) ? count * sizeof(Number) : kAll);
     std::vector<Number> numbers(bytes.size() / sizeof(Number));
     if (!bytes.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size()); // null is no argument, even of 0 bytes
     return numbers;
@@ -74,8 +73,15 @@ void writeImage(ByteWriter& out, const StudyImage& image) {
 }
 
 StudyImage readImage(ByteReader& in) {
-    const int width = in.number<int>(), height = in.number<int>();
-    return {width, height, readNumbers<float>(in)};
+    StudyImage image;
+    image.width = in.number<int>();
+    image.height = in.number<int>();
+    image.rgb = readNumbers<float>(in);
+    const bool whole =
+        image.width >= 0 && image.height >= 0 &&
+        image.rgb.size() == 3 * static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+    if (!whole) in.fail();
+    return image;
 }
 
 std::vector<std::byte> bytesOf(const CurveRecord& record) {

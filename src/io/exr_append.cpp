@@ -1,6 +1,7 @@
 #include "io/exr_append.h"
 
 #include "base/check.h"
+#include "io/exr_bounds.h"
 #include "io/exr_channels.h"
 #include "io/exr_header.h"
 #include "io/exr_stream.h"
@@ -110,6 +111,7 @@ void copyOtherParts(Imf::MultiPartInputFile& in, Imf::MultiPartOutputFile& out) 
 
 void copyWith(const std::string& source, AtomicStream& stream, std::span<const ExrChannel> channels,
               std::span<const ImageAttribute> attributes) {
+    checkExrBounds(source);
     Imf::MultiPartInputFile in(source.c_str(), 0);
     std::vector<Imf::Header> headers{extended(in.header(0), channels, attributes)};
     for (int part = 1; part < in.parts(); ++part) headers.push_back(in.header(part));

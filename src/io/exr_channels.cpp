@@ -1,5 +1,7 @@
 #include "io/exr_channels.h"
 
+#include "base/memory_limit.h"
+#include "io/exr_bounds.h"
 #include "io/io_error.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -18,7 +20,6 @@
 #include <array>
 #include <fmt/format.h>
 #include <map>
-#include <sys/stat.h>
 
 namespace abbe {
 
@@ -34,8 +35,8 @@ template <typename F> auto guarded(const std::string& path, const F& body) {
         return body();
     } catch (const IoError&) {
         throw;
-    } catch (const std::bad_alloc&) {
-        fail("it needs more memory than there is");
+    } catch (const std::bad_alloc& e) {
+        fail(memoryReason(e));
     } catch (const std::exception& e) {
         fail(e.what());
     }
@@ -56,19 +57,6 @@ Chromaticities fromImf(const Imf::Chromaticities& c) {
 std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header) {
     const auto* a = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities");
     return a ? std::optional(fromImf(a->value())) : std::nullopt;
-}
-
-// A header can claim any size: before memory is taken for it, it must be possible for a file of this length. The most
-// that any compression makes of a chunk's bytes is bounded loosely; each chunk of up to 256 rows costs 8 bytes of
-// offset.
-void checkSize(const std::string& path, const PixelWindow& w) {
-    const auto width = static_cast<std::int64_t>(w.x1) - w.x0, height = static_cast<std::int64_t>(w.y1) - w.y0;
-    if (width < 1 || height < 1) refuse(path, "it has no pixels");
-    if (width > INT32_MAX || height > INT32_MAX ||
-        static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > kMaxImagePixels)
-        refuse(path, fmt::format("{} by {} pixels are too many", width, height));
-    struct stat status {};
-    if (::stat(path.c_str(), &status) == 0 && status.st_size < height / 256 * 8) refuse(path, "it is cut short");
 }
 
 void checkChannel(const std::string& path, const Imf::Channel& channel, std::string_view name) {
@@ -152,25 +140,38 @@ ExrInfo describe(const Imf::MultiPartInputFile& file) {
     return info;
 }
 
+// Memory for every channel that is wanted, once it is known that there is enough.
+void makeRoom(const std::string& path, ExrPlanes& planes, const std::function<bool(std::string_view)>& wanted) {
+    const std::uint64_t area = planes.info.window.area();
+    std::vector<bool> chosen;
+    std::uint64_t values = 0;
+    for (const ExrInfo::Channel& c : planes.info.channels) {
+        chosen.push_back(!wanted || wanted(c.name));
+        values += chosen.back() ? area : 0;
+    }
+    if (values > kMaxValues) refuse(path, "its channels are more than 16 GiB");
+    requireMemory(static_cast<double>(values) * sizeof(float));
+    planes.values.resize(chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (chosen[i]) planes.values[i].resize(area);
+}
+
 ExrPlanes readPlanes(const std::string& path, const std::function<bool(std::string_view)>& wanted) {
+    checkExrBounds(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     ExrPlanes planes{describe(file), {}};
     const PixelWindow& window = planes.info.window;
-    checkSize(path, window);
     // OpenEXR would put them over each other, with media in its own way.
     if (planes.info.deep) refuse(path, "it is a deep image; `abbe convert` shows it");
-    planes.values.resize(planes.info.channels.size());
-    std::uint64_t values = 0;
+    makeRoom(path, planes, wanted);
     std::map<int, Imf::FrameBuffer> buffers; // of parts
     for (std::size_t i = 0; i < planes.values.size(); ++i) {
+        if (planes.values[i].empty()) continue;
         const auto& [name, type, part] = planes.info.channels[i];
-        if (wanted && !wanted(name)) continue;
         const Imf::Header& header = file.header(part);
         const Imf::Channel* stored = header.channels().findChannel(name);
         const std::string inPart = stored ? name : name.substr(header.name().size() + 1);
         checkChannel(path, stored ? *stored : header.channels()[inPart.c_str()], name);
-        if ((values += window.area()) > kMaxValues) refuse(path, "its channels are more than 16 GiB");
-        planes.values[i].resize(window.area());
         buffers[part].insert(inPart, slice(window, planes.values[i].data()));
     }
     for (const auto& [part, buffer] : buffers) {
@@ -201,6 +202,7 @@ const std::vector<float>* ExrPlanes::find(std::string_view name) const {
 
 ExrInfo readExrInfo(const std::string& path) {
     return guarded(path, [&] {
+        checkExrBounds(path);
         const Imf::MultiPartInputFile file(path.c_str(), 0, false);
         return describe(file);
     });

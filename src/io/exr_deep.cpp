@@ -1,6 +1,9 @@
 #include "io/exr_deep.h"
 
 #include "base/check.h"
+#include "base/memory_limit.h"
+#include "base/regular_file.h"
+#include "io/exr_bounds.h"
 #include "io/exr_header.h"
 #include "io/exr_stream.h"
 #include "io/io_error.h"
@@ -93,7 +96,19 @@ int deepPart(const std::string& path, const Imf::MultiPartInputFile& file) {
     throw IoError(fmt::format("cannot read `{}`: it has no deep scan lines", path));
 }
 
+// How many samples there are says a table within the file, which may say anything.
+void checkSamples(const std::string& path, const Imf::Header& header, std::size_t samples, std::size_t planes) {
+    double bytes = 0;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        bytes += static_cast<double>(samples) * (c.channel().type == Imf::HALF ? 2 : 4);
+    const auto stored = static_cast<double>(RegularFile(path).size());
+    if (bytes > stored * exrMostExpansion(header.compression()))
+        throw IoError(fmt::format("cannot read `{}`: it cannot hold {} deep samples", path, samples));
+    requireMemory(static_cast<double>(samples * planes) * sizeof(float));
+}
+
 DeepPicture readSamples(const std::string& path) {
+    checkExrBounds(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const int number = deepPart(path, file);
     const Imf::Header& header = file.header(number);
@@ -101,12 +116,13 @@ DeepPicture readSamples(const std::string& path) {
     DeepPicture p;
     p.window = window(header.dataWindow());
     p.display = window(header.displayWindow());
-    if (p.window.area() > kMaxImagePixels) throw IoError(fmt::format("cannot read `{}`: it is too large", path));
     const bool hasBack = header.channels().findChannel("ZBack");
     for (const char* name : kChannels)
         if (!header.channels().findChannel(name) && std::string_view(name) != "ZBack")
             throw IoError(fmt::format("cannot read `{}`: its deep samples have no channel {}", path, name));
     Imf::DeepScanLineInputPart part(file, number);
+    // Counts, and the pointers of each channel.
+    requireMemory(static_cast<double>(p.window.area()) * (4 + 8 * static_cast<double>(kChannels.size())));
     p.counts.resize(p.window.area());
     Pointers pointers(p.window, p.counts);
     std::vector<std::vector<float>*> planes;
@@ -118,6 +134,7 @@ DeepPicture readSamples(const std::string& path) {
     part.setFrameBuffer(pointers.buffer);
     part.readPixelSampleCounts(p.window.y0, p.window.y1 - 1);
     const auto total = std::accumulate(p.counts.begin(), p.counts.end(), std::size_t{0});
+    checkSamples(path, header, total, planes.size());
     for (std::size_t c = 0; c < planes.size(); ++c) {
         planes[c]->resize(total);
         pointers.point(c, planes[c]->data());
@@ -143,8 +160,8 @@ DeepPicture readDeepExr(const std::string& path) {
         return readSamples(path);
     } catch (const IoError&) {
         throw;
-    } catch (const std::bad_alloc&) {
-        throw;
+    } catch (const std::bad_alloc& e) {
+        throw IoError(fmt::format("cannot read `{}`: {}", path, memoryReason(e)));
     } catch (const std::exception& e) {
         throw IoError(fmt::format("cannot read `{}`: {}", path, e.what()));
     }

@@ -1,5 +1,6 @@
 #include "io/exr_reader.h"
 
+#include "base/memory_limit.h"
 #include "io/io_error.h"
 
 #include <algorithm>
@@ -28,6 +29,7 @@ RgbImage readExr(const std::string& path) {
     for (const ImageAttribute& a : planes.info.attributes)
         if (const auto* text = std::get_if<std::string>(&a.value); text && a.name == "colorInteropID")
             image.interopId = *text;
+    requireMemory(static_cast<double>(image.window.area()) * 3 * sizeof(float));
     image.rgb.resize(3 * image.window.area());
     for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = (*sources[i % 3])[i / 3];
     countFaults(image);

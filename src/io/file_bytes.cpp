@@ -1,25 +1,19 @@
 #include "io/file_bytes.h"
 
+#include "base/memory_limit.h"
+#include "base/regular_file.h"
 #include "io/io_error.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <fmt/format.h>
-#include <memory>
 
 namespace abbe {
 
 std::string readFileBytes(const std::string& path) {
-    const auto fail = [&](int error) {
-        throw IoError(fmt::format("cannot read `{}`: {}", path, std::strerror(error)));
-    };
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file) fail(errno);
-    std::string bytes;
-    char buffer[1 << 16];
-    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, count);
-    if (std::ferror(file.get())) fail(errno);
+    RegularFile file(path);
+    requireMemory(static_cast<double>(file.size()));
+    std::string bytes(file.size(), '\0');
+    bytes.resize(file.readAt(0, bytes));
+    if (!file.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file.why()));
     return bytes;
 }
 

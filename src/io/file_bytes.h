@@ -5,7 +5,7 @@
 
 namespace abbe {
 
-// Throws IoError.
+// Of a regular file. Throws IoError, and BeyondMemory before it reads more than may be taken.
 std::string readFileBytes(const std::string& path);
 
 } // namespace abbe

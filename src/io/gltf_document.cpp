@@ -63,11 +63,12 @@ void GltfDocument::fail(const std::string& what) const {
     throw IoError(fmt::format("cannot read `{}`: {}", name_, what));
 }
 
-GltfDocument::GltfDocument(std::string_view bytes, const std::string& name) : name_(name) {
+GltfDocument::GltfDocument(std::string_view bytes, const std::string& name) : name_(name), bytes_(bytes.size()) {
     if (const auto fault = findContainerFault(bytes)) fail(fmt::format("byte {}: {}", fault->byte, fault->what));
     if (bytes.size() > 0xffffffffu) fail("glTF files have at most 4 GiB; keep the buffers in files of their own");
     load(bytes);
     checkExtensions();
+    for (const tinygltf::Buffer& buffer : model_.buffers) bytes_ += buffer.data.size();
 }
 
 void GltfDocument::load(std::string_view bytes) {
@@ -130,6 +131,30 @@ Transform GltfDocument::localTransform(int index) const {
     return result;
 }
 
+// The map of what is above a node that may be within a tree; each is found once, however many are asked for.
+Transform GltfDocument::above(int node, const std::vector<int>& parent,
+                              std::vector<std::optional<Transform>>& known) const {
+    std::vector<int> path;
+    int at = node;
+    for (; !known[static_cast<std::size_t>(at)]; at = path.back()) {
+        const int up = parent[static_cast<std::size_t>(at)];
+        if (up < 0) {
+            known[static_cast<std::size_t>(at)] = Transform();
+            break;
+        }
+        if (path.size() > parent.size()) fail(fmt::format("nodes[{}] is an ancestor of itself", at));
+        path.push_back(up);
+    }
+    // From the top down to the node's parent; then the node itself.
+    for (std::size_t i = path.size(); i-- > 0;) {
+        const int child = i > 0 ? path[i - 1] : node;
+        if (known[static_cast<std::size_t>(child)]) continue;
+        known[static_cast<std::size_t>(child)] =
+            localTransform(path[i]).then(*known[static_cast<std::size_t>(path[i])]);
+    }
+    return *known[static_cast<std::size_t>(node)];
+}
+
 std::vector<PlacedGltfNode> GltfDocument::nodes(const std::string& root) const {
     const auto count = static_cast<int>(model_.nodes.size());
     // Every node has one parent at most: then every walk downwards ends.
@@ -161,16 +186,11 @@ std::vector<PlacedGltfNode> GltfDocument::nodes(const std::string& root) const {
     }
     std::vector<PlacedGltfNode> placed;
     std::vector<bool> seen(model_.nodes.size(), false);
+    std::vector<std::optional<Transform>> known(model_.nodes.size()); // by above()
     std::vector<PlacedGltfNode> open;
     for (auto r = roots.rbegin(); r != roots.rend(); ++r) {
         if (*r < 0 || *r >= count) fail(fmt::format("scenes[{}] names node {} of {}", scene, *r, count));
-        Transform above; // of a root that was named within a tree
-        int steps = 0;
-        for (int p = parent[static_cast<std::size_t>(*r)]; p >= 0; p = parent[static_cast<std::size_t>(p)]) {
-            above = above.then(localTransform(p));
-            if (++steps > count) fail(fmt::format("nodes[{}] is an ancestor of itself", p));
-        }
-        open.push_back({*r, above});
+        open.push_back({*r, above(*r, parent, known)});
     }
     while (!open.empty()) {
         const PlacedGltfNode next = open.back();

@@ -10,6 +10,7 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tiny_gltf.h>
@@ -39,6 +40,8 @@ class GltfDocument {
 
     const tinygltf::Model& model() const { return model_; }
     [[noreturn]] void fail(const std::string& what) const;
+    // Of the file and of its buffers.
+    std::uint64_t bytes() const { return bytes_; }
 
     // The nodes under the roots of the default scene, or under the node named `root`; parents before children.
     // Throws for cycles, nodes with two parents and wrong transforms.
@@ -61,9 +64,11 @@ class GltfDocument {
                                std::size_t element, const std::string& who) const;
     void applySparse(int accessor, const GltfView&, std::vector<float>& values, const std::string& who) const;
     Transform localTransform(int node) const;
+    Transform above(int node, const std::vector<int>& parent, std::vector<std::optional<Transform>>& known) const;
 
     const std::string& name_;
     tinygltf::Model model_;
+    std::uint64_t bytes_;
 };
 
 } // namespace abbe

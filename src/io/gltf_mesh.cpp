@@ -1,8 +1,10 @@
+#include "base/memory_limit.h"
 #include "io/file_bytes.h"
 #include "io/gltf.h"
 #include "io/gltf_container.h"
 #include "io/gltf_document.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe {
@@ -16,6 +18,10 @@ class GltfMeshReader {
     MeshFile read(const GltfSelection&);
 
   private:
+    void checkWork(const std::vector<PlacedGltfNode>&, const GltfSelection&) const;
+    bool isChosen(const tinygltf::Mesh& mesh, const GltfSelection& selection) const {
+        return selection.mesh.empty() || mesh.name == selection.mesh;
+    }
     void readNode(const PlacedGltfNode&);
     void checkFeatures(const tinygltf::Node&, const tinygltf::Mesh&, int node) const;
     void readPrimitive(const tinygltf::Primitive&, const PlacedGltfNode&, const std::string& path);
@@ -44,6 +50,7 @@ MeshFile GltfMeshReader::read(const GltfSelection& selection) {
     file_.coordinates = MeshCoordinates::metresYUp;
     const auto& model = document_.model();
     const auto nodes = document_.nodes(selection.node);
+    checkWork(nodes, selection);
     bool found = selection.mesh.empty();
     for (const PlacedGltfNode& placed : nodes) {
         const int mesh = model.nodes[static_cast<std::size_t>(placed.node)].mesh;
@@ -51,7 +58,7 @@ MeshFile GltfMeshReader::read(const GltfSelection& selection) {
         if (static_cast<std::size_t>(mesh) >= model.meshes.size())
             document_.fail(
                 fmt::format("nodes[{}].mesh is {}, but there are {}", placed.node, mesh, model.meshes.size()));
-        if (!selection.mesh.empty() && model.meshes[static_cast<std::size_t>(mesh)].name != selection.mesh) continue;
+        if (!isChosen(model.meshes[static_cast<std::size_t>(mesh)], selection)) continue;
         found = true;
         readNode(placed);
     }
@@ -59,6 +66,29 @@ MeshFile GltfMeshReader::read(const GltfSelection& selection) {
     if (!anyNormals_) file_.mesh.normals.clear();
     if (!anyUvs_) file_.mesh.uvs.clear();
     return std::move(file_);
+}
+
+// Nodes share meshes, meshes share accessors and accessors may have no bytes: what comes out of a file is not bounded
+// by its size. A scene full of copies has some hundred vertices for a byte.
+void GltfMeshReader::checkWork(const std::vector<PlacedGltfNode>& nodes, const GltfSelection& selection) const {
+    constexpr double kMostPerByte = 1024;
+    const auto& model = document_.model();
+    double vertices = 0, corners = 0;
+    for (const PlacedGltfNode& placed : nodes) {
+        const auto mesh = static_cast<std::size_t>(model.nodes[static_cast<std::size_t>(placed.node)].mesh);
+        if (mesh >= model.meshes.size() || !isChosen(model.meshes[mesh], selection)) continue;
+        for (const tinygltf::Primitive& p : model.meshes[mesh].primitives) {
+            const auto position = p.attributes.find("POSITION");
+            if (position == p.attributes.end()) continue;
+            vertices += static_cast<double>(document_.count(position->second, "attributes.POSITION"));
+            if (p.indices >= 0) corners += static_cast<double>(document_.count(p.indices, "indices"));
+        }
+    }
+    if (vertices + corners > kMostPerByte * static_cast<double>(document_.bytes()))
+        document_.fail(fmt::format("its nodes have {:.4g} vertices and corners, more than {} for each of its {} bytes",
+                                   vertices + corners, kMostPerByte, document_.bytes()));
+    requireMemory(vertices * (2 * sizeof(Vec3) + sizeof(Vec2)) +
+                  std::max(vertices, corners) * 2 * sizeof(std::uint32_t)); // numbers, and triangles made of them
 }
 
 // What would make the mesh look different from what is read.

@@ -1,5 +1,6 @@
 #include "io/hdr_reader.h"
 
+#include "base/memory_limit.h"
 #include "io/file_bytes.h"
 #include "io/io_error.h"
 
@@ -151,6 +152,7 @@ RgbImage readHdr(const std::string& path) {
     RgbImage image;
     image.window = image.display = {0, 0, header.width, header.height};
     image.chromaticities = header.chromaticities;
+    requireMemory(static_cast<double>(image.window.area()) * 3 * sizeof(float));
     image.rgb.resize(3 * image.window.area());
     const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
     std::vector<Rgbe> line(width);

@@ -1,16 +1,13 @@
 #include "io/image.h"
 
+#include "base/regular_file.h"
 #include "io/exr_reader.h"
 #include "io/hdr_reader.h"
 #include "io/io_error.h"
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <fmt/format.h>
-#include <memory>
 #include <string_view>
 
 namespace abbe {
@@ -39,11 +36,10 @@ void countFaults(RgbImage& image) {
 
 RgbImage readImage(const std::string& path) {
     std::array<char, 4> magic{};
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file) throw IoError(fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
-    if (std::fread(magic.data(), 1, magic.size(), file.get()) != magic.size())
-        throw IoError(std::ferror(file.get()) ? fmt::format("cannot read `{}`: {}", path, std::strerror(errno))
-                                              : fmt::format("cannot read `{}`: it is cut short", path));
+    RegularFile file(path);
+    const std::size_t got = file.readAt(0, magic);
+    if (!file.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file.why()));
+    if (got != magic.size()) throw IoError(fmt::format("cannot read `{}`: it is cut short", path));
     const std::string_view start(magic.data(), magic.size());
     if (start == std::string_view("\x76\x2f\x31\x01", 4)) return readExr(path);
     if (start.substr(0, 2) == "#?") return readHdr(path);

@@ -45,7 +45,7 @@ MeshFile parsePly(std::string_view bytes, const std::string& name);
 // The faces of one group, with the vertices that they use.
 MeshData extractGroup(const MeshFile&, const MeshGroup&);
 
-// No concave polygon with more corners is split (the time grows with the square or worse).
+// No concave polygon with more corners is split (the time grows with the square).
 inline constexpr std::size_t kMaxConcaveCorners = 1024;
 
 // Adds a polygon to the mesh: a triangle or a quad as it is (quads turned so that their diagonal lies inside), larger

@@ -2,8 +2,10 @@
 #include "io/file_bytes.h"
 #include "io/mesh_file.h"
 #include "io/number_scan.h"
+#include "math/hash.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -18,7 +20,13 @@ constexpr std::int32_t kNone = -1;
 // A face corner as the file states it: positions in the lists of v, vt and vn, from 0; kNone if left out.
 struct Corner {
     std::int32_t v = kNone, vt = kNone, vn = kNone;
+    bool operator==(const Corner&) const = default;
 };
+
+std::uint64_t hashOfCorner(const Corner& c) {
+    const auto word = [](std::int32_t i) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)); };
+    return combine64(combine64(word(c.v), word(c.vt)), word(c.vn));
+}
 
 class ObjParser {
   public:
@@ -88,13 +96,13 @@ class ObjParser {
     };
     std::vector<TagLine> tags_; // of subdivision surfaces
 
-    // Vertices already made from a position, as a list per position: the texture and normal that it was joined with.
+    // Vertices already made, by what was joined: lists in a table of hashes, as one position may be in any number.
     struct Joined {
-        std::int32_t vt, vn;
-        std::uint32_t vertex, next;
+        Corner corner;
+        std::uint32_t next;
     };
     std::vector<std::uint32_t> firstJoined_;
-    std::vector<Joined> joined_;
+    std::vector<Joined> joined_; // as many as vertices
 };
 
 // The length of the line end at `p`: \n, \r\n or \r; 0 if there is none.
@@ -285,16 +293,16 @@ void ObjParser::checkForward() const {
 // The vertex of a corner: made when the combination of position, texture vertex and normal is new.
 std::uint32_t ObjParser::vertexOf(MeshData& mesh, Corner c) {
     constexpr std::uint32_t none = 0xffffffffu;
-    if (firstJoined_.empty()) firstJoined_.assign(v_.size(), none);
-    for (std::uint32_t i = firstJoined_[c.v]; i != none; i = joined_[i].next)
-        if (joined_[i].vt == c.vt && joined_[i].vn == c.vn) return joined_[i].vertex;
-    const auto vertex = static_cast<std::uint32_t>(mesh.positions.size());
+    if (firstJoined_.empty()) firstJoined_.assign(std::bit_ceil(v_.size() + corners_.size() / 8), none);
+    std::uint32_t& first = firstJoined_[hashOfCorner(c) & (firstJoined_.size() - 1)];
+    for (std::uint32_t i = first; i != none; i = joined_[i].next)
+        if (joined_[i].corner == c) return i;
+    const auto vertex = static_cast<std::uint32_t>(joined_.size());
     mesh.positions.push_back(v_[c.v]);
     if (anyTexture_) mesh.uvs.push_back(c.vt == kNone ? Vec2{} : vt_[c.vt]);
     if (anyNormal_) mesh.normals.push_back(c.vn == kNone ? Vec3{} : vn_[c.vn]);
-    joined_.push_back({c.vt, c.vn, vertex, firstJoined_[c.v]});
-    firstJoined_[c.v] = static_cast<std::uint32_t>(joined_.size() - 1);
-    return vertex;
+    joined_.push_back({c, first});
+    return first = vertex;
 }
 
 void ObjParser::buildFaces(MeshFile& file) {

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/regular_file.h"
 #include "io/data/ocio_config.h"
 #include "io/io_error.h"
 
@@ -34,6 +35,10 @@ template <typename F> auto guarded(const F& body) {
 }
 
 OCIO::ConstConfigRcPtr loadConfig(const std::string& file) {
+    std::error_code error; // not there: it may be the name of a config in the library
+    if (std::filesystem::exists(file, error))
+        if (const std::string why = whyNotRegular(file); !why.empty())
+            throw IoError(fmt::format("cannot read `{}`: {}", file, why));
     if (!file.empty()) return OCIO::Config::CreateFromFile(file.c_str());
     std::istringstream stream(kOcioConfig);
     return OCIO::Config::CreateFromStream(stream);

@@ -1,3 +1,4 @@
+#include "base/memory_limit.h"
 #include "io/cage_file.h"
 #include "io/file_bytes.h"
 #include "io/mesh_file.h"
@@ -49,7 +50,6 @@ void PlyParser::findAttributes(const PlyElement& e) {
         if (p.listCount || p.role != PlyRole::none || p.name.empty()) continue;
         const double scale = p.type == PlyScalar::uint8 ? 1 / 255.0 : p.type == PlyScalar::uint16 ? 1 / 65535.0 : 1;
         columns_.push_back({i, {p.name, 1, {}}, scale});
-        columns_.back().attribute.values.reserve(e.count);
     }
 }
 
@@ -105,10 +105,14 @@ void PlyParser::store(PlyRole role, float value) {
 
 void PlyParser::vertices(const PlyElement& e) {
     MeshData& m = file_.mesh;
+    findAttributes(e);
+    requireMemory(static_cast<double>(e.count) *
+                  static_cast<double>(sizeof(Vec3) * (header_.normals ? 2 : 1) + sizeof(Vec2) * (header_.uvs ? 1 : 0) +
+                                      sizeof(float) * columns_.size()));
+    for (Column& column : columns_) column.attribute.values.reserve(e.count);
     m.positions.reserve(e.count + 2);
     if (header_.normals) m.normals.reserve(e.count);
     if (header_.uvs) m.uvs.reserve(e.count);
-    findAttributes(e);
     for (std::uint64_t i = 0; i < e.count; ++i) {
         m.positions.emplace_back();
         if (header_.normals) m.normals.emplace_back();
@@ -156,6 +160,7 @@ void PlyParser::faces(const PlyElement& e) {
     for (const PlyProperty& p : e.properties)
         if (!cornerList && p.listCount && (p.name == "vertex_indices" || p.name == "vertex_index")) cornerList = &p;
     if (!cornerList) cursor_.failHere("the faces have no `vertex_indices`");
+    requireMemory(static_cast<double>(e.count) * 4 * sizeof(std::uint32_t));
     faceSizes_.reserve(e.count);
     corners_.reserve(3 * e.count);
     for (std::uint64_t i = 0; i < e.count; ++i)

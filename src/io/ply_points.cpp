@@ -1,5 +1,6 @@
 #include "io/ply_points.h"
 
+#include "base/memory_limit.h"
 #include "io/file_bytes.h"
 #include "io/ply_cursor.h"
 
@@ -66,6 +67,7 @@ void PointReader::vertices(const PlyElement& e) {
     const PlyProperty* radius = nullptr;
     for (const PlyProperty& p : e.properties)
         if (!radius && radiusScaleOf(p) > 0) radius = &p;
+    requireMemory(static_cast<double>(e.count) * (2 * sizeof(Vec3) + sizeof(float)));
     file_.positions.reserve(e.count);
     if (header_.normals) file_.normals.reserve(e.count);
     if (radius) file_.radii.reserve(e.count);
@@ -112,6 +114,7 @@ void PointReader::strands(const PlyElement& e) {
     }
     if (!points) cursor_.fail(fmt::format("`{}` has neither a list `vertex_indices` nor a number `count`", e.name));
     byIndex_ = points->listCount.has_value();
+    requireMemory(static_cast<double>(e.count) * sizeof(std::uint32_t));
     file_.strandSizes.reserve(e.count);
     for (std::uint64_t i = 0; i < e.count; ++i)
         for (const PlyProperty& p : e.properties) {

@@ -1,5 +1,8 @@
 #include "io/mesh_file.h"
 
+#include <algorithm>
+#include <array>
+
 namespace abbe {
 
 namespace {
@@ -64,24 +67,65 @@ bool isEar(const std::vector<Vec2d>& p, const std::vector<std::uint32_t>& left, 
     return true;
 }
 
-void cutEars(MeshData& mesh, std::span<const std::uint32_t> corners, const std::vector<Vec2d>& points) {
-    std::vector<std::uint32_t> left(corners.size()); // into corners
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<std::uint32_t>(i);
-    std::size_t at = 0, refused = 0;
-    while (left.size() > 3) {
-        const std::size_t n = left.size();
-        at %= n;
-        // A polygon that crosses itself may run out of ears: what is left is then cut in order.
-        if (refused < n && !isEar(points, left, at)) {
-            ++at;
-            ++refused;
-            continue;
-        }
-        mesh.triangles.push_back({corners[left[(at + n - 1) % n]], corners[left[at]], corners[left[(at + 1) % n]]});
-        left.erase(left.begin() + static_cast<std::ptrdiff_t>(at));
-        if (refused < n) refused = 0;
+// The corners that are left of a polygon, and which of them can be cut off. In one that does not cross itself a cut
+// changes that for its two neighbours alone, so that the time grows with the square of the corners.
+class EarCutter {
+  public:
+    explicit EarCutter(const std::vector<Vec2d>& points) : points_(points), left_(points.size()) {
+        for (std::size_t i = 0; i < left_.size(); ++i) left_[i] = static_cast<std::uint32_t>(i);
+        lookAgain();
     }
-    mesh.triangles.push_back({corners[left[0]], corners[left[1]], corners[left[2]]});
+    std::size_t size() const { return left_.size(); }
+    // The triangle of a corner, by numbers of points.
+    std::array<std::uint32_t, 3> triangle(std::size_t at) const {
+        const std::size_t n = left_.size();
+        return {left_[(at + n - 1) % n], left_[at], left_[(at + 1) % n]};
+    }
+    // The next ear from `at` on, around. A polygon that crosses itself may run out of them: all are looked at a few
+    // times more, and then what is left is cut in order.
+    std::size_t next(std::size_t at) {
+        constexpr int kMostLooks = 3;
+        for (;;) {
+            for (std::size_t i = 0; i < left_.size(); ++i)
+                if (const std::size_t k = (at + i) % left_.size(); ears_[k]) return k;
+            if (looks_ >= kMostLooks) return at % left_.size();
+            lookAgain();
+            if (std::find(ears_.begin(), ears_.end(), true) == ears_.end()) looks_ = kMostLooks;
+        }
+    }
+    void cut(std::size_t at) {
+        left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
+        ears_.erase(ears_.begin() + static_cast<std::ptrdiff_t>(at));
+        const std::size_t n = left_.size(), after = at % n, before = (at + n - 1) % n;
+        for (const std::size_t k : {before, after}) ears_[k] = isEar(points_, left_, k);
+    }
+
+  private:
+    void lookAgain() {
+        ++looks_;
+        ears_.resize(left_.size());
+        for (std::size_t i = 0; i < left_.size(); ++i) ears_[i] = isEar(points_, left_, i);
+    }
+
+    const std::vector<Vec2d>& points_;
+    std::vector<std::uint32_t> left_; // of the points
+    std::vector<bool> ears_;
+    int looks_ = 0;
+};
+
+void cutEars(MeshData& mesh, std::span<const std::uint32_t> corners, const std::vector<Vec2d>& points) {
+    EarCutter cutter(points);
+    const auto add = [&](std::size_t at) {
+        const auto t = cutter.triangle(at);
+        mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+    };
+    std::size_t at = 0;
+    while (cutter.size() > 3) {
+        at = cutter.next(at);
+        add(at);
+        cutter.cut(at);
+    }
+    add(1);
 }
 
 void addQuad(MeshData& mesh, std::span<const std::uint32_t> c) {

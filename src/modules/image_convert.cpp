@@ -128,22 +128,31 @@ class Conversion {
         : from_(from), to_(to), asked_(asked), channels_(asked.channels) {}
 
     std::string run() {
-        sourceFailed_ = true;
         if (std::string reason = openSource(); !reason.empty()) return reason;
-        sourceFailed_ = false;
+        kind_ = abbeFaultOfResult;
         return writeLevels();
     }
-    bool sourceFailed() const { return sourceFailed_; }
+    AbbeFaultKind faultKind() const { return kind_; }
 
   private:
     std::string openSource() {
-        const OIIO::ImageSpec hints = asStored();
-        input_ = OIIO::ImageInput::open(from_, &hints);
-        if (!input_) return OIIO::geterror();
-        const OIIO::ImageSpec source = input_->spec();
-        if (std::string reason = unusable(source); !reason.empty()) return reason;
-        return source.nchannels < channels_ ? "it has too few channels" : "";
+        std::string reason;
+        input_ = openPicture(from_, reason);
+        if (!input_) return reason;
+        const OIIO::ImageSpec& source = input_->spec();
+        if (source.nchannels < channels_) return "it has too few channels";
+        // Rows as they are read, bands of tiles of two levels, and what becomes the next one.
+        const double rows = rowsAtOnce(source) + 2 * kTile + 8;
+        const double row = static_cast<double>(source.width) * channels_ * sizeof(float);
+        const double needed = bytesAtOnce(*input_, from_) + rows * row;
+        if (needed <= asked_.memory) return {};
+        kind_ = abbeFaultOfMemory;
+        constexpr double kMebibyte = 1 << 20;
+        return "to read it takes " + std::to_string(std::llround(needed / kMebibyte)) + " MiB of memory; " +
+               std::to_string(std::llround(asked_.memory / kMebibyte)) + " MiB are left";
     }
+
+    static int rowsAtOnce(const OIIO::ImageSpec& source) { return source.tile_height > 0 ? source.tile_height : 16; }
 
     std::string writeLevels() {
         const OIIO::ImageSpec source = input_->spec();
@@ -167,18 +176,19 @@ class Conversion {
     }
 
     std::string readSource(const OIIO::ImageSpec& source, Level& level) {
-        const int height = source.tile_height > 0 ? source.tile_height : 16;
+        const int height = rowsAtOnce(source);
         const std::size_t row = static_cast<std::size_t>(source.width) * static_cast<std::size_t>(channels_);
         std::vector<float> rows(row * static_cast<std::size_t>(height));
         for (int y = 0; y < source.height; y += height) {
             const int n = std::min(height, source.height - y), y0 = source.y + y;
+            kind_ = abbeFaultOfSource;
             const bool good =
                 source.tile_width > 0
                     ? input_->read_tiles(0, 0, source.x, source.x + source.width, y0, y0 + n, 0, 1, 0, channels_,
                                          OIIO::TypeDesc::FLOAT, rows.data())
                     : input_->read_scanlines(0, 0, y0, y0 + n, 0, 0, channels_, OIIO::TypeDesc::FLOAT, rows.data());
-            sourceFailed_ = !good;
             if (!good) return orElse(input_->geterror(), "its pixels cannot be read");
+            kind_ = abbeFaultOfResult;
             if (!asked_.texels(asked_.user, rows.data(), static_cast<std::int64_t>(source.width) * n))
                 return "it was stopped";
             for (int i = 0; i < n; ++i)
@@ -216,7 +226,7 @@ class Conversion {
     std::string from_, to_;
     const AbbeConversion& asked_;
     int channels_;
-    bool sourceFailed_ = false;
+    AbbeFaultKind kind_ = abbeFaultOfSource; // of what fails next
     std::unique_ptr<OIIO::ImageInput> input_;
     std::unique_ptr<OIIO::ImageOutput> output_;
 };
@@ -226,7 +236,7 @@ class Conversion {
 std::int32_t convert(const char* from, const char* to, const AbbeConversion* asked, AbbeImageFault* fault) {
     Conversion conversion(from, to, *asked);
     const std::int32_t good = guarded(fault, [&] { return conversion.run(); });
-    fault->ofResult = !good && !conversion.sourceFailed();
+    if (!good && fault->kind != abbeFaultOfMemory) fault->kind = conversion.faultKind();
     return good;
 }
 

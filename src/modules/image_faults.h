@@ -6,6 +6,8 @@
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <exception>
+#include <memory>
+#include <new>
 #include <string>
 
 namespace abbe_images {
@@ -19,8 +21,12 @@ template <std::size_t N> void copyText(char (&to)[N], const std::string& text) {
 // Runs `body`, which returns a reason or nothing; no exception crosses the interface.
 template <typename F> std::int32_t guarded(AbbeImageFault* fault, const F& body) {
     std::string reason;
+    fault->kind = abbeFaultOfSource;
     try {
         reason = body();
+    } catch (const std::bad_alloc&) {
+        reason = "it needs more memory than there is";
+        fault->kind = abbeFaultOfMemory;
     } catch (const std::exception& e) {
         reason = e.what();
     }
@@ -40,8 +46,10 @@ inline OIIO::ImageSpec asStored() {
     return hints;
 }
 
-// Empty, or why an image cannot be a texture.
-std::string unusable(const OIIO::ImageSpec&);
+// The first image of a file, if it can be a texture and the file can hold what its header promises; else the reason.
+std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, std::string& reason);
+// How many bytes OpenImageIO takes at the most, as stored, to give its rows one after the other.
+double bytesAtOnce(const OIIO::ImageInput&, const std::string& path);
 inline int usedChannels(const OIIO::ImageSpec& spec) { return spec.nchannels >= 3 ? 3 : 1; }
 
 std::int32_t convert(const char* from, const char* to, const AbbeConversion*, AbbeImageFault*);

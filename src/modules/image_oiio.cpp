@@ -3,25 +3,14 @@
 
 namespace abbe_images {
 
-std::string unusable(const OIIO::ImageSpec& spec) {
-    if (spec.deep) return "it holds deep samples, not pixels";
-    if (spec.depth > 1) return "it holds a volume";
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return "it has no pixels";
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        return "only a part of the picture is in it (its data window is not its display window)";
-    return {};
-}
-
 namespace {
 
 // Empty, or why the image cannot be used.
 std::string read(const char* path, int mostChannels, const AbbeImageSink& sink) {
-    const OIIO::ImageSpec hints = asStored();
-    const auto file = OIIO::ImageInput::open(path, &hints);
-    if (!file) return OIIO::geterror();
+    std::string reason;
+    const auto file = openPicture(path, reason);
+    if (!file) return reason;
     const OIIO::ImageSpec& spec = file->spec();
-    if (std::string reason = unusable(spec); !reason.empty()) return reason;
     const int channels = mostChannels >= 3 ? usedChannels(spec) : 1;
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     float* const pixels = sink.begin(sink.user, spec.width, spec.height, channels, space.c_str());
@@ -33,7 +22,7 @@ std::string read(const char* path, int mostChannels, const AbbeImageSink& sink) 
 std::int32_t readImage(const char* path, std::int32_t mostChannels, const AbbeImageSink* sink) {
     AbbeImageFault fault;
     if (guarded(&fault, [&] { return read(path, mostChannels, *sink); })) return 1;
-    sink->fail(sink->user, fault.reason);
+    sink->fail(sink->user, &fault);
     return 0;
 }
 
@@ -54,7 +43,8 @@ std::int32_t typeOf(const OIIO::ImageSpec& spec) {
 
 bool hasAllLevels(OIIO::ImageInput& file) {
     const OIIO::ImageSpec first = file.spec();
-    if (first.tile_width < 1) return false;
+    constexpr std::size_t kLargestTile = 16 << 20; // bytes; the cache holds whole ones
+    if (first.tile_width < 1 || first.tile_bytes(true) > kLargestTile) return false;
     int level = 0;
     OIIO::ImageSpec last = first;
     for (OIIO::ImageSpec s = file.spec_dimensions(0, 1); s.width > 0 && level < 64;
@@ -66,11 +56,10 @@ bool hasAllLevels(OIIO::ImageInput& file) {
 }
 
 std::string describe(const char* path, AbbeImageInfo& info) {
-    const OIIO::ImageSpec hints = asStored();
-    const auto file = OIIO::ImageInput::open(path, &hints);
-    if (!file) return OIIO::geterror();
+    std::string reason;
+    const auto file = openPicture(path, reason);
+    if (!file) return reason;
     const OIIO::ImageSpec spec = file->spec();
-    if (std::string reason = unusable(spec); !reason.empty()) return reason;
     info = {};
     info.width = spec.width;
     info.height = spec.height;

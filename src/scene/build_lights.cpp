@@ -1,6 +1,5 @@
 #include "io/ies.h"
 #include "io/image.h"
-#include "io/io_error.h"
 #include "lights/area_light.h"
 #include "lights/beam_light.h"
 #include "lights/daylight_light.h"
@@ -11,6 +10,7 @@
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
 #include "lights/sun_light.h"
+#include "scene/file_faults.h"
 #include "scene/rgb_radiance.h"
 #include "scene/scene_builder.h"
 
@@ -168,26 +168,20 @@ void SceneBuilder::placeLight(const Definition& d, const Place& place) {
 }
 
 std::unique_ptr<Light> SceneBuilder::makeIes(const IesLightParams& params, const LightContext& context) {
-    try {
-        auto light = makeIesLight(params, readIes(params.file.value), context, diagnostics_);
-        built_->facts.files.push_back(params.file.value);
-        return light;
-    } catch (const IoError& e) {
-        diagnostics_.error("E0752", params.file.span, e.what(), "cannot be read");
+    IntensityTable table;
+    if (!readsFile(
+            params.file.value, params.file.span, diagnostics_, [&] { table = readIes(params.file.value); }, "E0752"))
         return nullptr;
-    }
+    auto light = makeIesLight(params, std::move(table), context, diagnostics_);
+    built_->facts.files.push_back(params.file.value);
+    return light;
 }
 
 std::unique_ptr<Light> SceneBuilder::makeEnvironment(const EnvironmentLightParams& params,
                                                      const LightContext& context) {
     const std::string& path = params.image.value;
     RgbImage file;
-    try {
-        file = readImage(path);
-    } catch (const IoError& e) {
-        diagnostics_.error("E0402", params.image.span, e.what(), "cannot be read");
-        return nullptr;
-    }
+    if (!readsFile(path, params.image.span, diagnostics_, [&] { file = readImage(path); })) return nullptr;
     built_->facts.files.push_back(path);
     RgbSpace space = file.chromaticities ? file.chromaticities->space() : rgb::rec709;
     for (const auto& [key, word] : params.image.keys)

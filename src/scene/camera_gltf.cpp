@@ -2,7 +2,7 @@
 
 #include "cameras/orthographic.h"
 #include "io/gltf.h"
-#include "io/io_error.h"
+#include "scene/file_faults.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -94,12 +94,9 @@ schema::TypeInfo gltfCameraType() {
 std::optional<PlacedCamera> makeGltfCamera(const GltfCameraParams& params, const CameraContext& context,
                                            Diagnostics& diagnostics) {
     std::vector<GltfCamera> cameras;
-    try {
-        cameras = readGltfCameras(params.file.value);
-    } catch (const IoError& e) {
-        diagnostics.error("E0402", spanOf(params.file, context.span), e.what(), "cannot be read");
+    if (!readsFile(params.file.value, spanOf(params.file, context.span), diagnostics,
+                   [&] { cameras = readGltfCameras(params.file.value); }))
         return std::nullopt;
-    }
     const GltfCamera* camera = chosen(cameras, params, context.span, diagnostics);
     if (!camera) return std::nullopt;
     const auto place = placementOf(*camera, context.zUp);

@@ -2,6 +2,7 @@
 #include "io/ply_vertices.h"
 #include "math/frame.h"
 #include "math/sobol.h"
+#include "scene/file_faults.h"
 #include "scene/instances_type.h"
 
 #include <algorithm>
@@ -81,18 +82,12 @@ bool visitPoints(const InstancesParams& p, const PlaceContext& context, Diagnost
                  const PlaceVisitor& visit) {
     PointLayout layout;
     const auto begin = [&](const PlyColumns& columns) { layout = layoutOf(columns); };
-    try {
+    return readsFile(p.points.value, p.points.span, diagnostics, [&] {
         visitPlyVertices(readFileBytes(p.points.value), p.points.value, kColumns, begin,
                          [&](std::uint64_t i, std::span<const double> v) {
                              return visit(i, placementOf(layout, v, context)); // a turn by nothing makes it not finite
                          });
-        return true;
-    } catch (const IoError& e) {
-        diagnostics.error("E0402", p.points.span, e.what(), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", p.points.span, fmt::format("`{}` does not fit into memory", p.points.value));
-    }
-    return false;
+    });
 }
 
 // --- Grids ---

@@ -1,5 +1,6 @@
 #include "geometry/mesh_cleanup.h"
 #include "io/gltf.h"
+#include "scene/file_faults.h"
 #include "scene/shape_types.h"
 
 #include <algorithm>
@@ -38,20 +39,16 @@ FaceGroups groupsOf(MeshFile& file) {
 
 std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, FaceGroups* groups, Span span,
                                  Diagnostics& diagnostics) {
-    try {
+    std::optional<MeshData> mesh;
+    readsFile(file.value, file.span.valid() ? file.span : span, diagnostics, [&] {
         GltfSelection selection;
         for (const auto& [key, value] : file.keys) (key == "node" ? selection.node : selection.mesh) = value;
         MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selection);
         toScene(read, unit, zUp);
         if (groups) *groups = groupsOf(read);
-        return std::move(read.mesh);
-    } catch (const IoError& e) {
-        diagnostics.error("E0402", file.span.valid() ? file.span : span, e.what(), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", file.span.valid() ? file.span : span,
-                          fmt::format("`{}` does not fit into memory", file.value));
-    }
-    return std::nullopt;
+        mesh = std::move(read.mesh);
+    });
+    return mesh;
 }
 
 std::optional<MeshData> fromRows(const std::vector<Vec3d>& points, const schema::IndexRows& faces, Span span,

@@ -1,5 +1,7 @@
 #include "scene/shape_sized_points.h"
 
+#include "scene/file_faults.h"
+
 #include <fmt/format.h>
 
 namespace abbe {
@@ -7,15 +9,10 @@ namespace abbe {
 namespace {
 
 std::optional<PointFile> readFile(const schema::Text& file, Span span, Diagnostics& diagnostics) {
-    const Span at = file.span.valid() ? file.span : span;
-    try {
-        return readPlyPoints(file.value);
-    } catch (const IoError& e) {
-        diagnostics.error("E0402", at, e.what(), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", at, fmt::format("`{}` does not fit into memory", file.value));
-    }
-    return std::nullopt;
+    std::optional<PointFile> points;
+    readsFile(file.value, file.span.valid() ? file.span : span, diagnostics,
+              [&] { points = readPlyPoints(file.value); });
+    return points;
 }
 
 // The radius of every point, or nothing after an error.

@@ -1,5 +1,6 @@
 #include "geometry/subdivision_check.h"
 #include "io/cage_file.h"
+#include "scene/file_faults.h"
 #include "scene/shape_subdivision.h"
 #include "scene/shape_subdivision_words.h"
 
@@ -22,7 +23,8 @@ void choose(Enum& out, const std::string& word, const std::string_view (&list)[n
 
 std::optional<LoadedCage> cageFromFile(const schema::Text& file, double unit, Span span, Diagnostics& diagnostics) {
     const Span at = file.span.valid() ? file.span : span;
-    try {
+    std::optional<LoadedCage> cage;
+    readsFile(file.value, at, diagnostics, [&] {
         CageFile read = readCage(file.value);
         for (Vec3& p : read.cage.positions) p = Vec3(Vec3d(p) * unit);
         if (read.ignoredTags > 0)
@@ -30,13 +32,9 @@ std::optional<LoadedCage> cageFromFile(const schema::Text& file, double unit, Sp
                 "W0660", at,
                 fmt::format("{} tags of the file are left out, the first is `{}`", read.ignoredTags, read.ignoredTag),
                 "not known here");
-        return LoadedCage{std::move(read.cage), std::move(read.groups)};
-    } catch (const IoError& e) {
-        diagnostics.error("E0402", at, e.what(), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", at, fmt::format("`{}` does not fit into memory", file.value));
-    }
-    return std::nullopt;
+        cage = LoadedCage{std::move(read.cage), std::move(read.groups)};
+    });
+    return cage;
 }
 
 void cageFault(Span span, Diagnostics& diagnostics, std::string what) {

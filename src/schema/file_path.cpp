@@ -47,6 +47,11 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
         reportAt(diagnostics, value, "E0402", fmt::format("`{}` is a folder", value.text), "a file is needed");
         return std::nullopt;
     }
+    if (nameable && fs::exists(status) && !fs::is_regular_file(status)) {
+        reportAt(diagnostics, value, "E0402", fmt::format("`{}` is not a regular file", value.text),
+                 "pipes and devices are not read");
+        return std::nullopt;
+    }
     if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
     const std::string folder = written.is_absolute() ? written.parent_path().string() : tree.directory.string();
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),

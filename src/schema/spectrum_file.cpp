@@ -1,9 +1,9 @@
 #include "schema/spectrum_file.h"
 
+#include "base/regular_file.h"
+
 #include <charconv>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 namespace abbe::schema {
@@ -58,18 +58,17 @@ bool readLine(std::string_view text, int line, std::string_view what, SpectrumFi
 
 SpectrumFile readSpectrumFile(const std::filesystem::path& path, std::string_view what) {
     SpectrumFile file;
-    std::ifstream stream(path, std::ios::binary);
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    if (!stream || error) {
-        fail(file, 0, "it cannot be read");
-        return file;
-    }
-    if (size > kLargestFile) {
+    RegularFile stored(path.string());
+    if (stored.size() > kLargestFile) {
         fail(file, 0, "it is larger than 16 MiB");
         return file;
     }
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text(stored.size(), '\0');
+    text.resize(stored.readAt(0, text));
+    if (!stored.good()) {
+        fail(file, 0, fmt::format("it cannot be read: {}", stored.why()));
+        return file;
+    }
     std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     for (int line = 1; !rest.empty(); ++line) {

@@ -1,6 +1,7 @@
 #include "spectrum/upsampling_table.h"
 
 #include "base/parallel.h"
+#include "base/regular_file.h"
 #include "base/temporary_file.h"
 #include "spectrum/rgb_upsampling.h"
 
@@ -174,12 +175,13 @@ std::filesystem::path UpsamplingTable::fileName(const RgbSpace& space, int resol
 
 std::optional<UpsamplingTable> UpsamplingTable::load(const std::filesystem::path& file, const RgbSpace& space,
                                                      int resolution) {
-    std::ifstream in(file, std::ios::binary);
+    RegularFile in(file.string());
     Header header;
     UpsamplingTable table(resolution);
-    const auto bytes = static_cast<std::streamsize>(table.entries_.size() * sizeof table.entries_[0]);
-    if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
-    if (!in.read(reinterpret_cast<char*>(table.entries_.data()), bytes) || in.peek() != EOF) return std::nullopt;
+    const std::size_t bytes = table.entries_.size() * sizeof table.entries_[0];
+    if (in.size() != sizeof header + bytes) return std::nullopt;
+    if (in.readAt(0, {reinterpret_cast<char*>(&header), sizeof header}) != sizeof header) return std::nullopt;
+    if (in.readAt(sizeof header, {reinterpret_cast<char*>(table.entries_.data()), bytes}) != bytes) return std::nullopt;
     if (header != headerFor(space, resolution, table.entries_)) return std::nullopt;
     return table;
 }

@@ -1,6 +1,10 @@
 #include "textures/image_file.h"
 
+#include "base/memory_limit.h"
+#include "io/exr_bounds.h"
+
 #include <dlfcn.h>
+#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
 #include <new>
@@ -35,9 +39,14 @@ const AbbeImageModule* loadModule() {
 
 struct Reading {
     ImagePixels image;
-    std::string fault;
-    bool outOfMemory = false;
+    AbbeImageFault fault{};
+    std::exception_ptr beyondMemory;
 };
+
+// What can be told without a library, which may not be given devices, nor OpenEXR what its header promises in vain.
+void checkPicture(const std::string& path) {
+    if (std::string reason = exrBoundsFault(path); !reason.empty()) throw ImageFileError(reason);
+}
 
 float* begin(void* user, int width, int height, int channels, const char* colorSpace) {
     auto& reading = *static_cast<Reading*>(user);
@@ -47,16 +56,18 @@ float* begin(void* user, int width, int height, int channels, const char* colorS
         image.height = height;
         image.channels = channels;
         image.colorSpace = colorSpace;
-        image.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                            static_cast<std::size_t>(channels));
+        const auto count =
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+        requireMemory(2.0 * static_cast<double>(count) * sizeof(float)); // and as it is stored
+        image.values.resize(count);
         return image.values.data();
     } catch (const std::exception&) { // must not cross the interface
-        reading.outOfMemory = true;
+        reading.beyondMemory = std::current_exception();
         return nullptr;
     }
 }
 
-void fail(void* user, const char* reason) { static_cast<Reading*>(user)->fault = reason; }
+void fail(void* user, const AbbeImageFault* fault) { static_cast<Reading*>(user)->fault = *fault; }
 
 } // namespace
 
@@ -66,15 +77,18 @@ const AbbeImageModule& imageModule() {
 }
 
 ImagePixels readImageFile(const std::string& path) {
+    checkPicture(path);
     Reading reading;
     const AbbeImageSink sink{&reading, begin, fail};
     const bool good = imageModule().read(path.c_str(), 3, &sink);
-    if (reading.outOfMemory) throw std::bad_alloc();
-    if (!good) throw ImageFileError(reading.fault.empty() ? "it cannot be read" : reading.fault);
+    if (reading.beyondMemory) std::rethrow_exception(reading.beyondMemory);
+    if (!good && reading.fault.kind == abbeFaultOfMemory) throw std::bad_alloc();
+    if (!good) throw ImageFileError(reading.fault.reason[0] ? reading.fault.reason : "it cannot be read");
     return std::move(reading.image);
 }
 
 AbbeImageInfo describeImageFile(const std::string& path) {
+    checkPicture(path);
     AbbeImageInfo info{};
     AbbeImageFault fault{};
     if (!imageModule().describe(path.c_str(), &info, &fault)) throw ImageFileError(fault.reason);

@@ -6,19 +6,25 @@
 
 extern "C" {
 
+enum AbbeFaultKind : std::int32_t {
+    abbeFaultOfSource, // what is read
+    abbeFaultOfResult, // what a conversion writes
+    abbeFaultOfMemory, // there is too little
+};
+
+// Texts are cut where they do not fit.
+struct AbbeImageFault {
+    char reason[512];
+    std::int32_t kind; // AbbeFaultKind
+};
+
 struct AbbeImageSink {
     void* user;
     // Called once, before the pixels. `colorSpace` is how the file is tagged, or empty. Returns where
     // width * height * channels floats go (rows from the top, channels interleaved), or null to stop.
     float* (*begin)(void* user, int width, int height, int channels, const char* colorSpace);
     // Called once after any fault, with its reason.
-    void (*fail)(void* user, const char* reason);
-};
-
-// Texts are cut where they do not fit.
-struct AbbeImageFault {
-    char reason[512];
-    std::int32_t ofResult; // of a conversion: what it writes is at fault, not what it reads
+    void (*fail)(void* user, const AbbeImageFault*);
 };
 
 enum AbbeTexelType : std::int32_t { abbeTexel8, abbeTexel16, abbeTexelHalf, abbeTexelFloat };
@@ -39,6 +45,7 @@ struct AbbeImageInfo {
 struct AbbeConversion {
     std::int32_t channels; // 1 or 3
     std::int32_t type;     // AbbeTexelType of the result
+    double memory;         // bytes that it may take: known to need more, it does not begin
     void* user;
     // Changes texels of the picture in place, before any averaging. 0 to stop.
     std::int32_t (*texels)(void* user, float* values, std::int64_t count);
@@ -77,7 +84,7 @@ struct AbbeImageModule {
     void (*statistics)(void* system, AbbeTextureStatistics*);
 };
 
-inline constexpr std::int32_t kAbbeImageModuleVersion = 2;
+inline constexpr std::int32_t kAbbeImageModuleVersion = 3;
 
 using AbbeGetImageModule = const AbbeImageModule* (*)();
 // The name of that function in the module.

@@ -1,4 +1,5 @@
 // What happens to an image texture between reading its headers and rendering.
+#include "base/memory_limit.h"
 #include "textures/image_texture.h"
 
 #include <cmath>
@@ -23,8 +24,8 @@ template <typename F> bool reported(const std::string& path, Span span, Diagnost
                           "cannot be a texture");
     } catch (const ImageFileError& e) {
         diagnostics.error("E0402", span, fmt::format("`{}`: {}", name, e.what()), "cannot be read");
-    } catch (const std::bad_alloc&) {
-        diagnostics.error("E0404", span, fmt::format("`{}` does not fit into memory", name));
+    } catch (const std::bad_alloc& e) {
+        diagnostics.error("E0404", span, fmt::format("`{}` does not fit into memory", name), memoryReason(e));
     }
     return false;
 }

@@ -1,5 +1,6 @@
 #include "textures/texture_file.h"
 
+#include "base/memory_limit.h"
 #include "base/temporary_file.h"
 #include "math/hash.h"
 #include "spectrum/upsampling_table.h"
@@ -130,7 +131,7 @@ Converted convert(const std::string& picture, const AbbeImageInfo& info, const C
     if (part.error() != 0)
         return {{}, fmt::format("the folder `{}` cannot be written to", file.parent_path().string())};
     TexelCheck check(info, encoding, upsampling);
-    const AbbeConversion asked{info.channels, storedType(info, encoding), &check, checkTexels};
+    const AbbeConversion asked{info.channels, storedType(info, encoding), memoryLeft(), &check, checkTexels};
     AbbeImageFault fault{};
     const bool good = imageModule().convert(picture.c_str(), part.path().c_str(), &asked, &fault);
     Converted result{check.counts(), {}};
@@ -140,7 +141,8 @@ Converted convert(const std::string& picture, const AbbeImageInfo& info, const C
         if (problem == 0) return result;
     }
     if (check.notFinite() > 0) throw NotFiniteError(check.notFinite());
-    if (!good && !fault.ofResult) throw ImageFileError(fault.reason);
+    if (!good && fault.kind == abbeFaultOfMemory) throw BeyondMemory(std::string(fault.reason));
+    if (!good && fault.kind == abbeFaultOfSource) throw ImageFileError(fault.reason);
     result.problem = !good ? fault.reason : problem != 0 ? std::strerror(problem) : "the folder cannot be written to";
     return result;
 }

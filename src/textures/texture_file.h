@@ -47,7 +47,8 @@ struct NotFiniteError : ImageFileError {
 // itself if it is already a linear texture; else a converted file out of `directory` (empty: no cache), which is made
 // if it is missing, damaged or older than the picture; else, with a problem, the picture itself. Colours are compared
 // with `upsampling`, which may be null. Several threads and processes may ask for the same file at once. Throws
-// ImageFileError if the picture cannot be read.
+// ImageFileError if the picture cannot be read,
+// std::bad_alloc if that takes more memory than there is.
 TextureFile textureFile(const std::string& picture, const AbbeImageInfo&, const ColorEncoding& encoding,
                         const std::filesystem::path& directory, const UpsamplingTable* upsampling);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -31,16 +32,15 @@ void limit(int resource, rlim_t value) {
 }
 
 // A damaged file may ask for any amount of memory or run in circles: a file gets what a sound one of its size could
-// need (data that hardly varies is packed two hundredfold), and no more than the machine has.
-void setLimits(const std::string& file) {
+// need (data that hardly varies is packed two hundredfold), and no more than `memory`, which the program may take.
+void setLimits(const std::string& file, rlim_t memory) {
     limit(RLIMIT_CORE, 0);
     struct stat status {};
     const bool known = ::stat(file.c_str(), &status) == 0;
     const auto size = static_cast<rlim_t>(known ? status.st_size : 0);
     limit(RLIMIT_CPU, known ? 8 + size / 250'000 : 7200);
     if (kSanitized) return;
-    const auto machine = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
-    limit(RLIMIT_DATA, known ? std::min(machine, 2'000'000'000 + 256 * size) : machine);
+    limit(RLIMIT_DATA, known ? std::min(memory, 2'000'000'000 + 256 * size) : memory);
 }
 
 bool execute(const std::string& command, vdb::Arguments arguments) {
@@ -79,11 +79,12 @@ void guarded(const std::string& command, const std::vector<std::string>& argumen
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 3 || ::isatty(STDOUT_FILENO)) {
+    if (argc < 4 || ::isatty(STDOUT_FILENO)) {
         std::fputs("abbe-vdb is started by abbe; see `abbe volume --help`\n", stderr);
         return 2;
     }
-    setLimits(argv[2]); // a file, or the kind of volume to make
-    guarded(argv[1], std::vector<std::string>(argv + 2, argv + argc));
+    // The memory in bytes, the command, and a file or the kind of volume to make.
+    setLimits(argv[3], std::strtoull(argv[1], nullptr, 10));
+    guarded(argv[2], std::vector<std::string>(argv + 3, argv + argc));
     ::_exit(0); // without the destructors of libraries, which have nothing to save
 }

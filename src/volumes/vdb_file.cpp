@@ -1,5 +1,6 @@
 #include "volumes/vdb_file.h"
 
+#include "base/memory_limit.h"
 #include "volumes/vdb_message.h"
 #include "volumes/vdb_process.h"
 
@@ -50,6 +51,10 @@ class Conversation {
         died();
         return false;
     }
+    std::nullopt_t beyondMemory(const std::bad_alloc& e) {
+        fault_ = VdbFault{VdbFault::Kind::memory, fmt::format("{}: {}", subject_, memoryReason(e)), {}};
+        return std::nullopt;
+    }
     std::nullopt_t damaged() {
         fault_ = VdbFault{VdbFault::Kind::damaged, fmt::format("{} is damaged", subject_), {}};
         return std::nullopt;
@@ -93,7 +98,14 @@ bool receive(Conversation& talk, VdbGrid& grid) {
         talk.damaged();
         return false;
     }
-    GridBytes bytes(head.bytes);
+    GridBytes bytes;
+    try {
+        requireMemory(static_cast<double>(head.bytes));
+        bytes = GridBytes(head.bytes);
+    } catch (const std::bad_alloc& e) {
+        talk.beyondMemory(e);
+        return false;
+    }
     if (!talk.read(bytes)) return false;
     grid.notes = std::move(head.notes);
     if (head.vector)

@@ -1,5 +1,7 @@
 #include "volumes/vdb_process.h"
 
+#include "base/memory_limit.h"
+
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -66,7 +68,8 @@ VdbProcess::VdbProcess(const std::vector<std::string>& arguments) {
         error_ = fmt::format("cannot start `{}`: {}", path, std::strerror(errno));
         return;
     }
-    std::vector<char*> argv{const_cast<char*>(path.c_str())};
+    const std::string memory = fmt::format("{:.0f}", memoryLimit());
+    std::vector<char*> argv{const_cast<char*>(path.c_str()), const_cast<char*>(memory.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const SpawnSetup setup(ends[1]);

@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# Whatever a path leads to, a pipe that nobody writes to, a device without an end, a picture of a few hundred bytes that
+# promises millions of pixels: every command that reads it ends at once, with a message that names it.
+# shellcheck source=tests/cli/lib.sh
+source "$(dirname -- "$0")/lib.sh" "$@"
+export XDG_CACHE_HOME=$PWD/cache
+
+# refuses CODE ARGUMENT…: the program ends with that code within seconds and within little memory.
+refuses() {
+    local wanted=$1 code
+    shift
+    timeout 10 "$program" "$@" >out 2>err </dev/null
+    code=$?
+    [[ $code -eq $wanted ]] && return 0
+    fault "abbe $* ended with $code instead of $wanted"
+    sed 's/^/    /' out err
+}
+
+mkfifo fifo fifo.exr fifo.vdb fifo.ckpt
+ln -s /dev/zero zero
+ln -s /dev/zero zero.exr
+ln -s /dev/zero zero.vdb
+scene() { # LINE…
+    printf 'scene 1\ncamera\nlight sky\n' >bounds.scene
+    printf '%s\n' "$@" >>bounds.scene
+}
+for file in fifo zero; do
+    scene "shape mesh \"$file\" { material diffuse { } }" "light ies \"$file\"" "light environment \"$file\"" \
+        "texture t image \"$file\"" "camera gltf \"$file\"" \
+        "volume v vdb \"$file\" { extinction 1 per-m; albedo 0.9 }" \
+        "shape sphere { material diffuse { reflectance table \"$file\" } }"
+    refuses 1 check --format=short bounds.scene
+    [[ $(grep -c "\`$file\` is not a regular file" err) -ge 7 ]] || fault "not all uses of $file are told: $(cat err)"
+    refuses 3 check "$file"
+    says err "is not a regular file"
+    refuses 3 render "$file" -o no.exr
+    refuses 3 info $file.exr
+    says err "$file.exr\`: it is not a regular file"
+    refuses 3 convert $file.exr no.png
+    says err "$file.exr\`: it is not a regular file"
+    refuses 3 compare $file.exr $file.exr
+    refuses 3 denoise $file.exr -o no.exr
+    refuses 3 volume info $file.vdb
+    refuses 3 merge -o no.exr $file
+    says err "it is not a regular file"
+done
+refuses 3 check - <<<"" # nothing at all is no scene
+(timeout 10 "$program" check - </dev/zero >out 2>err)
+[[ $? -eq 3 ]] || fault "zeros without an end as a scene: $(cat err)"
+mv fifo.ckpt no.exr.ckpt
+refuses 3 render "$scenes/room.scene" --samples 1 --resume -o no.exr
+says err "no.exr.ckpt\`: it is not a regular file"
+[[ ! -e no.exr ]] || fault "an image of nothing"
+
+# le32 NUMBER…: least byte first.
+le32() {
+    local n
+    for n; do
+        printf "\\x$(printf %02x $((n & 255)))\\x$(printf %02x $((n >> 8 & 255)))\\x$(printf %02x $((n >> 16 & 255)))"
+        printf "\\x$(printf %02x $((n >> 24 & 255)))"
+    done
+}
+attribute() { # NAME TYPE SIZE
+    printf '%s\0%s\0' "$1" "$2"
+    le32 "$3"
+}
+# promise SIDE: an OpenEXR file that says that it has SIDE by SIDE pixels of three channels, compressed by dwab.
+promise() {
+    le32 20000630 2
+    attribute channels chlist 55
+    for channel in B G R; do
+        printf '%s\0' $channel
+        le32 1 0 1 1
+    done
+    printf '\0'
+    attribute compression compression 1
+    printf '\x09'
+    for window in dataWindow displayWindow; do
+        attribute $window box2i 16
+        le32 0 0 $(($1 - 1)) $(($1 - 1))
+    done
+    attribute lineOrder lineOrder 1
+    printf '\0'
+    attribute pixelAspectRatio float 4
+    printf '\0\0\x80\x3f'
+    attribute screenWindowCenter v2f 8
+    printf '\0\0\0\0\0\0\0\0'
+    attribute screenWindowWidth float 4
+    printf '\0\0\x80\x3f\0'
+    head -c 300 /dev/zero
+}
+promise 16384 >tiny.exr
+(
+    ulimit -v 4000000
+    for words in "info tiny.exr" "convert tiny.exr no.png" "denoise tiny.exr -o no.exr" "compare tiny.exr tiny.exr"; do
+        # shellcheck disable=SC2086 # words of the command
+        refuses 3 $words
+        says err "cannot read \`tiny.exr\`: it is cut short or damaged"
+    done
+    scene "light environment \"tiny.exr\"" "shape sphere { material diffuse { reflectance image \"tiny.exr\" } }"
+    refuses 1 check --textures --format=short bounds.scene
+    [[ $(grep -c "cannot be in" err) -eq 2 ]] || fault "two uses of tiny.exr: $(cat err)"
+    exit "$faults"
+) || faults=$((faults + 1))
+
+finish
