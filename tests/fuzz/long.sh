@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Many changed files for every fuzz target, with the corpus as a beginning:  long.sh FOLDER [RUNS [TARGET…]]
+# FOLDER holds the programs (build/fuzz/tests/fuzz); what they find stays there.
+set -uo pipefail
+corpus=$(cd "$(dirname -- "$0")/corpus" && pwd)
+folder=$(realpath -- "$1")
+runs=${2:-1000000}
+shift $(($# < 2 ? $# : 2))
+targets=("$@")
+((${#targets[@]})) || mapfile -t targets < <(ls "$corpus")
+export ASAN_OPTIONS=new_delete_type_mismatch=0
+faults=0
+for target in "${targets[@]}"; do
+    started=$SECONDS
+    "$folder/fuzz_$target" -runs="$runs" -findings="$folder" "$corpus/$target" || {
+        echo "FAULT: fuzz_$target"
+        faults=$((faults + 1))
+    }
+    echo "    $((SECONDS - started)) s"
+done
+exit $((faults > 0))
