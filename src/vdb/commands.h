@@ -1,5 +1,5 @@
 // The commands of the helper. Each writes its answer as frames, without the end; they throw Failure or what OpenVDB
-// throws.
+// throws; run() writes those.
 #pragma once
 
 #include <span>
@@ -13,5 +13,8 @@ void info(Arguments);    // FILE
 void read(Arguments);    // FILE (GRID USE)…; USE as VdbUse, with "?" when optional
 void make(Arguments);    // KIND OUT RESOLUTION SEED
 void convert(Arguments); // IN OUT (OPTION=VALUE)…
+
+// The command of that name, to the end or to a fault.
+void run(const std::string& command, Arguments);
 
 } // namespace abbe::vdb

@@ -2,12 +2,10 @@
 // worst end this one. It is started by src/volumes/vdb_process.cpp and answers with the frames of
 // volumes/vdb_message.h.
 #include "vdb/commands.h"
-#include "vdb/output.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -43,39 +41,6 @@ void setLimits(const std::string& file, rlim_t memory) {
     limit(RLIMIT_DATA, known ? std::min(memory, 2'000'000'000 + 256 * size) : memory);
 }
 
-bool execute(const std::string& command, vdb::Arguments arguments) {
-    if (command == "info")
-        vdb::info(arguments);
-    else if (command == "read")
-        vdb::read(arguments);
-    else if (command == "make")
-        vdb::make(arguments);
-    else if (command == "convert")
-        vdb::convert(arguments);
-    else
-        return false;
-    return true;
-}
-
-void guarded(const std::string& command, const std::vector<std::string>& arguments) {
-    const std::string subject = arguments.empty() ? std::string() : "`" + arguments[0] + "`";
-    try {
-        if (!execute(command, arguments))
-            throw vdb::Failure(VdbFault::Kind::helper, "the helper `abbe-vdb` is not of this version");
-        vdb::writeFrame(VdbFrame::end);
-    } catch (const vdb::Failure& e) {
-        vdb::writeFrame(VdbFrame::fault, e.fault());
-    } catch (const std::bad_alloc&) {
-        vdb::writeFrame(VdbFrame::fault,
-                        VdbFault{VdbFault::Kind::memory,
-                                 subject + " needs more memory than there is, or than a sound file of its size would",
-                                 {}});
-    } catch (const std::exception& e) {
-        vdb::writeFrame(VdbFrame::fault,
-                        VdbFault{VdbFault::Kind::damaged, subject + " cannot be read: " + vdb::plainWords(e), {}});
-    }
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -85,6 +50,6 @@ int main(int argc, char** argv) {
     }
     // The memory in bytes, the command, and a file or the kind of volume to make.
     setLimits(argv[3], std::strtoull(argv[1], nullptr, 10));
-    guarded(argv[2], std::vector<std::string>(argv + 3, argv + argc));
+    vdb::run(argv[2], std::vector<std::string>(argv + 3, argv + argc));
     ::_exit(0); // without the destructors of libraries, which have nothing to save
 }

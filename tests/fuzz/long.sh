@@ -7,12 +7,12 @@ folder=$(realpath -- "$1")
 runs=${2:-1000000}
 shift $(($# < 2 ? $# : 2))
 targets=("$@")
-((${#targets[@]})) || mapfile -t targets < <(ls "$corpus")
+((${#targets[@]})) || mapfile -t targets < <(ls "$corpus" | sed 's/^vdb$/vdb_fork/')
 export ASAN_OPTIONS=new_delete_type_mismatch=0
 faults=0
 for target in "${targets[@]}"; do
     started=$SECONDS
-    "$folder/fuzz_$target" -runs="$runs" -findings="$folder" "$corpus/$target" || {
+    "$folder/fuzz_$target" -runs="$runs" -findings="$folder" "$corpus/${target%_fork}" || {
         echo "FAULT: fuzz_$target"
         faults=$((faults + 1))
     }
