@@ -40,12 +40,12 @@ struct CompressionBound {
     double expansion;
     int rows;
 };
-constexpr std::array<CompressionBound, 10> kCompressions{
+constexpr std::array<CompressionBound, 10> kBounds{
     {{1, 1}, {64, 1}, {1032, 1}, {1032, 16}, {1032, 32}, {1376, 16}, {11, 32}, {11, 32}, {66048, 32}, {66048, 256}}};
 
 CompressionBound boundOf(int compression) {
     const auto i = static_cast<std::size_t>(compression);
-    return i < kCompressions.size() ? kCompressions[i] : kCompressions.back();
+    return i < kBounds.size() ? kBounds[i] : kBounds.back();
 }
 
 class HeadReader {

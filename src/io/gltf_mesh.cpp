@@ -73,6 +73,13 @@ MeshFile GltfMeshReader::read(const GltfSelection& selection) {
 void GltfMeshReader::checkWork(const std::vector<PlacedGltfNode>& nodes, const GltfSelection& selection) const {
     constexpr double kMostPerByte = 1024;
     const auto& model = document_.model();
+    const double most = kMostPerByte * static_cast<double>(document_.bytes());
+    const auto countOf = [&](int accessor, const char* who) {
+        const auto count = static_cast<double>(document_.count(accessor, who));
+        if (count > most)
+            document_.fail(fmt::format("accessors[{}] ({}): {:.0f} elements without data", accessor, who, count));
+        return count;
+    };
     double vertices = 0, corners = 0;
     for (const PlacedGltfNode& placed : nodes) {
         const auto mesh = static_cast<std::size_t>(model.nodes[static_cast<std::size_t>(placed.node)].mesh);
@@ -80,11 +87,11 @@ void GltfMeshReader::checkWork(const std::vector<PlacedGltfNode>& nodes, const G
         for (const tinygltf::Primitive& p : model.meshes[mesh].primitives) {
             const auto position = p.attributes.find("POSITION");
             if (position == p.attributes.end()) continue;
-            vertices += static_cast<double>(document_.count(position->second, "attributes.POSITION"));
-            if (p.indices >= 0) corners += static_cast<double>(document_.count(p.indices, "indices"));
+            vertices += countOf(position->second, "attributes.POSITION");
+            if (p.indices >= 0) corners += countOf(p.indices, "indices");
         }
     }
-    if (vertices + corners > kMostPerByte * static_cast<double>(document_.bytes()))
+    if (vertices + corners > most)
         document_.fail(fmt::format("its nodes have {:.4g} vertices and corners, more than {} for each of its {} bytes",
                                    vertices + corners, kMostPerByte, document_.bytes()));
     requireMemory(vertices * (2 * sizeof(Vec3) + sizeof(Vec2)) +

@@ -46,7 +46,7 @@ struct MemoryScope {
 };
 
 std::string readingExr(const std::string& path) {
-    return errorOf([&] { readExr(path); });
+    return test::errorOf([&] { readExr(path); });
 }
 
 } // namespace
@@ -71,7 +71,7 @@ TEST_CASE("readers: pipes and devices") {
                                                          [&] { appendExr(path, folder / "to.exr", {}, {}); }};
         for (const auto& read : readers) {
             std::string said;
-            CHECK(secondsOf([&] { said = errorOf([&] { read(); }); }) < kAtOnce);
+            CHECK(secondsOf([&] { said = test::errorOf([&] { read(); }); }) < kAtOnce);
             CHECK(contains(said, "cannot read `" + path + "`: it is not a regular file"));
         }
     }
@@ -91,9 +91,9 @@ TEST_CASE("exr bounds: a few bytes promise no picture, whatever their compressio
             std::string said;
             CHECK(secondsOf([&] { said = readingExr(path); }) < kAtOnce);
             CHECK(contains(said, "what its header promises cannot be in"));
-            CHECK(contains(errorOf([&] { readExrInfo(path); }), "cannot be in"));
-            CHECK(contains(errorOf([&] { readDeepExr(path); }), "cannot be in"));
-            CHECK(contains(errorOf([&] { appendExr(path, folder / "b.exr", {}, {}); }), "cannot be in"));
+            CHECK(contains(test::errorOf([&] { readExrInfo(path); }), "cannot be in"));
+            CHECK(contains(test::errorOf([&] { readDeepExr(path); }), "cannot be in"));
+            CHECK(contains(test::errorOf([&] { appendExr(path, folder / "b.exr", {}, {}); }), "cannot be in"));
         }
     CHECK_FALSE(std::filesystem::exists(folder / "b.exr"));
 }
@@ -197,14 +197,14 @@ TEST_CASE("gltf: copies of copies are bounded by the bytes that there are") {
     text.nodes = nodes + "]";
     text.scene = R"("scene":0,"scenes":[{"nodes":[)" + roots + "]}],";
     std::string said;
-    CHECK(secondsOf([&] { said = errorOf(text); }) < kAtOnce);
+    CHECK(secondsOf([&] { said = test::errorOf(text); }) < kAtOnce);
     CHECK(contains(said, "vertices and corners, more than 1024 for each of its"));
     GltfText zeros; // no bytes at all behind an accessor
     zeros.accessors = R"([{"componentType":5126,"count":60000000,"type":"VEC3","sparse":{"count":1,)"
                       R"("indices":{"bufferView":3,"componentType":5123},"values":{"bufferView":0}}}])";
     zeros.primitive = R"({"attributes":{"POSITION":0}})";
-    CHECK(secondsOf([&] { said = errorOf(zeros); }) < kAtOnce);
-    CHECK(contains(said, "vertices and corners, more than 1024 for each of its"));
+    CHECK(secondsOf([&] { said = test::errorOf(zeros); }) < kAtOnce);
+    CHECK(contains(said, "accessors[0] (attributes.POSITION): 60000000 elements without data"));
 }
 
 TEST_CASE("gltf: many roots deep in one tree") {
