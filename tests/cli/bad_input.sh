@@ -47,7 +47,8 @@ textured() { # PROPERTY
 export XDG_CACHE_HOME=$PWD/cache
 for name in cut.ppm nan.pfm; do
     textured "tint image \"$name\""
-    expect 0 check image.scene
+    [[ $name == cut.ppm ]] && wanted=1 || wanted=0
+    expect $wanted check image.scene # pixels that cannot be in the file are told by its header
     expect 1 check --textures image.scene
     says err "image.scene:4:62"
     says err "$name"

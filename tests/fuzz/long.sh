@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Many changed files for every fuzz target, with the corpus as a beginning:  long.sh FOLDER [RUNS [TARGET…]]
-# FOLDER holds the programs (build/fuzz/tests/fuzz); what they find stays there.
+# FOLDER holds the programs (build/fuzz/tests); what they find stays there.
 set -uo pipefail
 corpus=$(cd "$(dirname -- "$0")/corpus" && pwd)
 folder=$(realpath -- "$1")

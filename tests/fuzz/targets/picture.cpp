@@ -21,6 +21,7 @@ fs::path cacheFolder() {
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    imageModule(); // throws if it is not there
     const fuzz::MemoryFile file(fuzz::bytesOf(data, size));
     try {
         const AbbeImageInfo info = describeImageFile(file.path());
