@@ -12,7 +12,9 @@ export ASAN_OPTIONS=new_delete_type_mismatch=0
 faults=0
 for target in "${targets[@]}"; do
     started=$SECONDS
-    "$folder/fuzz_$target" -runs="$runs" -findings="$folder" "$corpus/${target%_fork}" || {
+    memory=512
+    [[ $target == vdb* ]] && memory=4096 # grids as they are in memory
+    "$folder/fuzz_$target" -runs="$runs" -memory=$memory -findings="$folder" "$corpus/${target%_fork}" || {
         echo "FAULT: fuzz_$target"
         faults=$((faults + 1))
     }

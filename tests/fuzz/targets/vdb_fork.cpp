@@ -20,16 +20,13 @@ using namespace abbe;
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr double kMostMiB = 2000; // shadow and quarantine
+constexpr double kMostMiB = 6000; // the limit is left out there
 #else
-constexpr double kMostMiB = 1000;
+constexpr double kMostMiB = 2200;
 #endif
-constexpr rlim_t kMostSeconds = 10; // as src/vdb/main.cpp
 
 [[noreturn]] void child(int output, const std::string& command, const std::vector<std::string>& arguments) {
-    const rlimit time{kMostSeconds, kMostSeconds}, none{0, 0};
-    ::setrlimit(RLIMIT_CPU, &time);
-    ::setrlimit(RLIMIT_CORE, &none);
+    vdb::setLimits(arguments.front(), std::uint64_t{4} << 30);
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGVTALRM}) std::signal(signal, SIG_DFL);
     ::dup2(output, STDOUT_FILENO);
     ::close(STDERR_FILENO);

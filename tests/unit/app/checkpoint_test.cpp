@@ -63,7 +63,7 @@ void fill(PixelFilm& film, RenderState& state, std::uint32_t last) {
         tile.tally.excess = {10, 2, 1.5f};
         tile.tally.effects = {1, 2, 3, 4, 5, 6, 7 + i};
         tile.tally.effects.volumes[2] = {8, 9, 10, 11};
-        tile.examples = {{3, 4, 1, 5, DropCause::negative}};
+        tile.examples = {{b.x0, b.y0, 1, 5, DropCause::negative}};
     }
 }
 
