@@ -109,7 +109,7 @@ TEST_CASE("many faults take a time in proportion to their number, on one line, t
     for (const Faults& f : faults()) {
         const double few = std::max(checkSeconds(f.scene(kFew)), 0.004), many = checkSeconds(f.scene(kTimes * kFew));
         // Of a quadratic time 64.
-        CHECK_MESSAGE(many / few < 3 * kTimes, f.name << ": " << few << " s and " << many << " s");
+        CHECK_MESSAGE(many / few < 3 * kTimes, std::string(f.name) << ": " << few << " s and " << many << " s");
     }
 }
 
