@@ -67,8 +67,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
         a.optical = random.exponential();
         schedule(a, a.segment.tNear);
     }
-    for (std::uint32_t events = 1;; ++events) {
-        if (events % kLookUpEvery == 0 && toldToLeave()) break;
+    for (std::uint32_t missed = 1;;) {
         Active* a = earliest(active_);
         if (Glow* glow = earliest(glows_); glow && (!a || glow->next < a->next)) {
             shine(*glow, lambda, weights, *listener);
@@ -87,6 +86,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
             return {a->medium, t};
         }
         if (!anyNonZero(*weights.beta)) return {};
+        if (missed++ % kLookUpEvery == 0 && toldToLeave()) break;
         a->optical = random.exponential();
         schedule(*a, t);
     }
