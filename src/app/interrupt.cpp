@@ -35,6 +35,10 @@ void handle(void (*handler)(int), void (*snapshot)(int)) {
 
 } // namespace
 
+void endOnSignals() {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+}
+
 InterruptGuard::InterruptGuard() {
     stopRequested = false;
     snapshotRequested = false;

@@ -33,6 +33,7 @@ class RenderRun {
 
     ExitCode run() {
         const WorkScope work(Work::preparing);
+        endOnSignals();
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         if (const ExitCode code = prepare(); code != ExitCode::done) return code;
         if (options_.pixel) return renderPixel();

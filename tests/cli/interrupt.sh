@@ -41,6 +41,20 @@ for part in "" "--part 1/2"; do
     [[ $(sum) == "$kept" ]] || fault "a render without a sample changed files: $part"
 done
 
+# While it is built, too, though a shell has its jobs in the background ignore Ctrl-C.
+awk 'BEGIN { n = 400
+    for (i = 0; i < n * n; ++i) printf "v %g %g %g\n", i % n / n - 0.5, i * 7 % 17 * 0.001, int(i / n) / n - 0.5
+    for (i = 1; i < n * (n - 1); ++i) if (i % n) printf "f %d %d %d\nf %d %d %d\n", i, i + 1, i + n, i + 1, i + n + 1, i + n }' >big.obj
+printf 'scene 1\ncamera { from 0 2 0.1; look-at 0 0 0 }\nshape mesh { file "big.obj"; emission 10 }\n' >big.scene
+"$program" big.scene --samples 4000000 -o kept.exr --json >events 2>err &
+job=$!
+for _ in {1..500}; do grep -q '"name":"reading"' events && break || sleep 0.01; done
+began=$EPOCHREALTIME
+kill -INT "$job"
+ended_with 130
+awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { exit !(b - a < 1.5) }' || fault "Ctrl-C took from $began to $EPOCHREALTIME"
+[[ $(sum) == "$kept" ]] || fault "a render that was not built changed files"
+
 # Within the samples of a tile, too: one of them takes longer than that here.
 "$program" "$long" --size 16x16 --samples 4000000 --pilot 0 --json -o slow.exr >events 2>err &
 job=$!
