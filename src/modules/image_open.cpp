@@ -43,6 +43,20 @@ PngHead pngHead(const std::string& path, int width) {
     return {1 + static_cast<double>(width) * b[24] * channels / 8, b[28] != 0};
 }
 
+// OpenImageIO takes memory for the whole canvas of a GIF as it opens it: so this one is asked before. 2560 is what LZW
+// of 12 bits makes of a byte.
+bool isGifBeyondItsBytes(const std::string& path) {
+    std::array<unsigned char, 10> b{};
+    std::FILE* const file = std::fopen(path.c_str(), "rb");
+    if (!file) return false;
+    const std::size_t got = std::fread(b.data(), 1, b.size(), file);
+    std::fclose(file);
+    if (got != b.size() || std::memcmp(b.data(), "GIF", 3) != 0) return false;
+    std::error_code error;
+    const double pixels = (b[6] + 256.0 * b[7]) * (b[8] + 256.0 * b[9]);
+    return pixels > 2560 * static_cast<double>(std::filesystem::file_size(path, error));
+}
+
 // How many bytes a format makes of one at the most; 0: that is not known. Deflate makes 1032 of one, LZW of 12 bits
 // 2560, runs are of 127 or 255; a palette or bits make up to 32 of one once more.
 double mostExpansion(std::string_view format, const OIIO::ImageSpec& spec) {
@@ -79,6 +93,10 @@ std::string beyondItsBytes(const OIIO::ImageInput& file, const std::string& path
 } // namespace
 
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, std::string& reason) {
+    if (isGifBeyondItsBytes(path)) {
+        reason = "it is cut short or damaged: its canvas cannot be in so few bytes";
+        return nullptr;
+    }
     const OIIO::ImageSpec hints = asStored();
     auto file = OIIO::ImageInput::open(path, &hints);
     reason = file ? unusable(file->spec()) : orElse(OIIO::geterror(), "it cannot be opened");

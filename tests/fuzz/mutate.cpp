@@ -19,8 +19,8 @@ constexpr std::array<const char*, 14> kTexts{
 void putNumber(std::string& s, Random& random) {
     const std::size_t size = std::size_t{1} << random.below(4);
     if (s.size() < size) return;
-    std::int64_t v = kNumbers[random.below(kNumbers.size())];
-    if (random.below(4) == 0) v += static_cast<std::int64_t>(random.below(33)) - 16;
+    auto v = static_cast<std::uint64_t>(kNumbers[random.below(kNumbers.size())]);
+    if (random.below(4) == 0) v += random.below(33) - 16; // wraps around
     std::array<char, 8> bytes{};
     std::memcpy(bytes.data(), &v, sizeof v);
     if (random.below(4) == 0) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
