@@ -164,7 +164,7 @@ schema::TypeInfo conductorType() {
 }
 
 std::unique_ptr<const Material> makeConductor(const ConductorParams& params) {
-    if (!params.index.n || !params.index.k) return nullptr; // lost to a syntax error, which is told
+    ABBE_CHECK(params.index.n && params.index.k);
     return std::make_unique<Conductor>(params);
 }
 

@@ -16,7 +16,7 @@ struct ConductorParams {
 };
 
 schema::TypeInfo conductorType();
-// Null without index.n and index.k, which must outlive the material.
+// Requires index.n and index.k, which must outlive the material.
 std::unique_ptr<const Material> makeConductor(const ConductorParams&);
 
 } // namespace abbe

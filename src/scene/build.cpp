@@ -58,9 +58,7 @@ schema::Reference SceneBuilder::makeReference(const Definition& definition, Diag
 
 std::function<bool(void*)> SceneBuilder::binder(const Definition& definition, Diagnostics& diagnostics) {
     return [this, &definition, &diagnostics](void* params) {
-        const std::size_t before = diagnostics.errorCount();
-        schema::bind(definition, tree_, types_, *this, params, diagnostics);
-        return diagnostics.errorCount() == before;
+        return schema::bind(definition, tree_, types_, *this, params, diagnostics);
     };
 }
 

@@ -54,10 +54,8 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
         return;
     }
     cameraSpan_ = definition->span;
-    const std::size_t before = diagnostics_.errorCount();
     const auto bindInto = [&](void* params) {
-        schema::bind(*definition, tree_, types_, *this, params, diagnostics_);
-        return diagnostics_.errorCount() == before;
+        return schema::bind(*definition, tree_, types_, *this, params, diagnostics_);
     };
     if (!definition->type) {
         bindInto(nullptr);

@@ -391,9 +391,8 @@ class SceneBuilder final : public schema::Resolver {
 
 template <typename P> std::optional<P> SceneBuilder::bound(const Definition& definition) {
     P params;
-    const std::size_t before = diagnostics_.errorCount();
-    schema::bind(definition, tree_, types_, *this, definition.type ? &params : nullptr, diagnostics_);
-    if (!definition.type || diagnostics_.errorCount() != before) return std::nullopt;
+    if (!schema::bind(definition, tree_, types_, *this, definition.type ? &params : nullptr, diagnostics_))
+        return std::nullopt;
     return params;
 }
 

@@ -111,10 +111,8 @@ std::optional<SceneBuilder::DicingCamera> SceneBuilder::dicingCamera(const schem
     if (!d || d == only(schema::Kind::camera, options_.camera)) return renderCamera();
     const auto [found, isNew] = dicingCameras_.try_emplace(d);
     if (isNew && d->type) {
-        const std::size_t before = diagnostics_.errorCount();
         const auto bindInto = [&](void* params) {
-            schema::bind(*d, tree_, types_, *this, params, diagnostics_);
-            return diagnostics_.errorCount() == before;
+            return schema::bind(*d, tree_, types_, *this, params, diagnostics_);
         };
         CameraContext context;
         context.zUp = tree_.header.zUp;

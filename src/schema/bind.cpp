@@ -36,12 +36,14 @@ class Binding {
     Binding(const Definition& definition, const BindContext& context, void* params)
         : definition_(definition), type_(*definition.type), context_(context), params_(params) {}
 
-    void run() {
+    // False if a value is missing, be it for an error that was told when another definition was bound.
+    bool run() {
         arguments();
         for (const Node& property : definition_.properties) this->property(property);
         looseSteps();
         required();
         defaults();
+        return complete_;
     }
 
   private:
@@ -89,6 +91,7 @@ class Binding {
     }
 
     void store(const FieldInfo& field, const std::optional<BoundValue>& value) {
+        complete_ = complete_ && value;
         if (value && params_ && field.store) field.store(params_, *value);
     }
 
@@ -267,6 +270,7 @@ class Binding {
     const TypeInfo& type_;
     const BindContext& context_;
     void* params_;
+    bool complete_ = true;
     std::map<const FieldInfo*, Span> given_;
     std::map<std::string_view, std::pair<const FieldInfo*, Span>> groups_; // the first given field of each group
     std::map<std::pair<const FieldInfo*, std::string_view>, Span> keyed_;
@@ -316,15 +320,25 @@ class UntypedBinding {
     const BindContext& context_;
 };
 
+// Whether a syntax error took something out of a node or of what is in it.
+bool isDamaged(const Node& node) {
+    if (node.damaged()) return true;
+    for (const Node child : node.children())
+        if (isDamaged(child)) return true;
+    return false;
+}
+
 } // namespace
 
-void bind(const Definition& definition, const SceneTree& tree, const TypeTable& table, Resolver& resolver, void* params,
+bool bind(const Definition& definition, const SceneTree& tree, const TypeTable& table, Resolver& resolver, void* params,
           Diagnostics& diagnostics) {
+    const std::size_t before = diagnostics.errorCount();
     const BindContext context{tree, table, resolver, diagnostics};
-    if (definition.type)
-        Binding(definition, context, params).run();
-    else
-        UntypedBinding(definition, context).run();
+    if (!definition.type) UntypedBinding(definition, context).run();
+    const bool complete = definition.type && Binding(definition, context, params).run();
+    if (diagnostics.errorCount() != before || !definition.type || (!complete && diagnostics.hasErrors())) return false;
+    // Most scenes have no fault of syntax, and some have a million nodes.
+    return !tree.damaged || (!definition.damaged && std::ranges::none_of(definition.properties, isDamaged));
 }
 
 } // namespace abbe::schema

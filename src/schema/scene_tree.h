@@ -62,7 +62,8 @@ struct SceneTree {
     std::vector<Definition> definitions;
     std::filesystem::path directory; // files are looked up here
     std::shared_ptr<const Document> document;
-    NameIndex index; // filled by resolve()
+    NameIndex index;      // filled by resolve()
+    bool damaged = false; // a syntax error took something out of a node
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
@@ -125,8 +126,10 @@ SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesy
 
 // Second pass: checks every property and argument of one definition against its type (names, units, ranges, arity,
 // groups, required ones, existing files) and stores what is given, and the defaults, into `params`. A definition whose
-// type is unknown is bound with params == nullptr: what is wrong in every type of its kind is still reported.
-void bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
+// type is unknown is bound with params == nullptr: what is wrong in every type of its kind is still reported. False if
+// anything was wrong, with a diagnostic here or, where a syntax error took something out, an earlier one: `params` are
+// not to be used then.
+bool bind(const Definition&, const SceneTree&, const TypeTable&, Resolver&, void* params, Diagnostics&);
 
 // Words as a field of that type has them; nothing after an error.
 std::optional<Words> bindWords(const FieldInfo&, const Node& property, const SceneTree&, Diagnostics&);
