@@ -5,8 +5,8 @@
 
 namespace abbe {
 
-// While there is nothing to save yet: SIGINT and SIGTERM end the process at once, also where they were ignored on entry,
-// as shells have it for jobs in the background.
+// While there is nothing to save yet: SIGINT and SIGTERM end the process at once, also where they were ignored on
+// entry, as shells have it for jobs in the background.
 void endOnSignals();
 
 // From construction to destruction SIGINT and SIGTERM set a flag instead of ending the process; the second one leaves

@@ -20,14 +20,14 @@ expect 0 info term.exr
 says out "abbe.partial = 1"
 
 # Ended before its first sample, while it looks at the frame, it leaves what is there: image, checkpoint and part.
-long=$scenes/../../../scenes/check/hard/white-room.scene
+room=$scenes/../../../scenes/check/hard/white-room.scene
 expect 0 "$scenes/room.scene" --size 24x24 -q -o kept.exr --checkpoint keep
 expect 0 "$scenes/room.scene" --size 24x24 -q -o kept.exr --part 1/2
 sum() { cat kept.exr kept.exr.json kept.exr.ckpt kept.part1.abbe | cksum; }
 kept=$(sum)
 for part in "" "--part 1/2"; do
     # shellcheck disable=SC2086 # two words or none
-    "$program" "$long" --size 640x480 --samples 4000000 -o kept.exr --checkpoint 50ms --json $part >events 2>err &
+    "$program" "$room" --size 640x480 --samples 4000000 -o kept.exr --checkpoint 50ms --json $part >events 2>err &
     job=$!
     for _ in {1..100}; do grep -q '"event":"start"' events && break || sleep 0.1; done
     sleep 0.5
@@ -56,7 +56,7 @@ awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { exit !(b - a < 1.5) }' || fault
 [[ $(sum) == "$kept" ]] || fault "a render that was not built changed files"
 
 # Within the samples of a tile, too: one of them takes longer than that here.
-"$program" "$long" --size 16x16 --samples 4000000 --pilot 0 --json -o slow.exr >events 2>err &
+"$program" "$room" --size 16x16 --samples 4000000 --pilot 0 --json -o slow.exr >events 2>err &
 job=$!
 for _ in {1..600}; do grep -q '"event":"progress"' events && break || sleep 0.1; done
 began=$EPOCHREALTIME
@@ -66,7 +66,7 @@ awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { exit !(b - a < 1.5) }' || fault
 says events '"partial":true'
 
 # So is the time limit; a time that is too short for anything says so.
-expect 0 "$long" --size 16x16 --samples 1 --time 2 --json -o timed.exr
+expect 0 "$room" --size 16x16 --samples 1 --time 2 --json -o timed.exr
 seconds=$(sed -n 's/.*"render_seconds":\([0-9.e+-]*\).*/\1/p' out)
 awk -v s="$seconds" 'BEGIN { exit !(s < 2.6) }' || fault "--time 2 took $seconds s"
 expect 4 "$scenes/room.scene" --time 1e-9 -o never.exr
