@@ -12,7 +12,7 @@ using schema::FieldType;
 
 // m: far beyond any scene, far from overflow; and far below an atom, so that the solid angle of the smallest light at
 // 10 000 km is a number of single precision.
-constexpr double kLargest = 1e12, kSmallest = 1e-12;
+constexpr double kLargest = 1e12, kSmallest = 1e-15;
 
 template <typename Params> void addCommonFields(std::vector<FieldInfo>& fields) {
     addAmountFields<Params>(fields, kAreaAmounts);

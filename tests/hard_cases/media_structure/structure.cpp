@@ -216,7 +216,7 @@ TEST_CASE("case 79: angles of view of 0 and 180°, no aperture, focus at 0 or no
     HardCase c;
     int bad = 0, refused = 0, made = 0;
     for (const char* fov : {"0 deg", "1e-9 deg", "1 deg", "40 deg", "179 deg", "180 deg", "-5 deg"})
-        for (const char* focus : {"0 m", "1e-30 m", "1 mm", "1e30 m", "infinite", "-1 m"})
+        for (const char* focus : {"0 m", "1e-30 m", "1 mm", "1e15 m", "infinite", "-1 m"})
             for (const char* rest :
                  {"", "; aperture 0 mm", "; aperture 1e9 m", "; shutter 0 s", "; aperture -1 mm", "; f-stop 2"}) {
                 const TestScene scene =
