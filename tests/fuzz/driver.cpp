@@ -42,8 +42,8 @@ struct Options {
     std::vector<std::string> inputs;
 };
 
-// For what runs when the program is at its end: no memory is taken there.
-std::string current, findingPath;
+// For what runs when the program is at its end: no memory is taken there, and it is after all destructors.
+std::string &current = *new std::string, &findingPath = *new std::string;
 
 void keepCurrent() {
     const int file = ::open(findingPath.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
