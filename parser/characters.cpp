@@ -2,23 +2,6 @@
 
 namespace abbe::parser {
 
-CodePoint decode(const char* p, const char* end) {
-    const auto byte = [&](int i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(p[i])); };
-    const std::uint32_t lead = byte(0);
-    if (lead < 0x80) return {lead, 1};
-    const std::uint32_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-    if (lead < 0xc2 || lead > 0xf4 || end - p < static_cast<std::ptrdiff_t>(length)) return {};
-    std::uint32_t value = lead & (0x7fu >> length);
-    for (std::uint32_t i = 1; i < length; ++i) {
-        if ((byte(static_cast<int>(i)) & 0xc0u) != 0x80u) return {};
-        value = value << 6 | (byte(static_cast<int>(i)) & 0x3fu);
-    }
-    const bool overlong = (length == 3 && value < 0x800) || (length == 4 && value < 0x10000);
-    const bool surrogate = value >= 0xd800 && value < 0xe000;
-    if (overlong || surrogate || value > 0x10ffff) return {};
-    return {value, length};
-}
-
 void appendUtf8(std::string& text, std::uint32_t c) {
     const auto put = [&](std::uint32_t byte) { text.push_back(static_cast<char>(byte)); };
     if (c < 0x80) {
@@ -54,7 +37,7 @@ std::uint32_t newlineLength(const char* p, const char* end) {
     if (*p == '\r') return p[1] == '\n' ? 2 : 1;
     if (has(*p, kNewline)) return 1;
     if (!has(*p, kWide)) return 0;
-    const CodePoint c = decode(p, end);
+    const CodePoint c = decodeUtf8(p, end);
     return c.length > 0 && wideKind(c.value) == Wide::newline ? c.length : 0;
 }
 
@@ -62,7 +45,7 @@ std::uint32_t blankLength(const char* p, const char* end) {
     if (has(*p, kBlank)) return 1;
     if (*p == 0) return p < end ? 1 : 0; // a NUL in the text: reported already
     if (!has(*p, kWide)) return 0;
-    const CodePoint c = decode(p, end);
+    const CodePoint c = decodeUtf8(p, end);
     if (c.length == 0) return 0;
     const Wide kind = wideKind(c.value);
     return kind == Wide::blank || kind == Wide::disallowed ? c.length : 0;
@@ -70,7 +53,7 @@ std::uint32_t blankLength(const char* p, const char* end) {
 
 bool isWordCharacter(const char* p, const char* end) {
     if (!has(*p, kWide)) return has(*p, kWord);
-    const CodePoint c = decode(p, end);
+    const CodePoint c = decodeUtf8(p, end);
     return c.length > 0 && wideKind(c.value) == Wide::word;
 }
 
@@ -78,7 +61,7 @@ const char* wordEnd(const char* p, const char* end) {
     for (;;) {
         while (has(*p, kWord)) ++p;
         if (!has(*p, kWide)) return p;
-        const CodePoint c = decode(p, end);
+        const CodePoint c = decodeUtf8(p, end);
         if (c.length == 0 || wideKind(c.value) != Wide::word) return p;
         p += c.length;
     }

@@ -1,6 +1,8 @@
 // Classes of characters in KDL 2.0.0: one table for single bytes, one function for the few wide ones that matter.
 #pragma once
 
+#include "base/utf8.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -45,13 +47,6 @@ inline bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 enum class Wide : std::uint8_t { word, blank, newline, disallowed };
 
-struct CodePoint {
-    std::uint32_t value = 0;
-    std::uint32_t length = 0; // bytes; 0: not well-formed UTF-8
-};
-
-// The code point at `p`, which is before `end`. Refuses surrogates, overlong forms and values above 10FFFF.
-CodePoint decode(const char* p, const char* end);
 void appendUtf8(std::string& text, std::uint32_t codePoint);
 
 // What the code point `c` is to KDL.

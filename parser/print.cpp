@@ -19,7 +19,7 @@ std::string quoted(std::string_view text) {
     std::string out = "\"";
     const char* const end = text.data() + text.size();
     for (const char* p = text.data(); p < end;) {
-        const parser::CodePoint c = parser::decode(p, end);
+        const CodePoint c = decodeUtf8(p, end);
         const parser::Wide kind = parser::wideKind(c.value);
         if (*p == '\n')
             out += "\\n";

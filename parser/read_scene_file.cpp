@@ -82,8 +82,7 @@ std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::p
     if (file.size() >= kTooLarge) return refuseLarge(sources, path, diagnostics);
     try {
         requireMemory(static_cast<double>(file.size()));
-        std::string text(file.size(), '\0');
-        text.resize(file.readAt(0, text));
+        std::string text = file.readAll();
         if (!file.good()) return refuseUnread(sources, path, diagnostics, file.why());
         return addText(sources, path, std::move(text), diagnostics);
     } catch (const BeyondMemory& e) {

@@ -47,7 +47,7 @@ Finding findOdd(const char* p, const char* end, bool onlyBroken) {
     while (p < end) {
         while (end - p >= 64 && isPlainBlock(p)) p += 64;
         if (p == end) break;
-        const CodePoint c = decode(p, end);
+        const CodePoint c = decodeUtf8(p, end);
         if (c.length == 0) return {Found::broken, p};
         if (!onlyBroken && wideKind(c.value) == Wide::disallowed) return {Found::disallowed, p};
         p += c.length;
@@ -80,10 +80,10 @@ bool checkCharacters(SyntaxErrors& errors) {
     if (finding.what == Found::nothing) return true;
     if (!checkUtf8(errors)) return false;
     while (finding.what == Found::disallowed) {
-        const std::uint32_t value = decode(finding.at, text.end).value;
+        const std::uint32_t value = decodeUtf8(finding.at, text.end).value;
         const char* next = finding.at; // a run of such characters is one error
-        while (next < text.end && wideKind(decode(next, text.end).value) == Wide::disallowed)
-            next += decode(next, text.end).length;
+        while (next < text.end && wideKind(decodeUtf8(next, text.end).value) == Wide::disallowed)
+            next += decodeUtf8(next, text.end).length;
         errors.error("E0102", finding.at, next,
                      fmt::format("the character U+{:04X} may not stand in a scene file", value),
                      "remove it, or write it as an escape inside a quoted text");

@@ -77,7 +77,7 @@ void checkEscapes(const char* p, const char* end, SyntaxErrors& errors) {
         } else if (simpleEscape(p[1]) != 0) {
             p += 2;
         } else {
-            const std::uint32_t length = std::max(decode(p + 1, errors.text().end).length, 1u);
+            const std::uint32_t length = std::max(decodeUtf8(p + 1, errors.text().end).length, 1u);
             reportEscape(p, p + 1 + length, errors);
             p += 1 + length;
         }

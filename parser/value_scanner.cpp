@@ -259,7 +259,7 @@ const char* ValueScanner::scanParentheses(const char* p) {
 }
 
 const char* ValueScanner::scanOther(const char* p) {
-    const std::uint32_t length = std::max(decode(p, errors_.text().end).length, 1u);
+    const std::uint32_t length = std::max(decodeUtf8(p, errors_.text().end).length, 1u);
     const std::string_view character = between(p, p + length);
     Diagnostic& d = errors_.error("E0101", p, p + length, fmt::format("`{}` has no meaning here", character),
                                   "unexpected character");

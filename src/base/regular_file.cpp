@@ -41,4 +41,10 @@ std::size_t RegularFile::readAt(std::uint64_t offset, std::span<char> to) {
     return done;
 }
 
+std::string RegularFile::readAll() {
+    std::string bytes(size_, '\0');
+    bytes.resize(readAt(0, bytes));
+    return bytes;
+}
+
 } // namespace abbe

@@ -25,6 +25,8 @@ class RegularFile {
     std::uint64_t size() const { return size_; }
     // Fills `to` from there on, as far as the file goes; how many bytes came. Fewer also after an error, see good().
     std::size_t readAt(std::uint64_t offset, std::span<char> to);
+    // All of it, likewise. Requires that there is memory for size() bytes.
+    std::string readAll();
 
   private:
     int descriptor_ = -1;

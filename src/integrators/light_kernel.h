@@ -67,17 +67,11 @@ template <EffectBits E> class LightKernel {
             if (context_.toldToStop()) break;
             waiting_.clear();
             trace(replicate, std::uint64_t{sample} * context_.traced->paths + j, listener);
-            if (left()) break;
+            if (media_.left() || result_.counters.left) break;
             for (const Waiting& w : waiting_) add(replicate, sample, w);
             ++result_.lightPaths;
         }
         if (j < job_.end) result_.rest = {unit, j - job_.begin};
-    }
-
-    bool left() const {
-        if constexpr (PathLoop<E>::kMedia)
-            if (media_.tracker.counters.left) return true;
-        return result_.counters.left;
     }
 
     template <typename Listener> void trace(int replicate, std::uint64_t number, Listener& listener) {

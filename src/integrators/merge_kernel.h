@@ -92,11 +92,7 @@ template <EffectBits E> class MergeKernel {
         return !left();
     }
 
-    bool left() const {
-        if constexpr (PathLoop<E>::kMedia)
-            if (media_.tracker.counters.left) return true;
-        return result_.counters.left || context_.toldToStop();
-    }
+    bool left() const { return media_.left() || result_.counters.left || context_.toldToStop(); }
 
     std::vector<Photon> trace(int replicate, std::uint32_t number) {
         std::vector<Photon> photons;

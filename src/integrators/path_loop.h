@@ -27,6 +27,7 @@ struct TracedView;
 // What paths through media need and keep from one to the next.
 struct MediaState {
     MediaState(const Scene& scene, const StopFlag& stop) : tracker(scene.openMedia, stop) {}
+    bool left() const { return tracker.counters.left; } // a ray, since the render is to end
 
     // The way that the path is on, from a vertex or a boundary; `media` is empty where near lights are not looked for.
     struct Leg {

@@ -22,7 +22,9 @@ using EffectBits = std::uint8_t;
 constexpr bool hasEffect(EffectBits bits, Effect e) { return (bits & static_cast<EffectBits>(e)) != 0; }
 
 namespace path_detail {
-struct Nothing {};
+struct Nothing {
+    static constexpr bool left() { return false; } // see MediaState
+};
 // Densities of the path so far at each lane's wavelength over that at the hero's: q_j / q_h [Wilkie2014, eq. 5]. The
 // estimate divides by their mean; they stay 1 until a density depends on wavelength.
 struct SpectralDensities {

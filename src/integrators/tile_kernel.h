@@ -185,7 +185,7 @@ template <EffectBits E> class TileKernel {
 
     // A sample of which a probe, or a ray in a medium, was left is left itself.
     void leaveWithParts() {
-        if constexpr (PathLoop<E>::kMedia) result_.counters.left |= media_.tracker.counters.left;
+        result_.counters.left |= media_.left();
         if (result_.counters.left) [[unlikely]]
             radiance_ = Spectrum(std::numeric_limits<float>::quiet_NaN());
     }

@@ -2,6 +2,7 @@
 
 #include "base/memory_limit.h"
 #include "io/exr_bounds.h"
+#include "io/exr_faults.h"
 #include "io/io_error.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -27,21 +28,6 @@ namespace {
 
 // More values than this are not read at once: 16 GiB.
 constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 32;
-
-// Runs `body`; whatever OpenEXR throws becomes an IoError with the file's name.
-template <typename F> auto guarded(const std::string& path, const F& body) {
-    const auto fail = [&](std::string_view why) { throw IoError(fmt::format("cannot read `{}`: {}", path, why)); };
-    try {
-        return body();
-    } catch (const IoError&) {
-        throw;
-    } catch (const std::bad_alloc& e) {
-        fail(memoryReason(e));
-    } catch (const std::exception& e) {
-        fail(e.what());
-    }
-    throw IoError(path); // not reached
-}
 
 [[noreturn]] void refuse(const std::string& path, std::string_view why) {
     throw IoError(fmt::format("cannot read `{}`: {}", path, why));
@@ -201,7 +187,7 @@ const std::vector<float>* ExrPlanes::find(std::string_view name) const {
 }
 
 ExrInfo readExrInfo(const std::string& path) {
-    return guarded(path, [&] {
+    return readingExr(path, [&] {
         checkExrBounds(path);
         const Imf::MultiPartInputFile file(path.c_str(), 0, false);
         return describe(file);
@@ -209,7 +195,7 @@ ExrInfo readExrInfo(const std::string& path) {
 }
 
 ExrPlanes readExrChannels(const std::string& path, const std::function<bool(std::string_view)>& wanted) {
-    return guarded(path, [&] { return readPlanes(path, wanted); });
+    return readingExr(path, [&] { return readPlanes(path, wanted); });
 }
 
 std::vector<float> readExrChannel(const std::string& path, const std::string& channel) {

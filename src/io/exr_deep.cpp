@@ -4,6 +4,7 @@
 #include "base/memory_limit.h"
 #include "base/regular_file.h"
 #include "io/exr_bounds.h"
+#include "io/exr_faults.h"
 #include "io/exr_header.h"
 #include "io/exr_stream.h"
 #include "io/io_error.h"
@@ -156,15 +157,7 @@ void writeDeepExr(const std::string& path, const DeepPicture& picture) {
 }
 
 DeepPicture readDeepExr(const std::string& path) {
-    try {
-        return readSamples(path);
-    } catch (const IoError&) {
-        throw;
-    } catch (const std::bad_alloc& e) {
-        throw IoError(fmt::format("cannot read `{}`: {}", path, memoryReason(e)));
-    } catch (const std::exception& e) {
-        throw IoError(fmt::format("cannot read `{}`: {}", path, e.what()));
-    }
+    return readingExr(path, [&] { return readSamples(path); });
 }
 
 FlatPicture flatten(const DeepPicture& p) {

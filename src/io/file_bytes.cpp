@@ -11,8 +11,7 @@ namespace abbe {
 std::string readFileBytes(const std::string& path) {
     RegularFile file(path);
     requireMemory(static_cast<double>(file.size()));
-    std::string bytes(file.size(), '\0');
-    bytes.resize(file.readAt(0, bytes));
+    std::string bytes = file.readAll();
     if (!file.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file.why()));
     return bytes;
 }

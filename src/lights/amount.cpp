@@ -47,15 +47,19 @@ std::optional<double> scaleFor(const schema::Quantity& quantity, const Curve& sh
     return scale;
 }
 
+Diagnostic& reportBeyondRange(double value, const LightRange& range, std::string_view what, Span span,
+                              std::string label, Diagnostics& diagnostics) {
+    const char* const how = value > range.most ? "bright" : "dim";
+    return diagnostics.error("E0349", span, fmt::format("the {} is too {} to be calculated with", what, how),
+                             std::move(label));
+}
+
 bool checkLightRange(const ScaledCurve& light, const LightRange& range, Span span, Diagnostics& diagnostics) {
     double most = 0;
     for (int nm = static_cast<int>(kMinWavelength); nm <= static_cast<int>(kMaxWavelength); ++nm)
         most = std::max(most, light.at(static_cast<double>(nm)));
-    if (most == 0 || (most >= range.least && most <= range.most)) return true;
-    diagnostics
-        .error("E0349", span,
-               fmt::format("the light is too {} to be calculated with", most > range.most ? "bright" : "dim"),
-               fmt::format("comes to {:.3g} {}", most, range.unit))
+    if (range.holds(most)) return true;
+    reportBeyondRange(most, range, "light", span, fmt::format("comes to {:.3g} {}", most, range.unit), diagnostics)
         .notes.push_back(fmt::format("light is 0, or between {:g} and {:g} {}", range.least, range.most, range.unit));
     return false;
 }

@@ -60,12 +60,16 @@ std::optional<double> scaleFor(const schema::Quantity&, const Curve& shape, doub
 struct LightRange {
     double least, most;
     std::string_view unit;
+    bool holds(double value) const { return value == 0 || (value >= least && value <= most); }
 };
 inline constexpr LightRange kSkyRadiance = {1e-18, 1e12, "W/m²/sr/nm"};
 inline constexpr LightRange kSurfaceRadiance = {1e-18, 1e30, "W/m²/sr/nm"};
 inline constexpr LightRange kIntensityRange = {1e-30, 1e30, "W/sr/nm"};
 inline constexpr LightRange kIrradianceRange = {1e-30, 1e30, "W/m²/nm"};
 
+// An error about what the range does not hold; `what` is it of.
+Diagnostic& reportBeyondRange(double value, const LightRange&, std::string_view what, Span, std::string label,
+                              Diagnostics&);
 // False, after an error, if the largest value between 360 and 830 nm is neither 0 nor in the range.
 bool checkLightRange(const ScaledCurve&, const LightRange&, Span, Diagnostics&);
 

@@ -281,12 +281,11 @@ namespace {
 bool checkBrightestPixel(const EnvironmentImage& image, double scale, Span span, Diagnostics& diagnostics) {
     const auto brightest = std::ranges::max_element(image.rgb);
     const double most = static_cast<double>(*brightest) * scale;
-    if (most == 0 || (most >= kSkyRadiance.least && most <= kSkyRadiance.most)) return true;
+    if (kSkyRadiance.holds(most)) return true;
     const auto pixel = (brightest - image.rgb.begin()) / 3;
-    Diagnostic& d = diagnostics.error(
-        "E0349", span,
-        fmt::format("the environment image is too {} to be calculated with", most > 1 ? "bright" : "dim"),
-        fmt::format("pixel {},{} is {:.3g}", pixel % image.width, pixel / image.width, *brightest));
+    Diagnostic& d = reportBeyondRange(
+        most, kSkyRadiance, "environment image", span,
+        fmt::format("pixel {},{} is {:.3g}", pixel % image.width, pixel / image.width, *brightest), diagnostics);
     d.notes.push_back(fmt::format("times `luminance` and `exposure` that comes to {:.3g}; between {:g} and {:g} can be "
                                   "calculated with",
                                   most, kSkyRadiance.least, kSkyRadiance.most));

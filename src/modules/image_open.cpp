@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 namespace abbe_images {
@@ -25,6 +26,16 @@ std::string unusable(const OIIO::ImageSpec& spec) {
     return {};
 }
 
+// The first bytes of a file; nothing if there are fewer.
+template <std::size_t N> std::optional<std::array<unsigned char, N>> headOf(const std::string& path) {
+    std::array<unsigned char, N> bytes{};
+    std::FILE* const file = std::fopen(path.c_str(), "rb");
+    if (!file) return std::nullopt;
+    const std::size_t got = std::fread(bytes.data(), 1, N, file);
+    std::fclose(file);
+    return got == N ? std::optional(bytes) : std::nullopt;
+}
+
 // What the first chunk of a PNG says [ISO 15948, 11.2.2]; nothing of other files.
 struct PngHead {
     double rowBytes = 0; // of stored rows
@@ -32,12 +43,9 @@ struct PngHead {
 };
 
 PngHead pngHead(const std::string& path, int width) {
-    std::array<unsigned char, 29> b{};
-    std::FILE* const file = std::fopen(path.c_str(), "rb");
-    if (!file) return {};
-    const std::size_t got = std::fread(b.data(), 1, b.size(), file);
-    std::fclose(file);
-    if (got != b.size() || std::memcmp(b.data(), "\x89PNG\r\n\x1a\n", 8) != 0) return {};
+    const auto head = headOf<29>(path);
+    if (!head || std::memcmp(head->data(), "\x89PNG\r\n\x1a\n", 8) != 0) return {};
+    const auto& b = *head;
     constexpr std::array<int, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by the type of colour
     const int channels = b[25] < kChannels.size() ? kChannels[b[25]] : 4;
     return {1 + static_cast<double>(width) * b[24] * channels / 8, b[28] != 0};
@@ -46,12 +54,9 @@ PngHead pngHead(const std::string& path, int width) {
 // OpenImageIO takes memory for the whole canvas of a GIF as it opens it: so this one is asked before. 2560 is what LZW
 // of 12 bits makes of a byte.
 bool isGifBeyondItsBytes(const std::string& path) {
-    std::array<unsigned char, 10> b{};
-    std::FILE* const file = std::fopen(path.c_str(), "rb");
-    if (!file) return false;
-    const std::size_t got = std::fread(b.data(), 1, b.size(), file);
-    std::fclose(file);
-    if (got != b.size() || std::memcmp(b.data(), "GIF", 3) != 0) return false;
+    const auto head = headOf<10>(path);
+    if (!head || std::memcmp(head->data(), "GIF", 3) != 0) return false;
+    const auto& b = *head;
     std::error_code error;
     const double pixels = (b[6] + 256.0 * b[7]) * (b[8] + 256.0 * b[9]);
     return pixels > 2560 * static_cast<double>(std::filesystem::file_size(path, error));

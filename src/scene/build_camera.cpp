@@ -54,9 +54,7 @@ void SceneBuilder::buildCamera(BuiltScene& built) {
         return;
     }
     cameraSpan_ = definition->span;
-    const auto bindInto = [&](void* params) {
-        return schema::bind(*definition, tree_, types_, *this, params, diagnostics_);
-    };
+    const auto bindInto = binder(*definition, diagnostics_);
     if (!definition->type) {
         bindInto(nullptr);
         return;

@@ -30,14 +30,12 @@ LightContext SceneBuilder::lightContext(const Definition& d, const Motion& toRen
 
 // Lights with a place are chosen by their power, in single precision.
 bool SceneBuilder::checkPower(const Light& light, Span span) {
-    constexpr double kLeast = 1e-30, kMost = 1e35;
+    constexpr LightRange kRange = {1e-30, 1e35, "W"};
     const double power = light.power();
-    if (power == 0 || !light.bounds(0) || (power >= kLeast && power <= kMost)) return true;
-    diagnostics_
-        .error("E0349", span,
-               fmt::format("the light is too {} to be calculated with", power > kMost ? "bright" : "dim"),
-               fmt::format("gives off {:.3g} W", power))
-        .notes.push_back(fmt::format("the power of a light is 0, or between {:g} and {:g} W", kLeast, kMost));
+    if (!light.bounds(0) || kRange.holds(power)) return true;
+    reportBeyondRange(power, kRange, "light", span, fmt::format("gives off {:.3g} W", power), diagnostics_)
+        .notes.push_back(
+            fmt::format("the power of a light is 0, or between {:g} and {:g} W", kRange.least, kRange.most));
     return false;
 }
 

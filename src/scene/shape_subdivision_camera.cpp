@@ -111,9 +111,7 @@ std::optional<SceneBuilder::DicingCamera> SceneBuilder::dicingCamera(const schem
     if (!d || d == only(schema::Kind::camera, options_.camera)) return renderCamera();
     const auto [found, isNew] = dicingCameras_.try_emplace(d);
     if (isNew && d->type) {
-        const auto bindInto = [&](void* params) {
-            return schema::bind(*d, tree_, types_, *this, params, diagnostics_);
-        };
+        const auto bindInto = binder(*d, diagnostics_);
         CameraContext context;
         context.zUp = tree_.header.zUp;
         context.filmSize = {static_cast<int>(built_->film.size.x), static_cast<int>(built_->film.size.y)};

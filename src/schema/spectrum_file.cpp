@@ -63,8 +63,7 @@ SpectrumFile readSpectrumFile(const std::filesystem::path& path, std::string_vie
         fail(file, 0, "it is larger than 16 MiB");
         return file;
     }
-    std::string text(stored.size(), '\0');
-    text.resize(stored.readAt(0, text));
+    const std::string text = stored.readAll();
     if (!stored.good()) {
         fail(file, 0, fmt::format("it cannot be read: {}", stored.why()));
         return file;

@@ -2,11 +2,10 @@
 #include "app/checkpoint_file.h"
 #include "film/pixel_film.h"
 #include "fuzz/target.h"
-#include "io/io_error.h"
+#include "fuzz/targets/reading.h"
 #include "math/byte_hash.h"
 
 #include <cstring>
-#include <new>
 
 using namespace abbe;
 
@@ -57,10 +56,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     repair(bytes);
     const fuzz::MemoryFile file(bytes);
     try {
-        read(file.path());
+        fuzz::reading([&] { read(file.path()); });
     } catch (const CheckpointFault&) {
-    } catch (const IoError&) {
-    } catch (const std::bad_alloc&) {
     }
     return 0;
 }

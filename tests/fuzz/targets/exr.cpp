@@ -1,29 +1,20 @@
 // OpenEXR through all ways that the program reads it: header, channels, picture, deep samples, a copy with more
 // channels.
 #include "fuzz/target.h"
+#include "fuzz/targets/reading.h"
 #include "io/aces_container.h"
 #include "io/exr_append.h"
 #include "io/exr_deep.h"
 #include "io/exr_reader.h"
-#include "io/io_error.h"
 
 #include <cstdlib>
 #include <filesystem>
-#include <new>
 #include <numeric>
 #include <unistd.h>
 
 using namespace abbe;
 
 namespace {
-
-template <typename F> void reading(const F& read) {
-    try {
-        read();
-    } catch (const IoError&) {
-    } catch (const std::bad_alloc&) {
-    }
-}
 
 std::string targetPath() {
     static const std::string path =
@@ -46,20 +37,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string bytes = fuzz::bytesOf(data, size);
     checkAcesContainer(bytes);
     const fuzz::MemoryFile file(bytes);
-    reading([&] { readExrInfo(file.path()); });
-    reading([&] {
+    fuzz::reading([&] { readExrInfo(file.path()); });
+    fuzz::reading([&] {
         const ExrPlanes planes = readExrChannels(file.path());
         for (const auto& values : planes.values)
             fuzz::require(values.size() == planes.info.window.area(), "a channel of another size");
     });
-    reading([&] { readExr(file.path()); });
-    reading([&] {
+    fuzz::reading([&] { readExr(file.path()); });
+    fuzz::reading([&] {
         const DeepPicture deep = readDeepExr(file.path());
         const auto total = std::accumulate(deep.counts.begin(), deep.counts.end(), std::size_t{0});
         for (const auto* plane : {&deep.z, &deep.zBack, &deep.a, &deep.r, &deep.g, &deep.b})
             fuzz::require(plane->size() == total, "deep samples of another number");
         flatten(deep);
     });
-    reading([&] { append(file.path()); });
+    fuzz::reading([&] { append(file.path()); });
     return 0;
 }

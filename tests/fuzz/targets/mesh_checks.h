@@ -2,12 +2,12 @@
 #pragma once
 
 #include "fuzz/target.h"
+#include "fuzz/targets/reading.h"
 #include "io/cage_file.h"
 #include "io/mesh_file.h"
 #include "io/ply_points.h"
 
 #include <algorithm>
-#include <new>
 
 namespace abbe::fuzz {
 
@@ -39,15 +39,6 @@ inline void checkCage(const CageFile& file) {
     for (const std::uint32_t v : c.corners) require(v < c.positions.size(), "a corner of a vertex that is not there");
     for (const std::uint32_t v : c.uvCorners)
         require(v < c.uvs.size(), "a corner of a texture vertex that is not there");
-}
-
-// What a reader may end with.
-template <typename F> void reading(const F& read) {
-    try {
-        read();
-    } catch (const IoError&) {
-    } catch (const std::bad_alloc&) {
-    }
 }
 
 } // namespace abbe::fuzz

@@ -1,9 +1,10 @@
 // Files that are read: what is no regular file is refused at once, and no more is read than there was.
 #include "base/memory_limit.h"
 #include "base/regular_file.h"
+#include "support/memory_scope.h"
+#include "unit/io/temporary_folder.h"
 
 #include <chrono>
-#include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
@@ -14,16 +15,6 @@ using namespace abbe;
 
 namespace {
 
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "abbe-file-XXXXXX").string();
-        path = ::mkdtemp(pattern.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-    std::string operator/(const char* name) const { return (path / name).string(); }
-};
-
 std::string text(RegularFile& file, std::uint64_t at, std::size_t count) {
     std::string bytes(count, '?');
     bytes.resize(file.readAt(at, bytes));
@@ -33,21 +24,21 @@ std::string text(RegularFile& file, std::uint64_t at, std::size_t count) {
 } // namespace
 
 TEST_CASE("regular files: pipes and devices are refused without waiting") {
-    const Folder folder;
+    const TemporaryFolder folder;
     const std::string fifo = folder / "fifo";
     REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
     const auto begin = std::chrono::steady_clock::now();
     CHECK(RegularFile(fifo).why() == "it is not a regular file");
     CHECK(RegularFile("/dev/zero").why() == "it is not a regular file");
     CHECK(RegularFile("/dev/tty").good() == false);
-    CHECK(RegularFile(folder.path.string()).why() == "Is a directory");
+    CHECK(RegularFile(folder / ".").why() == "Is a directory");
     CHECK(RegularFile(folder / "missing").why() == "No such file or directory");
     CHECK(whyNotRegular(fifo) == "it is not a regular file");
     CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(1)); // a writer never comes
 }
 
 TEST_CASE("regular files: links count as what they lead to, and files may shrink and grow") {
-    const Folder folder;
+    const TemporaryFolder folder;
     const std::string path = folder / "a";
     std::ofstream(path) << "0123456789";
     std::filesystem::create_symlink(path, folder / "link");
@@ -68,12 +59,9 @@ TEST_CASE("regular files: links count as what they lead to, and files may shrink
 }
 
 TEST_CASE("memory: what is beyond the limit is refused before it is taken") {
-    struct Restore {
-        ~Restore() { setMemoryLimit(0); }
-    } restore;
     CHECK(memoryLimit() == availableMemory());
     CHECK(availableMemory() <= physicalMemory());
-    setMemoryLimit(static_cast<double>(residentMemory()) + (100 << 20));
+    const test::MemoryScope scope(100 << 20);
     CHECK(memoryLeft() > 0);
     CHECK(memoryLeft() <= 100 << 20);
     CHECK_NOTHROW(requireMemory(20 << 20));

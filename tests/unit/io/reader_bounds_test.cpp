@@ -12,6 +12,7 @@
 #include "io/mesh_file.h"
 #include "io/ply_points.h"
 #include "support/exr_bytes.h"
+#include "support/memory_scope.h"
 #include "temporary_folder.h"
 
 #include <chrono>
@@ -38,12 +39,6 @@ bool contains(const std::string& text, const std::string& part) {
     if (!found) MESSAGE("expected: ", part, ", said: ", text);
     return found;
 }
-
-// A limit for the rest of a scope, above what the process has.
-struct MemoryScope {
-    explicit MemoryScope(double bytes) { setMemoryLimit(static_cast<double>(residentMemory()) + bytes); }
-    ~MemoryScope() { setMemoryLimit(0); }
-};
 
 std::string readingExr(const std::string& path) {
     return test::errorOf([&] { readExr(path); });

@@ -32,15 +32,9 @@ light room sky { luminance 100 nits }
 
 // Whether the scene has an error. Throws where something that was taken out is used.
 bool isRefused(const std::string& scene) {
-    SourceMap sources;
-    Diagnostics diagnostics;
-    const FileId file = sources.add("test.scene", scene);
-    const schema::TypeTable types = makeTypeTable();
-    const auto tree = schema::resolve(parse(sources, file, {}, diagnostics), types, ABBE_SOURCE_DIR, diagnostics);
     BuildOptions options;
     options.geometry = false;
-    buildScene(tree, types, options, diagnostics);
-    return diagnostics.hasErrors();
+    return TestScene::parse(scene, options).diagnostics().hasErrors();
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // Pictures whose header promises more than the file or the memory can hold, before anything is decoded.
-#include "base/memory_limit.h"
 #include "io/png_writer.h"
 #include "support/exr_bytes.h"
+#include "support/memory_scope.h"
 #include "support/picture_file.h"
 #include "textures/image_texture.h"
 
@@ -46,11 +46,6 @@ bool says(const std::string& text, const std::string& part) {
     if (!found) MESSAGE("expected: ", part, ", said: ", text);
     return found;
 }
-
-struct MemoryLeft {
-    explicit MemoryLeft(double bytes) { setMemoryLimit(static_cast<double>(residentMemory()) + bytes); }
-    ~MemoryLeft() { setMemoryLimit(0); }
-};
 
 // A PNG of one colour, 16384 by 256: 12 MiB as stored, in a few kilobytes.
 std::string longPng(const Bounds& b) {
@@ -124,12 +119,12 @@ TEST_CASE("pictures: more than the memory that is left") {
     CHECK(b.codes(path, TextureUse::heights) == "");
     CHECK(b.codes(path) == "");
     {
-        const MemoryLeft left(60 << 20); // the whole picture as floats takes 48 MiB, and again as stored
+        const test::MemoryScope left(60 << 20); // the whole picture as floats takes 48 MiB, and again as stored
         CHECK(says(b.codes(path, TextureUse::heights), "E0404: `long.png` does not fit into memory it takes 96 MiB"));
         CHECK(b.codes(path) == ""); // from the cache
     }
     fs::remove_all(b.folder.path / "cache");
-    const MemoryLeft left(4 << 20); // not even a band of rows
+    const test::MemoryScope left(4 << 20); // not even a band of rows
     CHECK(says(b.codes(path), "E0404: `long.png` does not fit into memory to read it takes"));
     CHECK(b.codes(path).find("W0452") == std::string::npos);
 }
