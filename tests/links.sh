@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What pages of Markdown link to or show is there, the gallery's index among them; and all files of the gallery are in its index.
+# What pages of Markdown link to or show is there, the gallery's index among them; all files of the gallery are in its index,
+# and all pages of docs/ are in the navigation of the site.
 #   links.sh [ROOT [LEAST NUMBER OF LINKS]]
 set -euo pipefail
 cd "${1:-$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..}"
@@ -21,6 +22,19 @@ if [[ -e docs/gallery ]]; then
     for file in docs/gallery/*; do
         name=${file##*/}
         [[ $name == README.md ]] || grep -qF -e "\"$name\"" -e "($name)" docs/gallery/README.md || { echo "$file is not in its index"; faults=$((faults + 1)); }
+    done
+fi
+if [[ -e docs/site/mkdocs.yml ]]; then
+    # Pages, patterns and folders, which stand for all that is in them.
+    mapfile -t navigation < <(grep -oE 'docs/[^ ]*(\.md|/)$' docs/site/mkdocs.yml | sed 's,/$,/*,')
+    for page in "${pages[@]#./}"; do
+        [[ $page == docs/* ]] || continue
+        for pattern in "${navigation[@]}"; do
+            # shellcheck disable=SC2053 # a pattern
+            [[ $page == $pattern ]] && continue 2
+        done
+        echo "$page is not in docs/site/mkdocs.yml"
+        faults=$((faults + 1))
     done
 fi
 exit $((faults > 0))
