@@ -18,14 +18,13 @@ mkdir -p "$pages"
 find README.md CONTRIBUTING.md CHANGELOG.md docs scenes -type f \
     \( -name '*.md' -o -name '*.png' -o -name '*.jpg' -o -name '*.svg' -o -name '*.html' -o -name '*.scene' -o -name '*.bib' \) \
     -exec cp --parents -t "$pages" {} +
-# A folder without a page of its own gets a list of those in it.
-for folder in docs/decisions; do
-    [[ -e $folder/README.md ]] && continue
+# Decisions have no page of their own that lists them.
+decisions=docs/decisions
+if [[ ! -e $decisions/README.md ]]; then
     {
-        echo "# Decisions"
-        echo
-        for page in "$folder"/*.md; do echo "* [$(sed -n '1s/^# //p' "$page")](${page##*/})"; done
-    } >"$pages/$folder/README.md"
-done
+        printf '# Decisions\n\n'
+        for page in "$decisions"/*.md; do echo "* [$(sed -n '1s/^# //p' "$page")](${page##*/})"; done
+    } >"$pages/$decisions/README.md"
+fi
 NO_MKDOCS_2_WARNING=1 "$venv/bin/mkdocs" build --strict --quiet --config-file docs/site/mkdocs.yml "$@"
 echo "build/site is made; to read it: python3 -m http.server --directory build/site"
