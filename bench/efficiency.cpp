@@ -6,8 +6,8 @@
 // bench/render_error.h says what relMSE is; the last column leaves the worst 0.1 % of the pixels out.
 #include "app/load.h"
 #include "base/parallel.h"
-#include "integrators/technique_words.h"
 #include "render_error.h"
+#include "rendering/render_params.h"
 
 #include <cmath>
 #include <cstdio>

@@ -3,8 +3,8 @@
 //   bench_lights [--size N] [--seconds N] [--reference SAMPLES] [COUNT…]     default: 128, 20, 1024, 1 100 1000 100000
 //   relMSE after so many core-seconds, relMSE × samples and efficiency, each of all pixels and without the worst 0.1 %.
 #include "base/parallel.h"
-#include "integrators/technique_words.h"
 #include "render_error.h"
+#include "rendering/render_params.h"
 #include "support/scene_test.h"
 #include "support/statistics.h"
 

@@ -3,11 +3,11 @@
 //      and with that of each brick, and residual tracking as the renderer does it; every evaluation of the density is
 //      counted, by the same counter. And microseconds per estimate, times relative variance.
 //   2. collisions per second while rays are followed to where they scatter.
-#include "integrators/medium_tracker.h"
 #include "measure.h"
 #include "media/grid_medium.h"
 #include "media/henyey_greenstein.h"
 #include "spectrum/sampled_curve.h"
+#include "transport/medium_tracker.h"
 #include "volumes/brick_walk.h"
 #include "volumes/noise.h"
 

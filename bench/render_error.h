@@ -2,7 +2,7 @@
 #pragma once
 
 #include "film/pixel_film.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 #include "scene/build.h"
 #include "spectrum/color_space.h"
 

@@ -41,10 +41,11 @@ endfunction()
 # The main program of every test, compiled once: doctest's own code is as much as ten tests.
 add_library(abbe_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest_main.cpp)
 
-# abbe_test(name folder DEPS … LABEL …): one doctest executable from every .cpp of a folder under tests/.
-function(abbe_test name folder)
+# abbe_test(name folders DEPS … LABEL …): one doctest executable from every .cpp of some folders under tests/.
+function(abbe_test name folders)
     cmake_parse_arguments(A "INPUT" "LABEL" "DEPS" ${ARGN})
-    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
+    list(TRANSFORM folders REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/tests/\\1/*.cpp")
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folders})
     if(NOT sources)
         return()
     endif()

@@ -20,7 +20,7 @@ function finish_file() {
 FNR == 1 {
     finish_file()
     file = FILENAME; lines = 0; depth = 0; inside = 0; pending = ""; comment = 0
-    split(file, part, "/"); folder = part[1] == "src" ? part[2] : part[1]
+    folder = file; sub(/^src\//, "", folder); sub(/\/[^\/]*$/, "", folder)
 }
 {
     ++lines
@@ -48,8 +48,8 @@ FNR == 1 {
 }
 END {
     finish_file()
-    printf "%-12s %6s %8s %13s %17s\n", "folder", "files", "lines", "longest file", "longest function"
-    for (f in file_count) printf "%-12s %6d %8d %13d %17d\n", f, file_count[f], line_sum[f], longest[f], longest_function[f] | "sort"
+    printf "%-22s %6s %8s %13s %17s\n", "folder", "files", "lines", "longest file", "longest function"
+    for (f in file_count) printf "%-22s %6d %8d %13d %17d\n", f, file_count[f], line_sum[f], longest[f], longest_function[f] | "sort"
     close("sort")
     for (i = 1; i <= functions; ++i) ++histogram[lengths[i]]
     for (n = 1; n <= 1000 && seen < 0.9 * functions; ++n) seen += histogram[n]

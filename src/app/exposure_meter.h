@@ -1,7 +1,7 @@
 // How bright a picture is to be shown: what `exposure auto` goes by, and what is proposed when a picture shows nothing.
 #pragma once
 
-#include "integrators/pilot_pixel.h"
+#include "caustics/shared/pilot.h"
 #include "render/integrator.h"
 #include "render/scene.h"
 

@@ -1,6 +1,6 @@
 #include "app/found_fault.h"
 
-#include "integrators/watched_film.h"
+#include "rendering/path_record.h"
 
 #include <charconv>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/source_map.h"
-#include "integrators/sample_fault.h"
 #include "render/scene.h"
+#include "rendering/sample_fault.h"
 #include "schema/scene_tree.h"
 
 #include <span>

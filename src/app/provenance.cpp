@@ -3,7 +3,7 @@
 #include "app/hash128.h"
 #include "app/light_path_text.h"
 #include "app/version.h"
-#include "integrators/technique_words.h"
+#include "rendering/render_params.h"
 
 #include <algorithm>
 #include <fmt/format.h>

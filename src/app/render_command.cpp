@@ -7,7 +7,7 @@
 #include "app/render_warnings.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 
 #include <algorithm>
 #include <filesystem>

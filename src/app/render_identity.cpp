@@ -1,8 +1,8 @@
 #include "app/render_identity.h"
 
 #include "app/version.h"
-#include "integrators/technique_words.h"
 #include "math/byte_hash.h"
+#include "rendering/render_params.h"
 
 #include <algorithm>
 #include <filesystem>

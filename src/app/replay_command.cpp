@@ -4,8 +4,8 @@
 #include "app/provenance.h"
 #include "app/render_run.h"
 #include "app/replay_story.h"
-#include "integrators/watched_film.h"
 #include "io/exr_channels.h"
+#include "rendering/path_record.h"
 
 #include <algorithm>
 #include <filesystem>

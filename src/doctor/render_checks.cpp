@@ -4,9 +4,9 @@
 #include "base/source_map.h"
 #include "film/film_params.h"
 #include "film/pixel_film.h"
-#include "integrators/path_tracer.h"
 #include "math/random_stream.h"
 #include "parser/parse.h"
+#include "rendering/path_tracer.h"
 #include "scene/build.h"
 #include "scene/registry.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "integrators/path_state.h"
-#include "integrators/surroundings_at.h"
 #include "render/scene.h"
+#include "transport/surroundings.h"
 
 #include <algorithm>
 

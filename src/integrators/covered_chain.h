@@ -1,7 +1,7 @@
 // What a camera path has met since the last vertex at which manifold sampling was asked.
 #pragma once
 
-#include "integrators/chain_signature.h"
+#include "caustics/shared/chain_signature.h"
 
 #include <cstdint>
 

@@ -2,9 +2,8 @@
 // at the end.
 #pragma once
 
-#include "integrators/disk_kernel.h"
+#include "caustics/merging/photon_map.h"
 #include "integrators/path_loop.h"
-#include "integrators/round_photons.h"
 
 namespace abbe {
 

@@ -1,8 +1,8 @@
 // Faces of dielectrics that separate nothing, because they lie within others [Schmidt2002].
 #pragma once
 
-#include "integrators/surroundings.h"
 #include "render/scene.h"
+#include "transport/surroundings.h"
 
 #include <array>
 

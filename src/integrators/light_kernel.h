@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/check.h"
-#include "integrators/glint_search.h"
+#include "caustics/glints/glint_search.h"
+#include "caustics/shared/light_start.h"
 #include "integrators/light_loop.h"
-#include "integrators/light_start.h"
 #include "integrators/merge_kernel.h"
 #include "integrators/tile_kernel.h"
 #include "render/splat.h"

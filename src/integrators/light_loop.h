@@ -2,9 +2,9 @@
 // Arvo1986].
 #pragma once
 
-#include "integrators/emitted_ray.h"
+#include "caustics/merging/photon_map.h"
 #include "integrators/path_loop.h"
-#include "integrators/photon.h"
+#include "light_sampling/emitted_ray.h"
 #include "render/path_component.h"
 
 namespace abbe {

@@ -2,9 +2,9 @@
 // Hachisuka2008; Knaus2011].
 #pragma once
 
+#include "caustics/shared/light_start.h"
 #include "integrators/gather_loop.h"
 #include "integrators/light_loop.h"
-#include "integrators/light_start.h"
 #include "integrators/tile_kernel.h"
 #include "render/splat.h"
 

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "base/stop_flag.h"
-#include "integrators/glint_plan.h"
-#include "integrators/light_path_plan.h"
-#include "integrators/light_sampler.h"
-#include "integrators/loop_technique.h"
-#include "integrators/manifold_listener.h"
-#include "integrators/merge_plan.h"
+#include "caustics/glints/glint_plan.h"
+#include "caustics/light_tracing/light_path_plan.h"
+#include "caustics/manifold/manifold_sampler.h"
+#include "caustics/merging/merge_plan.h"
+#include "light_sampling/light_sampler.h"
 #include "render/integrator.h"
 #include "render/scene.h"
+#include "transport/loop_technique.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 // What paths come to beside light.
 #pragma once
 
-#include "integrators/manifold_sample.h"
+#include "caustics/manifold/manifold_sample.h"
 #include "render/effect_counts.h"
 
 #include <cstdint>

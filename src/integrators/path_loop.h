@@ -8,17 +8,17 @@
 #include "integrators/forced_lobe.h"
 #include "integrators/hidden_face.h"
 #include "integrators/leg_listener.h"
-#include "integrators/medium_tracker.h"
 #include "integrators/path_context.h"
 #include "integrators/path_counters.h"
 #include "integrators/path_state.h"
-#include "integrators/roulette.h"
-#include "integrators/sampler.h"
-#include "integrators/surroundings_at.h"
 #include "math/equiangular.h"
 #include "render/light_vertex.h"
 #include "render/path_observer.h"
 #include "render/scene.h"
+#include "transport/medium_tracker.h"
+#include "transport/roulette.h"
+#include "transport/sampler.h"
+#include "transport/surroundings.h"
 
 namespace abbe {
 

@@ -1,14 +1,14 @@
 // What a path carries from vertex to vertex. Members of effects that a scene lacks do not exist.
 #pragma once
 
+#include "caustics/glints/glint_plan.h"
 #include "integrators/covered_chain.h"
-#include "integrators/glint_plan.h"
-#include "integrators/surroundings.h"
 #include "render/effects.h"
 #include "render/receiver.h"
 #include "render/scatter_outline.h"
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
+#include "transport/surroundings.h"
 
 #include <algorithm>
 #include <cmath>

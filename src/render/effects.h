@@ -22,7 +22,7 @@ enum class Effect : std::uint32_t {
     textures = 8,    // paths have a width, over which textures are averaged
     interfaces = 16, // surfaces that are partly open, or dielectrics that lie in one another
     lightPaths = 32, // paths that start at the lights, beside those from the camera; nothing a scene asks for, but
-                     // what a plan may find worth its time (integrators/light_path_plan.h)
+                     // what a plan may find worth its time (caustics/light_tracing/light_path_plan.h)
 
     subsurface = 1u << 8,    // a medium fills a shape
     glow = 1u << 9,          // media give off light

@@ -5,9 +5,9 @@
 #include "cameras/exposure.h"
 #include "film/film_params.h"
 #include "film/layer_plan.h"
-#include "integrators/render_params.h"
 #include "math/interval.h"
 #include "render/scene.h"
+#include "rendering/render_params.h"
 #include "scene/effect_switches.h"
 #include "schema/scene_tree.h"
 

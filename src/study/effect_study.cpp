@@ -3,9 +3,9 @@
 #include "base/parallel.h"
 #include "base/work_clock.h"
 #include "film/pixel_film.h"
-#include "integrators/path_tracer.h"
 #include "io/flip.h"
 #include "math/hash.h"
+#include "rendering/path_tracer.h"
 #include "study/effect_prediction.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "base/stopwatch.h"
 #include "denoise/denoise.h"
 #include "film/layer_planes.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 
 #include <ctime>
 #include <numeric>

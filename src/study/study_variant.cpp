@@ -1,8 +1,8 @@
 #include "study/study_variant.h"
 
 #include "film/pixel_film.h"
-#include "integrators/light_sampler.h"
-#include "integrators/path_tracer.h"
+#include "light_sampling/light_sampler.h"
+#include "rendering/path_tracer.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 
 #include "base/stopwatch.h"
 #include "film/film_params.h"
-#include "integrators/path_tracer.h"
 #include "math/vec.h"
 #include "render/render_state.h"
+#include "rendering/path_tracer.h"
 #include "verify/replicate_mean.h"
 
 #include <algorithm>

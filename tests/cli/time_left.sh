@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The time left, of real renders: from a tenth of the run on, what is foretold as the whole is within 20 % of what it
 # comes to. Work is told in core seconds, so that other programs on the machine do not matter; what the clock makes of it
-# is tested by simulation (tests/unit/integrators/time_left_test.cpp).
+# is tested by simulation (tests/unit/rendering/time_left_test.cpp).
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 scene=$scenes/../../../scenes/glass-caustic/glass-caustic.scene

@@ -4,9 +4,9 @@
 #include "film/pixel_film.h"
 #include "geometry/embree_scene_builder.h"
 #include "geometry/plane.h"
-#include "integrators/path_tracer.h"
 #include "lights/sky_light.h"
 #include "materials/diffuse.h"
+#include "rendering/path_tracer.h"
 #include "spectrum/sampled_curve.h"
 #include "support/scene_test_film.h"
 

@@ -1,7 +1,7 @@
 // One light of every kind, for tests of the paths that start there.
 #pragma once
 
-#include "integrators/aimed_emission.h"
+#include "caustics/shared/aimed_emission.h"
 #include "render/intersector.h"
 #include "support/environment_file.h"
 #include "support/scene_test.h"

@@ -2,8 +2,8 @@
 // number. Decorators around the real ones; nothing in the renderer knows of them.
 #pragma once
 
-#include "integrators/watched_film.h"
 #include "render/scene.h"
+#include "rendering/path_record.h"
 #include "scene/forwarding_material.h"
 #include "support/forwarding_film.h"
 

@@ -1,8 +1,8 @@
 // Small scenes with polished interfaces and a lamp, and what specular manifold sampling makes of them.
 #pragma once
 
-#include "integrators/caster_candidates.h"
-#include "integrators/manifold_pilot.h"
+#include "caustics/manifold/caster_candidates.h"
+#include "caustics/manifold/manifold_pilot.h"
 #include "support/scene_test.h"
 #include "support/statistics.h"
 

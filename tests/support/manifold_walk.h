@@ -1,7 +1,7 @@
 // Paths that find lamps by chance, as the path tracer does, as far as manifold sampling says that it has them already.
 #pragma once
 
-#include "integrators/aim_cone.h"
+#include "caustics/shared/aim_cone.h"
 #include "math/warp.h"
 #include "support/manifold_cases.h"
 

@@ -3,9 +3,9 @@
 
 #include "base/diagnostic_format.h"
 #include "base/source_map.h"
-#include "integrators/path_tracer.h"
 #include "parser/parse.h"
 #include "parser/presets.h"
+#include "rendering/path_tracer.h"
 #include "scene/build.h"
 #include "scene/registry.h"
 #include "support/scene_test_film.h"

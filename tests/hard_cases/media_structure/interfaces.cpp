@@ -1,8 +1,8 @@
 // Dielectrics inside one another and around the eye: cases 69 to 71 of docs/hard_cases.md.
 #include "hard_cases/hard_case.h"
-#include "integrators/dielectric_stack.h"
 #include "materials/dielectric.h"
 #include "support/tank.h"
+#include "transport/surroundings.h"
 
 using namespace abbe;
 using namespace abbe::test;

@@ -1,6 +1,6 @@
 // Newton's method over polished interfaces, where it is worst: caustics themselves, grazing light, rings.
+#include "caustics/manifold/chain_solver.h"
 #include "hard_cases/hard_case.h"
-#include "integrators/chain_solver.h"
 #include "support/manifold_cases.h"
 
 namespace abbe::test {

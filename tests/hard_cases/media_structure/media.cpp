@@ -2,13 +2,13 @@
 #include "support/media.h"
 
 #include "hard_cases/hard_case.h"
-#include "integrators/medium_tracker.h"
 #include "media/draine.h"
 #include "media/henyey_greenstein.h"
 #include "media/homogeneous.h"
 #include "media/noise_medium.h"
 #include "support/phase_check.h"
 #include "support/scene_test.h"
+#include "transport/medium_tracker.h"
 #include "unit/volumes/voxel_cases.h"
 #include "volumes/brick_walk.h"
 

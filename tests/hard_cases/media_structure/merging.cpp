@@ -1,6 +1,6 @@
 // Photons where their density has no bound.
+#include "caustics/merging/merge_plan.h"
 #include "hard_cases/hard_case.h"
-#include "integrators/merge_plan.h"
 #include "support/scene_test.h"
 
 namespace abbe::test {

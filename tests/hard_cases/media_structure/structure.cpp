@@ -1,12 +1,12 @@
 // Random numbers, textures, cameras and files: cases 73, 75 to 80 of docs/hard_cases.md.
 #include "cameras/perspective.h"
 #include "hard_cases/hard_case.h"
-#include "integrators/sampler.h"
 #include "math/warp.h"
 #include "parser/number.h"
 #include "support/picture_file.h"
 #include "support/scene_test.h"
 #include "textures/image_texture.h"
+#include "transport/sampler.h"
 
 #include <set>
 #include <unordered_set>

@@ -1,7 +1,7 @@
 // Which light, which lobe, which weight: cases 35 to 39 of docs/hard_cases.md.
 #include "doctor/sampling_checks.h"
 #include "hard_cases/hard_case.h"
-#include "integrators/light_tree.h"
+#include "light_sampling/light_tree.h"
 #include "math/distribution_1d.h"
 #include "support/chi_square.h"
 #include "support/scene_test.h"

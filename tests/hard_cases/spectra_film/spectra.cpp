@@ -1,7 +1,6 @@
 // Spectra: cases 46 to 51 of docs/hard_cases.md.
 #include "film/pixel_film.h"
 #include "hard_cases/hard_case.h"
-#include "integrators/medium_tracker.h"
 #include "media/homogeneous.h"
 #include "spectrum/dispersion.h"
 #include "spectrum/emission_curves.h"
@@ -9,6 +8,7 @@
 #include "spectrum/wavelength_density.h"
 #include "support/media.h"
 #include "support/scene_test.h"
+#include "transport/medium_tracker.h"
 
 using namespace abbe;
 using namespace abbe::test;

@@ -1,5 +1,5 @@
 // Paths from the lights give the picture that paths from the camera give.
-#include "integrators/aimed_emission.h"
+#include "caustics/shared/aimed_emission.h"
 #include "integrators/light_loop.h"
 #include "integrators/tile_kernel.h"
 #include "support/scene_test.h"

@@ -1,5 +1,5 @@
 #include "app/exposure_meter.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 #include "support/scene_test.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // Light that media give off, collected along a ray through what absorbs and scatters it.
-#include "integrators/medium_tracker.h"
 #include "media/optical_medium.h"
 #include "support/media.h"
 #include "support/statistics.h"
+#include "transport/medium_tracker.h"
 
 #include <doctest/doctest.h>
 

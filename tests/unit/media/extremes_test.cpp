@@ -1,7 +1,7 @@
 // Optical lengths that leave the range of float, and distances that few random numbers reach.
-#include "integrators/medium_tracker.h"
 #include "media/homogeneous.h"
 #include "support/media.h"
+#include "transport/medium_tracker.h"
 
 #include <doctest/doctest.h>
 

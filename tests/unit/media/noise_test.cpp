@@ -1,10 +1,10 @@
 // Noise volumes: transmittance against integrals, bounds that hold nearly everywhere, and nothing lost where they do
 // not.
-#include "integrators/medium_tracker.h"
 #include "media/noise_medium.h"
 #include "media/noise_volume.h"
 #include "support/media.h"
 #include "support/statistics.h"
+#include "transport/medium_tracker.h"
 
 #include <doctest/doctest.h>
 #include <random>

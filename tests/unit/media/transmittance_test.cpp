@@ -1,10 +1,10 @@
 // What comes through media without scattering, against integrals; and both ways of finding it against each other.
-#include "integrators/medium_tracker.h"
 #include "media/atmosphere.h"
 #include "media/grid_medium.h"
 #include "media/homogeneous.h"
 #include "support/media.h"
 #include "support/statistics.h"
+#include "transport/medium_tracker.h"
 
 #include <doctest/doctest.h>
 

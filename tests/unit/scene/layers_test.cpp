@@ -1,6 +1,6 @@
 // Layers of rendered images: what they hold, and that they change nothing.
 #include "film/layer_planes.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 #include "spectrum/observer.h"
 #include "support/scene_test.h"
 

@@ -1,6 +1,6 @@
 // Pictures that light paths are part of: their layers, their single samples, and what is said of them.
 #include "film/layer_planes.h"
-#include "integrators/path_tracer.h"
+#include "rendering/path_tracer.h"
 #include "support/light_plan.h"
 #include "support/scene_test.h"
 

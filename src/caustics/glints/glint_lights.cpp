@@ -1,0 +1,58 @@
+#include "caustics/glints/glint_lights.h"
+
+#include "light_sampling/light_target.h"
+#include "math/sobol.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace abbe {
+
+namespace {
+
+constexpr float kLargest = 0.1f; // rad: what is wider has no small images
+constexpr int kPoints = 16;
+
+std::optional<GlintLamp> distantLamp(const Light& light) {
+    std::vector<Vec3> directions;
+    Vec3 sum;
+    for (int i = 0; i < kPoints; ++i) {
+        const Vec2 u{(static_cast<float>(i) + 0.5f) / kPoints,
+                     static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
+        const auto s = light.sampleDistant(u, Wavelengths::sample(0.5f), 0);
+        if (!s || s->delta) return std::nullopt;
+        directions.push_back(s->wi);
+        sum = sum + s->wi;
+    }
+    GlintLamp lamp{&light, true, normalize(sum), 0};
+    for (const Vec3 w : directions) lamp.size = std::max(lamp.size, length(w - lamp.place));
+    return lamp.size > 0 && lamp.size < kLargest ? std::optional(lamp) : std::nullopt;
+}
+
+std::optional<GlintLamp> placedLamp(const Light& light) {
+    if (light.parts() != 1) return std::nullopt;
+    const auto bounds = light.bounds(0);
+    const auto target = LightTarget::sample(light, 0, 1, {0.5f, 0.5f}, Wavelengths::sample(0.5f), 0);
+    if (!bounds || !target || target->delta) return std::nullopt;
+    const Vec3 size = bounds->box.upper - bounds->box.lower;
+    return GlintLamp{&light, false, (bounds->box.lower + bounds->box.upper) * 0.5f,
+                     0.5f * std::max({size.x, size.y, size.z})};
+}
+
+} // namespace
+
+std::vector<GlintLamp> glintLamps(const Scene& scene, std::size_t most) {
+    std::vector<GlintLamp> lamps;
+    for (const auto& light : scene.lights) {
+        if (light->paths() == LightPaths::none || !(light->visiblePower() > 0)) continue;
+        const auto lamp = light->paths() == LightPaths::distant ? distantLamp(*light) : placedLamp(*light);
+        if (lamp) lamps.push_back(*lamp);
+    }
+    std::ranges::stable_sort(lamps, [](const GlintLamp& a, const GlintLamp& b) {
+        return a.light->visiblePower() > b.light->visiblePower();
+    });
+    if (lamps.size() > most) lamps.resize(most);
+    return lamps;
+}
+
+} // namespace abbe

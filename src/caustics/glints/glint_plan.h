@@ -1,0 +1,75 @@
+// Where on the film mirrors and clear glass show small images of lamps: glints.
+#pragma once
+
+#include "caustics/shared/chain_signature.h"
+#include "math/vec.h"
+#include "render/film.h"
+
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+namespace abbe {
+
+class Light;
+
+// A rectangle of the film, as CameraSample::film, half-open.
+struct FilmBox {
+    Vec2 lower, upper;
+
+    bool contains(Vec2 p) const { return p.x >= lower.x && p.x < upper.x && p.y >= lower.y && p.y < upper.y; }
+    bool overlaps(const FilmBox& b) const {
+        return lower.x < b.upper.x && b.lower.x < upper.x && lower.y < b.upper.y && b.lower.y < upper.y;
+    }
+    FilmBox united(const FilmBox& b) const {
+        return {{std::min(lower.x, b.lower.x), std::min(lower.y, b.lower.y)},
+                {std::max(upper.x, b.upper.x), std::max(upper.y, b.upper.y)}};
+    }
+    // Empty where they do not overlap.
+    FilmBox common(const FilmBox& b) const {
+        return {{std::max(lower.x, b.lower.x), std::max(lower.y, b.lower.y)},
+                {std::min(upper.x, b.upper.x), std::min(upper.y, b.upper.y)}};
+    }
+    float area() const { return std::max(0.f, upper.x - lower.x) * std::max(0.f, upper.y - lower.y); }
+};
+
+// In the box, by that chain.
+struct Glint {
+    GlintChain chain;
+    FilmBox box;
+    std::uint32_t side = 2; // side² probes of it belong to every sample of a pixel that sees the box
+};
+
+// Frozen before light is gathered. Which light that is: a camera path whose place on the film is in a glint's box has
+// met delta interfaces alone, with exactly the glint's events, and then one of the lamps. Camera paths leave it out;
+// instead samples of the pixels that see a box send probes into it, which take exactly these events and so need not
+// find them by chance (glint_loop.h). How well the boxes fit decides on the noise alone.
+class GlintPlan {
+  public:
+    GlintPlan() = default;
+    // `lights`: whose glints are meant. `reach`: radius of the pixel filter, pixels. Boxes of the same chain that
+    // overlap are put together.
+    GlintPlan(PixelBounds frame, float reach, std::vector<Glint> glints, std::unordered_set<const Light*> lights);
+
+    bool empty() const { return glints_.empty(); }
+    const std::vector<Glint>& glints() const { return glints_; }
+    bool has(const Light* light) const { return lights_.contains(light); }
+    // Those that pixels of a row of the frame may see, by their places in glints().
+    std::span<const std::uint32_t> ofRow(int y) const;
+    // Whether the light of a plan's lamp that was met by `chain` from there is left to probes. `row`: ofRow() of a
+    // pixel that has that place within reach.
+    bool covers(std::span<const std::uint32_t> row, const GlintChain& chain, Vec2 film) const {
+        for (const std::uint32_t i : row)
+            if (glints_[i].chain == chain && glints_[i].box.contains(film)) return true;
+        return false;
+    }
+
+  private:
+    PixelBounds frame_;
+    std::vector<Glint> glints_;
+    std::unordered_set<const Light*> lights_;
+    std::vector<std::vector<std::uint32_t>> rows_; // of the frame
+};
+
+} // namespace abbe

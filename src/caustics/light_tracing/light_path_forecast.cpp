@@ -1,0 +1,153 @@
+#include "caustics/light_tracing/light_path_forecast.h"
+
+#include "base/parallel.h"
+#include "base/work.h"
+#include "caustics/shared/pilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace abbe {
+
+namespace {
+
+constexpr int kCells = 12, kLeastCells = 3; // of a row
+constexpr int kReplicates = 2;
+
+using Samples = std::array<std::array<double, CameraVariance::kMany>, kReplicates>;
+
+struct Probe {
+    Samples y{};
+    std::uint64_t rays = 0;
+};
+
+// One call for each sample: a film is told sums alone.
+Probe probe(const PathContext& context, TileFunction render, const RouletteReference& roulette, PixelBounds pixel) {
+    Probe result;
+    PilotPixel film(pixel, kReplicates);
+    for (std::uint32_t i = 0; i < CameraVariance::kMany; ++i) {
+        const TileResult r = render(context, film, {pixel, i, i + 1, &roulette});
+        for (int k = 0; k < kReplicates; ++k) result.y[static_cast<std::size_t>(k)][i] = film.luminance(k);
+        result.rays += r.counters.vertices + r.counters.shadowRays;
+    }
+    return result;
+}
+
+CameraVariance varianceOf(const Samples& samples, double weight) {
+    constexpr double kMany = CameraVariance::kMany;
+    std::array<double, kReplicates> means{};
+    double mean = 0;
+    for (std::size_t k = 0; k < means.size(); ++k) {
+        for (const double v : samples[k]) means[k] += v / kMany;
+        mean += means[k] / kReplicates;
+    }
+    CameraVariance result;
+    for (std::size_t k = 0; k < means.size(); ++k) {
+        for (const double v : samples[k]) {
+            result.secondMoment += weight * square(v) / (kReplicates * kMany);
+            result.variance += weight * square(v - mean) / (kReplicates * kMany - 1);
+        }
+        result.ofMeans += weight * kMany * square(means[k] - mean) / (kReplicates - 1);
+    }
+    return result;
+}
+
+void add(CameraVariance& to, const CameraVariance& v, double share) {
+    to.secondMoment += v.secondMoment * share;
+    to.variance += v.variance * share;
+    to.ofMeans += v.ofMeans * share;
+}
+
+} // namespace
+
+CameraNoise cameraNoise(const PathContext& context, TileFunction render, const RouletteReference& roulette,
+                        const LightPathPlan& plan, const NoiseMeasure& measure) {
+    const PilotPixel::Grid grid(context.scene.frame, PilotSize(context.settings).side(kCells, kLeastCells));
+    LightPathPlan all = plan; // leaves to light paths what they can bring
+    all.alone = true;
+    PathContext without = context;
+    without.traced = &all;
+    std::vector<CameraNoise> pixels(grid.size());
+    parallelFor(pixels.size(), [&](std::size_t i) {
+        const PixelBounds pixel = grid.pixel(i);
+        addWorkFlag(WorkFlag::pilot);
+        Probe found = probe(context, render, roulette, pixel);
+        const Probe rest = probe(without, render, roulette, pixel);
+        removeWorkFlag(WorkFlag::pilot);
+        // The same paths, so that what one of them has more is what light paths could bring.
+        for (std::size_t k = 0; k < found.y.size(); ++k)
+            for (std::size_t s = 0; s < found.y[k].size(); ++s) found.y[k][s] -= rest.y[k][s];
+        const double weight = measure.weight(pixel.x0, pixel.y0);
+        pixels[i] = {varianceOf(found.y, weight), varianceOf(rest.y, weight),
+                     static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany), found.rays + rest.rays};
+    });
+    CameraNoise result;
+    const double share = 1 / static_cast<double>(pixels.size());
+    for (const CameraNoise& p : pixels) {
+        add(result.shared, p.shared, share);
+        add(result.rest, p.rest, share);
+        result.rays += p.rays * share;
+        result.pilotRays += p.pilotRays;
+    }
+    return result;
+}
+
+LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, PixelBounds frame,
+                                     const NoiseMeasure& measure) {
+    const auto pixels = static_cast<double>(frame.area());
+    terms_.reserve(deposits.size());
+    for (const LightDeposit& d : deposits) {
+        const double rho = std::max(d.rho, 1e-12); // no camera path may find it
+        const double u = d.luminance * std::sqrt(measure.weight(d.x, d.y));
+        terms_.push_back({u * u * d.stands / pixels, rho, u / rho});
+    }
+    limitOutliers();
+    std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::spark);
+}
+
+// A few deposits that camera paths would meet once in millions would say all of a second moment, and next to nothing of
+// what renders show: the largest count as the ninth.
+void LightPathForecast::limitOutliers() {
+    constexpr std::size_t kFew = 8;
+    if (terms_.size() <= kFew) return;
+    const auto largest = [](const Term& a, const Term& b) { return a.ofCamera(0) > b.ofCamera(0); };
+    const auto ninth = terms_.begin() + kFew;
+    std::ranges::nth_element(terms_, ninth, largest);
+    const double most = ninth->ofCamera(0);
+    for (auto t = terms_.begin(); t != ninth; ++t) {
+        t->spark *= most * t->rho / t->u2;
+        t->rho = t->u2 / most;
+    }
+}
+
+double LightPathForecast::sparks() const {
+    constexpr double kSpark = 3; // light that is asked for varies by less
+    double sum = 0;
+    for (const Term& t : terms_)
+        if (t.spark > kSpark) sum += t.ofCamera(0);
+    return sum;
+}
+
+// The second moment that light paths tell and a look at some pixels has not seen is that of the brightest sparks, which
+// are the rarest; a mean of samples has all of it, stratified or not. The rest is as noisy as it was seen to be, which
+// is less than its second moment: most of it may be light that camera paths find with next to no noise.
+double LightPathForecast::variance(double share, const CameraVariance& alone) const {
+    double foretold = 0;
+    for (const Term& t : terms_) foretold += t.ofCamera(0);
+    double missed = std::max(0.0, foretold - alone.secondMoment);
+    double variance = 0, seenAlone = 0, seen = 0;
+    for (const Term& t : terms_) {
+        if (missed > 0)
+            variance += t.ofCamera(share);
+        else {
+            seenAlone += t.ofCamera(0);
+            seen += t.ofCamera(share);
+        }
+        missed -= t.ofCamera(0);
+        variance += t.ofLight(share);
+    }
+    return variance + (seenAlone > 0 ? alone.planned() * seen / seenAlone : 0);
+}
+
+} // namespace abbe

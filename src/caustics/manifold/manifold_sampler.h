@@ -1,0 +1,91 @@
+// Caustics that are seen through glass or in mirrors: light that small sources send over one to three delta interfaces
+// to a point that is not a mirror itself [Zeltner2020].
+#pragma once
+
+#include "caustics/manifold/chain_tracer.h"
+#include "caustics/manifold/manifold_plan.h"
+#include "caustics/manifold/manifold_sample.h"
+#include "integrators/covered_chain.h"
+#include "math/distribution_1d.h"
+#include "math/random_stream.h"
+#include "render/bsdf.h"
+
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace abbe {
+
+// Which kind of chain is looked for, and the probability of that choice.
+struct ManifoldChoice {
+    std::uint32_t caster = 0;
+    ChainSignature signature;
+    float probability = 0;
+};
+
+// Light and chain are drawn; then first directions towards the caster, from each of which Newton's method finds a
+// solution or none. A solution that was found with probability p counts 1/p, for which the number of further trials
+// until it comes back is an estimate without bias [Zeltner2020]. There is no density of these paths, so that
+// the path tracer leaves out exactly those that follow() and covers() know, instead of a weight for each technique.
+// That is decided by the path alone: by its events and shapes, and by how large the lamp appears by way of it.
+//
+// Immutable, thread-safe; the scene must outlive it.
+class ManifoldSampler {
+  public:
+    // Requires casters and lights of the scene, as ManifoldPlan states them.
+    ManifoldSampler(const Scene&, ManifoldPlan);
+
+    // Nothing to look for.
+    bool empty() const { return plan_.casters.empty() || plan_.lights.empty(); }
+    const ManifoldPlan& plan() const { return plan_; }
+
+    // An estimate of all that is covered; nothing for no light. Requires !empty(). `media`: null where the scene has
+    // none.
+    std::optional<ManifoldSample> sample(const ChainStart&, const Wavelengths&, RandomStream&, ManifoldCounts&,
+                                         MediumTracker* media = nullptr) const noexcept;
+    // Its two steps. Of a light, its part and a point of it, or a direction; may be nothing:
+    std::optional<LightTarget> drawTarget(const Wavelengths&, float time, RandomStream&) const noexcept;
+    // Of a caster and a signature, for a receiver at p:
+    ManifoldChoice choose(Vec3 p, RandomStream&) const noexcept;
+    // The shapes that chains run over: those of casterCandidates() without obstacle.
+    const std::unordered_set<const Shape*>& followed() const { return followed_; }
+    // An estimate of the sum over all solutions with this target and signature, by one of them.
+    std::optional<ManifoldSample> estimate(const ChainStart&, const LightTarget&, const ManifoldChoice&,
+                                           const Wavelengths&, RandomStream&, ManifoldCounts&,
+                                           MediumTracker* media = nullptr) const noexcept;
+
+    // A camera path went on from a place of the shape by this lobe.
+    void follow(CoveredChain& chain, const Shape*, Lobes lobe) const noexcept;
+    // Whether some light of this lamp by such a chain is covered, as far as its shapes and events tell.
+    bool coversKind(const CoveredChain& chain, const Light*) const noexcept;
+    // Whether light that the path meets next is covered: whoever asked at the start of the chain has it already.
+    // `start` and `direction` as there; `met`: LightTarget::met(). Cheap where no such light can be covered.
+    bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
+                const Wavelengths&) const noexcept;
+
+  private:
+    // Whether the lamp's image is, so that chains to it are covered.
+    bool isSmall(const SpecularChain&, const LightTarget&) const noexcept;
+
+    const Scene& scene_;
+    ManifoldPlan plan_;
+    std::optional<Distribution1D> lightChoice_;
+    std::vector<Distribution1D> signatureChoice_; // by caster
+    std::unordered_set<const Shape*> followed_;
+    std::unordered_map<const Shape*, std::uint32_t> casters_;
+    std::unordered_map<const Light*, std::uint32_t> lights_;
+};
+
+// Who hears of light asked for by manifold sampling: pilots. Called by one thread.
+class ManifoldListener {
+  public:
+    virtual ~ManifoldListener() = default;
+    // A path of throughput `beta` asked at `start` and was told of `light` at the eye; a path that meets the same lamp
+    // by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates; `light` is
+    // that of one, not its share of the mean.
+    virtual void asked(const ChainStart& start, const Spectrum& beta, const Wavelengths&, const Spectrum& light,
+                       const Spectrum& chance) = 0;
+};
+
+} // namespace abbe

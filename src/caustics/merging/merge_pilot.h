@@ -1,0 +1,55 @@
+// Rounds of merging that are looked at before a render.
+#pragma once
+
+#include "caustics/shared/noise_measure.h"
+#include "integrators/light_kernel.h"
+
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+namespace abbe {
+
+// Some rounds with few light paths, gathered by an even part of the pixels.
+class MergePilot {
+  public:
+    // Light of one lamp in one pixel of one round; luminance.
+    struct Pixel {
+        std::uint32_t light = 0; // place in the scene
+        int x = 0, y = 0;
+        double sum = 0, squares = 0; // of what its photons bring, and of the squares
+        double camera = 0;           // Σ of what a photon brings times the sample of a camera path that finds the same
+        double unseen = 0;           // of the sum, by photons that no camera path finds
+    };
+    struct Heard {
+        std::vector<Pixel> pixels;
+        std::vector<LightStart> starts;
+        std::vector<LightDeposit> deposits;    // whose squares add up as those of the photons do
+        double looks = 0;                      // pixels times rounds
+        double each = 0;                       // pixels of the frame for each of those
+        double gatherRays = 0, photonRays = 0; // of a pixel of a round, and of a light path
+        double photons = 0;                    // that a light path leaves
+        std::uint64_t rays = 0;
+
+        // As deposits that add up to the light itself.
+        std::vector<LightDeposit> shown() const;
+    };
+
+    MergePilot(const PathContext& context, const TracedKernel& kernel, const std::function<bool()>& stop);
+    // Light paths of a round.
+    std::uint32_t photons() const { return photons_; }
+    // Depends on the scene, the frame, the settings of the context and the key alone, unless `stop` cuts it short.
+    Heard listen(const MergePlan&, std::uint64_t key) const;
+
+  private:
+    class Listener;
+
+    const PathContext& context_;
+    const TracedKernel& kernel_;
+    const std::function<bool()>& stop_;
+    std::uint32_t photons_;
+    int step_;
+    std::unordered_map<const Light*, std::uint32_t> numbers_;
+};
+
+} // namespace abbe

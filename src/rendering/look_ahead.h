@@ -1,0 +1,31 @@
+// What is found out about a frame before the first sample of its image.
+#pragma once
+
+#include "integrators/tile_kernel.h"
+#include "render/first_look.h"
+#include "rendering/sampling_plan.h"
+#include "transport/roulette.h"
+
+#include <functional>
+#include <vector>
+
+namespace abbe {
+
+class RenderState;
+
+// From samples of seeds of their own, which are never part of the image; of the whole frame, whatever part of it is
+// rendered.
+struct LookAhead {
+    RouletteReference roulette;
+    SamplingPlan plan;             // even unless the settings ask for more
+    std::vector<double> tileCosts; // of a sample in each tile of the state, in rays
+    std::uint64_t rays = 0;        // that it took
+    FirstLook first;
+    double raysOfPath = 0; // of a camera path, in the mean over the frame
+};
+
+// Rough, and no longer the same from one run to the next, if `stop` says so on the way.
+LookAhead lookAhead(const PathContext&, TileFunction, const Film&, const RenderState&,
+                    const std::function<bool()>& stop);
+
+} // namespace abbe

@@ -1,0 +1,225 @@
+#include "rendering/render_params.h"
+
+#include <array>
+
+namespace abbe {
+
+namespace {
+
+// In the order of the enumerators; the first is the default.
+template <typename E> constexpr std::array<std::string_view, 5> kWords{};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Numbers>{"sobol", "stratified", "random"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Strategy>{"mis", "lights", "bsdf"};
+template <>
+constexpr std::array<std::string_view, 5> kWords<Technique::Weights>{"balance", "power", "equal", "lights",
+                                                                     "scattering"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Directions>{"importance", "uniform", "mixed"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
+
+template <>
+constexpr std::array<std::string_view, 5> kWords<Technique::LightPaths>{"automatic", "off", "always", "alone"};
+template <> constexpr std::array<std::string_view, 5> kWords<Technique::Merging>{"automatic", "off", "always"};
+
+template <typename E> E find(std::string_view word) {
+    for (std::size_t i = 1; i < kWords<E>.size(); ++i)
+        if (!word.empty() && kWords<E>[i] == word) return static_cast<E>(i);
+    return static_cast<E>(0);
+}
+template <typename E> std::string_view wordOf(E e) { return kWords<E>[static_cast<std::size_t>(e)]; }
+
+} // namespace
+
+Technique::Numbers numbersOf(std::string_view word) { return find<Technique::Numbers>(word); }
+Technique::Strategy strategyOf(std::string_view word) { return find<Technique::Strategy>(word); }
+Technique::Weights weightsOf(std::string_view word) { return find<Technique::Weights>(word); }
+Technique::Directions directionsOf(std::string_view word) { return find<Technique::Directions>(word); }
+Technique::LightChoice lightChoiceOf(std::string_view word) { return find<Technique::LightChoice>(word); }
+Technique::Roulette rouletteOf(std::string_view word) { return find<Technique::Roulette>(word); }
+
+Technique::LightPaths lightPathsOf(std::string_view word) { return find<Technique::LightPaths>(word); }
+Technique::Merging mergingOf(std::string_view word) { return find<Technique::Merging>(word); }
+
+std::string_view word(Technique::Numbers e) { return wordOf(e); }
+std::string_view word(Technique::Strategy e) { return wordOf(e); }
+std::string_view word(Technique::Weights e) { return wordOf(e); }
+std::string_view word(Technique::Directions e) { return wordOf(e); }
+std::string_view word(Technique::LightChoice e) { return wordOf(e); }
+std::string_view word(Technique::Roulette e) { return wordOf(e); }
+std::string_view word(Technique::LightPaths e) { return wordOf(e); }
+std::string_view word(Technique::Merging e) { return wordOf(e); }
+
+std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
+    const auto text = [](auto e) { return std::string(word(e)); };
+    return {{"sampler", text(t.numbers)},
+            {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},
+            {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)},
+            {"roulette", text(t.roulette)},
+            {"light-paths", text(t.lightPaths)},
+            {"merging", text(t.merging)},
+            {"wavelengths", std::to_string(t.wavelengths)}};
+}
+
+using namespace schema;
+
+namespace {
+
+using P = RenderParams;
+
+std::vector<FieldInfo> goalFields() {
+    return {field(FieldType::choice, "integrator", &P::integrator)
+                .choices({"path"})
+                .byDefault("path")
+                .doc("Algorithm: path tracing with next-event estimation.")
+                .example("integrator path"),
+            field(FieldType::integer, "samples", &P::samples)
+                .range(1, 4294967295.0)
+                .byDefault("64")
+                .synonyms({"spp", "pixelsamples", "sample_count"})
+                .doc("Samples per pixel; the render ends here unless another goal is met before.")
+                .example("samples 256"),
+            field(FieldType::quantity, "noise", &P::noise)
+                .unit({Dimension::fraction})
+                .range(0, 1)
+                .byDefault("0 %")
+                .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
+                .doc("Relative error of the image at which to stop; 0: none.")
+                .example("noise 0.5 %"),
+            field(FieldType::quantity, "time-limit", &P::timeLimit)
+                .unit({Dimension::time})
+                .range(0, 1e9)
+                .byDefault("0 s")
+                .doc("Wall-clock time after which to stop; 0: none.")
+                .example("time-limit 45 min"),
+            field(FieldType::number, "texture-cache", &P::textureCache)
+                .range(16, 1e9)
+                .byDefault("2048")
+                .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
+                .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
+                .example("texture-cache 512"),
+            field(FieldType::toggle, "adaptive", &P::adaptive)
+                .byDefault("off")
+                .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
+                .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
+                .example("adaptive on"),
+            field(FieldType::table, "forbid", &P::forbid)
+                .namedRows()
+                .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
+                .example("forbid { motion; thin-film }"),
+            field(FieldType::integer, "max-depth", &P::maxDepth)
+                .range(0, 100000)
+                .byDefault("0")
+                .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
+                .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
+                .example("max-depth 16"),
+            field(FieldType::integer, "seed", &P::seed)
+                .range(0, 9007199254740992.0)
+                .byDefault("0")
+                .doc("Chooses the random numbers; the same seed gives the same bits.")
+                .example("seed 7"),
+            field(FieldType::integer, "replicates", &P::replicates)
+                .range(1, 16)
+                .byDefault("2")
+                .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
+                .example("replicates 8")};
+}
+
+// How light is estimated: the same image by other means, to compare.
+std::vector<FieldInfo> techniqueFields() {
+    return {field(FieldType::choice, "sampler", &P::sampler)
+                .choices({"sobol", "stratified", "random"})
+                .byDefault("sobol")
+                .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
+                .example("sampler sobol"),
+            field(FieldType::choice, "strategy", &P::strategy)
+                .choices({"mis", "lights", "bsdf"})
+                .byDefault("mis")
+                .doc("How light is found: by both techniques, or by one alone, for comparison.")
+                .example("strategy mis"),
+            field(FieldType::choice, "mis-weights", &P::weights)
+                .choices({"balance", "power", "equal", "lights", "scattering"})
+                .byDefault("balance")
+                .synonyms({"mis-heuristic", "heuristic"})
+                .doc("How `strategy mis` weighs its two techniques; other than `balance` to compare.")
+                .example("mis-weights power"),
+            field(FieldType::choice, "directions", &P::directions)
+                .choices({"importance", "uniform", "mixed"})
+                .byDefault("importance")
+                .doc("Where paths go on: as the surface scatters; evenly all around, or by a mixture, to compare.")
+                .example("directions uniform"),
+            field(FieldType::choice, "roulette", &P::roulette)
+                .choices({"pilot", "throughput", "off"})
+                .byDefault("pilot")
+                .synonyms({"rr", "russian-roulette"})
+                .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
+                .example("roulette throughput"),
+            field(FieldType::choice, "light-paths", &P::lightPaths)
+                .choices({"automatic", "off", "always", "alone"})
+                .byDefault("automatic")
+                .synonyms({"caustics", "light-tracing", "photons"})
+                .doc("Paths from the lights, for caustics: where they pay; never, always or alone, to compare.")
+                .example("light-paths off"),
+            field(FieldType::choice, "merging", &P::merging)
+                .choices({"automatic", "off", "always"})
+                .byDefault("automatic")
+                .synonyms({"photon-map", "sppm", "vertex-merging"})
+                .doc("Caustics behind glass and in mirrors that nothing else finds, by merging of paths: biased.")
+                .example("merging off"),
+            field(FieldType::integer, "wavelengths", &P::wavelengths)
+                .range(1, 8)
+                .byDefault("8")
+                .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer for comparison.")
+                .example("wavelengths 4"),
+            field(FieldType::choice, "light-choice", &P::lightChoice)
+                .choices({"tree", "power", "uniform"})
+                .byDefault("tree")
+                .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
+                .doc("Which light is asked: by what it may give to each place; by power or evenly to compare.")
+                .example("light-choice tree")};
+}
+
+} // namespace
+
+TypeInfo renderType() {
+    TypeInfo type{
+        Kind::render, "settings",  "How long and by which means to render.", "render { samples 256; noise 0.5 % }",
+        true,         goalFields()};
+    for (FieldInfo& technique : techniqueFields()) type.fields.push_back(std::move(technique));
+    return type;
+}
+
+bool possibleWavelengths(std::int64_t count) { return count == 1 || count == 2 || count == 4 || count == 8; }
+
+namespace {
+
+Technique technique(const RenderParams& p) {
+    Technique t;
+    t.numbers = numbersOf(p.sampler.word);
+    t.strategy = strategyOf(p.strategy.word);
+    t.weights = weightsOf(p.weights.word);
+    t.directions = directionsOf(p.directions.word);
+    t.lightChoice = lightChoiceOf(p.lightChoice.word);
+    t.roulette = rouletteOf(p.roulette.word);
+    t.lightPaths = lightPathsOf(p.lightPaths.word);
+    t.merging = mergingOf(p.merging.word);
+    t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
+    return t;
+}
+
+} // namespace
+
+RenderSettings renderSettings(const RenderParams& p) {
+    RenderSettings s;
+    s.samples = static_cast<std::uint32_t>(p.samples);
+    s.seed = static_cast<std::uint64_t>(p.seed);
+    s.maxDepth = static_cast<std::uint32_t>(p.maxDepth);
+    s.noiseTarget = p.noise;
+    s.timeLimit = p.timeLimit;
+    s.adaptive = p.adaptive;
+    s.technique = technique(p);
+    return s;
+}
+
+} // namespace abbe

@@ -1,0 +1,93 @@
+#include "rendering/render_plans.h"
+
+#include "base/stopwatch.h"
+#include "render/render_state.h"
+
+namespace abbe {
+
+namespace {
+
+// What pilots may take, of the rays of the whole render and of its time limit.
+constexpr double kPilotShare = 0.1;
+// Of the time that is left, what the first pass of a plan may take as far as pilots tell: they may be wrong by half.
+constexpr double kFirstPassShare = 0.5;
+
+class RenderPlanner {
+  public:
+    explicit RenderPlanner(const PlanInput& in)
+        : in_(in), settings_(in.context.settings), pixels_(static_cast<double>(in.context.scene.frame.area())) {}
+
+    RenderPlans run() {
+        const Stopwatch watch;
+        result_.ahead = lookAhead(in_.context, in_.render, in_.film, in_.state, in_.stop);
+        result_.seconds = watch.seconds();
+        if (in_.seen) in_.seen(result_.ahead.first);
+        result_.rays = result_.ahead.rays;
+        if (in_.film.takesSplats() && in_.state.lightBlockCount() > 0) {
+            planForCaustics();
+        } else {
+            result_.findings.verdict = lightPathVerdict(in_.context.scene, settings_.technique);
+            in_.state.setPilot(0);
+        }
+        return std::move(result_);
+    }
+
+  private:
+    void planForCaustics() {
+        const int known = in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; // of a render that goes on
+        LadderedPlans found = known >= 0 ? plansOf(pilots(), known, in_.stop) : largestThatPays();
+        result_.rays += found.rays;
+        result_.seconds += found.seconds;
+        if (known < 0 && isShort() && found.plans.any() && !hasTimeFor(found)) {
+            found.plans = {};
+            found.size = 0;
+        }
+        result_.caustics = std::move(found.plans);
+        result_.findings = result_.caustics.findings();
+        result_.findings.pilot = found.size;
+        if (in_.stop()) return; // whoever goes on looks again
+        if (found.size == 0) result_.findings.verdict = LightPathVerdict::noPilot;
+        in_.state.setPilot(found.size);
+    }
+
+    PilotRun pilots() const {
+        return [this](int size, const std::function<bool()>& stop) {
+            PathContext context = in_.context;
+            context.settings.pilot = size;
+            return planCaustics(context, in_.film, in_.traced, result_.ahead.roulette, stop);
+        };
+    }
+
+    LadderedPlans largestThatPays() const {
+        const int replicates = in_.film.replicates();
+        const double samples = static_cast<double>(settings_.samplesPerReplicate(replicates)) * replicates;
+        PilotBudget budget{kPilotShare * samples * pixels_ * result_.ahead.raysOfPath, 0, !isShort()};
+        if (isShort()) budget.seconds = kPilotShare * settings_.timeLimit - result_.seconds;
+        if (isShort() && !(budget.seconds > 0)) return {};
+        return climb(pilots(), budget, in_.stop);
+    }
+
+    // Whether there is a time limit that counts: who asks for light paths has them, however long it takes.
+    bool isShort() const {
+        const Technique& technique = settings_.technique;
+        return settings_.timeLimit > 0 && technique.lightPaths == Technique::LightPaths::automatic &&
+               technique.merging != Technique::Merging::always;
+    }
+
+    // A first pass with plans has to be finished, since what light paths bring is missing from camera paths.
+    bool hasTimeFor(const LadderedPlans& found) const {
+        const double rays = pixels_ * in_.film.replicates() * found.plans.raysOfSample(result_.ahead.raysOfPath);
+        return rays * found.secondsOfRay < kFirstPassShare * in_.timeLeft();
+    }
+
+    const PlanInput& in_;
+    const RenderSettings& settings_;
+    double pixels_;
+    RenderPlans result_;
+};
+
+} // namespace
+
+RenderPlans planRender(const PlanInput& input) { return RenderPlanner(input).run(); }
+
+} // namespace abbe

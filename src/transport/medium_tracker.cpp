@@ -1,0 +1,305 @@
+#include "transport/medium_tracker.h"
+
+#include "base/work.h"
+
+#include <limits>
+
+namespace abbe {
+
+namespace {
+
+// After so many lookups a transmittance below kSmall goes on in one case of two, at twice the weight.
+constexpr int kRouletteEvery = 16;
+constexpr float kSmall = 0.02f;
+// A ray may collide without end where bounds are far above densities: it looks up so often.
+constexpr std::uint32_t kLookUpEvery = 1024;
+
+// Optical lengths of rays without an end: large, but 0 times it is 0.
+float finite(double length) { return static_cast<float>(std::min(length, 1e30)); }
+
+// The part of the ray within a box that may be infinite.
+RayExtent clip(const Bounds3& box, const Ray& ray, float tMax) {
+    RayExtent e{0, tMax};
+    for (int a = 0; a < 3; ++a) {
+        const float o = ray.origin[a], d = ray.direction[a];
+        if (d == 0) {
+            if (!(o >= box.lower[a] && o <= box.upper[a])) return {};
+            continue;
+        }
+        const float t0 = (box.lower[a] - o) / d, t1 = (box.upper[a] - o) / d;
+        e.tNear = std::max(e.tNear, std::min(t0, t1));
+        e.tFar = std::min(e.tFar, std::max(t0, t1));
+    }
+    return e;
+}
+
+} // namespace
+
+MediumTracker::MediumTracker(std::span<const Medium* const> open, const StopFlag& stop)
+    : open_(open), stop_(stop), spaces_(open.size() + MediumStack::kMax), glowSpaces_(spaces_.size()) {
+    active_.reserve(spaces_.size());
+    glows_.reserve(spaces_.size());
+}
+
+void MediumTracker::start(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda) {
+    active_.clear();
+    forEach(inside, [&](const Medium& medium) {
+        setWork(volumeWork(medium.number));
+        MediumWalk* walk = medium.walk(ray, tMax, spaces_[active_.size()]);
+        MediumSegment segment;
+        if (!walk || !walk->next(segment)) return;
+        const Spectrum extinction = medium.extinction().at(lambda);
+        active_.push_back(
+            {&medium, walk, segment, extinction, medium.albedo().at(lambda), extinction[0], 0, 0, 0, false});
+    });
+}
+
+// Where the optical length that is left runs out, if it does so within the segment.
+void MediumTracker::schedule(Active& a, float from) {
+    const float rate = a.segment.maximum * a.hero;
+    const float length = a.segment.tFar - from;
+    // Written so that an infinite segment at rate 0 makes no NaN.
+    a.collides = rate > 0 && a.optical < rate * length;
+    if (a.collides) {
+        a.next = std::min(from + a.optical / rate, a.segment.tFar);
+    } else {
+        if (rate > 0) a.optical -= rate * length;
+        a.next = a.segment.tFar;
+    }
+}
+
+bool MediumTracker::advance(Active& a) {
+    a.passed += static_cast<double>(a.segment.maximum) * static_cast<double>(a.segment.tFar - a.segment.tNear);
+    if (!a.walk->next(a.segment)) return false;
+    schedule(a, a.segment.tNear);
+    return true;
+}
+
+MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
+                                      RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
+    const WorkScope work(Work::surface);
+    start(ray, tMax, inside, lambda);
+    glows_.clear();
+    if (listener) startGlows(ray, tMax, inside, random);
+    for (Active& a : active_) {
+        a.optical = random.exponential();
+        schedule(a, a.segment.tNear);
+    }
+    for (std::uint32_t missed = 1;;) {
+        Active* a = earliest(active_);
+        if (Glow* glow = earliest(glows_); glow && (!a || glow->next < a->next)) {
+            shine(*glow, lambda, weights, *listener);
+            if (!advance(*glow, random)) glow->walk = nullptr;
+            continue;
+        }
+        if (!a) break;
+        setWork(volumeWork(a->medium->number));
+        const float t = a->next;
+        if (!a->collides) {
+            if (!advance(*a)) a->walk = nullptr;
+            continue;
+        }
+        if (collide(*a, lambda, random, weights, listener)) {
+            shareDistance(t, weights);
+            return {a->medium, t};
+        }
+        if (!anyNonZero(*weights.beta)) return {};
+        if (missed++ % kLookUpEvery == 0 && toldToLeave()) break;
+        a->optical = random.exponential();
+        schedule(*a, t);
+    }
+    shareDistance(tMax, weights);
+    return {};
+}
+
+void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& inside, RandomStream& random) {
+    forEach(inside, [&](const Medium& medium) {
+        const MediumEmission* emission = medium.emission();
+        if (!emission) return;
+        EmissionWalk* walk = emission->walk(ray, tMax, glowSpaces_[glows_.size()]);
+        if (!walk) return;
+        Glow& glow = glows_.emplace_back();
+        glow.emission = emission;
+        glow.walk = walk;
+        if (!advance(glow, random)) glows_.pop_back();
+    });
+}
+
+bool MediumTracker::advance(Glow& glow, RandomStream& random) {
+    if (!glow.walk->next(glow.segment)) return false;
+    glow.next = glow.segment.tNear + random.uniform() * (glow.segment.tFar - glow.segment.tNear);
+    return true;
+}
+
+// One place drawn evenly stands for its segment. Whether the path gets there is what its collisions decided.
+void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWeights weights,
+                          EmissionListener& listener) const {
+    const Spectrum amount = glow.walk->emitted(glow.next, lambda) * (glow.segment.tFar - glow.segment.tNear);
+    if (!anyNonZero(amount)) return;
+    Spectrum beta = *weights.beta, density = weights.density ? *weights.density : Spectrum(1.f);
+    shareDistance(glow.next, {&beta, weights.density ? &density : nullptr});
+    listener.shines(*glow.emission, glow.next, amount, beta, density);
+}
+
+// A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that
+// leaves their densities alone. True if it scatters.
+bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& random, TrackedWeights weights,
+                            EmissionListener* listener) {
+    ++counters.collisions;
+    ++counters.volumes[volumeRow(a.medium->number)].collisions;
+    const float bound = a.segment.maximum;
+    const float density = a.walk->density(a.next);
+    note(density, bound, *a.medium);
+    // Below 0 where the bound is none. The weight then has a sign and the estimate is unbiased all the same, as long as
+    // both events are possible: their probabilities are in proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
+    const float nothing = bound - density;
+    const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(a.next, lambda) : a.albedo;
+    if (listener && listener->minds) [[unlikely]]
+        listener->absorbs(a.next, mean(Spectrum(1.f) - albedo) * density / bound);
+    const Spectrum scattering = albedo * density;
+    const Spectrum kept = scattering + Spectrum(std::abs(nothing));
+    const float scatters = mean(select(kept.v > 0, scattering / kept, Spectrum(0.f)));
+    const bool real = random.uniform() < scatters;
+    Spectrum factor = real ? scattering * (1 / (bound * scatters))
+                           : Spectrum(scatters < 1 ? nothing / (bound * (1 - scatters)) : 0.f);
+    if (weights.density) {
+        const Spectrum rates = a.extinction * (1 / a.hero);
+        factor *= rates;
+        *weights.density *= rates;
+    }
+    *weights.beta *= factor;
+    return real;
+}
+
+bool MediumTracker::toldToLeave() {
+    if (!stop_.load(std::memory_order_relaxed)) [[likely]]
+        return false;
+    return counters.left = true;
+}
+
+void MediumTracker::note(float density, float bound, const Medium& medium) {
+    if (density >= 0 && density <= bound) [[likely]]
+        return;
+    if (!(density >= 0 && density < kInfinity)) {
+        ++counters.faults;
+        counters.fault = density;
+        counters.faulty = &medium;
+        return;
+    }
+    ++counters.signedWeights;
+    if (!(density > bound * 1.001f)) return;
+    ++counters.exceeded;
+    counters.mostExceeded = std::max(counters.mostExceeded, density / bound);
+}
+
+// What surviving the way to `t` weighs at the other wavelengths, all media and exponents together: e^-a / e^-b has no
+// digits left where e^-b underflows, e^(b-a) has. Scaled so that no lane overflows.
+void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
+    if (!weights.density) return;
+    Spectrum exponent(0.f);
+    for (const Active& a : active_) {
+        double passed = a.passed;
+        if (a.walk && t > a.segment.tNear)
+            passed += static_cast<double>(a.segment.maximum) *
+                      static_cast<double>(std::min(t, a.segment.tFar) - a.segment.tNear);
+        exponent = exponent - (a.extinction - Spectrum(a.hero)) * finite(passed);
+    }
+    const Spectrum common = exp(exponent - Spectrum(maxLane(exponent)));
+    *weights.beta *= common;
+    *weights.density *= common;
+    const float largest = maxLane(*weights.density);
+    if (largest > 0) {
+        *weights.beta *= 1 / largest;
+        *weights.density *= 1 / largest;
+    }
+}
+
+Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
+                                      RandomStream& random) {
+    const WorkScope work(Work::lights);
+    start(ray, tMax, inside, lambda);
+    Spectrum result(1.f);
+    for (Active& a : active_) {
+        result *= ratioTracking(a, random);
+        if (!anyNonZero(result)) break;
+    }
+    return result;
+}
+
+Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random) {
+    setWork(volumeWork(a.medium->number));
+    Spectrum result(1.f);
+    double control = 0; // of the mean density
+    do {
+        if (!ratioTracking(a, control, random, result)) return Spectrum(0.f);
+        control += static_cast<double>(a.segment.mean) * static_cast<double>(a.segment.tFar - a.segment.tNear);
+    } while (a.walk->next(a.segment));
+    return result * exp(a.extinction * -finite(control));
+}
+
+// The residual of one segment. False if roulette ended a transmittance too small to pay for its lookups.
+bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& random, Spectrum& result) {
+    const MediumSegment& s = a.segment;
+    const float largest = maxLane(a.extinction);
+    const float residual = std::max(s.maximum - s.mean, s.mean - s.minimum);
+    const double rate = static_cast<double>(residual * largest);
+    if (!(rate > 0)) return true;
+    const Spectrum share = a.extinction * (1 / (largest * residual));
+    const double length = static_cast<double>(s.tFar - s.tNear);
+    int count = 0;
+    // In double: steps of a dense medium far from the origin would vanish in float.
+    for (double t = static_cast<double>(random.exponential()) / rate; t < length;
+         t += static_cast<double>(random.exponential()) / rate) {
+        ++counters.lookups;
+        ++counters.volumes[volumeRow(a.medium->number)].lookups;
+        const float density = a.walk->density(s.tNear + static_cast<float>(t));
+        note(density, s.maximum, *a.medium);
+        const Spectrum kept = Spectrum(1.f) - share * (density - s.mean);
+        // Below the bound only rounding makes it negative.
+        result *= density <= s.maximum ? max(Spectrum(0.f), kept) : kept;
+        if (++count % kRouletteEvery != 0) continue;
+        if (toldToLeave()) return false;
+        const float soFar =
+            maxLane(abs(result) * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
+        if (soFar > kSmall) continue;
+        if (random.uniform() < 0.5f) return false;
+        result *= 2.f;
+    }
+    return true;
+}
+
+// What can be said of a ray without tracking it.
+RayExtent MediumTracker::extent(const Ray& ray, float tMax, const MediumStack& inside) const {
+    if (inside.size() > 0) return {0, tMax};
+    RayExtent all;
+    for (const Medium* medium : open_) {
+        const RayExtent e = clip(medium->bounds(), ray, tMax);
+        if (e.empty()) continue;
+        all = all.empty() ? e : RayExtent{std::min(all.tNear, e.tNear), std::max(all.tFar, e.tFar)};
+    }
+    return all;
+}
+
+float MediumTracker::expected(const Ray& ray, float t, const MediumStack& inside, const Wavelengths& lambda,
+                              std::vector<InScattering>* there) {
+    if (there) there->clear();
+    start(ray, t, inside, lambda);
+    double passed = 0, rate = 0;
+    for (Active& a : active_) {
+        const double extinction = static_cast<double>(mean(a.extinction));
+        const MediumSegment& s = a.segment;
+        for (bool more = true; more; more = a.walk->next(a.segment)) {
+            passed += extinction * static_cast<double>(s.mean) * static_cast<double>(s.tFar - s.tNear);
+            if (s.tFar < t) continue;
+            rate += extinction * static_cast<double>(s.mean);
+            if (!there) continue;
+            const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(t, lambda) : a.albedo;
+            const float density = a.walk->density(t);
+            note(density, std::numeric_limits<float>::max(), *a.medium); // no bound counts here
+            there->push_back({a.medium, a.extinction * albedo * density});
+        }
+    }
+    return static_cast<float>(rate * std::exp(-passed));
+}
+
+} // namespace abbe

@@ -1,0 +1,148 @@
+// Collisions of one ray with all media along it, by tracking against bounds on their density [Miller2019; Novak2018].
+#pragma once
+
+#include "base/stop_flag.h"
+#include "math/random_stream.h"
+#include "render/effect_counts.h"
+#include "render/integrator.h"
+#include "transport/surroundings.h"
+
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+// Weights of a path along a ray, per lane. Both share the factors by which densities at other wavelengths differ from
+// the hero's, so they may be scaled together at will.
+struct TrackedWeights {
+    Spectrum* beta;    // throughput over the hero's density
+    Spectrum* density; // density over the hero's [Wilkie2014, eq. 5]; null while no extinction varies with wavelength
+};
+
+struct MediumCollision {
+    const Medium* medium = nullptr; // null: the ray came through
+    float t = 0;
+};
+
+// Is told what shines along a ray: estimates whose sum over the ray is the light that its media add to it.
+class EmissionListener {
+  public:
+    // Whether to tell it what media absorb, too:
+    bool minds = false;
+    // Of the weight of the path this share, in the mean over its wavelengths, is absorbed at `t`.
+    virtual void absorbs(float /*t*/, float /*share*/) {}
+    // `amount`: radiance given off around the distance `t`, not yet weighed; the weights are those of the path at `t`.
+    virtual void shines(const MediumEmission&, float t, const Spectrum& amount, const Spectrum& beta,
+                        const Spectrum& density) = 0;
+
+  protected:
+    ~EmissionListener() = default;
+};
+
+// What scatters at a place on a ray.
+struct InScattering {
+    const Medium* medium = nullptr;
+    Spectrum coefficient; // 1/m
+};
+
+// What a ray has met so far.
+struct MediumCounters {
+    std::uint64_t collisions = 0;                     // tentative ones
+    std::uint64_t lookups = 0;                        // of density, for transmittance
+    std::uint64_t exceeded = 0;                       // densities above their bound, by more than rounding
+    std::uint64_t signedWeights = 0;                  // all densities above their bound: weights there may be below 0
+    float mostExceeded = 0;                           // the greatest of them over its bound
+    std::uint64_t faults = 0;                         // densities that are negative or not finite
+    float fault = 0;                                  // the last of them
+    const Medium* faulty = nullptr;                   // where it was found
+    bool left = false;                                // a ray was left before its end, since it was told to stop
+    std::array<VolumeCounts, kVolumeWorks> volumes{}; // collisions and lookups alone
+
+    DensityExcess excess() const { return {collisions + lookups, exceeded, mostExceeded}; }
+};
+
+// One per thread; keeps its memory. Media collide independently of each other, which adds them up.
+class MediumTracker {
+  public:
+    // `open`: the media that no shape bounds. Told to stop, it leaves a ray where it is, and says so in its
+    // counters.
+    explicit MediumTracker(std::span<const Medium* const> open, const StopFlag& stop = kNeverStop);
+
+    // Follows a ray to tMax or to where it is scattered, whichever comes first. Absorption is never an event: it is a
+    // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
+    // the way, at one place in every segment that shines.
+    MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
+                           TrackedWeights, EmissionListener* = nullptr);
+    // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
+    // [Novak2014] with the mean density of each segment as control.
+    Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);
+
+    // About the density of the distances that follow() finds: that of collisions if every segment had its mean density
+    // throughout, 1/m. A pure function of the ray and t. If asked, also all that scatters at t.
+    float expected(const Ray&, float t, const MediumStack& inside, const Wavelengths&,
+                   std::vector<InScattering>* there = nullptr);
+    // Whether the medium is among those in which such a path runs.
+    bool fills(const Medium& medium, const MediumStack& inside) const {
+        bool found = false;
+        forEach(inside, [&](const Medium& m) { found |= &m == &medium; });
+        return found;
+    }
+    // The part of the ray up to tMax outside of which there are no media.
+    RayExtent extent(const Ray&, float tMax, const MediumStack& inside) const;
+
+    MediumCounters counters;
+
+  private:
+    struct Active {
+        const Medium* medium;
+        MediumWalk* walk;
+        MediumSegment segment;
+        Spectrum extinction; // at density 1
+        Spectrum albedo;
+        float hero;    // of it
+        float next;    // where something happens: a tentative collision or the end of the segment
+        float optical; // hero's optical length still to go after `next` when that is the segment's end
+        double passed; // integral of the bounding density over the segments before this one
+        bool collides; // at `next`
+    };
+
+    struct Glow {
+        const MediumEmission* emission;
+        EmissionWalk* walk;
+        MediumSegment segment;
+        float next; // where it is asked
+    };
+
+    // Calls `each` for the media that no shape bounds and for those around the path.
+    template <typename F> void forEach(const MediumStack& inside, F each) const {
+        for (const Medium* medium : open_) each(*medium);
+        for (int i = 0; i < inside.size(); ++i) each(*inside[i]);
+    }
+    // The one whose walk goes on and whose `next` comes first; null after the last.
+    template <typename T> static T* earliest(std::vector<T>& all) {
+        T* first = nullptr;
+        for (T& one : all)
+            if (one.walk && (!first || one.next < first->next)) first = &one;
+        return first;
+    }
+    void start(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&);
+    void startGlows(const Ray&, float tMax, const MediumStack& inside, RandomStream&);
+    bool advance(Glow&, RandomStream&);
+    void shine(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
+    static void schedule(Active&, float from);
+    static bool advance(Active&);
+    bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
+    void shareDistance(float t, TrackedWeights) const;
+    void note(float density, float bound, const Medium&);
+    bool toldToLeave();
+    Spectrum ratioTracking(Active&, RandomStream&);
+    bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
+
+    std::span<const Medium* const> open_;
+    const StopFlag& stop_;
+    std::vector<WalkSpace> spaces_, glowSpaces_;
+    std::vector<Active> active_;
+    std::vector<Glow> glows_;
+};
+
+} // namespace abbe

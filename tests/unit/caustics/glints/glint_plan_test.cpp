@@ -1,0 +1,95 @@
+// Which light is left to probes, and where they go.
+#include "caustics/glints/glint_plan.h"
+#include "integrators/forced_lobe.h"
+#include "render/light.h"
+#include "support/scene_test.h"
+
+#include <doctest/doctest.h>
+
+namespace abbe {
+namespace {
+
+const auto* const kLamp = reinterpret_cast<const Light*>(0x10); // never looked at
+
+GlintPlan plan(std::vector<Glint> glints) { return {{0, 0, 40, 30}, 1.5f, std::move(glints), {kLamp}}; }
+
+} // namespace
+
+TEST_CASE("glints: chains are told apart by their events and their length") {
+    CHECK(GlintChain::of("TRT") == GlintChain::of("TRT"));
+    CHECK(GlintChain::of("TRT") != GlintChain::of("TTR"));
+    CHECK(GlintChain::of("R") != GlintChain::of("RR"));
+    CHECK(GlintChain::of("TRT").transmits(0));
+    CHECK(!GlintChain::of("TRT").transmits(1));
+    GlintChain longest;
+    for (std::uint32_t i = 0; i < GlintChain::kMaxLength; ++i) longest.add(true);
+    GlintChain longer = longest;
+    longer.add(true);
+    CHECK(longer != longest);
+    CHECK(longer.length() > GlintChain::kMaxLength);
+}
+
+TEST_CASE("glints: a place belongs to the chain whose box has it") {
+    const GlintPlan p =
+        plan({{GlintChain::of("R"), {{4, 4}, {6, 6}}, 4}, {GlintChain::of("TRT"), {{5, 5}, {9, 9}}, 4}});
+    const auto row = p.ofRow(5);
+    CHECK(p.covers(row, GlintChain::of("R"), {4.5f, 5.5f}));
+    CHECK(!p.covers(row, GlintChain::of("R"), {7, 7}));
+    CHECK(p.covers(row, GlintChain::of("TRT"), {7, 7}));
+    CHECK(!p.covers(row, GlintChain::of("TT"), {5.5f, 5.5f}));
+    CHECK(p.has(kLamp));
+    CHECK(!p.has(kLamp + 1));
+}
+
+TEST_CASE("glints: boxes of one chain that overlap become one, so that nothing is probed twice") {
+    const GlintChain r = GlintChain::of("R");
+    // The third joins the first two, which then reach the fourth.
+    const GlintPlan p = plan({{r, {{0, 0}, {2, 2}}, 2},
+                              {r, {{10, 0}, {12, 2}}, 3},
+                              {r, {{1, 0}, {11, 3}}, 4},
+                              {r, {{5, 2.5f}, {6, 8}}, 2},
+                              {GlintChain::of("T"), {{0, 0}, {2, 2}}, 2}});
+    REQUIRE(p.glints().size() == 2);
+    const auto& whole = p.glints()[0].chain == r ? p.glints()[0] : p.glints()[1];
+    CHECK(whole.box.lower.x == 0);
+    CHECK(whole.box.upper.x == 12);
+    CHECK(whole.box.upper.y == 8);
+    CHECK(whole.side == 4);
+}
+
+TEST_CASE("glints: pixels within reach of the filter know of a box") {
+    const GlintPlan p = plan({{GlintChain::of("R"), {{4, 10}, {6, 11}}, 4}});
+    for (int y = 0; y < 30; ++y) {
+        const float nearest = std::max({0.f, 10 - (static_cast<float>(y) + 0.5f), static_cast<float>(y) + 0.5f - 11});
+        CHECK(p.ofRow(y).empty() == (nearest >= 1.5f));
+    }
+    CHECK(p.ofRow(-1).empty());
+    CHECK(p.ofRow(30).empty());
+}
+
+TEST_CASE("glints: a forced lobe has all of the light that chance would find") {
+    const auto scene = test::TestScene::parse("scene 1\ncamera { from 0 0 5; look-at 0 0 0 }\n"
+                                              "shape sphere { material dielectric { ior 1.5 } }\nlight sky {}\n");
+    SurfaceHit hit;
+    hit.ng = {0, 0, 1};
+    hit.material = scene.scene().materials.front().get();
+    Arena arena;
+    const Bsdf& bsdf = *hit.material->bsdf(hit, Wavelengths::sample(0.3f), arena);
+    const Vec3 wo = normalize(Vec3{0.5f, 0.2f, 0.8f});
+    for (const bool transmission : {false, true}) {
+        const auto forced = forcedLobe(bsdf, wo, transmission);
+        REQUIRE(forced);
+        const auto sampled = bsdf.sample(wo, transmission ? 0.9f : 0.001f, {0.5f, 0.5f}, Transport::radiance);
+        REQUIRE(sampled);
+        CHECK(isForced(bsdf, wo, *sampled));
+        CHECK(forced->sample.weight[0] == doctest::Approx(sampled->weight[0] * sampled->pdfSolidAngle));
+        CHECK(forced->probability == doctest::Approx(sampled->pdfSolidAngle));
+    }
+    // Beyond the critical angle there is one lobe, with certainty.
+    const Vec3 inside = normalize(Vec3{0.9f, 0, -0.3f});
+    CHECK(!forcedLobe(bsdf, inside, true));
+    REQUIRE(forcedLobe(bsdf, inside, false));
+    CHECK(forcedLobe(bsdf, inside, false)->probability == doctest::Approx(1));
+}
+
+} // namespace abbe

@@ -1,0 +1,136 @@
+// What is foretold of light paths where it is known: light of one density, and what camera paths miss.
+#include "caustics/light_tracing/light_path_forecast.h"
+#include "caustics/shared/emission_learning.h"
+#include "caustics/shared/pilot.h"
+#include "support/statistics.h"
+
+#include <doctest/doctest.h>
+#include <numeric>
+
+namespace abbe::test {
+namespace {
+
+constexpr PixelBounds kFrame{0, 0, 32, 32};
+constexpr double kPixels = 32 * 32;
+
+// Light paths that bring luminance `y` to every pixel, each to one of them, `count` of them in all.
+std::vector<LightDeposit> even(double y, double rho, int count = 4096) {
+    std::vector<LightDeposit> result;
+    for (int i = 0; i < count; ++i) {
+        LightDeposit d;
+        d.x = i % 32;
+        d.y = i / 32 % 32;
+        d.luminance = y; // one of as many as there are pixels
+        d.stands = kPixels / count;
+        d.rho = rho;
+        result.push_back(d);
+    }
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("light path forecast: noise counts over what a pixel shows and a tenth of the mean") {
+    const RouletteReference unknown;
+    std::vector<LightDeposit> deposits = even(2, 1);
+    std::erase_if(deposits, [](const LightDeposit& d) { return d.x < 16; }); // half of the frame is dark
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    CHECK(measure.mean() == doctest::Approx(1));
+    CHECK(measure.weight(20, 7) == doctest::Approx(1 / 4.01));
+    CHECK(measure.weight(3, 7) == doctest::Approx(1 / 0.01));
+    CHECK(NoiseMeasure(kFrame, unknown, {}).weight(3, 7) == 0);
+}
+
+TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths or not") {
+    const RouletteReference unknown;
+    constexpr double rho = 0.25, weight = 1 / 1.01; // one in four camera paths for each light path
+    const std::vector<LightDeposit> deposits = even(1, rho);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    const CameraVariance blind;
+    for (const double share : {0.0, 0.5, 4.0}) {
+        CAPTURE(share);
+        CHECK(forecast.variance(share, blind) == doctest::Approx(weight / (rho + share)));
+    }
+    // Seen in full, half as noisy in the mean of 64 samples: 512 have 1/2^1.5 of it.
+    const CameraVariance seen{weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
+    CHECK(seen.planned() == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
+    CHECK(forecast.variance(0, seen) == doctest::Approx(seen.planned()));
+    CHECK(forecast.variance(1, seen) == doctest::Approx(seen.planned() * 0.04 + weight / 1.5625));
+    CHECK(forecast.sparks() == doctest::Approx(weight / rho));
+    CHECK(LightPathForecast(even(1, 1), kFrame, measure).sparks() == 0); // all camera paths find it
+}
+
+TEST_CASE("light path forecast: what is met once in a million is no reason") {
+    const RouletteReference unknown;
+    std::vector<LightDeposit> deposits = even(1, 0.25);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const double usual = LightPathForecast(deposits, kFrame, measure).variance(0, {});
+    for (int i = 0; i < 8; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-9;
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    CHECK(forecast.variance(0, {}) == doctest::Approx(usual));
+    CHECK(forecast.sparks() == doctest::Approx(usual));
+    for (int i = 0; i < 100; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-4; // these are many
+    CHECK(LightPathForecast(deposits, kFrame, measure).variance(0, {}) > 50 * usual);
+}
+
+// Common light that a look has seen, and a caustic that it has not.
+TEST_CASE("light path forecast: what a look has missed is the brightest") {
+    const RouletteReference unknown;
+    std::vector<LightDeposit> deposits = even(1, 1);
+    for (const LightDeposit& d : even(1, 1e-3)) deposits.push_back(d);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    const double weight = 1 / (4 * 1.01);
+    const CameraVariance seen{weight, 0, 0}; // without noise
+    CHECK(forecast.variance(0, seen) == doctest::Approx(weight * 1000).epsilon(1e-3));
+    CHECK(forecast.variance(1, seen) == doctest::Approx(weight * (1 / 1.001 + 1.0 / 4)).epsilon(1e-3));
+}
+
+TEST_CASE("emission learning: paths go where light came from, and some everywhere") {
+    EmissionPlan plan;
+    plan.targets = {{{0, 0, 5}, 1}, {{5, 0, 0}, 1}};
+    const RouletteReference unknown;
+    std::vector<LightStart> starts;
+    std::vector<LightDeposit> deposits;
+    Random random(3);
+    for (std::uint32_t i = 0; i < 9000; ++i) {
+        const LightStart start{0, i % 3, i % 3 == 0 ? 0 : static_cast<std::uint32_t>(random.uniform() * 256)};
+        starts.push_back(start);
+        if (start.target != 1 || start.part % 16 >= 8 || start.part / 16 >= 8) continue; // a quarter of one cone
+        LightDeposit d;
+        d.start = start;
+        d.luminance = 1;
+        deposits.push_back(d);
+    }
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const EmissionPlan learned = learnEmission(plan, 1, starts, deposits, measure, false);
+    REQUIRE(learned.parts.size() == 2);
+    CHECK(learned.parts[1].empty());
+    REQUIRE(learned.parts[0].size() == 256);
+    double inside = 0, least = 1;
+    for (std::size_t i = 0; i < 256; ++i) {
+        if (i % 16 < 8 && i / 16 < 8) inside += learned.parts[0][i];
+        least = std::min(least, learned.parts[0][i]);
+    }
+    const double all = std::accumulate(learned.parts[0].begin(), learned.parts[0].end(), 0.0);
+    CHECK(inside / all > 0.75);
+    CHECK(least / all * 256 > 0.09);
+    CHECK(learned.aim[0] > 10 * learned.aim[1]);
+    CHECK(learned.aim[1] > 0);
+    CHECK(static_cast<double>(learned.uniformShare) == doctest::Approx(0.05)); // nothing came without aim
+    starts.resize(20);                                                         // too few to tell
+    CHECK(learnEmission(plan, 1, starts, deposits, measure, false).parts[0].empty());
+}
+
+TEST_CASE("pilot pixels: an even grid of different pixels") {
+    const PilotPixel::Grid grid({-3, 2, 7, 5}, 4); // 10 × 3
+    REQUIRE(grid.size() == 12);
+    CHECK(grid.pixel(0).x0 == -2);
+    CHECK(grid.pixel(0).y0 == 2);
+    CHECK(grid.pixel(11).x0 == 5);
+    CHECK(grid.pixel(11).y0 == 4);
+    CHECK(grid.pixel(11).area() == 1);
+}
+
+} // namespace abbe::test

@@ -1,0 +1,141 @@
+// The choice of a light: near ones by the tree, far ones by what they give, and the share of each.
+#include "light_sampling/light_sampler.h"
+#include "support/chi_square.h"
+#include "support/statistics.h"
+
+#include <doctest/doctest.h>
+
+namespace abbe::test {
+namespace {
+
+struct Description {
+    double power = 1;
+    std::uint32_t parts = 0;  // 0: far away
+    bool infinite = false;    // met by rays that leave
+    double irradiance = 0;    // of far ones
+    std::uint32_t dark = 999; // a part without power
+};
+
+class TestLight final : public Light {
+  public:
+    TestLight(const Description& d, std::size_t number) : d_(d), x_(static_cast<float>(number)) {}
+    double power() const override { return d_.power; }
+    double visiblePower() const override { return d_.power; }
+    double irradiance() const override { return d_.irradiance; }
+    bool infinite() const override { return d_.infinite; }
+    std::uint32_t parts() const override { return std::max(d_.parts, 1u); }
+    std::optional<LightBounds> bounds(std::uint32_t part) const override {
+        if (d_.parts == 0) return std::nullopt;
+        const Vec3 p{x_, 2, static_cast<float>(part)};
+        const double power = part == d_.dark ? 0 : d_.power / d_.parts;
+        return LightBounds{.box = {p, p}, .power = static_cast<float>(power)};
+    }
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t, Vec2, const Wavelengths&,
+                                      float) const noexcept override {
+        return std::nullopt;
+    }
+
+  private:
+    Description d_;
+    float x_;
+};
+
+using Lights = std::vector<std::unique_ptr<const Light>>;
+
+Lights lightsOf(std::initializer_list<Description> list) {
+    Lights lights;
+    for (const Description& d : list) lights.push_back(std::make_unique<TestLight>(d, lights.size()));
+    return lights;
+}
+
+const Receiver kFloor({0.5f, 0, 0.5f}, {0, 1, 0}, false);
+
+} // namespace
+
+TEST_CASE("light choice: probabilities sum to one over all parts, and are those of the picks") {
+    const Lights cases[] = {
+        lightsOf({{.power = 3, .parts = 1}}), lightsOf({{.power = 3, .parts = 1}, {.power = 1, .parts = 5, .dark = 2}}),
+        lightsOf({{.infinite = true, .irradiance = 1}, {.irradiance = 2}, {}}),
+        lightsOf(
+            {{.power = 3, .parts = 7}, {.infinite = true, .irradiance = 0.01}, {.irradiance = 0.3}, {.parts = 1}})};
+    for (const Lights& lights : cases)
+        for (const auto choice : {Technique::LightChoice::tree, Technique::LightChoice::power}) {
+            const LightSampler sampler(lights, choice);
+            std::vector<std::pair<const Light*, std::uint32_t>> all;
+            std::vector<double> expected;
+            constexpr int picks = 100000;
+            double sum = 0;
+            for (const auto& light : lights)
+                for (std::uint32_t part = 0; part < light->parts(); ++part) {
+                    all.emplace_back(light.get(), part);
+                    const auto p = static_cast<double>(sampler.probability(light.get(), part, kFloor));
+                    sum += p;
+                    expected.push_back(p * picks);
+                }
+            CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+            std::vector<double> observed(all.size(), 0);
+            Random random(7);
+            int different = 0;
+            for (int i = 0; i < picks; ++i) {
+                const PickedLight p = sampler.pick(random.uniform(), kFloor);
+                different += p.probability != sampler.probability(p.light, p.part, kFloor);
+                ++observed[static_cast<std::size_t>(std::find(all.begin(), all.end(), std::pair(p.light, p.part)) -
+                                                    all.begin())];
+            }
+            CHECK(different == 0);
+            if (all.size() > 1) CHECK(chiSquareTest(observed, expected).pValue > 1e-4);
+            for (const float u : {0.f, 0.5f, kOneMinusEpsilon}) CHECK(sampler.pick(u, kFloor).probability > 0);
+            CHECK(sampler.needsChoice() == (all.size() > 1));
+        }
+}
+
+TEST_CASE("light choice: near and far lights each keep a share of the picks") {
+    const auto far = [](const Lights& lights, const Receiver& at) {
+        return LightSampler(lights).probability(lights[1].get(), 0, at);
+    };
+    const Receiver there({0, 1e4f, 0}, {0, -1, 0}, false);
+    // A blazing sky, and next to none.
+    const Lights day = lightsOf({{.power = 1, .parts = 3}, {.infinite = true, .irradiance = 1e9}});
+    const Lights night = lightsOf({{.power = 1, .parts = 3}, {.infinite = true, .irradiance = 1e-9}});
+    CHECK(far(day, kFloor) == doctest::Approx(1 - LightSampler::kLeastShare));
+    CHECK(far(night, kFloor) == doctest::Approx(LightSampler::kLeastShare));
+    // Where both give as much: 1 W at 2 m against the same irradiance.
+    const double near = 1 / (4.0 * 2 * kPiD);
+    const Lights even = lightsOf({{.power = 1, .parts = 1}, {.infinite = true, .irradiance = near}});
+    CHECK(far(even, Receiver({0, 0, 0}, {0, 1, 0}, false)) == doctest::Approx(0.5).epsilon(1e-3));
+    CHECK(far(even, there) > 0.8f);
+}
+
+// docs/hard_cases.md, case 35.
+TEST_CASE("light choice: dark lights are never picked, and no lights at all are no light") {
+    const Lights dark = lightsOf({{.power = 0, .parts = 1}, {.power = 0, .infinite = true}});
+    CHECK(LightSampler(dark).empty());
+    CHECK(LightSampler({}).empty());
+    const Lights one = lightsOf({{.power = 0, .parts = 1}, {.power = 2, .parts = 1}, {.power = 0}});
+    const LightSampler sampler(one);
+    CHECK_FALSE(sampler.needsChoice());
+    CHECK(sampler.pick(0.7f, kFloor).light == one[1].get());
+    CHECK(sampler.probability(one[0].get(), 0, kFloor) == 0);
+    CHECK(sampler.probability(one[1].get(), 0, kFloor) == 1);
+    CHECK(sampler.probability(one[1].get(), 1, kFloor) == 0);
+    // Of another scene.
+    CHECK(sampler.probability(dark[0].get(), 0, kFloor) == 0);
+}
+
+TEST_CASE("light choice along a ray: lights that are there") {
+    const Lights lights = lightsOf({{.parts = 4}, {.infinite = true, .irradiance = 100}});
+    const LightSampler sampler(lights);
+    CHECK(sampler.placed());
+    const Ray ray{{0, 2, -3}, {0, 0, 1}};
+    const RayExtent extent{1, 6};
+    double sum = 0;
+    for (std::uint32_t part = 0; part < 4; ++part)
+        sum += static_cast<double>(sampler.probabilityAlong(lights[0].get(), part, ray, extent));
+    CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+    CHECK(sampler.probabilityAlong(lights[1].get(), 0, ray, extent) == 0);
+    const PickedLight p = sampler.pickAlong(0.3f, ray, extent);
+    CHECK(p.probability == sampler.probabilityAlong(p.light, p.part, ray, extent));
+    CHECK_FALSE(LightSampler(lightsOf({{.irradiance = 1}})).placed());
+}
+
+} // namespace abbe::test
