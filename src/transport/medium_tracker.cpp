@@ -14,6 +14,12 @@ constexpr float kSmall = 0.02f;
 // A ray may collide without end where bounds are far above densities: it looks up so often.
 constexpr std::uint32_t kLookUpEvery = 1024;
 
+// Products of weights along a ray leave the range of float long before the exponential that compensates them is
+// applied. Lanes beyond this give it up, which loses no digit, and note its logarithm.
+constexpr float kFactor = 0x1p64f, kLogFactor = 44.3614196f;
+
+bool any(Int8 lanes) { return _mm256_movemask_ps(reinterpret_cast<__m256>(lanes)) != 0; }
+
 // Optical lengths of rays without an end: large, but 0 times it is 0.
 float finite(double length) { return static_cast<float>(std::min(length, 1e30)); }
 
@@ -79,6 +85,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
                                       RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
     const WorkScope work(Work::surface);
     start(ray, tMax, inside, lambda);
+    givenUp_ = Spectrum(0.f);
     glows_.clear();
     if (listener) startGlows(ray, tMax, inside, random);
     for (Active& a : active_) {
@@ -168,7 +175,21 @@ bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& 
         *weights.density *= rates;
     }
     *weights.beta *= factor;
+    if (weights.density) keepInRange(weights);
     return real;
+}
+
+// Rates of collisions at wavelengths that collide 38 times as often as the hero overflow after 25 of them, and those at
+// wavelengths that seldom do underflow, though shareDistance() brings both back.
+void MediumTracker::keepInRange(TrackedWeights weights) {
+    const Spectrum& density = *weights.density;
+    const Int8 above = density.v > kFactor, below = (density.v < 1 / kFactor) & (density.v > 0);
+    if (!any(above | below)) [[likely]]
+        return;
+    const Spectrum scale = select(above, Spectrum(1 / kFactor), select(below, Spectrum(kFactor), Spectrum(1.f)));
+    *weights.beta *= scale;
+    *weights.density *= scale;
+    givenUp_ += select(above, Spectrum(kLogFactor), select(below, Spectrum(-kLogFactor), Spectrum(0.f)));
 }
 
 bool MediumTracker::toldToLeave() {
@@ -196,7 +217,7 @@ void MediumTracker::note(float density, float bound, const Medium& medium) {
 // digits left where e^-b underflows, e^(b-a) has. Scaled so that no lane overflows.
 void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
     if (!weights.density) return;
-    Spectrum exponent(0.f);
+    Spectrum exponent = givenUp_;
     for (const Active& a : active_) {
         double passed = a.passed;
         if (a.walk && t > a.segment.tNear)
@@ -204,7 +225,9 @@ void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
                       static_cast<double>(std::min(t, a.segment.tFar) - a.segment.tNear);
         exponent = exponent - (a.extinction - Spectrum(a.hero)) * finite(passed);
     }
-    const Spectrum common = exp(exponent - Spectrum(maxLane(exponent)));
+    // A lane that cannot collide is out once the path has: it would leave the others no digits.
+    const Spectrum in = select(weights.density->v > 0, exponent, Spectrum(-kInfinity));
+    const Spectrum common = exp(exponent - Spectrum(maxLane(in)));
     *weights.beta *= common;
     *weights.density *= common;
     const float largest = maxLane(*weights.density);
@@ -228,17 +251,31 @@ Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumSt
 
 Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random) {
     setWork(volumeWork(a.medium->number));
-    Spectrum result(1.f);
+    Residual residual;
     double control = 0; // of the mean density
     do {
-        if (!ratioTracking(a, control, random, result)) return Spectrum(0.f);
+        if (!ratioTracking(a, control, random, residual)) return Spectrum(0.f);
         control += static_cast<double>(a.segment.mean) * static_cast<double>(a.segment.tFar - a.segment.tNear);
     } while (a.walk->next(a.segment));
-    return result * exp(a.extinction * -finite(control));
+    return residual.times(a.extinction, control);
+}
+
+// With the transmittance of the control.
+Spectrum MediumTracker::Residual::times(const Spectrum& extinction, double control) const {
+    return weight * exp(givenUp - extinction * finite(control));
+}
+
+// Where densities are below the mean, weights grow until that transmittance takes them back.
+void MediumTracker::Residual::keepInRange() {
+    const Int8 above = abs(weight).v > kFactor;
+    if (!any(above)) [[likely]]
+        return;
+    weight *= select(above, Spectrum(1 / kFactor), Spectrum(1.f));
+    givenUp += select(above, Spectrum(kLogFactor), Spectrum(0.f));
 }
 
 // The residual of one segment. False if roulette ended a transmittance too small to pay for its lookups.
-bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& random, Spectrum& result) {
+bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& random, Residual& result) {
     const MediumSegment& s = a.segment;
     const float largest = maxLane(a.extinction);
     const float residual = std::max(s.maximum - s.mean, s.mean - s.minimum);
@@ -256,14 +293,19 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
         note(density, s.maximum, *a.medium);
         const Spectrum kept = Spectrum(1.f) - share * (density - s.mean);
         // Below the bound only rounding makes it negative.
-        result *= density <= s.maximum ? max(Spectrum(0.f), kept) : kept;
+        if (density <= s.maximum) {
+            result.weight *= max(Spectrum(0.f), kept);
+        } else {
+            result.weight *= kept;
+            result.keepInRange(); // of any size
+        }
         if (++count % kRouletteEvery != 0) continue;
         if (toldToLeave()) return false;
-        const float soFar =
-            maxLane(abs(result) * exp(a.extinction * -finite(control + static_cast<double>(s.mean) * t)));
-        if (soFar > kSmall) continue;
+        result.keepInRange();
+        const Spectrum soFar = result.times(a.extinction, control + static_cast<double>(s.mean) * t);
+        if (maxLane(abs(soFar)) > kSmall) continue;
         if (random.uniform() < 0.5f) return false;
-        result *= 2.f;
+        result.weight *= 2.f;
     }
     return true;
 }

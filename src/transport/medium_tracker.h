@@ -106,6 +106,14 @@ class MediumTracker {
         bool collides; // at `next`
     };
 
+    // The weight of residual ratio tracking, over the exponential of what its lanes gave up to stay in range.
+    struct Residual {
+        Spectrum weight{1.f}, givenUp{0.f};
+
+        void keepInRange();
+        Spectrum times(const Spectrum& extinction, double control) const;
+    };
+
     struct Glow {
         const MediumEmission* emission;
         EmissionWalk* walk;
@@ -132,17 +140,19 @@ class MediumTracker {
     static void schedule(Active&, float from);
     static bool advance(Active&);
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
+    void keepInRange(TrackedWeights);
     void shareDistance(float t, TrackedWeights) const;
     void note(float density, float bound, const Medium&);
     bool toldToLeave();
     Spectrum ratioTracking(Active&, RandomStream&);
-    bool ratioTracking(Active&, double control, RandomStream&, Spectrum& result);
+    bool ratioTracking(Active&, double control, RandomStream&, Residual&);
 
     std::span<const Medium* const> open_;
     const StopFlag& stop_;
     std::vector<WalkSpace> spaces_, glowSpaces_;
     std::vector<Active> active_;
     std::vector<Glow> glows_;
+    Spectrum givenUp_; // of both weights of the ray in hand, logarithms
 };
 
 } // namespace abbe

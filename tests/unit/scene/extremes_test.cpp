@@ -189,4 +189,16 @@ TEST_CASE("extremes of every numeric property") {
     CHECK(all.refused > 50);
 }
 
+// Weights along rays leave the range of float there, and come back to it (unit/media/extremes_test).
+TEST_CASE("coloured noise without an edge, thousands of optical lengths deep: every sample is a number") {
+    const TestScene scene =
+        TestScene::parse("scene 1\nfilm { size 12 12; output \"x.exr\" }\n" + std::string(kProbedCamera) +
+                         kProbedLights + kProbedFloor + "volume noise { scattering rgb 0.1 3.2 3.8 per-mm }\n");
+    REQUIRE_FALSE(scene.diagnostics().hasErrors());
+    RenderSettings settings = scene.settings();
+    settings.samples = 8;
+    const TestImage image = render(scene, settings, {}, 2);
+    CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
+}
+
 } // namespace abbe::test::extremes
