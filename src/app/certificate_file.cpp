@@ -2,6 +2,7 @@
 
 #include "app/light_path_text.h"
 #include "app/version.h"
+#include "base/regular_file.h"
 #include "io/atomic_file.h"
 
 #include <algorithm>
@@ -199,6 +200,14 @@ Json certificateJson(const ErrorCertificate& c) {
                                                    {"bias", c.merged->bias},
                                                    {"bias_of_tiles", c.merged->biasOfTiles}}));
     return object.set("caveat", kCaveat);
+}
+
+bool isForeignCertificate(const std::string& path) {
+    RegularFile file(path);
+    if (!file.good()) return false;
+    const std::string known = fmt::format("{{\n  \"format\": \"{}", std::string_view(kCertificateFormat).substr(0, 17));
+    std::string head(known.size(), '\0');
+    return file.readAt(0, head) < head.size() || head != known;
 }
 
 void writeCertificateFile(const std::string& path, const CertificateFacts& facts) {

@@ -33,6 +33,8 @@ struct CertificateFacts {
     int parts = 0; // that it was put together from; 0: none
     std::string sceneHash;
 };
+// Whether a file is there that is no certificate by this program, of any version, and must not be lost unasked.
+bool isForeignCertificate(const std::string& path);
 // Appears under its name when it is whole. Throws IoError.
 void writeCertificateFile(const std::string& path, const CertificateFacts&);
 

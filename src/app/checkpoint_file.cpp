@@ -257,6 +257,13 @@ void writeLight(AtomicFile& file, const FilmPlanes& planes, RenderState& state) 
 
 } // namespace
 
+bool isForeignCheckpoint(const std::string& path) {
+    RegularFile file(path);
+    char magic[sizeof kCheckpointMagic] = {};
+    return file.good() &&
+           (file.readAt(0, magic) < sizeof magic || std::memcmp(magic, kCheckpointMagic, sizeof magic) != 0);
+}
+
 bool writeCheckpoint(const std::string& path, const CheckpointHeader& header, const FilmPlanes& planes,
                      RenderState& state, const std::function<bool()>& sound) {
     ABBE_CHECK(header.lightBlocks == state.lightBlockCount());

@@ -53,6 +53,9 @@ struct CheckpointFault : std::runtime_error {
 bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&,
                      const std::function<bool()>& sound = {});
 
+// Whether a file is there that was never a checkpoint or part, of any version, and must not be lost unasked.
+bool isForeignCheckpoint(const std::string& path);
+
 // Reads without holding more than a tile in memory.
 class CheckpointReader {
   public:

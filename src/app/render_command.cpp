@@ -1,4 +1,5 @@
 #include "app/bill_text.h"
+#include "app/certificate_file.h"
 #include "app/display_view.h"
 #include "app/long_path_warnings.h"
 #include "app/machine.h"
@@ -94,6 +95,13 @@ ExitCode RenderRun::checkOutputs() {
         if (path.empty()) continue;
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);
+    }
+    if (const std::string path = summary_.image + ".json"; !options_.part && isForeignCertificate(path)) {
+        certificateAlso_ = false;
+        warn("W0667",
+             fmt::format("no certificate will be written: `{}` is there already, and was not made by this program",
+                         path),
+             "the header of the image has it");
     }
     return checkPng();
 }
@@ -198,6 +206,7 @@ void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& inte
     renderFrom(film, state, interrupt);
     summary_.partial = summary_.statistics.stopped || lostTexture_ || outOfMemory_;
     summary_.statistics.stopped = summary_.partial;
+    allBegun_ = state.allBegun();
     hasSamples_ = !state.empty() || state.reached() >= settings_.range(film.replicates()).last;
     hasPicture_ = hasSamples_ || (!summary_.partial && !options_.part && look_ && !look_->cells.empty());
     closeCheckpoint();

@@ -92,6 +92,7 @@ class RenderRun {
     void certify(const PixelFilm&);
     void writeCertificate();
     void write(const PixelFilm&);
+    void writeFiles(const PixelFilm&, const FilmPicture&, Diagnostics&);
     void writeInMemory(const PixelFilm&);
     ExitCode refuseForMemory();
     std::vector<ImageAttribute> attributes(const PixelFilm&);
@@ -129,6 +130,8 @@ class RenderRun {
     bool hasSamples_ = true;        // that it was to take, at least one
     bool hasPicture_ = true;        // these, or a first look where the time was up
     std::size_t lookedAt_ = 0;      // pixels that were written without a sample, as they looked at first
+    bool allBegun_ = true;          // a sample of every pixel was taken, be it that it was dropped
+    bool certificateAlso_ = true;   // no file of somebody else has its name
     bool outOfMemory_ = false;      // while rendering or writing
     bool imageWritten_ = false;     // in the end
     std::string olderCheckpoint_;   // which stays when memory ran out

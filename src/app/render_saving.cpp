@@ -7,6 +7,7 @@
 #include "app/render_identity.h"
 #include "app/render_run.h"
 #include "app/render_warnings.h"
+#include "base/path_lock.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -14,10 +15,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace abbe {
 
 namespace {
+
+// How long one render may keep another one from writing the same files.
+constexpr double kMostPatience = 30; // s
 
 // One that only this user can look into, of a name that nobody could foresee: the folder of temporary files is
 // everybody's.
@@ -71,6 +76,12 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
     const CheckpointOptions& options = options_.checkpoint;
     if (options.off && !options.resume && !options_.part) return ExitCode::done;
     const std::string path = options_.part ? summary_.image : summary_.image + ".ckpt";
+    if (!options.resume && isForeignCheckpoint(path))
+        return refuse("E0661", fmt::format("`{}` is there already, and was not made by this program", path),
+                      options_.part ? "`-o FILE` writes the part elsewhere"
+                                    : "move it, or write the image elsewhere with `-o FILE`; `--checkpoint off` "
+                                      "renders without a checkpoint",
+                      ExitCode::faulty);
     checkpoint_.emplace(path, checkpointHeader(), [this] { return identity(); });
     if (options.resume && checkpoint_->exists()) {
         try {
@@ -148,6 +159,7 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
             summary_.noise = film.relativeNoise();
             certify(film);
             const FilmPicture picture = pictureOf(film);
+            const PathLock lock(summary_.image, kMostPatience);
             writeImage(summary_.image, picture, film_, attributes(film), ignored);
             report_->image(summary_.image, true);
             writeCertificate();
@@ -199,6 +211,7 @@ void RenderRun::certify(const PixelFilm& film) {
 
 // Beside the image. All of it is in the header of the image too, so a fault is no reason to end the render.
 void RenderRun::writeCertificate() {
+    if (!certificateAlso_) return;
     try {
         const std::string path = summary_.image + ".json";
         writeCertificateFile(path, {&summary_, settings_.seed, static_cast<int>(options_.parts.size()),
@@ -214,6 +227,32 @@ void RenderRun::write(const PixelFilm& film) {
     const FilmPicture picture = pictureOf(film);
     if (settings_.adaptive) summary_.spread = sampleSpread(film);
     Diagnostics warnings;
+    writeFiles(film, picture, warnings);
+    endPhase("writing", watch_.lap());
+    warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
+    warnOfCappedPaths(summary_.statistics, built_, warnings);
+    warnOfDensities(summary_.statistics.excess, warnings);
+    const auto& dropped = summary_.statistics.dropped;
+    if (!summary_.partial)
+        warnOfMissingSamples(
+            {lookedAt_, film.bounds(), allBegun_, std::accumulate(dropped.begin(), dropped.end(), std::uint64_t{0})},
+            warnings);
+    for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
+    warnOfMissingLight(summary_.statistics, warnings);
+    // What was not begun says nothing of the scene.
+    if (summary_.certificate->fewest > 0) warnOfBlackImage(picture.image, warnings);
+    judgePicture(film, picture.image, warnings);
+    warnOfHeavyTail(summary_.certificate->relative, warnings);
+    report_->diagnostics(warnings, loaded_->sources);
+    summary_.warnings += warnings.warningCount();
+}
+
+// Of renders to one image that end at once, each writes all of its files before the next one does.
+void RenderRun::writeFiles(const PixelFilm& film, const FilmPicture& picture, Diagnostics& warnings) {
+    const PathLock lock(summary_.image, kMostPatience);
+    if (lock.refused())
+        warn("W0670", fmt::format("another render has been writing `{}` for {} s", summary_.image, kMostPatience),
+             "files beside the image may be of that one");
     try {
         writeImage(summary_.image, picture, film_, attributes(film), warnings);
     } catch (const IoError& e) {
@@ -223,19 +262,6 @@ void RenderRun::write(const PixelFilm& film) {
     if (picture.deep) report_->image(summary_.deep, summary_.partial);
     writeCertificate();
     writePng(picture.image);
-    endPhase("writing", watch_.lap());
-    warnOfDroppedSamples(summary_.statistics, summary_.faults, replayCommand(), warnings);
-    warnOfCappedPaths(summary_.statistics, built_, warnings);
-    warnOfDensities(summary_.statistics.excess, warnings);
-    if (!summary_.partial) warnOfMissingSamples(lookedAt_, film.bounds(), warnings);
-    for (const auto& texture : built_.scene.textures) texture->reportLookups(warnings);
-    warnOfMissingLight(summary_.statistics, warnings);
-    // What was not begun says nothing of the scene.
-    if (summary_.certificate->fewest > 0) warnOfBlackImage(picture.image, warnings);
-    judgePicture(film, picture.image, warnings);
-    warnOfHeavyTail(summary_.certificate->relative, warnings);
-    report_->diagnostics(warnings, loaded_->sources);
-    summary_.warnings += warnings.warningCount();
 }
 
 // The disk filled up or went away while rendering: what was computed is saved where temporary files go, and a

@@ -47,14 +47,18 @@ void warnOfDensities(const DensityExcess& excess, Diagnostics& diagnostics) {
                                     excess.above, excess.lookups, excess.most));
 }
 
-void warnOfMissingSamples(std::size_t pixels, PixelBounds bounds, Diagnostics& diagnostics) {
-    if (pixels == 0) return;
+void warnOfMissingSamples(const MissingSamples& missing, Diagnostics& diagnostics) {
+    if (missing.pixels == 0) return;
+    const std::string_view why = missing.allBegun ? "all samples of some pixels were dropped"
+                                 : missing.dropped > 0
+                                     ? "the time ended before every pixel had a sample, and samples were dropped"
+                                     : "the time ended before every pixel had a sample";
     diagnostics
         .warning("W0668", {},
-                 fmt::format("the time ended before every pixel had a sample; {:.2g} % of the image show a rough first "
-                             "look",
-                             100 * static_cast<double>(pixels) / static_cast<double>(bounds.area())))
-        .help = "give it more `--time`, or a smaller `--size`";
+                 fmt::format("{}; {:.2g} % of the image show a rough first look", why,
+                             100 * static_cast<double>(missing.pixels) / static_cast<double>(missing.image.area())))
+        .help =
+        missing.allBegun ? "W0640 says what was dropped and where" : "give it more `--time`, or a smaller `--size`";
 }
 
 void warnOfMissingLight(const RenderStatistics& statistics, Diagnostics& diagnostics) {

@@ -16,8 +16,14 @@ void warnOfDroppedSamples(const RenderStatistics&, std::span<const FoundFault> f
                           Diagnostics&);
 // That bounds of procedural density are too low to be of use.
 void warnOfDensities(const DensityExcess&, Diagnostics&);
-// Of pixels that show the first look, in an image of these bounds, because the time was too short for a sample of them.
-void warnOfMissingSamples(std::size_t pixels, PixelBounds, Diagnostics&);
+// Of pixels that show the first look: the time was too short for a sample of them, or what they had was dropped.
+struct MissingSamples {
+    std::size_t pixels = 0;
+    PixelBounds image;
+    bool allBegun = false; // a sample of every pixel was taken
+    std::uint64_t dropped = 0;
+};
+void warnOfMissingSamples(const MissingSamples&, Diagnostics&);
 // That what only light paths or merging bring is missing, because the render was ended before their first.
 void warnOfMissingLight(const RenderStatistics&, Diagnostics&);
 // Of an image whose error is mostly carried by samples that are too rare.

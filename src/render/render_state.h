@@ -124,6 +124,11 @@ class RenderState {
             return t.reached == first_ && (!t.cut || (t.cut->at.unit == 0 && t.cut->at.done == 0));
         });
     }
+    // Whether a sample of every pixel was taken.
+    bool allBegun() const {
+        const auto end = tiles_.begin() + static_cast<std::ptrdiff_t>(pixelTiles_);
+        return std::all_of(tiles_.begin(), end, [&](const TileState& t) { return t.reached > first_; });
+    }
     PathTally tally() const {
         PathTally sum;
         for (const TileState& tile : tiles_) sum.add(tile.tally);

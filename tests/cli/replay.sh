@@ -15,6 +15,13 @@ command=$(sed -n 's/.*`abbe \(replay [^`]*\)`.*/\1/p' err | head -n 1)
 expect 0 info flare.exr
 says out "abbe.droppedSamples = "
 
+# Pixels that have lost all of theirs are not those of a render whose time ended.
+sed 's/radius 1 cm; luminance 1e20/radius 30 cm; luminance 1e20/' flare.scene >glare.scene
+expect 0 glare.scene --size 48x32 --samples 2 -o glare.exr
+says err W0668
+says err "all samples of some pixels were dropped"
+says_not err "the time"
+
 # The image tells what to repeat, and the command of the warning repeats the first of them.
 expect 0 replay flare.exr
 says out "meets the light \`flare\`"

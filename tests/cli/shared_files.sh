@@ -4,7 +4,7 @@
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 pairs=${ABBE_NIGHTLY:+100}
-pairs=${pairs:-6}
+pairs=${pairs:-12}
 scene=$scenes/room.scene
 small=("$scene" --size 16x16 --samples 4 -q)
 
@@ -37,6 +37,31 @@ chmod 640 fixed.scene
 expect 1 check --fix fixed.scene
 [[ $(mode fixed.scene) == 640 ]] || fault "--fix gave a scene the mode $(mode fixed.scene)"
 
+# Files of somebody else under names that follow from that of the image: none is replaced.
+mkdir mine
+for name in o.exr.json o.exr.ckpt o.part1.abbe o.png; do echo "my $name" >"mine/$name"; done
+expect 1 "${small[@]}" -o mine/o.exr
+says err E0661
+says err "\`mine/o.exr.ckpt\` is there already"
+[[ ! -e mine/o.exr ]] || fault "refused, and rendered all the same"
+expect 1 "${small[@]}" -o mine/o.exr --part 1/1
+says err "\`mine/o.part1.abbe\` is there already"
+expect 0 "$scene" --size 16x16 --samples 4 -o mine/o.exr --checkpoint off
+says err W0667
+says err "\`mine/o.exr.json\` is there already"
+says err W0646
+[[ -s mine/o.exr ]] || fault "there is no image"
+for name in o.exr.json o.exr.ckpt o.part1.abbe o.png; do
+    [[ $(cat "mine/$name") == "my $name" ]] || fault "mine/$name was replaced"
+done
+rm mine/*
+for run in 1 2; do # its own are
+    expect 0 "$scene" --size 16x16 --samples 4 --seed $run -o mine/o.exr --checkpoint keep
+    says_not err W0667
+    grep -q "\"seed\": $run," mine/o.exr.json || fault "the certificate of an earlier render stays"
+    expect 0 "${small[@]}" --part 1/1 -o mine/o.exr
+done
+
 # A picture that somebody calls like the preview.
 cp "$program" modes/slow.preview.png
 expect 0 "$scene" --size 128x128 --samples 64 -q -o modes/slow.exr
@@ -50,12 +75,28 @@ for ((pair = 0; pair < pairs; ++pair)); do
         jobs[seed]=$!
     done
     for seed in 1 2; do wait "${jobs[seed]}" || fault "seed $seed beside another ended with $?: $(cat "err$seed")"; done
-    [[ $(pixels both.exr) == "$(pixels seed1.exr)" || $(pixels both.exr) == "$(pixels seed2.exr)" ]] ||
-        fault "two renders left an image of neither"
+    whose=0
+    for seed in 1 2; do [[ $(pixels both.exr) == "$(pixels seed$seed.exr)" ]] && whose=$seed; done
+    ((whose > 0)) || fault "two renders left an image of neither"
+    cmp -s both.png seed$whose.png || fault "the PNG beside the image of seed $whose is not of it"
+    grep -q "\"seed\": $whose," both.exr.json || fault "the certificate beside the image of seed $whose is not of it"
     [[ ! -e both.exr.ckpt ]] || fault "a checkpoint of finished renders is left"
     rm -f both.*
 done
 [[ -z $(find . -name '*.abbe-*') ]] || fault "temporary files are left: $(find . -name '*.abbe-*')"
+
+# While another one writes, none of its files is written; then all are, and the lock is gone.
+flock wait.exr.abbe-lock sleep 3 &
+holder=$!
+sleep 0.5
+"$program" "${small[@]}" -o wait.exr &
+job=$!
+sleep 1.5
+[[ ! -e wait.exr && ! -e wait.exr.json && ! -e wait.png ]] || fault "files were written while another render wrote its own"
+ended_with 0
+kill -0 $holder 2>/dev/null && fault "written before the other render was done"
+[[ -s wait.exr && -s wait.exr.json && -s wait.png ]] || fault "files are missing after the other render was done"
+[[ ! -e wait.exr.abbe-lock ]] || fault "the lock stays"
 
 # One that is done first leaves the other its checkpoint.
 start both.exr "$scene" --size 32x32 --seed 1 --checkpoint 100ms
