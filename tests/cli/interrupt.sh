@@ -64,6 +64,17 @@ for _ in {1..600}; do grep -q '"event":"progress"' events && break || sleep 0.1;
 ends_soon TERM 143
 says events '"partial":true'
 
+# Along a ray, too, that looks up a density at every picometre.
+for optics in "extinction 1e12 per-m; albedo 0.9" "scattering rgb 1e12 1e3 1 per-m"; do
+    printf 'scene 1\ncamera { from 0 1 4; look-at 0 0 0 }\nlight sky\nlight sphere { center 0 3 0; radius 0.1; power 10 W }\n%s\n' \
+        "volume noise { $optics }" >dense.scene
+    "$program" dense.scene --size 64x64 --samples 4000000 --json -o dense.exr >events 2>err &
+    job=$!
+    for _ in {1..100}; do grep -q '"event":"start"' events && break || sleep 0.1; done
+    sleep 0.3
+    ends_soon TERM 143
+done
+
 # So is the time limit; a time that is too short for anything says so.
 expect 0 "$room" --size 16x16 --samples 1 --time 2 --json -o timed.exr
 seconds=$(sed -n 's/.*"render_seconds":\([0-9.e+-]*\).*/\1/p' out)

@@ -102,4 +102,45 @@ promise 16384 >tiny.exr
     exit "$faults"
 ) || faults=$((faults + 1))
 
+# Pictures of 268 million pixels in three megabytes: refused before anything is decoded where they have to be in memory
+# at once; else read in pieces, within what is allowed, and left at once when that is wanted.
+nodejs "$scenes/../bombs.mjs" . || fault "no bombs"
+(($(stat -c %s bomb.exr) < 4000000 && $(stat -c %s bomb.png) < 1000000)) || fault "the bombs are no small files"
+(
+    ulimit -v 1500000
+    for words in "convert bomb.exr no.png" "denoise bomb.exr -o no.exr" "compare bomb.exr bomb.exr"; do
+        # shellcheck disable=SC2086 # words of the command
+        refuses 3 $words
+        says err "cannot read \`bomb.exr\`: it takes 3.00 GiB of memory"
+    done
+    exit "$faults"
+) || faults=$((faults + 1))
+scene "light environment \"bomb.exr\""
+refuses 1 render bounds.scene --memory 512MiB -o no.exr
+says err "bounds.scene:4:"
+says err "E0402"
+says err "of memory"
+# left_at_once ARGUMENT…: has taken little memory when a second has passed, and ends within another one when told to.
+left_at_once() {
+    local began peak
+    "$program" "$@" >out 2>err &
+    job=$!
+    sleep 1
+    peak=$(sed -n 's/^VmHWM:[^0-9]*\([0-9]*\) kB/\1/p' /proc/$job/status)
+    began=$EPOCHREALTIME
+    kill -TERM "$job" || fault "abbe $* has ended by itself: $(cat err)"
+    ended_with 143
+    awk -v a="$began" -v b="$EPOCHREALTIME" 'BEGIN { exit !(b - a < 1.5) }' || fault "abbe $*: left from $began to $EPOCHREALTIME"
+    grep -q -e asan -e tsan <<<"$program" || ((${peak:-0} > 0 && peak < most)) || fault "abbe $*: ${peak:-no} kB of memory"
+    printf "%s: %s kB\n" "$*" "$peak"
+}
+most=524288 # kB
+for kind in exr png; do
+    scene "shape sphere { material diffuse { reflectance image \"bomb.$kind\" } }"
+    left_at_once render bounds.scene --memory 512MiB -o no.exr
+done
+most=1500000 # kB, a channel at a time
+left_at_once info bomb.exr
+[[ ! -e no.exr && ! -e no.png ]] || fault "a picture of a bomb"
+
 finish
