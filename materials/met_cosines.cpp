@@ -2,8 +2,16 @@
 
 namespace abbe {
 
-MetCosines::MetCosines(Spectrum lobe, float from, Kinks kinks, bool fine)
-    : middle_(0.5f * (lobe[3] + lobe[4])), width_(std::max(0.5f * (lobe[5] - lobe[2]), 1e-5f)) {
+namespace {
+
+// Half of the width between the inner points of a narrow lobe, in units of its spread: 0.6, and less of wide ones,
+// whose own are known.
+constexpr float kInnerHalf = 0.5f;
+
+} // namespace
+
+MetCosines::MetCosines(Spectrum lobe, float spread, float from, Kinks kinks, bool fine)
+    : middle_(0.5f * (lobe[3] + lobe[4])), width_(std::max({0.5f * (lobe[5] - lobe[2]), kInnerHalf * spread, 1e-5f})) {
     std::ranges::sort(kinks);
     const auto intervals = 1 + std::ranges::count_if(kinks, [&](float k) { return k > from; });
     const int blocks = intervals == 1 ? (fine ? 4 : 2) : intervals == 2 ? 4 : 2;

@@ -22,9 +22,10 @@ inline float criticalCosine(Spectrum eta) {
 class MetCosines {
   public:
     using Kinks = std::array<float, 4>;
-    // lobe: see microfacetCosines(); `from`: of the integral; kinks: critical cosines in it, in any order, others do
-    // not matter; `fine`: more points where there are none.
-    MetCosines(Spectrum lobe, float from, Kinks kinks, bool fine);
+    // lobe: see microfacetCosines(), which away from grazing angles knows that a narrow one is narrow, but not how
+    // much; spread: standing for that, α times the sine. `from`: of the integral; kinks: critical cosines in it, in any
+    // order, others do not matter; `fine`: more points where there are none.
+    MetCosines(Spectrum lobe, float spread, float from, Kinks kinks, bool fine);
 
     // Integrals over the cosine of f times the shares that leave the surface. `varies`: f differs between the lanes for
     // reasons of its own; `disperses`: the shares do.

@@ -97,7 +97,7 @@ Spectrum OpenPbrBsdf::lobeMean(const GgxLobe& lobe, Vec3 wo, Spectrum eta, const
     const float critical = criticalCosine(eta);
     if (lobe.smooth() || !(std::max(critical, std::ranges::max(kinks)) > 0)) return d.meanOver(cosines, f, varies);
     const auto more = [&](Spectrum c) { return f(c) - Spectrum(beyond); };
-    const MetCosines points(cosines, critical, kinks, true);
+    const MetCosines points(cosines, lobe.spread(wo), critical, kinks, true);
     const Spectrum change = points.integral(more, MicrofacetEscape(lobe.ggx(), wo, eta), varies, disperses_).reflected;
     return min(max(Spectrum(beyond) + change / lobe.mirrorAlbedo(wo), Spectrum(0.f)), kOne);
 }
@@ -114,7 +114,8 @@ void OpenPbrBsdf::setInterface(View& v, Spectrum eta, Covered&& covered, Bare&& 
     if (refracts() && !lobe.smooth() && (!tabulated || d.covered())) {
         const auto more = [&](Spectrum c) { return covered(c) - (tabulated ? bare(c) : kOne); };
         const float critical = d.critical(v.within);
-        const MetCosines points(lobe.cosines(v.wo), critical, d.kinks(v.within), critical > 0 || !tabulated);
+        const MetCosines points(lobe.cosines(v.wo), lobe.spread(v.wo), critical, d.kinks(v.within),
+                                critical > 0 || !tabulated);
         const auto change = points.integral(more, MicrofacetEscape(lobe.ggx(), v.wo, eta), d.varies(), disperses_);
         if (!tabulated) shares.kept = shares.turned * (2 * lobe.mirrorAlbedo(v.wo));
         shares.kept += (shares.turned * change.reflected - (kOne - shares.turned) * change.refracted) * 2;

@@ -108,6 +108,31 @@ TEST_CASE("white furnace: thin glass under a dense coat, with a modulated index"
     CHECK(furnace.worstWithin < 0.005);
 }
 
+// Where next to nothing is reflected until the critical angle, or the grazing one, is all but reached. Clear glass
+// within 0.1 % of its surroundings lies between the first indices of the tables.
+TEST_CASE("white furnace: indices that nearly match, of the surface, what is around it and the coat") {
+    std::deque<ConstantCurve> curves;
+    Furnace bare, coated, matched;
+    for (const double step : {-0.05, -0.01, -0.001, 0.0, 1e-4, 0.001, 0.003, 0.01, 0.03, 0.1})
+        for (const double roughness : {0.0, 0.05, 0.15, 0.4, 1.0})
+            for (const bool opaque : {false, true})
+                for (const bool inWater : {false, true}) {
+                    OpenPbrParams p = whiteOpenPbr();
+                    p.transmissionWeight = number(!opaque), p.specularRoughness = number(roughness);
+                    p.specularIor = &curves.emplace_back((inWater ? 1.33 : 1) * (1 + step));
+                    (opaque || std::abs(step) > 0.002 ? bare : matched)
+                        .add(p, 4000, false, inWater ? &flat(1.33) : nullptr);
+                    p.coatWeight = number(1), p.coatRoughness = number(roughness);
+                    p.specularIor = &curves.emplace_back(1.5 * (1 + step)), p.coatIor = number(1.5);
+                    coated.add(p, 4000, false, inWater ? &flat(1.33) : nullptr);
+                }
+    for (const Furnace* furnace : {&bare, &coated, &matched}) {
+        furnace->report();
+        CHECK(furnace->worst < (furnace == &matched ? 0.016 : 0.005));
+        CHECK(furnace->worstWithin < (furnace == &matched ? 0.016 : 0.005));
+    }
+}
+
 TEST_CASE("white furnace over the cube: stretched highlights") {
     RandomOpenPbr cube(3);
     Furnace furnace;
