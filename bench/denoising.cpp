@@ -4,10 +4,10 @@
 // Prints FLIP and relMSE of all, and where the denoised ones lie on the line through the noisy ones (logarithms of
 // error and samples; beyond the last one it goes on straight).
 #include "denoise/denoise.h"
-#include "io/exr_channels.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 #include "io/flip.h"
 #include "io/image_compare.h"
-#include "io/io_error.h"
 #include "io/png_writer.h"
 
 #include <algorithm>

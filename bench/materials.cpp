@@ -9,7 +9,7 @@
 #include "materials/diffuse.h"
 #include "materials/openpbr.h"
 #include "math/warp.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include "measure.h"
 #include "media/grid_medium.h"
 #include "media/henyey_greenstein.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "transport/medium_tracker.h"
 #include "volumes/brick_walk.h"
 #include "volumes/noise.h"

@@ -1,6 +1,6 @@
 // Speed of the scene parser in MB per second of processor time, single thread, on generated texts. Run by hand:
 // parse_bench [repetitions].
-#include "base/source_map.h"
+#include "base/source.h"
 #include "parser/parse.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "materials/attenuation_curve.h"
 #include "materials/dielectric_bsdf.h"
 #include "render/surface_input.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 namespace abbe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "math/warp.h"
 #include "render/surface_input.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 namespace abbe {
 namespace {

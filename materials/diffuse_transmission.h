@@ -2,7 +2,6 @@
 #pragma once
 
 #include "render/material.h"
-#include "schema/place_of.h"
 #include "schema/type.h"
 
 #include <memory>

@@ -7,8 +7,8 @@
 #include "materials/openpbr_tangent.h"
 #include "materials/openpbr_veil.h"
 #include "render/surface_input.h"
-#include "spectrum/cauchy_curve.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/dispersion.h"
 
 #include <optional>
 

@@ -3,7 +3,6 @@
 
 #include "base/diagnostic.h"
 #include "render/material.h"
-#include "schema/place_of.h"
 #include "schema/type.h"
 
 #include <memory>

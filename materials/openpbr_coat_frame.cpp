@@ -2,7 +2,7 @@
 
 #include "materials/normal_map.h"
 #include "materials/openpbr_tangent.h"
-#include "math/consistent_normal.h"
+#include "math/frame.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 #include "materials/openpbr_inside.h"
 
 #include "materials/attenuation_curve.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <algorithm>
 

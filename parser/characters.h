@@ -1,7 +1,7 @@
 // Classes of characters in KDL 2.0.0: one table for single bytes, one function for the few wide ones that matter.
 #pragma once
 
-#include "base/utf8.h"
+#include "base/text.h"
 
 #include <array>
 #include <cstdint>

@@ -2,8 +2,8 @@
 
 #include "parser/characters.h"
 #include "parser/number.h"
+#include "parser/tokens.h"
 #include "parser/value_scanner.h"
-#include "parser/whitespace.h"
 #include "schema/foreign_words.h"
 #include "schema/scene_tree.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "schema/document.h"
 
 #include <cstdint>

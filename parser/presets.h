@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "schema/type.h"
 
 #include <string_view>

@@ -1,9 +1,8 @@
 // Entries of a node: arguments, keys, and the rows of plain numbers that are kept packed.
 #include "parser/characters.h"
 #include "parser/number.h"
-#include "parser/text_literal.h"
+#include "parser/tokens.h"
 #include "parser/tree_reader.h"
-#include "parser/whitespace.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,7 @@
 
 #include "parser/characters.h"
 #include "parser/number.h"
-#include "parser/number_repair.h"
-#include "parser/text_literal.h"
-#include "parser/whitespace.h"
+#include "parser/tokens.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "app/light_path_text.h"
 #include "app/version.h"
-#include "base/regular_file.h"
-#include "io/atomic_file.h"
+#include "base/file.h"
+#include "io/file.h"
 
 #include <algorithm>
 #include <charconv>

@@ -2,7 +2,7 @@
 #include "app/certify_references.h"
 #include "app/display_view.h"
 #include "app/options.h"
-#include "io/exr_channels.h"
+#include "io/exr_reader.h"
 #include "io/image_compare.h"
 
 #include <algorithm>

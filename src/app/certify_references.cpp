@@ -2,8 +2,8 @@
 
 #include "app/certificate_file.h"
 #include "app/display_view.h"
-#include "io/exr_channels.h"
-#include "io/io_error.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 
 #include <cmath>
 #include <fmt/format.h>

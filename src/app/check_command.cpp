@@ -1,6 +1,6 @@
 #include "app/options.h"
-#include "base/diagnostic_fixes.h"
-#include "io/atomic_file.h"
+#include "base/diagnostic.h"
+#include "io/file.h"
 
 #include <algorithm>
 #include <fmt/format.h>

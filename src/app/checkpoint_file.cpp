@@ -3,8 +3,7 @@
 #include "app/checkpoint_bytes.h"
 #include "base/check.h"
 #include "base/memory_limit.h"
-#include "io/atomic_file.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "math/byte_hash.h"
 
 #include <algorithm>

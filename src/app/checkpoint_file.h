@@ -1,8 +1,8 @@
 // Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
 #pragma once
 
-#include "base/regular_file.h"
-#include "base/work_reading.h"
+#include "base/file.h"
+#include "base/work_clock.h"
 #include "film/film_planes.h"
 #include "render/render_state.h"
 

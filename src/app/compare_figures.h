@@ -3,7 +3,6 @@
 
 #include "app/compare_images.h"
 #include "app/json.h"
-#include "io/color_difference.h"
 #include "io/flip.h"
 #include "io/image_compare.h"
 

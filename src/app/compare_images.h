@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/image.h"
-#include "io/tile_test.h"
+#include "io/image_compare.h"
 
 #include <optional>
 #include <span>

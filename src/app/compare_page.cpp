@@ -4,8 +4,8 @@
 #include "app/json.h"
 #include "app/page_text.h"
 #include "base/check.h"
-#include "io/atomic_file.h"
-#include "io/display_rgb.h"
+#include "io/file.h"
+#include "io/image.h"
 
 #include <algorithm>
 #include <bit>

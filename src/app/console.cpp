@@ -1,7 +1,7 @@
 #include "app/console.h"
 
 #include "base/diagnostic_format.h"
-#include "base/shown_text.h"
+#include "base/text.h"
 #include "base/text_output.h"
 
 #include <cstdlib>

@@ -2,8 +2,8 @@
 #include "app/options.h"
 #include "base/stopwatch.h"
 #include "denoise/denoise.h"
-#include "io/exr_append.h"
-#include "io/exr_channels.h"
+#include "io/exr_reader.h"
+#include "io/exr_writer.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/display_view.h"
 
-#include "io/io_error.h"
+#include "io/file.h"
 #include "spectrum/color_space.h"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "doctor/numeric_check.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/ocio_view.h"
 #include "textures/image_file.h"
 #include "textures/texture_store.h"

@@ -2,7 +2,7 @@
 #include "app/explain_effects.h"
 #include "app/light_path_text.h"
 #include "app/options.h"
-#include "base/diagnostic_catalogue.h"
+#include "base/diagnostic.h"
 #include "caustics/light_tracing/light_path_planner.h"
 #include "film/pixel_film.h"
 #include "parser/presets.h"

@@ -1,7 +1,7 @@
 // A dropped sample with the place where it went wrong, in the words of the scene.
 #pragma once
 
-#include "base/source_map.h"
+#include "base/source.h"
 #include "render/scene.h"
 #include "rendering/sample_fault.h"
 #include "schema/scene_tree.h"

@@ -2,9 +2,8 @@
 
 #include "app/display_view.h"
 #include "app/version.h"
-#include "io/atomic_file.h"
 #include "io/exr_deep.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/png_writer.h"
 #include "spectrum/color_space.h"
 

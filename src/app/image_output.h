@@ -3,7 +3,6 @@
 
 #include "app/options.h"
 #include "base/diagnostic.h"
-#include "film/deep_image.h"
 #include "film/film_params.h"
 #include "film/layer_planes.h"
 #include "film/pixel_film.h"

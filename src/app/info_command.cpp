@@ -5,9 +5,9 @@
 #include "app/options.h"
 #include "app/provenance.h"
 #include "io/aces_container.h"
-#include "io/exr_channels.h"
 #include "io/exr_deep.h"
-#include "io/file_bytes.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Layers of an image as pictures to look at. docs/output.md says what is shown how.
 #pragma once
 
-#include "io/exr_channels.h"
+#include "io/exr_reader.h"
 
 #include <string>
 #include <string_view>

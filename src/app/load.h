@@ -3,7 +3,7 @@
 
 #include "app/exit_code.h"
 #include "base/diagnostic.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "schema/scene_tree.h"
 
 #include <memory>

@@ -1,9 +1,9 @@
 #include "app/command_line.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
-#include "base/shown_text.h"
+#include "base/text.h"
 #include "base/text_output.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <csignal>
 #include <cstring>

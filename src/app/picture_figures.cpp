@@ -1,7 +1,7 @@
 #include "app/picture_figures.h"
 
 #include "app/exposure_meter.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>

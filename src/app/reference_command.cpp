@@ -2,12 +2,11 @@
 #include "app/man_page.h"
 #include "app/options.h"
 #include "app/shell_completion.h"
-#include "base/source_map.h"
-#include "io/atomic_file.h"
+#include "base/source.h"
+#include "io/file.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
 #include "schema/describe.h"
-#include "schema/reference_pages.h"
 
 #include <filesystem>
 #include <fmt/format.h>

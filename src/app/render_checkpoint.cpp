@@ -1,7 +1,7 @@
 #include "app/render_checkpoint.h"
 
 #include "app/render_identity.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <algorithm>
 #include <chrono>

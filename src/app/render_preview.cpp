@@ -1,7 +1,7 @@
 #include "app/render_preview.h"
 
 #include "app/render_run.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "math/vec.h"
 #include "spectrum/color_space.h"
 

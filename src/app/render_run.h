@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "base/work_clock.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "render/integrator.h"
 #include "render/render_state.h"
 #include "study/bill.h"

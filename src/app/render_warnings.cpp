@@ -1,7 +1,7 @@
 #include "app/render_warnings.h"
 
 #include "app/argument_values.h"
-#include "film/tail_estimate.h"
+#include "film/error_figure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "app/provenance.h"
 #include "app/render_run.h"
 #include "app/replay_story.h"
-#include "io/exr_channels.h"
+#include "io/exr_reader.h"
 #include "rendering/path_record.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 #include "app/study_progress.h"
 #include "app/study_state.h"
 #include "base/parallel.h"
-#include "io/atomic_file.h"
+#include "io/file.h"
 #include "study/study_run.h"
 #include "study/time_model.h"
 

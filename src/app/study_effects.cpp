@@ -9,7 +9,7 @@
 #include "app/study_progress.h"
 #include "app/version.h"
 #include "base/parallel.h"
-#include "io/atomic_file.h"
+#include "io/file.h"
 #include "io/png_writer.h"
 #include "spectrum/color_space.h"
 

@@ -2,9 +2,7 @@
 
 #include "app/checkpoint_bytes.h"
 #include "app/render_identity.h"
-#include "io/atomic_file.h"
-#include "io/file_bytes.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "math/byte_hash.h"
 
 #include <cstring>

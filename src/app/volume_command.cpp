@@ -1,7 +1,7 @@
 #include "app/interrupt.h"
 #include "app/json.h"
 #include "app/options.h"
-#include "io/atomic_file.h"
+#include "io/file.h"
 #include "volumes/vdb_file.h"
 
 #include <chrono>

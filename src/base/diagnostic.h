@@ -1,12 +1,16 @@
-// Diagnostics are data: made where a fault is found, printed at the end, all of a run at once.
+// Diagnostics are data: made where a fault is found, printed at the end, all of a run at once; what each code means;
+// and the mechanical repairs.
 #pragma once
 
 #include "base/source.h"
 
+#include <cstddef>
 #include <functional>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace abbe {
@@ -75,5 +79,29 @@ class SceneError : public std::runtime_error {
   private:
     Diagnostics diagnostics_;
 };
+
+// By file and position; those without a place come first. Equal places keep the order in which they were found.
+std::vector<const Diagnostic*> sortedByPlace(const Diagnostics&);
+
+struct FixResult {
+    std::string text;
+    std::size_t applied = 0; // diagnostics that were repaired
+};
+
+// Applies the fixes that lie in `file`, whose text is `text`. The fixes of one diagnostic are applied together or not
+// at all; where two diagnostics want to change the same place, the first one wins and the other is left for the next
+// run.
+FixResult applyFixes(std::string_view text, FileId file, const Diagnostics&);
+
+struct CodeInfo {
+    std::string_view code;        // "E0105"
+    std::string_view title;       // one line, lower case
+    std::string_view explanation; // a few sentences, with an example where that helps
+};
+
+// The entry of a code, or null.
+const CodeInfo* findCode(std::string_view code);
+// All entries, sorted by code within each range.
+std::span<const CodeInfo> allCodes();
 
 } // namespace abbe

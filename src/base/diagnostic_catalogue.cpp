@@ -1,4 +1,4 @@
-#include "base/diagnostic_catalogue.h"
+#include "base/diagnostic.h"
 
 namespace abbe {
 

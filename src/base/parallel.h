@@ -1,6 +1,8 @@
-// The parallel loop of the program (TBB underneath, hidden here because its headers are slow to compile).
+// The parallel loop of the program (TBB underneath, hidden here because its headers are slow to compile), and how work
+// that may take long hears that it is to end.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -16,5 +18,10 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
 
 // Sets flush-to-zero and denormals-are-zero in the calling thread.
 void flushDenormals();
+
+// Set once, by anyone, and never reset while somebody looks at it. Looking costs a load.
+using StopFlag = std::atomic<bool>;
+// For work that nobody ends.
+inline const StopFlag kNeverStop{false};
 
 } // namespace abbe

@@ -1,6 +1,6 @@
 #include "cameras/camera_params.h"
 
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "cameras/exposure.h"
 #include "cameras/shutter.h"
 #include "math/frame.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/camera.h"
 #include "schema/type.h"
 

@@ -2,9 +2,9 @@
 
 #include "base/check.h"
 #include "schema/scene_tree.h"
-#include "spectrum/cauchy_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/dispersion.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/sampled_curve.h"
 
 #include <charconv>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cameras/shutter.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/camera.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 #include "math/warp.h"
 
 namespace abbe::doctor {

@@ -1,10 +1,10 @@
 #include "doctor/render_checks.h"
 
 #include "base/parallel.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "film/film_params.h"
 #include "film/pixel_film.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 #include "parser/parse.h"
 #include "rendering/path_tracer.h"
 #include "scene/build.h"

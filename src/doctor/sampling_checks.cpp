@@ -2,8 +2,8 @@
 
 #include "geometry/sphere.h"
 #include "geometry/spherical_triangle.h"
-#include "math/distribution_1d.h"
-#include "math/random_stream.h"
+#include "math/distribution.h"
+#include "math/hash.h"
 #include "math/warp.h"
 
 #include <vector>

@@ -4,7 +4,7 @@
 #include "materials/ggx.h"
 #include "materials/thin_film.h"
 #include "math/frame.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 
 #include <complex>
 

@@ -1,9 +1,9 @@
 #include "doctor/spectral_checks.h"
 
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
 #include "spectrum/rgb_upsampling.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 
 namespace abbe::doctor {
 

@@ -1,7 +1,6 @@
-#include "film/cryptomatte.h"
-
-#include "base/json_text.h"
 #include "base/parallel.h"
+#include "base/text.h"
+#include "film/layer_planes.h"
 
 #include <algorithm>
 #include <bit>

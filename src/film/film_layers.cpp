@@ -2,7 +2,6 @@
 
 #include "base/check.h"
 #include "film/layer_recorder.h"
-#include "film/spectral_spread.h"
 #include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>

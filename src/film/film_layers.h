@@ -5,7 +5,6 @@
 #include "film/film_planes.h"
 #include "film/layer_plan.h"
 #include "math/exact_sum.h"
-#include "math/shared_sum.h"
 #include "render/film.h"
 #include "spectrum/color_space.h"
 #include "spectrum/curve.h"

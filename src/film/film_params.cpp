@@ -1,7 +1,7 @@
 #include "film/film_params.h"
 
 #include "base/check.h"
-#include "spectrum/cone_response.h"
+#include "spectrum/color_space.h"
 #include "spectrum/named_spectra.h"
 
 #include <algorithm>

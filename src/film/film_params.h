@@ -22,7 +22,7 @@ struct FilmParams {
     schema::Text output;                          // empty: named after the scene
     schema::Choice sensor{"cie", {}};             // or a name of sensorNames()
     const Curve* whiteBalance = nullptr;          // light that shall look neutral; null: colours stay as they are
-    schema::TableRows layers;                     // film/layer_rows.h
+    schema::TableRows layers;                     // film/layer_plan.h
 };
 
 schema::TypeInfo filmType();

@@ -9,6 +9,11 @@
 
 namespace abbe {
 
+class Diagnostics;
+namespace schema {
+struct TableRows;
+}
+
 // Bins of equal width from `first` to `last` nm, for spectral layers.
 struct SpectralBins {
     double first = 380, last = 780, width = 10; // nm; last − first is a multiple of the width
@@ -53,5 +58,10 @@ struct LayerPlan {
 
 // What the scene calls things by: shapes, materials, lights and media that shine, by their addresses.
 using SceneNames = std::unordered_map<const void*, std::string>; // Scene::names
+
+// The block `layers { … }` of a film.
+// One row for each layer: `albedo`, `light-group key lamp1 lamp2`, `spectral 380 780 10`. Faults are reported where
+// they stand, and what is sound is taken.
+LayerPlan layerPlan(const schema::TableRows&, Diagnostics&);
 
 } // namespace abbe

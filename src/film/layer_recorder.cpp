@@ -1,9 +1,8 @@
 #include "film/layer_recorder.h"
 
-#include "film/spectral_spread.h"
 #include "render/camera.h"
 #include "render/intersector.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,12 @@
 #pragma once
 
 #include "film/film_layers.h"
+#include "film/layer_plan.h"
 #include "render/path_component.h"
 #include "render/sample_recorder.h"
+#include "spectrum/spectrum.h"
+
+#include <cstddef>
 
 namespace abbe {
 
@@ -84,5 +88,21 @@ class LayerRecorder final : public SampleRecorder {
     std::vector<Part> groups_;
     Part components_[kPathComponents];
 };
+
+// From the lanes of a path to the bins of spectral layers.
+// Each lane is an estimate of the radiance at its wavelength with a density of its own; a bin gets those within it, so
+// that it holds the mean spectral radiance over its width, without bias, also where all lanes but the hero's ended.
+// Calls add(bin, term) for each lane within the bins.
+template <typename Add>
+void spreadOverBins(const SpectralBins& bins, const Spectrum& radiance, const Wavelengths& lambda, double factor,
+                    const Add& add) {
+    const double scale = factor / (kLanes * bins.width);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const double place = (static_cast<double>(lambda.nm[lane]) - bins.first) / bins.width;
+        if (place < 0 || place >= bins.count()) continue;
+        add(static_cast<std::size_t>(place),
+            static_cast<double>(radiance[lane]) / static_cast<double>(lambda.pdf[lane]) * scale);
+    }
+}
 
 } // namespace abbe

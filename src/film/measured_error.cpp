@@ -1,7 +1,7 @@
 #include "film/measured_error.h"
 
 #include "base/check.h"
-#include "film/relative_error.h"
+#include "film/error_figure.h"
 
 #include <algorithm>
 #include <cmath>

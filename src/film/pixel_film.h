@@ -7,7 +7,7 @@
 #include "film/pixel_filter.h"
 #include "film/splat_sums.h"
 #include "render/film.h"
-#include "spectrum/matrix3.h"
+#include "spectrum/xyz.h"
 
 #include <array>
 #include <functional>

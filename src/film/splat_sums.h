@@ -2,7 +2,7 @@
 #pragma once
 
 #include "film/film_planes.h"
-#include "math/shared_sum.h"
+#include "math/exact_sum.h"
 #include "render/splat.h"
 #include "spectrum/xyz.h"
 

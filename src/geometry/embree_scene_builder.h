@@ -2,8 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
-#include "math/key_grid.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/intersector.h"
 #include "render/shape.h"
 

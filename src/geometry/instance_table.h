@@ -2,8 +2,7 @@
 #pragma once
 
 #include "geometry/instance.h"
-#include "math/interval.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 
 #include <array>
 #include <atomic>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/spherical_triangle.h"
-#include "math/bilinear_density.h"
+#include "math/warp.h"
 #include "render/receiver.h"
 
 #include <array>

@@ -3,7 +3,6 @@
 #include "geometry/mesh_corners.h"
 #include "geometry/spherical_rectangle.h"
 #include "geometry/surface_math.h"
-#include "math/bilinear_density.h"
 #include "math/warp.h"
 
 namespace abbe {

@@ -1,7 +1,7 @@
 // What must hold of a cage before it may be subdivided.
 #pragma once
 
-#include "math/subdivision_cage.h"
+#include "math/mesh_data.h"
 
 #include <optional>
 #include <string>

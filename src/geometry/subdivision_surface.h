@@ -3,7 +3,6 @@
 
 #include "geometry/displacement.h"
 #include "math/mesh_data.h"
-#include "math/subdivision_cage.h"
 #include "math/transform.h"
 
 #include <array>

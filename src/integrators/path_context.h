@@ -1,7 +1,7 @@
 // What paths are made of.
 #pragma once
 
-#include "base/stop_flag.h"
+#include "base/parallel.h"
 #include "caustics/glints/glint_plan.h"
 #include "caustics/light_tracing/light_path_plan.h"
 #include "caustics/manifold/manifold_sampler.h"

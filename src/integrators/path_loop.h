@@ -11,7 +11,7 @@
 #include "integrators/path_context.h"
 #include "integrators/path_counters.h"
 #include "integrators/path_state.h"
-#include "math/equiangular.h"
+#include "math/warp.h"
 #include "render/light_vertex.h"
 #include "render/path_observer.h"
 #include "render/scene.h"

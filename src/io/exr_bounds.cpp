@@ -1,8 +1,7 @@
-#include "io/exr_bounds.h"
-
-#include "base/regular_file.h"
+#include "base/file.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 #include "io/image.h"
-#include "io/io_error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,11 @@
 #include "io/exr_deep.h"
 
 #include "base/check.h"
+#include "base/file.h"
 #include "base/memory_limit.h"
-#include "base/regular_file.h"
-#include "io/exr_bounds.h"
-#include "io/exr_faults.h"
-#include "io/exr_header.h"
-#include "io/exr_stream.h"
-#include "io/io_error.h"
+#include "io/exr_library.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>

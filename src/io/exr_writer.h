@@ -1,4 +1,4 @@
-// OpenEXR output.
+// OpenEXR output: files, and channels added to files that exist.
 #pragma once
 
 #include "io/image.h"
@@ -54,5 +54,14 @@ struct ExrReport {
 // An ACES container holds R G B alone: other channels are left out and reported.
 // The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
 ExrReport writeExr(const std::string& path, const ExrPicture&);
+
+// Adds channels to an OpenEXR file that exists.
+// Writes a copy of `source` to `target`, which may be the same file, with more channels and attributes in its first
+// part; those of the same names are replaced. Everything else keeps its bits: a compression that loses some (pxr24,
+// b44, dwa) becomes zip in that part, tiles become scan lines, and a file that was an ACES container, which may not
+// have such channels, is none any more. Other parts are copied as they are. Channels are float and cover the data
+// window of the first part. The file appears under its name only when it is whole. Throws IoError.
+void appendExr(const std::string& source, const std::string& target, std::span<const ExrChannel> channels,
+               std::span<const ImageAttribute> attributes);
 
 } // namespace abbe

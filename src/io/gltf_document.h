@@ -1,8 +1,30 @@
-// An opened glTF file: what the library read, checked access to it, and the nodes of the scene with their transforms.
+// The JSON and the buffers of glTF files.
 #pragma once
 
-#include "io/io_error.h"
+#include "io/file.h"
 #include "math/transform.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace abbe {
+
+struct GltfFault {
+    std::size_t byte;
+    std::string what;
+};
+
+bool isBinaryGltf(std::string_view bytes);
+
+// Checks the header and the chunks of a binary file, and that the JSON nests less than 256 levels deep: the libraries
+// that read it recurse.
+std::optional<GltfFault> findContainerFault(std::string_view bytes);
+
+} // namespace abbe
+
+// An opened glTF file: what the library read, checked access to it, and the nodes of the scene with their transforms.
 
 // The library's header brings its own copies of these otherwise.
 #define TINYGLTF_NO_INCLUDE_JSON
@@ -10,9 +32,6 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <tiny_gltf.h>
 #include <vector>
 

@@ -1,8 +1,6 @@
-#include "io/hdr_reader.h"
-
 #include "base/memory_limit.h"
-#include "io/file_bytes.h"
-#include "io/io_error.h"
+#include "io/file.h"
+#include "io/image.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "io/ies.h"
 
-#include "io/file_bytes.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/number_scan.h"
 
 #include <cmath>

@@ -1,9 +1,8 @@
 #include "io/image.h"
 
-#include "base/regular_file.h"
+#include "base/file.h"
 #include "io/exr_reader.h"
-#include "io/hdr_reader.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <array>
 #include <cmath>
@@ -44,6 +43,18 @@ RgbImage readImage(const std::string& path) {
     if (start == std::string_view("\x76\x2f\x31\x01", 4)) return readExr(path);
     if (start.substr(0, 2) == "#?") return readHdr(path);
     throw IoError(fmt::format("cannot read `{}`: it is neither OpenEXR nor Radiance HDR", path));
+}
+
+Matrix3 toDisplayRgb(const RgbImage& image) {
+    if (!image.chromaticities) return {};
+    const RgbSpace space = image.chromaticities->space();
+    const bool neutral = image.adoptedNeutral && image.adoptedNeutral->y > 0;
+    const Chromaticity white = neutral ? *image.adoptedNeutral : space.white;
+    return rgb::rec709.fromXyz() * adaptation(whiteXyz(white), whiteXyz(rgb::rec709.white)) * space.toXyz();
+}
+
+Matrix3 toDisplayRgb(const RgbImage& image, const RgbImage& reference) {
+    return toDisplayRgb(reference.chromaticities ? reference : image);
 }
 
 } // namespace abbe

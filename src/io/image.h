@@ -1,7 +1,8 @@
-// Images in memory, and reading them from files.
+// Images in memory, reading them from files, and their colours on a display.
 #pragma once
 
 #include "spectrum/color_space.h"
+#include "spectrum/xyz.h"
 
 #include <cstdint>
 #include <optional>
@@ -53,5 +54,21 @@ void countFaults(RgbImage&);
 
 // OpenEXR (R G B, or Y alone for grey) or Radiance .hdr, told apart by content. Throws IoError.
 RgbImage readImage(const std::string& path);
+
+// Radiance .hdr (RGBE) input.
+// Values are mantissa · 2^exponent as stored (no half step added, like nearly all writers and readers), divided by the
+// EXPOSURE and COLORCORR of the header, which gives back what was there before them, as the format asks. PRIMARIES
+// become the chromaticities. Rows in either order and columns in either order; XYZE and columns-first are refused.
+// Throws IoError for damaged and truncated files.
+RgbImage readHdr(const std::string& path);
+
+// The colours of images as a display of our day would be sent them: linear Rec.709 with the white at D65.
+
+// From the linear RGB of an image (Rec.709 if it names no primaries, as OpenEXR says) to linear Rec.709. What the image
+// takes for white, its adopted neutral or else the white of its space, becomes D65 by Bradford's adaptation. Nothing is
+// clipped: components may be negative.
+Matrix3 toDisplayRgb(const RgbImage&);
+// The same for two images of one space, of which only one may name it.
+Matrix3 toDisplayRgb(const RgbImage& image, const RgbImage& reference);
 
 } // namespace abbe

@@ -1,5 +1,4 @@
-#include "io/cage_file.h"
-#include "io/file_bytes.h"
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/number_scan.h"
 #include "math/hash.h"

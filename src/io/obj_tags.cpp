@@ -1,4 +1,4 @@
-#include "io/cage_file.h"
+#include "io/mesh_file.h"
 #include "io/number_scan.h"
 
 #include <array>

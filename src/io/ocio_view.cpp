@@ -1,10 +1,10 @@
 #include "io/ocio_view.h"
 
 #include "base/check.h"
+#include "base/file.h"
 #include "base/parallel.h"
-#include "base/regular_file.h"
 #include "io/data/ocio_config.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <algorithm>

@@ -1,8 +1,7 @@
 #include "base/memory_limit.h"
-#include "io/cage_file.h"
-#include "io/file_bytes.h"
+#include "io/file.h"
 #include "io/mesh_file.h"
-#include "io/ply_cursor.h"
+#include "io/ply_format.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #include "io/png_writer.h"
 
 #include "base/check.h"
-#include "io/atomic_file.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // eight branches, which are weighed at once.
 #pragma once
 
-#include "base/stop_flag.h"
+#include "base/parallel.h"
 #include "light_sampling/glossy_receiver.h"
 #include "render/light_bounds.h"
 #include "render/ray.h"

@@ -1,7 +1,7 @@
 // Where to divide the lights of a LightTree.
 #pragma once
 
-#include "base/stop_flag.h"
+#include "base/parallel.h"
 #include "render/light_bounds.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "lights/amount.h"
 
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lights/amount.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/visible_field.h"
 
 #include <vector>

@@ -5,10 +5,10 @@
 #include "lights/clear_sky.h"
 #include "lights/light_context.h"
 #include "lights/sun_direction.h"
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "render/light.h"
 #include "render/visible_field.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <memory>
 

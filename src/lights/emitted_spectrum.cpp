@@ -1,7 +1,7 @@
 #include "lights/emitted_spectrum.h"
 
 #include "lights/amount.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <map>
 

@@ -3,8 +3,8 @@
 #include "base/check.h"
 #include "lights/scene_disk.h"
 #include "math/warp.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "lights/amount.h"
 #include "lights/light_context.h"
 #include "lights/portal.h"
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "math/frame.h"
 #include "render/light.h"
 #include "render/visible_field.h"
@@ -22,7 +22,7 @@ struct EnvironmentImage {
 };
 
 // From linear RGB to spectral radiance: linear in the scale of the triple, and white (1, 1, 1) has Y = 1 in the scale
-// of spectrum/observer.h. Called for every ray that leaves the scene.
+// of spectrum/sensor.h. Called for every ray that leaves the scene.
 class RgbRadiance {
   public:
     virtual ~RgbRadiance() = default;

@@ -3,7 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "math/frame.h"
 #include "math/intensity_table.h"
 #include "render/light.h"

@@ -1,8 +1,7 @@
 // How a light moves while the shutter is open.
 #pragma once
 
-#include "math/interval.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/light_bounds.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"

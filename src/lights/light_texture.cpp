@@ -2,7 +2,7 @@
 
 #include "math/warp.h"
 #include "render/texture_query.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <array>
 #include <cmath>

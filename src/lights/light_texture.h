@@ -2,12 +2,12 @@
 // it.
 #pragma once
 
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "render/own_space.h"
 #include "render/shape.h"
 #include "render/texture.h"
 #include "render/texture_work.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <optional>
 #include <vector>

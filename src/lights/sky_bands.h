@@ -1,7 +1,7 @@
 // The wavelengths at which the light of the sky is computed, and values at all of them.
 #pragma once
 
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lights/clear_air.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 namespace abbe {
 

@@ -1,9 +1,12 @@
-// Maps from the unit square to domains of sampling, each with its density and its inverse.
+// Maps from random numbers to domains of sampling, each with its density and most with their inverse.
 #pragma once
 
 #include "math/vec.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace abbe {
@@ -95,5 +98,66 @@ inline Vec2 squareToTriangle(Vec2 u) {
     }
     return {b1, std::max(0.f, 1 - b0 - b1)};
 }
+
+// Over the unit square, in proportion to what is bilinear between its values at the corners (0, 0), (1, 0), (0, 1) and
+// (1, 1). Requires all >= 0, not all 0.
+struct BilinearDensity {
+    std::array<float, 4> corner;
+
+    // u in [0, 1)².
+    Vec2 sample(Vec2 u) const {
+        const float y = linear(u.y, corner[0] + corner[1], corner[2] + corner[3]);
+        return {linear(u.x, lerp(corner[0], corner[2], y), lerp(corner[1], corner[3], y)), y};
+    }
+    float pdf(Vec2 p) const {
+        const float value = lerp(lerp(corner[0], corner[1], p.x), lerp(corner[2], corner[3], p.x), p.y);
+        return 4 * value / (corner[0] + corner[1] + corner[2] + corner[3]);
+    }
+
+  private:
+    // In proportion to a + (b - a) x.
+    static float linear(float u, float a, float b) {
+        if (!(u > 0)) return 0;
+        const float x = u * (a + b) / (a + std::sqrt(lerp(a * a, b * b, u)));
+        return std::min(x, kOneMinusEpsilon);
+    }
+};
+
+// Distances along a ray, drawn by how near they come to a point [Kulla2012, §4.1].
+// Density proportional to the inverse square of the distance from the point, on [tNear, tFar] of the ray; tFar may be
+// infinite. Seen from the point, equal angles are equally likely.
+class EquiangularDistances {
+  public:
+    // Requires a unit direction.
+    EquiangularDistances(Vec3 origin, Vec3 direction, Vec3 point, float tNear, float tFar) {
+        const Vec3d to = Vec3d(point) - Vec3d(origin);
+        closest_ = dot(to, Vec3d(direction));
+        const Vec3d aside = to - Vec3d(direction) * closest_;
+        // On the ray itself the inverse square has no integral.
+        height_ = std::max(length(aside), 1e-3 * length(to) + 1e-30);
+        near_ = static_cast<double>(tNear);
+        far_ = static_cast<double>(tFar);
+        from_ = std::atan((near_ - closest_) / height_);
+        spread_ = std::atan((far_ - closest_) / height_) - from_;
+    }
+
+    // False where the range is too small or too far away for its angles.
+    bool valid() const { return spread_ > 1e-9 && spread_ < 4; }
+    // u in [0, 1). Requires valid().
+    float sample(float u) const {
+        const double t = closest_ + height_ * std::tan(from_ + static_cast<double>(u) * spread_);
+        return static_cast<float>(std::clamp(t, near_, far_));
+    }
+    // 1 per unit of distance; 0 outside. Requires valid().
+    float pdf(float t) const {
+        const double x = static_cast<double>(t);
+        if (!(x >= near_ && x <= far_)) return 0;
+        const double away = x - closest_;
+        return static_cast<float>(height_ / (spread_ * (height_ * height_ + away * away)));
+    }
+
+  private:
+    double closest_, height_, near_, far_, from_, spread_;
+};
 
 } // namespace abbe

@@ -1,8 +1,7 @@
 #include "media/glow.h"
 
 #include "spectrum/emission_curves.h"
-#include "spectrum/observer.h"
-#include "spectrum/planck.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #include "media/noise_volume.h"
 
 #include "base/check.h"
+#include "volumes/brick_tree_builder.h"
 #include "volumes/brick_walk.h"
 #include "volumes/noise.h"
-#include "volumes/sampled_bounds.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 // What light passes on its way out of a surface that gives it off: a coat, fuzz.
 #pragma once
 
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 namespace abbe {
 

@@ -4,7 +4,7 @@
 #include "math/vec.h"
 #include "render/sample_recorder.h"
 #include "render/splat.h"
-#include "spectrum/exact_xyz.h"
+#include "spectrum/xyz.h"
 
 #include <cstdint>
 #include <memory>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/vec.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 #include <cmath>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "render/ray.h"
 #include "render/walk_space.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 namespace abbe {
 

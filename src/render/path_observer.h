@@ -4,7 +4,7 @@
 #include "render/bsdf.h"
 #include "render/light.h"
 #include "render/surface_hit.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 // Scattering at a point inside a medium: how much goes where.
 #pragma once
 
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 
 namespace abbe {
 

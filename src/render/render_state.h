@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/work_reading.h"
+#include "base/work_clock.h"
 #include "render/integrator.h"
 #include "render/light_gate.h"
 #include "render/portion.h"

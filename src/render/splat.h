@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/path_component.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 #include "spectrum/xyz.h"
 
 #include <cstddef>

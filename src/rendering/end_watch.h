@@ -1,7 +1,7 @@
 // When a render is to end, for those who are in the middle of a pixel, a path or a pilot.
 #pragma once
 
-#include "base/stop_flag.h"
+#include "base/parallel.h"
 
 #include <condition_variable>
 #include <mutex>

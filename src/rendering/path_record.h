@@ -4,7 +4,7 @@
 #include "render/integrator.h"
 #include "render/sample_recorder.h"
 #include "render/stand_in_film.h"
-#include "spectrum/exact_xyz.h"
+#include "spectrum/xyz.h"
 
 #include <optional>
 #include <vector>

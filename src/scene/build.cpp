@@ -1,13 +1,13 @@
 #include "scene/build.h"
 
 #include "base/work.h"
-#include "film/layer_rows.h"
+#include "film/layer_plan.h"
 #include "lights/emitted_spectrum.h"
 #include "scene/enclosed_camera.h"
 #include "scene/registry.h"
 #include "scene/scene_builder.h"
 #include "schema/suggest.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <chrono>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "cameras/exposure.h"
 #include "film/film_params.h"
 #include "film/layer_plan.h"
-#include "math/interval.h"
+#include "math/motion.h"
 #include "render/scene.h"
 #include "rendering/render_params.h"
 #include "scene/effect_switches.h"

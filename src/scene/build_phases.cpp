@@ -4,7 +4,7 @@
 #include "media/phase_types.h"
 #include "media/tabulated_phase.h"
 #include "scene/scene_builder.h"
-#include "schema/spectrum_file.h"
+#include "schema/files.h"
 
 #include <algorithm>
 #include <cmath>

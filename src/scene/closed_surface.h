@@ -2,7 +2,6 @@
 #pragma once
 
 #include "math/mesh_data.h"
-#include "math/subdivision_cage.h"
 
 #include <cstdint>
 

@@ -1,12 +1,11 @@
 #include "scene/curve_library.h"
 
-#include "spectrum/cauchy_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/dispersion.h"
 #include "spectrum/emission_curves.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
 #include "spectrum/rgb_upsampling.h"
-#include "spectrum/sampled_curve.h"
-#include "spectrum/sellmeier_curve.h"
+#include "spectrum/sensor.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "scene/dressed_material.h"
 
-#include "math/consistent_normal.h"
+#include "math/frame.h"
 #include "render/texture_work.h"
 
 namespace abbe {

@@ -3,7 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "base/memory_limit.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-#include "io/file_bytes.h"
-#include "io/ply_vertices.h"
+#include "io/file.h"
+#include "io/ply_points.h"
 #include "math/frame.h"
 #include "math/sobol.h"
 #include "scene/file_faults.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/visible_field.h"
 #include "schema/type.h"
 

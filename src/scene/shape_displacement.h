@@ -3,7 +3,7 @@
 
 #include "base/diagnostic.h"
 #include "geometry/displacement.h"
-#include "math/subdivision_cage.h"
+#include "math/mesh_data.h"
 #include "schema/type.h"
 
 #include <optional>

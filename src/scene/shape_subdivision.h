@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/subdivision_surface.h"
-#include "io/cage_file.h"
+#include "io/mesh_file.h"
 #include "render/camera.h"
 #include "scene/shape_displacement.h"
 #include "scene/shape_types.h"

@@ -1,5 +1,5 @@
 #include "geometry/subdivision_check.h"
-#include "io/cage_file.h"
+#include "io/mesh_file.h"
 #include "scene/file_faults.h"
 #include "scene/shape_subdivision.h"
 #include "scene/shape_subdivision_words.h"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/keyed_transform.h"
 #include "math/mesh_data.h"
+#include "math/motion.h"
 #include "render/shape.h"
 #include "render/visible_field.h"
 #include "scene/shape_key.h"

@@ -1,7 +1,7 @@
 // What hides shapes from rays, and what cannot be hidden.
 #pragma once
 
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/visibility.h"
 
 namespace abbe {

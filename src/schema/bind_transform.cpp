@@ -1,6 +1,5 @@
 #include "schema/binding.h"
 #include "schema/definition_reader.h"
-#include "schema/loose_steps.h"
 #include "schema/measure.h"
 #include "schema/suggest.h"
 

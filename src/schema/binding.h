@@ -1,9 +1,12 @@
 // Inside of bind(): one value per property, driven by its FieldInfo alone.
 #pragma once
 
+#include "schema/document.h"
 #include "schema/entry.h"
 
 #include <map>
+#include <memory>
+#include <string_view>
 
 namespace abbe::schema {
 
@@ -36,5 +39,10 @@ std::optional<BoundValue> bindPlace(const FieldInfo&, const Entry&, const BindCo
 // diagnostic.
 std::optional<double> bindMoment(const FieldInfo&, const Node&, std::map<const FieldInfo*, double>& last, const Header&,
                                  Diagnostics&);
+
+// Default values are written in the field tables as a scene would write them; they are bound like any property.
+// A document with the single property `name text`, for texts of numbers, units, words and quoted words without spaces.
+// Its spans are invalid.
+std::unique_ptr<Document> documentOf(std::string_view name, std::string_view text);
 
 } // namespace abbe::schema

@@ -1,9 +1,39 @@
-// `kind [name] type [arguments] { … }`: from nodes to definitions with their types.
+// From nodes to the header of a file and to definitions with their types.
 #pragma once
 
+#include "schema/entry.h"
 #include "schema/scene_tree.h"
 
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace abbe::schema {
+
+// The first line of a file: `scene 1 length=mm rgb=acescg up=y`.
+inline bool isHeader(const Node& node) { return node.name() == "scene"; }
+
+// Reads and checks the header; a missing one means edition 1 and a warning.
+Header readHeader(const Document&, Diagnostics&);
+
+// The spaces that a message offers: "`lin_rec709_scene`, …".
+std::string rgbSpaceList();
+
+// Reads the value of a `space=` or `rgb=` key; nothing after a diagnostic.
+std::optional<RgbSpaceName> readRgbSpace(const Value&, Diagnostics&);
+
+// Steps of a transform that stand outside of its block: `rotate y 45 deg` as a property.
+
+// translate, rotate, scale, matrix, look-at
+std::span<const std::string_view> transformSteps();
+bool isTransformStep(std::string_view word);
+
+// One error for all such steps of `owner` ("`shape sphere`"), which are not empty, with the block that holds them.
+// `given`: there is a transform already.
+void reportLooseSteps(std::string_view owner, const std::vector<Node>& steps, bool given, Diagnostics&);
+
+// `kind [name] type [arguments] { … }`
 
 enum class Place : std::uint8_t { top, group }; // group: inside of a `group` or `object`
 

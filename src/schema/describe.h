@@ -1,9 +1,9 @@
-// The language described from its tables: what a field takes, `abbe explain`, and data for editors. The pages of
-// docs/reference are made in schema/reference_pages.h.
+// The language described from its tables: what a field takes, `abbe explain`, and data for editors. docs/reference.
 #pragma once
 
 #include "schema/type.h"
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,5 +49,48 @@ std::string describeRange(const FieldInfo&);
 std::vector<std::string_view> unitsOf(const FieldInfo&);
 // What a number without a unit means: "deg", "the header's length".
 std::string_view meaningWithoutUnit(Dimension);
+
+// docs/reference/: the language as pages of Markdown, made from the field tables alone. `abbe reference pages DIR`
+// writes them, and a test says when those in the repository are not what the tables say.
+
+struct ReferencePage {
+    std::string file; // "camera.md"
+    std::string text;
+};
+
+// README.md, a page for each kind, scene.md and units.md. The table should have its presets.
+std::vector<ReferencePage> referencePages(const TypeTable&);
+
+// What the field tables do not say: what each kind is for, and the words of the language that are neither kind, type
+// nor property. For `abbe explain` and the reference.
+
+struct KindText {
+    Kind kind;
+    std::string_view doc;     // what it is for, whole sentences
+    std::string_view head;    // how a definition begins: "light [NAME] TYPE { … }"
+    std::string_view example; // whole definitions that parse
+};
+const KindText& kindText(Kind);
+
+// A key of the header, a step of a transform.
+struct WordPart {
+    std::string_view name;
+    std::string_view takes;
+    std::string_view defaultText; // empty: none
+    std::string_view doc;
+    std::string_view example;
+};
+
+struct LanguageWord {
+    std::string_view name;
+    std::string_view doc;
+    std::string_view example; // whole definitions or lines of a file that parse
+    std::vector<WordPart> parts;
+};
+// `scene`, `param`, `transform`, `at`.
+std::span<const LanguageWord> languageWords();
+
+// A whole scene that shows something, for who sees the language for the first time.
+std::string_view firstScene();
 
 } // namespace abbe::schema

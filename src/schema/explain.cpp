@@ -1,6 +1,5 @@
-#include "base/diagnostic_catalogue.h"
+#include "base/diagnostic.h"
 #include "schema/describe.h"
-#include "schema/language_words.h"
 #include "schema/preset_library.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"

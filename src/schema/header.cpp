@@ -1,5 +1,4 @@
-#include "schema/header.h"
-
+#include "schema/definition_reader.h"
 #include "schema/entry.h"
 #include "schema/suggest.h"
 

@@ -1,4 +1,4 @@
-#include "schema/language_words.h"
+#include "schema/describe.h"
 
 #include <array>
 

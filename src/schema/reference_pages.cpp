@@ -1,7 +1,4 @@
-#include "schema/reference_pages.h"
-
 #include "schema/describe.h"
-#include "schema/language_words.h"
 #include "schema/spectrum_reader.h"
 #include "schema/suggest.h"
 #include "spectrum/named_spectra.h"

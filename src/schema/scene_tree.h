@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "schema/document.h"
 #include "schema/type.h"
 

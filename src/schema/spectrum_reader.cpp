@@ -1,18 +1,125 @@
 #include "schema/spectrum_reader.h"
 
 #include "schema/definition_reader.h"
-#include "schema/encoded_color.h"
-#include "schema/header.h"
 #include "schema/measure.h"
-#include "schema/spectrum_table.h"
 #include "schema/suggest.h"
 #include "spectrum/named_spectra.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 
 namespace abbe::schema {
+
+namespace {
+
+std::optional<int> hexDigit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return std::nullopt;
+}
+
+std::string colorText(std::string_view word, const std::array<double, 3>& v, double divisor) {
+    return fmt::format("`{} {:.3g} {:.3g} {:.3g}`", word, v[0] / divisor, v[1] / divisor, v[2] / divisor);
+}
+
+} // namespace
+
+// [IEC61966-2-1]
+double decodeSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+
+std::optional<std::array<double, 3>> parseHex(std::string_view text) {
+    if (!text.starts_with('#') || (text.size() != 4 && text.size() != 7)) return std::nullopt;
+    const std::size_t digits = (text.size() - 1) / 3;
+    std::array<double, 3> rgb{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto high = hexDigit(text[1 + i * digits]), low = hexDigit(text[i * digits + digits]);
+        if (!high || !low) return std::nullopt;
+        rgb[i] = (*high * 16 + *low) / 255.0;
+    }
+    return rgb;
+}
+
+void suggestHex(const Value& word, Diagnostic& d) {
+    const auto encoded = parseHex(word.text);
+    if (!encoded) return;
+    const std::array<double, 3> linear = {decodeSrgb((*encoded)[0]), decodeSrgb((*encoded)[1]),
+                                          decodeSrgb((*encoded)[2])};
+    d.label = fmt::format("write `srgb \"{}\"`", word.text);
+    d.help = fmt::format("in linear numbers of Rec. 709 it is {}", colorText("rgb", linear, 1));
+    if (word.kind == ValueKind::string && !word.use.valid())
+        d.fixes.push_back({{word.span.file, word.span.begin, word.span.begin}, "srgb "});
+}
+
+std::string dividedColor(const Entry& entry, std::size_t first) {
+    if (entry.count() < first + 3) return {};
+    std::array<double, 3> numbers{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Value value = entry.value(first + i);
+        if (value.kind != ValueKind::number || !(value.number >= 0 && value.number <= 255)) return {};
+        numbers[i] = value.number;
+    }
+    const double largest = *std::ranges::max_element(numbers);
+    if (!(largest > 1.5)) return {};
+    const std::string bytes =
+        fmt::format("numbers of a picture or colour picker, divided by 255, are {}; if they are linear, {}",
+                    colorText("srgb", numbers, 255), colorText("rgb", numbers, 255));
+    return largest > 100 ? bytes
+                         : fmt::format("{}; percent, divided by 100, are {}", bytes, colorText("rgb", numbers, 100));
+}
+
+namespace {
+
+using Form = SpectrumValue::Form;
+
+constexpr auto kForms = std::to_array<SpectrumForm>({
+    {"rgb", Form::rgb, "rgb 0.8 0.2 0.1", "Linear red, green and blue in the header's space, or in `space=`."},
+    {"srgb", Form::rgb, "srgb \"#d87040\"", "Encoded sRGB: `\"#rrggbb\"` or three numbers from 0 to 1."},
+    {"table", Form::table, "table 400 0.1 500 0.2 700 0.8",
+     "Pairs of wavelength in nm and value, or the name of a file of such lines."},
+    {"blackbody", Form::blackbody, "blackbody 3200 K", "Thermal radiation of a temperature."},
+    {"illuminant", Form::illuminant, "illuminant D65", "A standard illuminant of the CIE."},
+    {"line", Form::line, "line 589.3 nm", "One wavelength."},
+    {"measured", Form::measured, "measured cornell-white", "A measured spectrum that comes with the program."},
+    {"glass", Form::glass, "glass BK7", "The refractive index of an optical glass or another transparent substance."},
+    {"metal", Form::metal, "metal Au", "The complex refractive index of a metal."},
+    {"sellmeier", Form::sellmeier, "sellmeier 1.03961 0.00600 0.23179 0.02002 1.01047 103.561",
+     "Sellmeier's formula: B1 C1 B2 C2 B3 C3, C in µm²."},
+    {"cauchy", Form::cauchy, "cauchy 1.5046 0.0042",
+     "Cauchy's formula A + B/λ² + C/λ⁴ + D/λ⁶, λ in µm; two to four numbers."},
+});
+
+} // namespace
+
+std::span<const SpectrumForm> spectrumForms() { return kForms; }
+
+const SpectrumForm* findSpectrumForm(std::string_view name) {
+    const auto found = std::ranges::find(kForms, name, &SpectrumForm::name);
+    return found == kForms.end() ? nullptr : &*found;
+}
+
+bool fits(Form form, SpectrumRole role) {
+    switch (form) {
+    case Form::flat:
+    case Form::table:
+        return true;
+    case Form::rgb:
+    case Form::measured:
+        return role != SpectrumRole::index;
+    case Form::blackbody:
+    case Form::illuminant:
+    case Form::line:
+        return role == SpectrumRole::emission || role == SpectrumRole::shape || role == SpectrumRole::tint;
+    case Form::glass:
+    case Form::metal:
+    case Form::sellmeier:
+    case Form::cauchy:
+        return role == SpectrumRole::index;
+    }
+    return false;
+}
 
 namespace {
 

@@ -2,9 +2,15 @@
 #pragma once
 
 #include "schema/entry.h"
+#include "schema/measure.h"
 
+#include <array>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace abbe::schema {
 
@@ -39,5 +45,29 @@ const SpectrumForm* findSpectrumForm(std::string_view name);
 
 // True if values of this form make sense in the role.
 bool fits(SpectrumValue::Form, SpectrumRole);
+
+// `table` spectra, and the check of single values that all numeric forms share.
+
+// Checks an SI value against the role and range of its use. `what` names the component: "red", "at 500 nm it"; may be
+// empty. False after a diagnostic.
+bool checkSpectrumValue(const SpectrumUse&, double value, const Scale&, const Value& at, std::string_view what,
+                        const Header&, Diagnostics&);
+
+// Reads `table …`, inline, as rows or from a file, into `result.numbers`. False after a diagnostic.
+bool readTable(const SpectrumUse&, const Entry&, const SceneTree&, Diagnostics&, SpectrumValue& result);
+
+// Colours as pictures and colour pickers write them: "#c0b0a0", and numbers from 0 to 255.
+
+// The decoding curve of sRGB.
+double decodeSrgb(double encoded);
+
+// Encoded components 0 … 1 of "#rrggbb" or "#rgb".
+std::optional<std::array<double, 3>> parseHex(std::string_view);
+
+// Completes the diagnostic at a text that is a colour in hexadecimal digits with the spectrum that it is.
+void suggestHex(const Value&, Diagnostic&);
+
+// What the three numbers from value `first` on are, divided by 255 or 100; empty where they cannot be such.
+std::string dividedColor(const Entry&, std::size_t first);
 
 } // namespace abbe::schema

@@ -1,7 +1,5 @@
-#include "schema/spectrum_table.h"
-
-#include "schema/file_path.h"
-#include "schema/spectrum_file.h"
+#include "schema/files.h"
+#include "schema/spectrum_reader.h"
 
 #include <algorithm>
 #include <array>

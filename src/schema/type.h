@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/source.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "schema/unit.h"
 #include "spectrum/curve.h"
 
@@ -385,5 +385,8 @@ class TypeTable {
     std::vector<TypeInfo> types_; // complete before the first pointer is taken
     std::shared_ptr<const PresetLibrary> presets_;
 };
+
+// Where a definition states a property, or the definition itself where it leaves the property out.
+using PlaceOf = std::function<Span(std::string_view property)>;
 
 } // namespace abbe::schema

@@ -1,8 +1,8 @@
-// Linear RGB spaces, derived from the chromaticities of their primaries and white, and the sRGB transfer function.
+// Colour spaces: linear RGB, derived from the chromaticities of its primaries and white, the encodings of pictures, and
+// CIELAB.
 #pragma once
 
 #include "math/vec.h"
-#include "spectrum/matrix3.h"
 #include "spectrum/xyz.h"
 
 #include <optional>
@@ -55,5 +55,47 @@ enum class ConeModel { bradford, cat02 };
 // The matrix on XYZ that takes colours seen under one white to corresponding colours under another (von Kries in the
 // model's cone space). Only for declared uses: the film never applies it by itself.
 Matrix3 adaptation(const Xyz& fromWhite, const Xyz& toWhite, ConeModel = ConeModel::bradford);
+
+// What the cones of the eye answer to a colour, as models of chromatic adaptation have it.
+// In the space in which adaptation() scales. Colours far from any white, those of single lines for example, have
+// responses of 0 or below.
+Vec3d coneResponse(const Xyz&, ConeModel = ConeModel::bradford);
+
+// How pictures store colours: the primaries of a linear RGB space and a transfer curve.
+
+enum class TransferCurve : unsigned char { linear, srgb, gamma18, gamma22 };
+
+// Named as the Color Interop Forum does, "srgb_rec709_scene".
+struct ColorEncoding {
+    std::string_view name;
+    const RgbSpace* space = nullptr; // null: no colour but plain numbers ("data")
+    TransferCurve curve = TransferCurve::linear;
+
+    // The linear value of a stored one; odd-symmetric, 1 is exactly 1.
+    double toLinear(double stored) const;
+};
+
+// By name or by what files and other programs call it, any case: "srgb", "ACEScg", "Gamma2.2", "raw", …; null for what
+// is not known.
+const ColorEncoding* findColorEncoding(std::string_view name);
+// The linear encoding with these primaries and white, to 0.002; null if none has them.
+const ColorEncoding* findColorEncoding(Chromaticity red, Chromaticity green, Chromaticity blue, Chromaticity white);
+// The names proper, commonest first.
+std::vector<std::string_view> colorEncodingNames();
+
+// CIELAB and colour differences, for reports and tests.
+
+// CIE 1976 L*, a*, b*.
+struct Lab {
+    double l = 0, a = 0, b = 0;
+};
+
+// Negative tristimulus values are allowed: the linear branch goes on.
+Lab toLab(const Xyz&, const Xyz& white);
+
+// Euclidean distance (CIE 1976).
+double deltaE76(const Lab&, const Lab&);
+// CIEDE2000 with kL = kC = kH = 1 [Sharma2005].
+double deltaE2000(const Lab&, const Lab&);
 
 } // namespace abbe

@@ -1,7 +1,7 @@
 #include "spectrum/emission_curves.h"
 
 #include "base/check.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <algorithm>
 #include <cmath>

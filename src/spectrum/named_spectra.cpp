@@ -1,10 +1,10 @@
 #include "spectrum/named_spectra.h"
 
+#include "base/text.h"
 #include "math/vec.h"
+#include "spectrum/curve.h"
 #include "spectrum/data/tables.h"
-#include "spectrum/names.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 
 namespace abbe {
 

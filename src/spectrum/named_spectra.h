@@ -52,7 +52,7 @@ std::vector<std::string_view> measuredNames();
 std::vector<std::string_view> glassNames();
 std::vector<std::string_view> metalNames();
 
-// Relative spectral power scaled to Y = 1 (see observer.h), resampled with its energy kept.
+// Relative spectral power scaled to Y = 1 (see sensor.h), resampled with its energy kept.
 std::unique_ptr<Curve> illuminantCurve(const NamedSpectrum&);
 // A quantity without unit, constant beyond its table.
 std::unique_ptr<Curve> reflectanceCurve(const NamedSpectrum&);

@@ -1,10 +1,10 @@
 #include "spectrum/rgb_upsampling.h"
 
 #include "base/check.h"
-#include "spectrum/lab.h"
+#include "spectrum/color_space.h"
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>

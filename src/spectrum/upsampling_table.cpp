@@ -1,8 +1,7 @@
 #include "spectrum/upsampling_table.h"
 
+#include "base/file.h"
 #include "base/parallel.h"
-#include "base/regular_file.h"
-#include "base/temporary_file.h"
 #include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>

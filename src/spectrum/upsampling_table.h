@@ -2,8 +2,8 @@
 #pragma once
 
 #include "spectrum/color_space.h"
-#include "spectrum/sigmoid.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/rgb_upsampling.h"
+#include "spectrum/spectrum.h"
 
 #include <filesystem>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "base/check.h"
 #include "spectrum/color_space.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // What a render spent, row by row: seconds that add up to the time on the wall, and counts (docs/cost.md).
 #pragma once
 
-#include "base/work_reading.h"
+#include "base/work_clock.h"
 #include "render/integrator.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "base/check.h"
 #include "film/pixel_film.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 
 #include <algorithm>
 #include <numeric>

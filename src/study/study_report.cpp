@@ -1,7 +1,7 @@
 #include "study/study_report.h"
 
 #include "base/check.h"
-#include "io/display_rgb.h"
+#include "io/image.h"
 #include "io/png_writer.h"
 #include "study/error_colours.h"
 

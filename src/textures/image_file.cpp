@@ -1,7 +1,7 @@
 #include "textures/image_file.h"
 
 #include "base/memory_limit.h"
-#include "io/exr_bounds.h"
+#include "io/exr_reader.h"
 
 #include <dlfcn.h>
 #include <exception>

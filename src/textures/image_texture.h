@@ -4,13 +4,16 @@
 #include "base/diagnostic.h"
 #include "render/texture.h"
 #include "schema/type.h"
-#include "textures/lookup_faults.h"
 #include "textures/spline_image.h"
 #include "textures/texture_store.h"
 
+#include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 
 namespace abbe {
 
@@ -35,6 +38,33 @@ struct ImageEncoding {
     bool inScene = false; // by the scene
 };
 
+// What went wrong in the lookups of a texture while rendering.
+// Counts from many threads; nothing happens to it as long as all is well.
+class LookupFaults {
+  public:
+    enum Kind { coordinates, missingTile, failedRead, notFinite };
+
+    void add(Kind kind) noexcept { counts_[kind].fetch_add(1, std::memory_order_relaxed); }
+    std::uint64_t count(Kind kind) const noexcept { return counts_[kind].load(std::memory_order_relaxed); }
+    bool unreadable() const noexcept { return unreadable_.load(std::memory_order_relaxed); }
+    // True for the first caller alone, who is to say why.
+    bool firstUnreadable() noexcept { return !unreadable_.exchange(true, std::memory_order_relaxed); }
+    void say(std::string text) {
+        const std::lock_guard lock(mutex_);
+        example_ = std::move(text);
+    }
+    std::string example() const {
+        const std::lock_guard lock(mutex_);
+        return example_;
+    }
+
+  private:
+    std::atomic<std::uint64_t> counts_[4] = {};
+    std::atomic<bool> unreadable_ = false;
+    mutable std::mutex mutex_;
+    std::string example_; // why tiles could not be read
+};
+
 // For shading, pictures stay on disk and are filtered by the texture system; for displacement they are in memory
 // whole. A texture does what it was prepared for. v = 0 is the lower edge. Tiles never wrap, and lookups do not
 // reach across their borders.
@@ -57,7 +87,7 @@ class ImageTexture final : public Texture {
 
   private:
     const ImageTile* tileOf(double& u, double& v) const noexcept;
-    // image_prepare.cpp
+    // The parts of prepare().
     void warnOfUse(TextureUse, Span user, Diagnostics&);
     bool prepareHeights(Diagnostics&);
     bool prepareShading(TextureUse, Diagnostics&);

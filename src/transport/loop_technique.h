@@ -3,7 +3,7 @@
 
 #include "math/warp.h"
 #include "render/technique.h"
-#include "spectrum/wavelengths.h"
+#include "spectrum/spectrum.h"
 #include "transport/roulette.h"
 
 namespace abbe {

@@ -1,8 +1,8 @@
 // Collisions of one ray with all media along it, by tracking against bounds on their density [Miller2019; Novak2018].
 #pragma once
 
-#include "base/stop_flag.h"
-#include "math/random_stream.h"
+#include "base/parallel.h"
+#include "math/hash.h"
 #include "render/effect_counts.h"
 #include "render/integrator.h"
 #include "transport/surroundings.h"

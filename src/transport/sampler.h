@@ -2,7 +2,7 @@
 // its own does not move those of another, so images with and without it share their samples.
 #pragma once
 
-#include "math/random_stream.h"
+#include "math/hash.h"
 #include "math/sobol.h"
 #include "math/vec.h"
 #include "render/technique.h"

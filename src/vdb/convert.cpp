@@ -1,6 +1,5 @@
 #include "vdb/commands.h"
 #include "vdb/field.h"
-#include "vdb/grid_builder.h"
 #include "vdb/output.h"
 
 #include <algorithm>

@@ -1,14 +1,37 @@
-// Grids of an OpenVDB file, and fields made of them that can be rendered. One of the few headers with OpenVDB.
+// Grids of an OpenVDB file, fields made of them that can be rendered, and new grids. The one header with OpenVDB.
 #pragma once
 
-#include "vdb/instantiated.h"
 #include "volumes/vdb_file.h"
+#include "volumes/volume_recipe.h"
 
+#include <functional>
 #include <memory>
 #include <openvdb/Grid.h>
 #include <openvdb/Types.h>
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
+#include <string>
+
+// Trees that the library has instantiated: their members come from there instead of being compiled in each
+// unit that makes a tree, which was most of the time that this folder took to compile.
+#ifdef __OPTIMIZE__ // without inlining more of them is needed than the library exports
+namespace openvdb {
+OPENVDB_USE_VERSION_NAMESPACE
+namespace OPENVDB_VERSION_NAME {
+
+extern template class tree::Tree<BoolTree::RootNodeType>;
+extern template class tree::Tree<DoubleTree::RootNodeType>;
+extern template class tree::Tree<FloatTree::RootNodeType>;
+extern template class tree::Tree<Int32Tree::RootNodeType>;
+extern template class tree::Tree<Int64Tree::RootNodeType>;
+extern template class tree::Tree<MaskTree::RootNodeType>;
+extern template class tree::Tree<Vec3DTree::RootNodeType>;
+extern template class tree::Tree<Vec3ITree::RootNodeType>;
+extern template class tree::Tree<Vec3STree::RootNodeType>;
+
+} // namespace OPENVDB_VERSION_NAME
+} // namespace openvdb
+#endif
 
 namespace abbe::vdb {
 
@@ -45,5 +68,21 @@ std::optional<Transform> affineTransform(const openvdb::GridBase& grid);
 VolumeClass volumeClassOf(const openvdb::GridBase& grid);
 // As the metadata "unit" or "units" say, else "".
 std::string unitOf(const openvdb::GridBase& grid);
+
+} // namespace abbe::vdb
+
+namespace abbe::vdb {
+
+// Grids made leaf by leaf in parallel, and files of them.
+
+// Sets the values of the leaf whose first voxel is given; false if all are 0.
+using LeafFunction = std::function<bool(Vec3T<int> origin, RecipeLeaf& leaf)>;
+
+// One grid per field, float or Vec3s, of all leaves in the box (voxels). Progress goes to the program, up to `done`.
+openvdb::GridPtrVec buildGrids(std::span<const RecipeField> fields, const openvdb::CoordBBox& voxels,
+                               const LeafFunction& leaf, double done);
+
+// Writes all grids, compressed by blosc, and reads the last one back. Throws Failure.
+void writeGrids(const std::string& path, const openvdb::GridPtrVec& grids);
 
 } // namespace abbe::vdb

@@ -1,6 +1,5 @@
-#include "vdb/grid_builder.h"
-
 #include "base/parallel.h"
+#include "vdb/field.h"
 #include "vdb/output.h"
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // The helper abbe-vdb: everything that is done with OpenVDB, in a process of its own, so that a damaged file can at
-// worst end this one. It is started by src/volumes/vdb_process.cpp and answers with the frames of
+// worst end this one. It is started by src/volumes/vdb_file.cpp and answers with the frames of
 // volumes/vdb_message.h.
 #include "vdb/commands.h"
 

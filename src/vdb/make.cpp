@@ -1,5 +1,5 @@
 #include "vdb/commands.h"
-#include "vdb/grid_builder.h"
+#include "vdb/field.h"
 #include "vdb/output.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Flames as they might be at one moment: a fire over a round bed, and that of a candle.
-#include "volumes/recipe_voxels.h"
 #include "volumes/volume_recipe.h"
 
 namespace abbe {

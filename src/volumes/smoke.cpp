@@ -1,5 +1,4 @@
 // A plume of smoke, as it might be at one moment.
-#include "volumes/recipe_voxels.h"
 #include "volumes/volume_recipe.h"
 
 namespace abbe {

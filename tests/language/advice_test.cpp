@@ -1,5 +1,5 @@
 // Mistakes that come with habits from other programs: what the diagnostic proposes, and what it repairs.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "language_fixture.h"
 
 #include <doctest/doctest.h>

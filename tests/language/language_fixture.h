@@ -3,10 +3,10 @@
 
 #include "base/diagnostic.h"
 #include "base/diagnostic_format.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "parser/parse.h"
 #include "schema/scene_tree.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,6 @@
 // Textures in the place of spectra and numbers.
 #include "language_fixture.h"
 #include "schema/describe.h"
-#include "schema/reference_pages.h"
 
 #include <algorithm>
 #include <doctest/doctest.h>

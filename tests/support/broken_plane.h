@@ -7,7 +7,7 @@
 #include "lights/sky_light.h"
 #include "materials/diffuse.h"
 #include "rendering/path_tracer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/scene_test_film.h"
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // A scene rendered with its layers, as the program does it.
 #pragma once
 
-#include "film/deep_image.h"
+#include "film/layer_planes.h"
 #include "support/scene_test.h"
 
 namespace abbe::test {

@@ -3,7 +3,7 @@
 
 #include "media/henyey_greenstein.h"
 #include "media/medium_optics.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "volumes/voxel_grid.h"
 
 #include <algorithm>

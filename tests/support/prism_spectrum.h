@@ -11,7 +11,7 @@
 
 #include "math/vec.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/quadrature.h"
 
 #include <algorithm>

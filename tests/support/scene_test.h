@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/diagnostic_format.h"
-#include "base/source_map.h"
+#include "base/source.h"
 #include "parser/parse.h"
 #include "parser/presets.h"
 #include "rendering/path_tracer.h"

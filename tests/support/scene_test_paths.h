@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "integrators/path_loop.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/scene_test.h"
 
 #include <functional>

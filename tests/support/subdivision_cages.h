@@ -1,7 +1,7 @@
 // Small cages written by hand.
 #pragma once
 
-#include "math/subdivision_cage.h"
+#include "math/mesh_data.h"
 
 #include <cmath>
 #include <initializer_list>

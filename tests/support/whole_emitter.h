@@ -1,7 +1,7 @@
 // A shape that is sampled part by part, as one that is sampled as a whole.
 #pragma once
 
-#include "math/distribution_1d.h"
+#include "math/distribution.h"
 #include "render/shape.h"
 
 #include <algorithm>

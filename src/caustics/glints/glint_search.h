@@ -3,7 +3,7 @@
 
 #include "integrators/camera_start.h"
 #include "integrators/glint_loop.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 
 #include <functional>
 #include <optional>

@@ -6,8 +6,8 @@
 #include "caustics/manifold/manifold_plan.h"
 #include "caustics/manifold/manifold_sample.h"
 #include "integrators/covered_chain.h"
-#include "math/distribution_1d.h"
-#include "math/random_stream.h"
+#include "math/distribution.h"
+#include "math/hash.h"
 #include "render/bsdf.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // The directions from a point to a ball that paths of light are aimed at, and which part of them brings light.
 #pragma once
 
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "math/frame.h"
 #include "math/vec.h"
 #include "math/warp.h"

@@ -4,7 +4,7 @@
 #include "caustics/shared/aim_cone.h"
 #include "light_sampling/emitted_ray.h"
 #include "math/bounds.h"
-#include "math/distribution_1d.h"
+#include "math/distribution.h"
 #include "math/vec.h"
 #include "render/light.h"
 

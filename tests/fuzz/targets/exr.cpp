@@ -3,9 +3,9 @@
 #include "fuzz/target.h"
 #include "fuzz/targets/reading.h"
 #include "io/aces_container.h"
-#include "io/exr_append.h"
 #include "io/exr_deep.h"
 #include "io/exr_reader.h"
+#include "io/exr_writer.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Radiance pictures.
 #include "fuzz/target.h"
 #include "fuzz/targets/reading.h"
-#include "io/hdr_reader.h"
+#include "io/image.h"
 
 using namespace abbe;
 

@@ -2,7 +2,7 @@
 #include "io/ies.h"
 
 #include "fuzz/target.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 using namespace abbe;
 

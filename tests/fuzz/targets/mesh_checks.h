@@ -3,7 +3,6 @@
 
 #include "fuzz/target.h"
 #include "fuzz/targets/reading.h"
-#include "io/cage_file.h"
 #include "io/mesh_file.h"
 #include "io/ply_points.h"
 

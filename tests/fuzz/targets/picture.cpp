@@ -1,7 +1,7 @@
 // Textures of any format, through the module: header, whole picture, conversion to a texture.
 #include "fuzz/target.h"
-#include "spectrum/color_encoding.h"
-#include "textures/texture_file.h"
+#include "spectrum/color_space.h"
+#include "textures/texture_store.h"
 
 #include <filesystem>
 #include <new>

@@ -1,6 +1,6 @@
 // Stanford PLY, as mesh, as cage, as points with strands, and vertex by vertex.
 #include "fuzz/targets/mesh_checks.h"
-#include "io/ply_vertices.h"
+#include "io/ply_points.h"
 
 using namespace abbe;
 

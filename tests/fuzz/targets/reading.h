@@ -1,7 +1,7 @@
 // What a reader may end with.
 #pragma once
 
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <new>
 

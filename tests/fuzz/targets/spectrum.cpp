@@ -1,6 +1,6 @@
 // Tables of spectra and phase functions.
 #include "fuzz/target.h"
-#include "schema/spectrum_file.h"
+#include "schema/files.h"
 
 using namespace abbe;
 

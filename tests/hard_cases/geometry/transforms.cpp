@@ -2,7 +2,7 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "hard_cases/hard_case.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "support/scene_test.h"
 #include "unit/geometry/test_meshes.h"
 

@@ -2,7 +2,7 @@
 #include "doctor/sampling_checks.h"
 #include "hard_cases/hard_case.h"
 #include "light_sampling/light_tree.h"
-#include "math/distribution_1d.h"
+#include "math/distribution.h"
 #include "support/chi_square.h"
 #include "support/scene_test.h"
 

@@ -2,7 +2,7 @@
 #include "hard_cases/hard_case.h"
 #include "materials/fresnel.h"
 #include "materials/hair_bsdf.h"
-#include "math/consistent_normal.h"
+#include "math/frame.h"
 #include "spectrum/rgb_upsampling.h"
 #include "statistical/materials/openpbr_suite.h"
 #include "statistical/materials/sphere_checks.h"

@@ -4,7 +4,7 @@
 #include "geometry/sphere.h"
 #include "hard_cases/hard_case.h"
 #include "lights/environment_light.h"
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "math/hash.h"
 #include "math/warp.h"
 #include "support/chi_square.h"

@@ -1,4 +1,4 @@
-#include "io/tile_test.h"
+#include "io/image_compare.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

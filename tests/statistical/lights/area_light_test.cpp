@@ -6,7 +6,7 @@
 #include "geometry/quad.h"
 #include "geometry/sphere.h"
 #include "lights/area_light.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/statistics.h"
 #include "support/whole_emitter.h"
 

@@ -3,7 +3,7 @@
 #include "lights/sky_light.h"
 #include "lights/sun_light.h"
 #include "math/warp.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/chi_square.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // Real units: what comes out of a light of 1 klm is 1 klm, whatever its shape and its spectrum; the same in watts.
 #include "lights/amount.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/quadrature.h"
 #include "support/scene_test.h"
 

@@ -2,7 +2,7 @@
 // is met.
 #include "math/warp.h"
 #include "render/intersector.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/chi_square.h"
 #include "support/scene_test.h"
 

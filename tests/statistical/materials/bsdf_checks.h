@@ -3,7 +3,7 @@
 
 #include "math/warp.h"
 #include "render/material.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/chi_square.h"
 
 #include <cmath>

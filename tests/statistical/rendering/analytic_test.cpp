@@ -1,6 +1,6 @@
 // Rendered radiance against closed forms. Y is in units of constant spectral radiance: a radiance of 1 at every
-// wavelength has Y = 1 (spectrum/observer.h).
-#include "spectrum/observer.h"
+// wavelength has Y = 1 (spectrum/sensor.h).
+#include "spectrum/sensor.h"
 #include "support/ggx_reference.h"
 #include "support/quadrature.h"
 #include "support/scene_test.h"

@@ -1,7 +1,7 @@
 // Probed glints against closed forms, sharp enough to see a fault of one per cent: the image of a sun in one level face
 // of glass, and in two.
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 

@@ -2,9 +2,9 @@
 // merged, but for one: their glass stands in instances, over which chains are not followed, and the eye sees all
 // through it. It is even where it is gathered, so that disks of any size blur nothing; and a sphere within a chord r of
 // a point has the area π r² of a flat disk.
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 #include "support/quadrature.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"

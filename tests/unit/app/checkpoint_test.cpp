@@ -4,7 +4,7 @@
 #include "app/render_identity.h"
 #include "app/render_parts.h"
 #include "film/pixel_film.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

@@ -1,7 +1,5 @@
 #include "app/compare_page.h"
-#include "io/atomic_file.h"
-#include "io/file_bytes.h"
-#include "io/io_error.h"
+#include "io/file.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

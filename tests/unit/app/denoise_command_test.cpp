@@ -1,6 +1,6 @@
 #include "app/options.h"
-#include "io/exr_channels.h"
-#include "io/io_error.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 #include "unit/denoise/synthetic_picture.h"
 #include "unit/io/temporary_folder.h"
 

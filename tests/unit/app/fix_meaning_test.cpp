@@ -1,6 +1,6 @@
 // Words of other programs in the blocks of the real types: only what means the same is repaired, and what does not is
 // shown with its value.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "base/diagnostic_format.h"
 #include "parser/parse.h"
 #include "scene/build.h"

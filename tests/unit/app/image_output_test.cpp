@@ -1,7 +1,7 @@
 // Spaces of images on their way to a view.
 #include "app/display_view.h"
 #include "app/image_output.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/ocio_view.h"
 #include "io/png_writer.h"
 #include "unit/io/temporary_folder.h"

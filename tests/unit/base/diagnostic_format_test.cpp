@@ -1,5 +1,5 @@
 // The three forms of diagnostics, and applying their repairs.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "base/diagnostic_format.h"
 
 #include <doctest/doctest.h>

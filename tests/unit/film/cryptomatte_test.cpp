@@ -1,4 +1,4 @@
-#include "film/cryptomatte.h"
+#include "film/layer_planes.h"
 #include "render/sample_recorder.h"
 
 #include <bit>

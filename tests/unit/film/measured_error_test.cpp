@@ -1,5 +1,5 @@
+#include "film/error_figure.h"
 #include "film/measured_error.h"
-#include "film/relative_error.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // Decoding of pictures against OpenColorIO, which is not used for it.
 #include "io/data/ocio_config.h"
-#include "spectrum/color_encoding.h"
+#include "spectrum/color_space.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <cmath>

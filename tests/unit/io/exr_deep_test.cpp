@@ -1,6 +1,6 @@
-#include "io/exr_channels.h"
 #include "io/exr_deep.h"
-#include "io/io_error.h"
+#include "io/exr_reader.h"
+#include "io/file.h"
 #include "temporary_folder.h"
 
 #include <OpenEXR/ImfDeepScanLineInputFile.h>

@@ -1,5 +1,4 @@
 #include "io/flip.h"
-#include "io/flip_filters.h"
 #include "support/constant_image.h"
 
 #include <cmath>

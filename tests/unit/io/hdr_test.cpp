@@ -1,5 +1,5 @@
+#include "io/file.h"
 #include "io/image.h"
-#include "io/io_error.h"
 #include "temporary_folder.h"
 
 #include <doctest/doctest.h>

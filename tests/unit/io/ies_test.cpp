@@ -1,5 +1,5 @@
+#include "io/file.h"
 #include "io/ies.h"
-#include "io/io_error.h"
 #include "support/statistics.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "io/data/ocio_config.h"
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/ocio_view.h"
 #include "spectrum/color_space.h"
 #include "temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "io/io_error.h"
+#include "io/file.h"
 #include "io/png_writer.h"
 #include "temporary_folder.h"
 

@@ -4,8 +4,8 @@
 #include "lights/area_light_types.h"
 #include "lights/point_light.h"
 #include "lights/spot_light.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/sensor.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

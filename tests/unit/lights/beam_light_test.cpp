@@ -1,7 +1,7 @@
 // Beams: what they send to a point against closed forms and quadrature, and the densities that go with it.
 #include "lights/beam_light.h"
 #include "math/warp.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/statistics.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "lights/clear_sky.h"
 #include "lights/solar_spectrum.h"
 #include "spectrum/color_space.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <array>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "lights/solar_spectrum.h"
 #include "lights/sun_light.h"
 #include "spectrum/color_space.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/chi_square.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Environment images: orientation, interpolation, sampling against what is looked up.
 #include "lights/environment_light.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/sensor.h"
 #include "support/chi_square.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "lights/ies_light.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/statistics.h"
 
 #include <cmath>

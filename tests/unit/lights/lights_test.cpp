@@ -3,8 +3,8 @@
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
 #include "lights/sun_light.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/sensor.h"
 #include "support/quadrature.h"
 #include "support/statistics.h"
 

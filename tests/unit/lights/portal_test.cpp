@@ -1,6 +1,6 @@
 #include "lights/environment_light.h"
 #include "lights/portal.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/chi_square.h"
 
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "materials/subsurface.h"
 #include "materials/thin_dielectric.h"
 #include "materials/two_sided.h"
-#include "math/consistent_normal.h"
+#include "math/frame.h"
 #include "render/light_vertex.h"
 #include "statistical/materials/openpbr_suite.h"
 

@@ -3,7 +3,7 @@
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
 #include "materials/fresnel.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/ggx_reference.h"
 #include "support/statistics.h"
 

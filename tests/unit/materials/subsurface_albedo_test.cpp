@@ -1,6 +1,6 @@
 // The inversion from colours to single-scattering albedos.
 #include "materials/subsurface_albedo.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,5 @@
 // Piecewise-constant distributions: probabilities, the ends of the unit interval, and great ranges of weight.
-#include "math/distribution_1d.h"
-#include "math/distribution_2d.h"
+#include "math/distribution.h"
 #include "support/chi_square.h"
 
 #include <doctest/doctest.h>

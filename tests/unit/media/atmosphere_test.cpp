@@ -2,7 +2,7 @@
 // coarse.
 #include "media/atmosphere.h"
 #include "media/henyey_greenstein.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/statistics.h"
 
 #include <cmath>

@@ -2,7 +2,6 @@
 #include "media/grid_medium.h"
 #include "media/volume_light.h"
 #include "spectrum/emission_curves.h"
-#include "spectrum/planck.h"
 #include "support/chi_square.h"
 #include "support/media.h"
 

@@ -3,8 +3,8 @@
 #include "media/mie_phase.h"
 #include "media/mie_series.h"
 #include "media/mixed_phase.h"
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/sampled_curve.h"
 #include "support/phase_check.h"
 
 namespace abbe::test {

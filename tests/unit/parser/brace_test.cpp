@@ -1,6 +1,6 @@
 // Braces that are missing, superfluous, swapped or brackets: one or two errors at the right place, and the rest of the
 // file is read as it was meant.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "parse_text.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // Mistakes: each gives one error at its place, and everything else is still read.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "parse_text.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // Cameras and white balance, from the scene to the pixels.
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/sampled_curve.h"
 #include "support/scene_test.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Faults by the ten thousand: reading, checking and telling them takes a time in proportion to the file.
-#include "base/diagnostic_fixes.h"
+#include "base/diagnostic.h"
 #include "support/scene_test.h"
 
 #include <ctime>

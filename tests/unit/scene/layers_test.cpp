@@ -1,7 +1,7 @@
 // Layers of rendered images: what they hold, and that they change nothing.
 #include "film/layer_planes.h"
 #include "rendering/path_tracer.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>

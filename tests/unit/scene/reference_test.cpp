@@ -2,9 +2,7 @@
 // and the pages in the repository are those that the tables make.
 #include "scene_test_fixture.h"
 #include "schema/describe.h"
-#include "schema/language_words.h"
-#include "schema/reference_pages.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

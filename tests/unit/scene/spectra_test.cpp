@@ -1,6 +1,6 @@
 // The values of a scene as curves: what the words of the language mean in numbers.
 #include "scene_test_fixture.h"
-#include "spectrum/observer.h"
+#include "spectrum/sensor.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

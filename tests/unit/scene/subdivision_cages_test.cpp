@@ -1,7 +1,7 @@
 // The reference cages that come with OpenSubdiv, where they are at hand: through the OBJ reader, diced, against a
 // refinement to level 10 (positions) and 40 (normals), face by face.
 #include "geometry/subdivision_check.h"
-#include "io/cage_file.h"
+#include "io/mesh_file.h"
 #include "support/subdivision_local.h"
 
 #include <cstdlib>

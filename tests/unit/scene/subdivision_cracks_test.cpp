@@ -3,7 +3,7 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "geometry/subdivision_check.h"
-#include "io/cage_file.h"
+#include "io/mesh_file.h"
 #include "support/statistics.h"
 #include "support/subdivision_reference.h"
 

@@ -1,5 +1,4 @@
 #include "schema/describe.h"
-#include "schema/reference_pages.h"
 #include "schema/scene_tree.h"
 
 #include <algorithm>

@@ -1,9 +1,8 @@
 // The 24 ColorChecker patches as a path would see them: eight hero wavelengths per sample, against direct integration.
 #include "spectrum/color_space.h"
-#include "spectrum/lab.h"
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
 #include "spectrum/color_space.h"
-#include "spectrum/lab.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,6 +1,5 @@
-#include "spectrum/cauchy_curve.h"
+#include "spectrum/dispersion.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/sellmeier_curve.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
+#include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
 #include "spectrum/rgb_upsampling.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 #include "spectrum/upsampling_table.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "spectrum/color_space.h"
+#include "spectrum/curve.h"
 #include "spectrum/emission_curves.h"
 #include "spectrum/named_spectra.h"
-#include "spectrum/observer.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/sensor.h"
 #include "spectrum/wavelength_density.h"
 #include "support/chi_square.h"
 

@@ -1,6 +1,6 @@
 // Patterns: exact spectra, means over the footprint against brute force, slopes, and extreme places.
 #include "math/frame.h"
-#include "spectrum/sampled_curve.h"
+#include "spectrum/curve.h"
 #include "support/statistics.h"
 #include "textures/checker_texture.h"
 #include "textures/noise_texture.h"

@@ -3,8 +3,8 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "materials/dielectric.h"
-#include "spectrum/sampled_curve.h"
-#include "spectrum/sellmeier_curve.h"
+#include "spectrum/curve.h"
+#include "spectrum/dispersion.h"
 #include "support/scene_test_paths.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // The test of two pictures on numbers of known distributions: as many false alarms as the level says and no more,
 // small differences are found where they are, and what nobody can judge is not judged.
 #include "math/student.h"
-#include "spectrum/exact_xyz.h"
+#include "spectrum/xyz.h"
 #include "verify/agreement.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "caustics/merging/photon_map.h"
-#include "math/random_stream.h"
+#include "math/hash.h"
 
 #include <doctest/doctest.h>
 #include <set>

@@ -1,0 +1,48 @@
+// What stands between the nodes and values of a KDL text, and its quoted texts.
+#pragma once
+
+#include "parser/characters.h"
+#include "parser/source_text.h"
+#include "schema/document.h"
+
+namespace abbe::parser {
+
+// White space of KDL: between the entries of a node, and between nodes.
+
+// Slow cases of the functions below.
+const char* skipOddNodeSpace(const char* p, SyntaxErrors&, bool& lineComment);
+
+// Skips white space, block comments and continued lines. `lineComment` is set when a `//` after a `\` was among them.
+inline const char* skipNodeSpace(const char* p, SyntaxErrors& errors, bool& lineComment) {
+    while (*p == ' ' || *p == '\t') ++p;
+    const bool odd = *p == '/' || *p == '\\' || *p == 0 || has(*p, kBlank | kWide);
+    return odd ? skipOddNodeSpace(p, errors, lineComment) : p;
+}
+
+// Skips everything that may stand between nodes but `;` and slashdashes: also line ends and line comments.
+const char* skipLineSpace(const char* p, SyntaxErrors&);
+
+// To the line end at or after `p`, or to the end of the text.
+const char* findLineEnd(const char* p, const char* end);
+// The same, but at most 200 bytes on: where a mistake is looked at, so that many of them on one very long line
+// take no quadratic time.
+const char* findNearLineEnd(const char* p, const char* end);
+// To the first character of the line of `p`.
+const char* findLineStart(const char* p, const char* begin);
+
+// Quoted texts: "…", """…""" and their raw forms #"…"#.
+
+struct TextLiteral {
+    const char* end = nullptr; // past the closing quote
+    std::string_view text;     // decoded; a view of the source where that is the same
+    bool lost = false;         // it had no end
+};
+
+// Whether a quoted text begins at `p`: a quote, perhaps after some `#`.
+bool startsText(const char* p);
+
+// Scans the text at `p` (Requires: startsText(p)). Reports what is wrong and goes on behind it; decoded texts are kept
+// in the document.
+TextLiteral scanText(const char* p, SyntaxErrors&, schema::Document&);
+
+} // namespace abbe::parser

@@ -1,0 +1,68 @@
+// Files on disk: those that are read, and those that nobody else touches until they get their names.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace abbe {
+
+// Files that are read: regular ones alone. A pipe would make the reader wait, a device may have no end.
+class RegularFile {
+  public:
+    // Never waits, whatever is there under that name.
+    explicit RegularFile(const std::string& path);
+    ~RegularFile();
+    RegularFile(RegularFile&& other) noexcept
+        : descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_), why_(std::move(other.why_)) {}
+    RegularFile& operator=(RegularFile&&) = delete;
+
+    bool good() const { return why_.empty(); }
+    // Why it could not be opened or read: "No such file or directory", "it is not a regular file".
+    const std::string& why() const { return why_; }
+    // Bytes when it was opened: no more are ever read.
+    std::uint64_t size() const { return size_; }
+    // Fills `to` from there on, as far as the file goes; how many bytes came. Fewer also after an error, see good().
+    std::size_t readAt(std::uint64_t offset, std::span<char> to);
+    // All of it, likewise. Requires that there is memory for size() bytes.
+    std::string readAll();
+
+  private:
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+    std::string why_;
+};
+
+// Empty, or why a library that opens files itself is not to be given this one.
+inline std::string whyNotRegular(const std::string& path) { return RegularFile(path).why(); }
+
+// A file that nobody else touches until it gets its name.
+// Beside the file that it is to become: `room.exr.abbe-HOST-RANDOM.tmp`, a name that nothing had, which only this user
+// may read. It is removed with the object unless commit() was called. What a killed process left behind is removed by
+// the next one that writes the same file: a lock tells it from what is being written. Functions return errno, 0 when
+// all is well.
+class TemporaryFile {
+  public:
+    // Makes it; error() says whether that was possible. `target` is no link, since those would be replaced.
+    explicit TemporaryFile(const std::string& target);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    int error() const { return error_; }
+    int descriptor() const { return descriptor_; }
+    const std::string& path() const { return path_; }
+    // Onto the disk, with the mode and group of the file that it replaces, or the mode that a new one gets; then under
+    // its name. Once. After a fault it is removed, and what was there stays.
+    int commit();
+
+  private:
+    int publish();
+
+    std::string target_, path_;
+    int descriptor_ = -1, error_ = 0;
+};
+
+} // namespace abbe

@@ -1,0 +1,142 @@
+#include "schema/files.h"
+
+#include "base/file.h"
+#include "schema/suggest.h"
+
+#include <charconv>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace abbe::schema {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostNames = 10'000; // of a folder that is searched for a similar name
+
+// The file beside the missing one whose name is nearest, written as the scene would write it; or empty.
+std::string similarFile(const fs::path& written, const fs::path& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end && names.size() < kMostNames;
+         it.increment(error))
+        names.push_back(it->path().filename().string());
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    const std::string missing = written.filename().string();
+    const std::string_view found = nearest(missing, candidates);
+    return found.empty() ? std::string() : (written.parent_path() / found).generic_string();
+}
+
+bool hasTile(const fs::path& path) {
+    const std::string pattern = path.string();
+    const std::size_t at = pattern.find("<UDIM>");
+    if (at == std::string::npos) return false;
+    std::error_code error;
+    for (int tile = 1001; tile < 2000; ++tile)
+        if (fs::exists(std::string(pattern).replace(at, 6, std::to_string(tile)), error)) return true;
+    return false;
+}
+
+} // namespace
+
+std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics, bool tiles) {
+    const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
+    const fs::path written(nameable ? value.text : std::string_view());
+    const fs::path path = written.is_absolute() ? written : tree.directory / written;
+    std::error_code error;
+    const auto status = fs::status(path, error);
+    if (nameable && fs::is_directory(status)) {
+        reportAt(diagnostics, value, "E0402", fmt::format("`{}` is a folder", value.text), "a file is needed");
+        return std::nullopt;
+    }
+    if (nameable && fs::exists(status) && !fs::is_regular_file(status)) {
+        reportAt(diagnostics, value, "E0402", fmt::format("`{}` is not a regular file", value.text),
+                 "pipes and devices are not read");
+        return std::nullopt;
+    }
+    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
+    const std::string folder = written.is_absolute() ? written.parent_path().string() : tree.directory.string();
+    auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
+                       fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));
+    if (!nameable) return std::nullopt;
+    const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+    if (const std::string similar = similarFile(written, parent); !similar.empty())
+        d.help = fmt::format("`{}` exists", similar);
+    else if (!fs::is_directory(parent, error))
+        d.help = fmt::format("there is no folder `{}`", written.parent_path().generic_string());
+    return std::nullopt;
+}
+
+namespace {
+
+constexpr std::size_t kLargestFile = 16u << 20; // a spectrum is a few kilobytes; more is another kind of file
+
+std::string_view withoutComment(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    return line.substr(0, line.find("//"));
+}
+
+bool isSeparator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
+
+// The numbers of a line; false if something else stands there.
+bool readNumbers(std::string_view line, std::vector<double>& out) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    while (true) {
+        while (at != end && isSeparator(*at)) ++at;
+        if (at == end) return true;
+        if (*at == '+') ++at;
+        double value = 0;
+        const auto [stop, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || (stop != end && !isSeparator(*stop))) return false;
+        out.push_back(value);
+        at = stop;
+    }
+}
+
+bool fail(SpectrumFile& file, int line, std::string message) {
+    file.error = std::move(message);
+    file.errorLine = line;
+    return false;
+}
+
+bool readLine(std::string_view text, int line, std::string_view what, SpectrumFile& file) {
+    std::vector<double> row;
+    const bool good = readNumbers(withoutComment(text), row);
+    if (good && row.empty()) return true;
+    if (!good && file.numbers.empty() && row.empty()) return true; // a heading such as "wavelength,value"
+    if (!good) return fail(file, line, "a line without two numbers");
+    if (row.size() != 2)
+        return fail(file, line, fmt::format("a line has one {} and one value; this has {} numbers", what, row.size()));
+    file.numbers.insert(file.numbers.end(), row.begin(), row.end());
+    file.lines.push_back(line);
+    return true;
+}
+
+} // namespace
+
+SpectrumFile readSpectrumFile(const std::filesystem::path& path, std::string_view what) {
+    SpectrumFile file;
+    RegularFile stored(path.string());
+    if (stored.size() > kLargestFile) {
+        fail(file, 0, "it is larger than 16 MiB");
+        return file;
+    }
+    const std::string text = stored.readAll();
+    if (!stored.good()) {
+        fail(file, 0, fmt::format("it cannot be read: {}", stored.why()));
+        return file;
+    }
+    std::string_view rest = text;
+    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    for (int line = 1; !rest.empty(); ++line) {
+        const auto end = rest.find('\n');
+        if (!readLine(rest.substr(0, end), line, what, file)) return file;
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    if (file.numbers.empty()) fail(file, 0, fmt::format("it holds no lines of \"{} value\"", what));
+    return file;
+}
+
+} // namespace abbe::schema
