@@ -1,6 +1,6 @@
 // What light from light paths costs on the film: bench_splats [FILE] prints nanoseconds of a thread for a splat, at any
 // pixel and where threads meet, and how long light paths wait for a checkpoint of 1920 × 1080, written to FILE.
-#include "app/checkpoint_file.h"
+#include "checkpoints/checkpoint_file.h"
 #include "film/pixel_film.h"
 #include "measure.h"
 

@@ -3,7 +3,7 @@
 //     contact_sheet SHEET.png PICTURE.exr …
 //
 // tools/contact_sheet.sh makes the pictures. The display rendering is that of `abbe render --png`.
-#include "app/image_output.h"
+#include "pictures/image_output.h"
 #include "io/image.h"
 
 #include <array>

@@ -105,7 +105,7 @@ function study(entry) {
 
 // The very scripts of the report write its sentences and draw its plot here.
 const page = (() => {
-    const folder = join(root, "src/app/data/study_page"), script = ["plot.js", "findings.js"].map(name => readFileSync(join(folder, name), "utf8")).join("");
+    const folder = join(root, "src/pages/data/study_page"), script = ["plot.js", "findings.js"].map(name => readFileSync(join(folder, name), "utf8")).join("");
     return new Function(`"use strict";${script}return {errorPlot, findingsOf, timeText, percent, errorText, significant, countText, isNumber, positive};`)();
 })();
 

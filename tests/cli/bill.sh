@@ -28,12 +28,13 @@ counts() {
 
 adds_up() { # SCENE OPTION…
     expect 0 "$@" --json --checkpoint off -o sum.exr
-    within "$1: rows and their sum as told" "$(sum_of_rows)" "$(member seconds)" 5
-    within "$1: the bill and the phases of the program" "$(member seconds)" "$(event seconds)" 5
+    within "$1: rows and their sum as told" "$(sum_of_rows)" "$(member seconds)" 1
+    # Two clocks of one process. A row that is forgotten or counted twice is more than what a busy machine makes of them.
+    within "$1: the bill and the phases of the program" "$(member seconds)" "$(event seconds)" 25
     local rendering
     rendering=$(awk -v a="$(member rendering)" -v b="$(figure look-ahead seconds)" -v c="$(figure waiting seconds)" \
         'BEGIN { print a + b + c }')
-    within "$1: rows of rendering and its clock" "$rendering" "$(event render_seconds)" 5
+    within "$1: rows of rendering and its clock" "$rendering" "$(event render_seconds)" 25
 }
 adds_up "$scenes/room.scene" --samples 3000
 adds_up "$scenes/bill.scene" --samples 1000
@@ -74,14 +75,14 @@ expect 0 merge bill.part{1,2,3}.abbe -o merged.exr --json
 counts >merged
 cmp one merged || fault "parts put together have other counts"
 awk -v a="$parts" -v b="$(member seconds)" 'BEGIN { exit !(b > 0.5 * a) }' || fault "the time of the parts is lost"
-within "merged: rows" "$(sum_of_rows)" "$(member seconds)" 5
+within "merged: rows" "$(sum_of_rows)" "$(member seconds)" 1
 expect 0 "$scenes/bill.scene" --json --samples 8 --checkpoint keep -o go.exr
 before=$(member seconds)
 expect 0 "$scenes/bill.scene" --json --resume -o go.exr
 counts >resumed
 cmp one resumed || fault "a render that was continued has other counts"
 awk -v a="$before" -v b="$(member seconds)" 'BEGIN { exit !(b > 0.5 * a) }' || fault "the time before is lost"
-within "continued: rows" "$(sum_of_rows)" "$(member seconds)" 5
+within "continued: rows" "$(sum_of_rows)" "$(member seconds)" 1
 
 # On paper.
 expect 0 "$scenes/bill.scene" -q --bill --checkpoint off -o bill.exr

@@ -1,5 +1,5 @@
 // The state of a study with a right checksum: plan, curve and reference.
-#include "app/study_state.h"
+#include "checkpoints/study_state.h"
 #include "fuzz/target.h"
 #include "fuzz/targets/reading.h"
 #include "math/byte_hash.h"

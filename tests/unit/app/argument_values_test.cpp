@@ -1,4 +1,5 @@
-#include "app/argument_values.h"
+#include "app/shell_words.h"
+#include "command_line/argument_values.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "app/certificate_file.h"
+#include "reports/certificate_file.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // Checkpoints as files: what is written is read, parts add up, and no damage is taken for a render.
-#include "app/checkpoint_file.h"
-#include "app/render_checkpoint.h"
-#include "app/render_identity.h"
-#include "app/render_parts.h"
+#include "checkpoints/checkpoint_file.h"
+#include "checkpoints/render_checkpoint.h"
+#include "checkpoints/render_identity.h"
+#include "checkpoints/render_parts.h"
 #include "film/pixel_film.h"
 #include "io/file.h"
 

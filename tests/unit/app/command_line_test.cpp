@@ -1,7 +1,10 @@
-#include "app/command_line.h"
-#include "app/command_tree.h"
-#include "app/man_page.h"
-#include "app/shell_completion.h"
+#include "command_line/man_page.h"
+#include "command_line/parser.h"
+#include "command_line/shell_completion.h"
+#include "commands/check.h"
+#include "commands/command_table.h"
+#include "commands/explain.h"
+#include "commands/render.h"
 #include "schema/type.h"
 
 #include <algorithm>
@@ -12,15 +15,21 @@ using namespace abbe;
 
 namespace {
 
-std::variant<Command, EarlyEnd> read(std::initializer_list<const char*> words) {
-    return readCommandLine({words.begin(), words.size()});
+std::variant<CommandLine, EarlyEnd> read(std::initializer_list<const char*> words) {
+    return readCommandLine(commandTable(), {words.begin(), words.size()});
 }
 
-RenderOptions render(std::initializer_list<const char*> words) {
+template <typename Options> Options optionsOf(std::initializer_list<const char*> words) {
     const auto result = read(words);
-    REQUIRE_MESSAGE(std::holds_alternative<Command>(result), std::get<EarlyEnd>(result).text);
-    return std::get<RenderOptions>(std::get<Command>(result).options);
+    REQUIRE_MESSAGE(std::holds_alternative<CommandLine>(result), std::get<EarlyEnd>(result).text);
+    const Options* const options = abbe::optionsOf<Options>(*std::get<CommandLine>(result).command);
+    REQUIRE(options);
+    return *options;
 }
+
+RenderOptions render(std::initializer_list<const char*> words) { return optionsOf<RenderOptions>(words); }
+
+std::string help(const std::vector<std::string>& words) { return commandHelp(commandTable(), words).value_or(""); }
 
 EarlyEnd end(std::initializer_list<const char*> words) {
     const auto result = read(words);
@@ -126,21 +135,20 @@ TEST_CASE("help begins with examples") {
 
 TEST_CASE("the command line is kept as a shell would take it") {
     const auto result = read({"render", "my scene.scene", "-D", "a='x'"});
-    CHECK(std::get<Command>(result).common.commandLine == R"(abbe render 'my scene.scene' -D 'a='\''x'\''')");
+    CHECK(std::get<CommandLine>(result).common.commandLine == R"(abbe render 'my scene.scene' -D 'a='\''x'\''')");
 }
 
 TEST_CASE("explain takes several words") {
-    const auto result = read({"explain", "unit", "nits"});
-    CHECK(std::get<ExplainOptions>(std::get<Command>(result).options).topic == "unit nits");
+    CHECK(optionsOf<ExplainOptions>({"explain", "unit", "nits"}).topic == "unit nits");
 }
 
 TEST_CASE("the tree of commands is what the program takes") {
-    const CommandInfo tree = commandTree();
+    const CommandInfo tree = commandTree(commandTable());
     CHECK(tree.name == "abbe");
     CHECK(tree.actions.size() == 16);
     for (const CommandInfo& command : tree.actions) {
         CAPTURE(command.name);
-        CHECK(isCommand(command.name));
+        CHECK(isCommand(commandTable(), command.name));
         CHECK(command.summary.ends_with('.'));
         CHECK(command.more.starts_with("Examples:") == !(command.name == "reference"));
         CHECK((command.actions.empty() || command.name == "volume"));
@@ -168,18 +176,15 @@ TEST_CASE("the tree of commands is what the program takes") {
 }
 
 TEST_CASE("help of a command, of an action, of a word of the language") {
-    CHECK(end({"help", "render"}).code == ExitCode::done);
-    CHECK(contains(end({"help", "render"}).text, end({"render", "--help"}).text));
-    CHECK(contains(end({"help", "volume", "make"}).text, "abbe volume make"));
-    CHECK(end({"help"}).text == end({"--help"}).text);
-    const auto word = read({"help", "camera", "lens"});
-    CHECK(std::get<ExplainOptions>(std::get<Command>(word).options).topic == "camera lens");
+    CHECK(contains(help({"render"}), end({"render", "--help"}).text));
+    CHECK(contains(help({"volume", "make"}), "abbe volume make"));
+    CHECK(help({}) == end({"--help"}).text);
+    CHECK(help({"camera", "lens"}).empty());
     CHECK(contains(end({}).text, "abbe help"));
 }
 
 TEST_CASE("check reads standard input once, and does not repair it") {
-    const auto result = read({"check", "-", "--as", "a.scene", "-q"});
-    const auto& o = std::get<CheckOptions>(std::get<Command>(result).options);
+    const auto o = optionsOf<CheckOptions>({"check", "-", "--as", "a.scene", "-q"});
     CHECK(o.paths == std::vector<std::string>{"-"});
     CHECK(o.standsFor == "a.scene");
     CHECK(o.quiet);

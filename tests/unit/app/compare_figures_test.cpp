@@ -1,5 +1,5 @@
-#include "app/command_line_compare.h"
-#include "app/compare_figures.h"
+#include "commands/compare.h"
+#include "pictures/compare_figures.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
-#include "app/compare_page.h"
 #include "io/file.h"
+#include "pages/compare_page.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

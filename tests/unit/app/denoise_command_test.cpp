@@ -1,4 +1,4 @@
-#include "app/options.h"
+#include "commands/denoise.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
 #include "unit/denoise/synthetic_picture.h"

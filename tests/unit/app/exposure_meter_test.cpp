@@ -1,4 +1,4 @@
-#include "app/exposure_meter.h"
+#include "pictures/exposure_meter.h"
 #include "rendering/path_tracer.h"
 #include "support/scene_test.h"
 

@@ -1,6 +1,6 @@
 // What went wrong with samples, as people read it and as the header of an image holds it.
-#include "app/found_fault.h"
-#include "app/render_warnings.h"
+#include "reports/found_fault.h"
+#include "reports/render_warnings.h"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // Spaces of images on their way to a view.
-#include "app/display_view.h"
-#include "app/image_output.h"
 #include "io/file.h"
 #include "io/ocio_view.h"
 #include "io/png_writer.h"
+#include "pictures/display_view.h"
+#include "pictures/image_output.h"
 #include "unit/io/temporary_folder.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // What is said of light paths: every verdict in words, names and numbers where they were measured.
-#include "app/light_path_text.h"
+#include "reports/light_path_text.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

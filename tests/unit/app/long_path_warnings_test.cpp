@@ -1,5 +1,5 @@
 // What is said of paths that go on and on: where, how many, and what it takes.
-#include "app/long_path_warnings.h"
+#include "reports/render_warnings.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>

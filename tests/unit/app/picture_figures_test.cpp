@@ -1,7 +1,7 @@
-#include "app/image_output.h"
-#include "app/picture_figures.h"
-#include "app/picture_text.h"
-#include "app/render_warnings.h"
+#include "pictures/image_output.h"
+#include "pictures/picture_figures.h"
+#include "reports/picture_text.h"
+#include "reports/render_warnings.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // What is shown while a render goes on.
-#include "app/render_preview.h"
+#include "render_run/render_preview.h"
 
 #include <doctest/doctest.h>
 #include <filesystem>

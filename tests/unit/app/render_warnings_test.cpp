@@ -1,4 +1,4 @@
-#include "app/render_warnings.h"
+#include "reports/render_warnings.h"
 
 #include <doctest/doctest.h>
 

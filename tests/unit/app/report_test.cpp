@@ -1,7 +1,7 @@
 #include "app/hash128.h"
 #include "app/json.h"
-#include "app/progress_text.h"
-#include "app/provenance.h"
+#include "reports/progress_text.h"
+#include "reports/provenance.h"
 
 #include <doctest/doctest.h>
 #include <limits>

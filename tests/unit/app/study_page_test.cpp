@@ -1,5 +1,5 @@
-#include "app/page_text.h"
-#include "app/study_page.h"
+#include "pages/page_text.h"
+#include "pages/study_page.h"
 
 #include <doctest/doctest.h>
 

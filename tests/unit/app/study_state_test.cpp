@@ -1,4 +1,4 @@
-#include "app/study_state.h"
+#include "checkpoints/study_state.h"
 #include "unit/io/temporary_folder.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // What `abbe verify` says of what it found.
-#include "app/verify_text.h"
+#include "reports/verify_text.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -1,0 +1,219 @@
+#include "checkpoints/render_identity.h"
+
+#include "app/version.h"
+#include "math/byte_hash.h"
+#include "rendering/render_params.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+
+namespace abbe {
+
+namespace {
+
+using schema::Node;
+using schema::Value;
+
+// Raised whenever the samples of any scene change.
+constexpr int kSampleEdition = 1;
+constexpr std::size_t kLongestValue = 120; // longer ones are told by their hash
+
+std::string hashText(std::string_view text) {
+    return fmt::format("#{:016x}", hashOf(std::as_bytes(std::span(text.data(), text.size()))));
+}
+
+std::string fileFingerprint(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    ByteHash hash;
+    std::uint64_t size = 0;
+    std::vector<char> buffer(1 << 20);
+    while (file) {
+        file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+        const auto got = static_cast<std::size_t>(file.gcount());
+        hash.add(std::as_bytes(std::span(buffer.data(), got)));
+        size += got;
+    }
+    return fmt::format("{} bytes #{:016x}", size, hash.value());
+}
+
+// Writes the scene down as facts, a fact for each property of what stands at the top.
+class SceneFactWriter {
+  public:
+    SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts)
+        : directory_(loaded.tree.directory), facts_(facts) {}
+
+    void write(const schema::Document& document) {
+        // A scene of very many things is told thing by thing, not property by property.
+        byProperty_ = document.nodes.size() <= 100000;
+        for (const Node node : document.roots())
+            if (node.name() != "film" && node.name() != "render") root(node);
+        for (const auto& [name, path] : files_) facts_.push_back({"file " + name, fileFingerprint(path)});
+    }
+
+  private:
+    void root(const Node& node) {
+        std::string name(node.name());
+        std::string rest;
+        for (std::size_t i = 0; i < node.valueCount(); ++i) append(node.value(i), rest);
+        for (const schema::Key& key : node.keys()) append(key, rest);
+        // The first word is its name or its type; those alike are counted.
+        if (node.valueCount() > 0 && node.value(0).isText()) name += " " + std::string(node.value(0).text);
+        name = unique(name);
+        if (!byProperty_) {
+            block(node, rest);
+            add(name, rest);
+            return;
+        }
+        add(name, rest);
+        std::map<std::string, int> seen;
+        for (const Node child : node.children()) {
+            std::string property(child.name());
+            if (const int n = ++seen[property]; n > 1) property += fmt::format(" {}", n);
+            std::string value;
+            contents(child, value);
+            add(name + " " + property, value);
+        }
+    }
+
+    std::string unique(const std::string& name) {
+        const int n = ++counts_[name];
+        return n == 1 ? name : fmt::format("{} {}", name, n);
+    }
+
+    void add(std::string name, const std::string& value) {
+        facts_.push_back({std::move(name), value.size() <= kLongestValue ? value : hashText(value)});
+    }
+
+    void contents(const Node& node, std::string& out) {
+        if (node.allNumbers())
+            for (const double v : node.numbers()) word(fmt::format("{}", v), out);
+        else
+            for (std::size_t i = 0; i < node.valueCount(); ++i) append(node.value(i), out);
+        for (const schema::Key& key : node.keys()) append(key, out);
+        block(node, out);
+    }
+
+    void block(const Node& node, std::string& out) {
+        if (!node.hasBlock()) return;
+        word("{", out);
+        for (const Node child : node.children()) {
+            word(child.name(), out);
+            contents(child, out);
+            out += ';';
+        }
+        word("}", out);
+    }
+
+    void append(const schema::Key& key, std::string& out) {
+        word(key.name, out);
+        out += '=';
+        append(key.value, out);
+    }
+
+    void append(const Value& value, std::string& out) {
+        switch (value.kind) {
+        case schema::ValueKind::number:
+            return word(fmt::format("{}", value.number), out);
+        case schema::ValueKind::word:
+            return word(value.text, out);
+        case schema::ValueKind::string:
+            noteFiles(value.text);
+            return word(fmt::format("\"{}\"", value.text), out);
+        case schema::ValueKind::boolean:
+            return word(value.boolean ? "on" : "off", out);
+        case schema::ValueKind::null:
+            return word("null", out);
+        }
+    }
+
+    static void word(std::string_view text, std::string& out) {
+        if (!out.empty() && out.back() != '=') out += ' ';
+        out += text;
+    }
+
+    // Any text that names a file counts as one that the scene reads; `<UDIM>` stands for the files of all tiles.
+    void noteFiles(std::string_view text) {
+        std::error_code error;
+        const std::filesystem::path path = directory_ / std::filesystem::path(text);
+        const std::string name = path.filename().string();
+        const auto udim = name.find("<UDIM>");
+        if (udim == std::string::npos) {
+            if (std::filesystem::is_regular_file(path, error)) files_.emplace(text, path);
+            return;
+        }
+        for (const auto& entry :
+             std::filesystem::directory_iterator(path.parent_path().empty() ? "." : path.parent_path(), error)) {
+            const std::string other = entry.path().filename().string();
+            if (other.size() == name.size() - 2 && other.starts_with(name.substr(0, udim)) &&
+                other.ends_with(name.substr(udim + 6)))
+                files_.emplace(other, entry.path());
+        }
+    }
+
+    std::filesystem::path directory_;
+    std::vector<Fact>& facts_;
+    bool byProperty_ = true;
+    std::map<std::string, int> counts_;
+    std::map<std::string, std::filesystem::path> files_;
+};
+
+// A camera is fitted to the light that is balanced; for the observer the balance comes after the sums.
+std::string sensorText(const FilmSettings& film) {
+    if (film.sensor == "cie" || !film.adoptedWhite) return film.sensor;
+    return fmt::format("{} for {} {}", film.sensor, film.adoptedWhite->x, film.adoptedWhite->y);
+}
+
+std::string quoted(const std::string& value) { return value.empty() ? "nothing" : fmt::format("`{}`", value); }
+
+} // namespace
+
+std::vector<Fact> renderIdentity(const IdentityInput& in) {
+    const RenderSettings& s = *in.settings;
+    const auto number = [](auto v) { return fmt::format("{}", v); };
+    std::vector<Fact> facts{
+        {"program", fmt::format("abbe {} language {} samples {}", versionNumber(), kLanguageEdition, kSampleEdition)},
+        {"size", fmt::format("{}x{}", in.film->width, in.film->height)},
+        {"filter", fmt::format("{} {}", static_cast<int>(in.film->filter), in.film->filterRadius)},
+        {"sensor", sensorText(*in.film)},
+        {"seed", number(s.seed)},
+        {"replicates", number(in.replicates)},
+        {"adaptive", s.adaptive ? "on" : "off"},
+        {"max-depth", number(s.maxDepth)},
+        {"camera", in.camera},
+    };
+    for (auto& [name, value] : properties(s.technique)) facts.push_back({name, value});
+    // Strata are as many as a replicate has samples: with more of them, all samples are others.
+    if (s.technique.numbers == Technique::Numbers::stratified)
+        facts.push_back({"strata", number(s.samplesPerReplicate(in.replicates))});
+    if (in.loaded->tree.document) SceneFactWriter(*in.loaded, facts).write(*in.loaded->tree.document);
+    return facts;
+}
+
+std::vector<std::string> differences(const std::vector<Fact>& theirs, const std::vector<Fact>& ours,
+                                     const std::string& their, const std::string& our, std::size_t most) {
+    std::map<std::string_view, std::pair<const Fact*, const Fact*>> both;
+    for (const Fact& f : theirs) both[f.name].first = &f;
+    for (const Fact& f : ours) both[f.name].second = &f;
+    std::vector<std::string> lines;
+    std::size_t more = 0;
+    const auto compare = [&](const Fact& fact) {
+        const auto [t, o] = both[fact.name];
+        if (t && o && t->value == o->value) return;
+        if (lines.size() == most) {
+            ++more;
+            return;
+        }
+        const auto side = [](const Fact* f) { return f ? quoted(f->value) : std::string("absent"); };
+        lines.push_back(fmt::format("{}: {} in {}, {} in {}", fact.name, side(t), their, side(o), our));
+    };
+    for (const Fact& f : theirs) compare(f);
+    for (const Fact& f : ours)
+        if (!both[f.name].first) compare(f);
+    if (more > 0) lines.push_back(fmt::format("and {} more", more));
+    return lines;
+}
+
+} // namespace abbe

@@ -1,0 +1,42 @@
+// The commands and flags as plain data, read from the library's parser: what help, the man page and completions are
+// made of. Nothing else lists them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+struct FlagInfo {
+    std::vector<std::string> names;   // "-o", "--output"
+    std::string value;                // "FILE", "X,Y"; empty: takes none
+    std::vector<std::string> choices; // words that the value may be
+    bool valueOptional = false;       // `--png` or `--png=FILE`
+    std::string doc;                  // one line without a full stop
+};
+
+struct ArgumentInfo {
+    std::string name; // "scene", "image"
+    std::string doc;
+    std::vector<std::string> choices;
+    bool required = false;
+    bool repeats = false;
+};
+
+struct CommandInfo {
+    std::string name;
+    std::string group;   // heading in the list of commands
+    std::string summary; // one sentence
+    std::string more;    // examples and remarks, several lines; may be empty
+    std::vector<ArgumentInfo> arguments;
+    std::vector<FlagInfo> flags;
+    std::vector<CommandInfo> actions; // `info`, `make` and `convert` of `volume`; of the root: all commands
+};
+
+// The list of all commands, for `abbe help`.
+std::string commandListText(const CommandInfo& root);
+
+// "abbe render": the command, or action of one, that these words name; null if there is none.
+const CommandInfo* findCommand(const CommandInfo& root, const std::vector<std::string>& words);
+
+} // namespace abbe

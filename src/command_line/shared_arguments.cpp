@@ -1,0 +1,73 @@
+#include "command_line/shared_arguments.h"
+
+#include "command_line/argument_values.h"
+#include "render/integrator.h"
+
+namespace abbe {
+
+void addJson(Arguments& a, const char* help) { a.flag("--json", &a.common().json, help); }
+
+void addThreads(Arguments& a) {
+    a.value("-t,--threads", "N", &a.common().threads, "Threads; without it one per core").between(1, 4096);
+}
+
+void addDefines(Arguments& a, std::vector<std::string>& defines, const char* help) {
+    a.value("-D", "NAME=VALUE", &defines, help);
+}
+
+void addView(Arguments& a, ViewOptions& view) {
+    a.value("--display", "NAME", &view.display, "OCIO display of the PNG");
+    a.value("--view", "NAME", &view.view, "OCIO view of the PNG");
+    a.value("--ocio", "FILE", &view.config, "OCIO configuration; without it $OCIO, else the built-in one");
+    a.value("--exposure", "STOPS", &view.exposure, "Brighten the PNG by so many stops");
+}
+
+void addPng(Arguments& a, PngOptions& png, const ViewOptions& view) {
+    const auto read = [&png](const std::string& text) {
+        png.off = text == "off";
+        png.asked = true;
+        if (text != "." && text != "on" && !png.off) png.path = text;
+        return std::string();
+    };
+    a.value("--png", "FILE", read, "Name the PNG beside the image; off: none").valueOptional = true;
+    a.afterwards([&png, &view]() -> std::optional<ArgumentFault> {
+        if (!view.display.empty() || !view.view.empty() || !view.config.empty() || view.exposure != 0) png.asked = true;
+        return std::nullopt;
+    });
+}
+
+void addFrame(Arguments& a, BuildOptions& b) {
+    a.value("--camera", "NAME", &b.camera, "Camera to render; without it the first one");
+    a.read("--size", "WxH", b.size, "a size such as 640x480", readSize, "Size of the image in pixels");
+    a.value("--seed", "N", &b.seed, "Choose other random numbers").between(0, kLargestSeed);
+    a.value("--pilot", "N", &b.pilot, "Size of the pilots that plan for caustics, 0 (none) to 4; else by the work")
+        .between(0, RenderSettings::kFullPilot);
+}
+
+void addTechniques(Arguments& a, BuildOptions& b, const char* strategyHelp, const char* samplerHelp,
+                   const char* heading) {
+    using Word = Choice<const char*>;
+    const std::vector<Word> strategies{{"mis", "mis"}, {"lights", "lights"}, {"bsdf", "bsdf"}};
+    const std::vector<Word> samplers{{"sobol", "sobol"}, {"stratified", "stratified"}, {"random", "random"}};
+    a.choice("--strategy", b.strategy, strategies, strategyHelp).under(heading);
+    a.choice("--sampler", b.sampler, samplers, samplerHelp).under(heading);
+}
+
+void addOwnSize(Arguments& a, std::optional<Vec2i>& size, std::string help) {
+    a.read("--size", "WxH", size, "a size such as 160x90", readSize, std::move(help));
+}
+
+void addOwnSeed(Arguments& a, std::optional<std::int64_t>& seed) {
+    a.value("--seed", "N", &seed, "Choose other random numbers").between(0, kLargestSeed / 2);
+}
+
+std::optional<double> readTime(std::string_view text) {
+    const auto value = readQuantity(text, schema::Dimension::time);
+    return value && *value > 0 && *value <= 1e9 ? value : std::nullopt;
+}
+
+std::optional<bool> readSwitch(std::string_view text) {
+    return text == "on" || text == "off" ? std::optional(text == "on") : std::nullopt;
+}
+
+} // namespace abbe

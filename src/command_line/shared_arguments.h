@@ -1,0 +1,38 @@
+// Flags that several commands have.
+#pragma once
+
+#include "command_line/arguments.h"
+#include "pictures/display_view.h"
+#include "pictures/image_output.h"
+#include "scene/build.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+void addJson(Arguments&, const char* help = "JSON on stdout");
+void addThreads(Arguments&);
+void addDefines(Arguments&, std::vector<std::string>& defines,
+                const char* help = "Set a parameter of the scene; may be repeated");
+// `--display`, `--view`, `--ocio`, `--exposure`.
+void addView(Arguments&, ViewOptions&);
+// `--png`; a view asks for a PNG, too.
+void addPng(Arguments&, PngOptions&, const ViewOptions&);
+// What of the command line a render's picture and plans hang on, beside the scene.
+void addFrame(Arguments&, BuildOptions&);
+// `--strategy` and `--sampler`, by which a render is not as its scene asks for it.
+void addTechniques(Arguments&, BuildOptions&, const char* strategyHelp, const char* samplerHelp, const char* heading);
+// `--size` of pictures that a command makes itself.
+void addOwnSize(Arguments&, std::optional<Vec2i>& size, std::string help);
+inline constexpr double kLargestSeed = 9007199254740992; // 2^53
+// `--seed` of a command that needs others beside it.
+void addOwnSeed(Arguments&, std::optional<std::int64_t>& seed);
+
+// Values, read as readQuantity() reads them. A time in seconds, above 0.
+std::optional<double> readTime(std::string_view text);
+std::optional<bool> readSwitch(std::string_view text);
+
+} // namespace abbe

@@ -1,0 +1,116 @@
+#include "commands/check.h"
+
+#include "app/load.h"
+#include "base/diagnostic.h"
+#include "command_line/shared_arguments.h"
+#include "io/file.h"
+#include "scene/build.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace abbe {
+
+const char* const kCheckHelp = R"(Finds everything that is wrong with scenes, without rendering.
+
+Examples:
+  abbe check room.scene
+  abbe check --fix room.scene                  repairs what can be repaired safely
+  abbe check -q - --as room.scene <room.scene  from an editor: the text comes from standard input
+  abbe check --strict --format=short *.scene   for editors and CI)";
+
+namespace {
+
+constexpr const char* kStandardInput = "-";
+
+std::optional<ArgumentFault> contradiction(const CheckOptions& options) {
+    const auto standard = std::ranges::count(options.paths, kStandardInput);
+    if (standard > 1) return ArgumentFault{"scenes", "standard input can be read once"};
+    if (standard > 0 && options.fix) return ArgumentFault{"--fix", "standard input cannot be repaired in place"};
+    if (standard == 0 && !options.standsFor.empty())
+        return ArgumentFault{"--as", "it is for standard input, `abbe check -`"};
+    return std::nullopt;
+}
+
+} // namespace
+
+void addArguments(Arguments& a, CheckOptions& o) {
+    a.argument("scenes", &o.paths, "Scene files; - is standard input").require();
+    a.value("--as", "FILE", &o.standsFor, "What standard input stands for: its name, and the folder of its files");
+    a.flag("--fix", &o.fix, "Apply the repairs that are certain, in place");
+    a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
+    a.flag("--strict", &o.strict, "Exit with 4 when there are warnings");
+    a.flag("--textures", &o.textures, "Read image textures to their ends, which also makes them ready");
+    MessageFormat& format = a.common().format;
+    a.choice<MessageFormat>(
+        "--format", format,
+        {{"human", MessageFormat::human}, {"short", MessageFormat::brief}, {"json", MessageFormat::json}},
+        "How faults are told; short: path:line:column: text");
+    a.flag(
+        "--json", [&format] { format = MessageFormat::json; }, "The same as --format=json");
+    addDefines(a, o.defines);
+    a.afterwards([&o] { return contradiction(o); });
+}
+
+namespace {
+
+std::unique_ptr<LoadedScene> checkScene(const SceneInput& input, bool textures = false) {
+    auto loaded = loadScene(input);
+    BuildOptions options;
+    options.geometry = false;
+    options.textures = textures;
+    if (loaded->readable) buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
+    return loaded;
+}
+
+// Applies what can be applied, again and again until nothing is left: one fix may uncover the next.
+std::size_t fixScene(const SceneInput& input) {
+    constexpr int kRounds = 64; // each mends a thousand faults of a kind
+    std::size_t applied = 0;
+    for (int round = 0; round < kRounds; ++round) {
+        const auto loaded = checkScene(input);
+        if (!loaded->readable) return applied;
+        const FileId file{0};
+        const FixResult fixed = applyFixes(loaded->sources.text(file), file, loaded->diagnostics);
+        if (fixed.applied == 0) return applied;
+        applied += fixed.applied;
+        writeAtomically(input.path, fixed.text);
+    }
+    return applied;
+}
+
+SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
+    if (path != kStandardInput) return {path, options.defines};
+    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true};
+}
+
+ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
+    const std::size_t fixed = options.fix ? fixScene(input) : 0;
+    const auto loaded = checkScene(input, options.textures);
+    console.report(loaded->diagnostics, loaded->sources);
+    if (console.format() == MessageFormat::human && !options.quiet) {
+        if (fixed > 0) console.line(fmt::format("{}: {} repaired", input.path, fixed));
+        if (loaded->diagnostics.all().empty()) console.line(fmt::format("{}: no errors, no warnings", input.path));
+    }
+    if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
+    return options.strict && loaded->diagnostics.warningCount() > 0 ? ExitCode::threshold : ExitCode::done;
+}
+
+// The one that matters more when several files fail in different ways.
+ExitCode worse(ExitCode a, ExitCode b) {
+    const auto rank = [](ExitCode c) {
+        return c == ExitCode::done ? 0 : c == ExitCode::threshold ? 1 : c == ExitCode::faulty ? 2 : 3;
+    };
+    return rank(a) >= rank(b) ? a : b;
+}
+
+} // namespace
+
+ExitCode run(const CheckOptions& options, const CommonOptions& common) {
+    ExitCode result = ExitCode::done;
+    for (const std::string& path : options.paths)
+        result = worse(result, checkOne(checkedInput(path, options), options, common.console));
+    return result;
+}
+
+} // namespace abbe

@@ -1,0 +1,289 @@
+#include "commands/info.h"
+
+#include "app/hash128.h"
+#include "app/json.h"
+#include "app/load.h"
+#include "command_line/shared_arguments.h"
+#include "io/aces_container.h"
+#include "io/exr_deep.h"
+#include "io/file.h"
+#include "reports/bill_text.h"
+#include "reports/certificate_file.h"
+#include "reports/provenance.h"
+#include "scene/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+#include <span>
+
+namespace abbe {
+
+const char* const kInfoHelp = R"(Tells what is in a scene or in an image.
+
+Examples:
+  abbe info room.scene
+  abbe info --json room.exr)";
+
+void addArguments(Arguments& a, InfoOptions& o) {
+    a.argument("file", &o.path, "Scene (.scene) or image (.exr)").require();
+    addDefines(a, o.defines);
+    addJson(a);
+}
+
+namespace {
+
+Json json(const Vec3d& v) {
+    Json list = Json::list();
+    list.push(v.x).push(v.y).push(v.z);
+    return list;
+}
+
+Json json(const PixelWindow& w) { return Json::object({{"x0", w.x0}, {"y0", w.y0}, {"x1", w.x1}, {"y1", w.y1}}); }
+
+Json json(const ImageAttribute& a) {
+    return std::visit([](const auto& v) { return Json(v); }, a.value);
+}
+
+std::string text(const ImageAttribute& a) {
+    return std::visit([](const auto& v) { return fmt::format("{}", v); }, a.value);
+}
+
+// --- scenes
+
+// What is left of a zero is rounding: coordinates are stored from the camera.
+Vec3d withoutRounding(Vec3d v, const Bounds3d& box) {
+    const double least = 1e-6 * maxComponent(box.upper - box.lower);
+    for (double* c : {&v.x, &v.y, &v.z})
+        if (std::abs(*c) < least) *c = 0;
+    return v;
+}
+
+std::string boundsText(const Bounds3d& box) {
+    if (box.empty()) return "nothing";
+    if (!isFinite(box.lower) || !isFinite(box.upper)) return "without an end";
+    const Vec3d a = withoutRounding(box.lower, box), b = withoutRounding(box.upper, box);
+    return fmt::format("{:.4g} {:.4g} {:.4g} … {:.4g} {:.4g} {:.4g} m", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+Json boundsJson(const Bounds3d& box) {
+    if (box.empty() || !isFinite(box.lower) || !isFinite(box.upper)) return {};
+    return Json::object({{"lower", json(box.lower)}, {"upper", json(box.upper)}});
+}
+
+// `ball sphere`, or `12 × tree`; and in which space its bounds are.
+std::string shapeText(const SceneFacts::ShapeFact& shape) {
+    std::string s = fmt::format("{:<10} ", shape.kind);
+    if (shape.places > 1) s += fmt::format("{} × ", shape.places);
+    s += shape.name;
+    if (!shape.type.empty() && !shape.name.starts_with(shape.type + "-")) s += ' ' + shape.type;
+    s += "  " + boundsText(shape.bounds);
+    return s + (shape.inside.empty() ? "\n" : fmt::format(", in the space of `{}`\n", shape.inside));
+}
+
+std::string shapesText(const std::vector<SceneFacts::ShapeFact>& shapes) {
+    constexpr std::size_t kMost = 100;
+    std::string s;
+    for (std::size_t i = 0; i < std::min(shapes.size(), kMost); ++i) s += shapeText(shapes[i]);
+    if (shapes.size() > kMost) s += fmt::format("           and {} more: --json has all\n", shapes.size() - kMost);
+    return s;
+}
+
+Json shapesJson(const std::vector<SceneFacts::ShapeFact>& shapes) {
+    Json list = Json::list();
+    for (const auto& shape : shapes) {
+        Json object = Json::object({{"kind", shape.kind}, {"name", shape.name}});
+        if (!shape.type.empty()) object.set("type", shape.type);
+        if (!shape.inside.empty()) object.set("inside", shape.inside);
+        object.set("places", std::uint64_t{shape.places});
+        object.set("bounds_m", boundsJson(shape.bounds));
+        list.push(std::move(object));
+    }
+    return list;
+}
+
+struct SceneInfo {
+    const LoadedScene& loaded;
+    const BuiltScene& built;
+    std::string hash;
+};
+
+std::string sceneJson(const SceneInfo& info) {
+    const SceneFacts& f = info.built.facts;
+    Json lights = Json::list(), files = Json::list();
+    for (const auto& l : f.lightList)
+        lights.push(Json::object({{"name", l.name}, {"type", l.type}, {"watts", l.watts}}));
+    for (const std::string& file : f.files) files.push(file);
+    const FilmParams& film = info.built.film;
+    Json object = Json::object({{"hash", info.hash},
+                                {"shapes", std::uint64_t{f.shapes}},
+                                {"triangles", std::uint64_t{f.triangles}},
+                                {"quads", std::uint64_t{f.quads}},
+                                {"analytic", std::uint64_t{f.analytic}},
+                                {"strands", std::uint64_t{f.strands}},
+                                {"segments", std::uint64_t{f.segments}},
+                                {"points", std::uint64_t{f.points}},
+                                {"objects", std::uint64_t{f.objects}},
+                                {"instances", std::uint64_t{f.instances}},
+                                {"materials", std::uint64_t{f.materials}},
+                                {"lights", std::move(lights)},
+                                {"width", static_cast<int>(film.size.x)},
+                                {"height", static_cast<int>(film.size.y)},
+                                {"samples", info.built.render.samples},
+                                {"effects", effectNames(info.built.scene.effects)},
+                                {"files", std::move(files)}});
+    object.set("shape_list", shapesJson(f.shapeList));
+    if (!f.bounds.empty()) object.set("bounds_m", boundsJson(f.bounds));
+    return object.text(true) + "\n";
+}
+
+std::string sceneText(const SceneInfo& info) {
+    const SceneFacts& f = info.built.facts;
+    std::string s = fmt::format("shapes     {} ({} triangles, {} quads, {} analytic)\n", f.shapes, f.triangles, f.quads,
+                                f.analytic);
+    if (f.segments > 0) s += fmt::format("curves     {} segments of {} strands\n", f.segments, f.strands);
+    if (f.points > 0) s += fmt::format("points     {}\n", f.points);
+    if (f.objects > 0) s += fmt::format("objects    {}, placed {} times\n", f.objects, f.instances);
+    s += fmt::format("materials  {}\n", f.materials);
+    if (!f.bounds.empty()) s += fmt::format("bounds     {}\n", boundsText(f.bounds));
+    s += shapesText(f.shapeList);
+    for (const auto& l : f.lightList) {
+        s += fmt::format("light      {} {}  {:.4g} W\n", l.name.empty() ? "(no name)" : l.name, l.type, l.watts);
+    }
+    s += fmt::format("film       {}×{}, {} samples per pixel\n", static_cast<int>(info.built.film.size.x),
+                     static_cast<int>(info.built.film.size.y), info.built.render.samples);
+    s += fmt::format("effects    {}\n", effectNames(info.built.scene.effects));
+    for (const std::string& file : f.files) s += fmt::format("file       {}\n", file);
+    return s + fmt::format("hash       {}\n", info.hash);
+}
+
+ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
+    const SceneInput input{options.path, options.defines};
+    const auto loaded = loadScene(input);
+    BuildOptions build;
+    build.geometry = false;
+    BuiltScene built;
+    if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
+    common.console.report(loaded->diagnostics, loaded->sources);
+    if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
+    const SceneInfo info{*loaded, built, sceneHash(*loaded, input)};
+    common.console.data(common.json ? sceneJson(info) : sceneText(info));
+    return ExitCode::done;
+}
+
+// --- images
+
+template <typename Number> void add(Hash128& hash, const std::vector<Number>& values) {
+    hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)});
+}
+
+std::string deepHash(const std::string& path) {
+    const DeepPicture deep = readDeepExr(path);
+    Hash128 hash;
+    add(hash, deep.counts);
+    for (const auto* plane : {&deep.z, &deep.zBack, &deep.a, &deep.r, &deep.g, &deep.b}) add(hash, *plane);
+    return hash.digits();
+}
+
+// Fingerprint of the values of all channels but the time they took: equal for equal pictures, whatever the header says
+// and however the channels are spread over parts.
+std::string pixelHash(const std::string& path, const ExrInfo& info) {
+    if (info.deep) return deepHash(path);
+    Hash128 hash;
+    std::vector<std::string> names;
+    for (const ExrInfo::Channel& channel : info.channels)
+        if (channel.name != "seconds.S") names.push_back(channel.name);
+    std::ranges::sort(names);
+    // Every reading decodes all channels: as many are kept as memory is well spent on.
+    constexpr std::size_t kValues = std::size_t(1) << 28; // 1 GiB
+    const std::size_t most = std::max<std::size_t>(1, kValues / std::max<std::size_t>(1, info.window.area()));
+    for (std::size_t first = 0; first < names.size(); first += most) {
+        const auto group = std::span(names).subspan(first, std::min(most, names.size() - first));
+        const ExrPlanes planes = readExrChannels(
+            path, [&](std::string_view name) { return std::ranges::binary_search(group, name, std::less<>()); });
+        for (const std::string& name : group) {
+            hash.addField(name);
+            add(hash, *planes.find(name));
+        }
+    }
+    return hash.digits();
+}
+
+std::string layoutOf(const ExrInfo& info) {
+    if (info.parts > 1) return fmt::format("parts        {}\n", info.parts);
+    return info.deep ? "samples      deep\n" : "";
+}
+
+std::string_view spaceOf(const ExrInfo& info) {
+    if (!info.chromaticities) return "unknown";
+    if (info.chromaticities->matches(rgb::ap0)) return "ACES2065-1";
+    if (info.chromaticities->matches(rgb::ap1)) return "ACEScg";
+    if (info.chromaticities->matches(rgb::rec709)) return "linear Rec. 709";
+    if (info.chromaticities->matches(rgb::xyz)) return "CIE XYZ";
+    return "other";
+}
+
+// Nothing about files that neither are nor claim to be an ACES container.
+std::string containerText(const AcesVerdict& aces) {
+    if (aces.valid()) return "container    ACES (SMPTE ST 2065-4)\n";
+    if (!aces.claimed) return {};
+    std::string text = "container    not ACES, as it claims:\n";
+    for (const std::string& fault : aces.faults) text += fmt::format("             {}\n", fault);
+    return text;
+}
+
+ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
+    const ExrInfo info = readExrInfo(options.path);
+    const std::string hash = pixelHash(options.path, info);
+    const auto certificate = readCertificate(info.attributes);
+    const auto bill = readBill(info.attributes);
+    const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
+    if (common.json) {
+        Json channels = Json::list(), attributes = Json::object();
+        for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
+        for (const ImageAttribute& a : info.attributes)
+            if (!bill || a.name != kBillAttribute) attributes.set(a.name, json(a));
+        Json faults = Json::list();
+        if (aces.claimed)
+            for (const std::string& fault : aces.faults) faults.push(fault);
+        const Json object = Json::object({{"window", json(info.window)},
+                                          {"display", json(info.display)},
+                                          {"channels", std::move(channels)},
+                                          {"compression", info.compression},
+                                          {"parts", info.parts},
+                                          {"deep", info.deep},
+                                          {"space", spaceOf(info)},
+                                          {"aces_container", aces.valid()},
+                                          {"aces_faults", std::move(faults)},
+                                          {"pixels", hash},
+                                          {"error", certificate ? certificateJson(*certificate) : Json()},
+                                          {"bill", bill ? billJson(*bill) : Json()},
+                                          {"attributes", std::move(attributes)}});
+        common.console.data(object.text(true) + "\n");
+        return ExitCode::done;
+    }
+    std::string s = fmt::format("size         {}×{}\nspace        {}\ncompression  {}\nchannels    ",
+                                info.window.width(), info.window.height(), spaceOf(info), info.compression);
+    for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
+    s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
+    if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
+    if (certificate && certificate->relative.untrustedTiles > 0)
+        s += fmt::format("error bars   {}\n", tailLine(certificate->relative));
+    if (certificate && certificate->merged) s += fmt::format("bias         {}\n", mergedLine(*certificate->merged));
+    if (bill) s += billTable(*bill);
+    for (const ImageAttribute& a : info.attributes)
+        if (!bill || a.name != kBillAttribute) s += fmt::format("{} = {}\n", a.name, text(a));
+    common.console.data(s);
+    return ExitCode::done;
+}
+
+} // namespace
+
+ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+    return std::filesystem::path(options.path).extension() == ".exr" ? imageInfo(options, common)
+                                                                     : sceneInfo(options, common);
+}
+
+} // namespace abbe

@@ -1,0 +1,73 @@
+#include "commands/merge.h"
+
+#include "checkpoints/checkpoint_file.h"
+#include "command_line/parser.h"
+#include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
+#include "commands/render.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+const char* const kMergeHelp = R"(Puts parts of a render together, to the bits of the whole.
+
+Examples:
+  abbe merge room.part*.abbe -o room.exr
+  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
+
+void addArguments(Arguments& a, MergeOptions& o) {
+    a.argument("parts", &o.parts, "Parts of one render (.abbe)").require();
+    a.value("-o,--output", "FILE", &o.output, "Image to write (EXR)").require();
+    a.value("--scene", "FILE", &o.scene, "Where the scene is now");
+    addPng(a, o.png, o.view);
+    addView(a, o.view);
+    addJson(a);
+}
+
+namespace {
+
+// The command that made a part, as it would read the words now.
+RenderOptions commandOf(const CheckpointReader& reader) {
+    std::vector<const char*> words;
+    for (const std::string& word : reader.header().words) words.push_back(word.c_str());
+    const auto result = readCommandLine(commandTable(), words);
+    if (const auto* line = std::get_if<CommandLine>(&result))
+        if (const auto* render = optionsOf<RenderOptions>(*line->command)) return *render;
+    throw CheckpointFault("E0661",
+                          fmt::format("`{}` was made by a command that this program does not know", reader.path()),
+                          "merge it with the program that made it");
+}
+
+} // namespace
+
+// A render of the same scene, with the same settings, that finds all its samples done.
+ExitCode run(const MergeOptions& options, const CommonOptions& common) {
+    try {
+        const CheckpointReader first(options.parts.front());
+        RenderOptions render = commandOf(first);
+        std::error_code error;
+        if (!options.scene.empty())
+            render.input.path = options.scene;
+        else if (!std::filesystem::exists(render.input.path, error)) // it may be relative to where the part was made
+            render.input.path = (std::filesystem::path(first.header().folder) / render.input.path).string();
+        render.output = options.output;
+        render.png = options.png;
+        render.view = options.view;
+        render.checkpoint = {};
+        render.checkpoint.off = true;
+        render.crop.reset();
+        render.part.reset();
+        render.parts = options.parts;
+        return run(render, common);
+    } catch (const CheckpointFault& fault) {
+        Diagnostics diagnostics;
+        diagnostics.error(fault.code, {}, fault.what()).help = fault.help;
+        common.console.report(diagnostics, {});
+        return ExitCode::faulty;
+    }
+}
+
+} // namespace abbe

@@ -1,0 +1,104 @@
+#include "commands/render.h"
+
+#include "base/memory_limit.h"
+#include "command_line/argument_values.h"
+#include "command_line/shared_arguments.h"
+#include "render_run/render_run.h"
+
+namespace abbe {
+
+const char* const kRenderHelp = R"(Renders a scene to an OpenEXR image.
+
+Examples:
+  abbe render room.scene -o room.exr
+  abbe render room.scene --size 640x360 --samples 64 --png=look.png    another name than room.png; --png off: none
+  abbe render room.scene --noise 0.5% --time 45min     ends at whichever comes first
+  abbe render prism.scene -D prism-turn='-32.9 deg'    sets a parameter of the scene
+  abbe render room.scene --json                        progress as JSON lines on stdout
+  abbe render room.scene --resume                      goes on where it was interrupted
+  abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
+
+Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
+
+namespace {
+
+constexpr const char* kStudies = "For studies"; // heading of flags that compare ways to render
+
+// When the render ends, and what it may take until then.
+void addGoals(Arguments& a, RenderOptions& o) {
+    constexpr const char* kCacheSize = "an amount of memory such as 512MiB, 16MiB or more";
+    constexpr const char* kMemorySize = "an amount of memory such as 4GiB, 16MiB or more";
+    BuildOptions& b = o.build;
+    const auto within = [](schema::Dimension dimension, double most) {
+        return [dimension, most](const std::string& text) {
+            const auto value = readQuantity(text, dimension);
+            return value && *value >= 0 && *value <= most ? value : std::nullopt;
+        };
+    };
+    a.value("--samples", "N", &b.samples, "Samples per pixel").between(1, 4294967295.0);
+    a.read("--noise", "ERROR", b.noise, "a relative error such as 0.5%", within(schema::Dimension::fraction, 1),
+           "Stop at this relative error: 0.5%");
+    a.read("--texture-cache", "SIZE", b.textureCache, kCacheSize, readMebibytes,
+           "Most memory for tiles of image textures: 512MiB, 4GiB");
+    a.read("--memory", "SIZE", o.memory, kMemorySize, readMebibytes,
+           "Most memory to take: 4GiB; without it all there is");
+    a.read("--time", "TIME", b.timeLimit, "a time such as 45min", within(schema::Dimension::time, 1e9),
+           "Stop after this time: 90, 45min, 2h");
+    a.read("--adaptive", "on|off", b.adaptive, "on or off", readSwitch,
+           "More samples where there is more noise, at the same cost");
+}
+
+std::string readCheckpoint(const std::string& text, CheckpointOptions& checkpoint) {
+    checkpoint.off = text == "off";
+    checkpoint.keep = text == "keep";
+    if (checkpoint.off || checkpoint.keep) return {};
+    const auto interval = readTime(text);
+    if (!interval) return "`" + text + "` is not a time such as 5min, off or keep";
+    checkpoint.interval = *interval;
+    return {};
+}
+
+// What is kept of a render that is interrupted, or made in pieces.
+void addPieces(Arguments& a, RenderOptions& o) {
+    CheckpointOptions& checkpoint = o.checkpoint;
+    a.value(
+        "--checkpoint", "TIME|off|keep",
+        [&checkpoint](const std::string& text) { return readCheckpoint(text, checkpoint); },
+        "Save what was done every so often (25s); off: never; keep: also when done");
+    a.flag("--resume", &checkpoint.resume, "Go on from the checkpoint, if there is one");
+    a.read("--crop", "X0,Y0,X1,Y1", o.crop, "a rectangle such as 0,0,640,360", readCrop, "Render these pixels only");
+    a.read("--part", "K/N", o.part, "a part such as 2/4", readPart,
+           "Take the K-th of N ranges of the samples and write a part for `merge`");
+}
+
+} // namespace
+
+void addArguments(Arguments& a, RenderOptions& o) {
+    a.argument("scene", &o.input.path, "Scene file").require();
+    a.value("-o,--output", "FILE", &o.output, "Image to write (EXR)");
+    addFrame(a, o.build);
+    addGoals(a, o);
+    addPieces(a, o);
+    addDefines(a, o.input.defines);
+    addThreads(a);
+    addPng(a, o.png, o.view);
+    addView(a, o.view);
+    a.read("--preview", "on|off", o.preview, "on or off", readSwitch,
+           "A PNG of what there is so far, until the image is written");
+    addJson(a, "Progress as JSON lines on stdout");
+    a.flag("--bill", &o.bill, "Print what the time was spent on");
+    a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
+    a.flag("--strict", &o.strict, "Exit with 4 when there were warnings");
+    a.choice<bool>("--kernel", o.largestKernel, {{"auto", false}, {"all", true}},
+                   "all: the path loop with every effect")
+        .under(kStudies);
+    addTechniques(a, o.build, "How light is found", "Where random numbers come from", kStudies);
+    a.read("--pixel", "X,Y", o.pixel, "a pixel such as 12,34", readPixel, "Render one pixel and print its value");
+}
+
+ExitCode run(const RenderOptions& options, const CommonOptions& common) {
+    if (options.memory) setMemoryLimit(*options.memory * (1 << 20)); // for all readers, too
+    return RenderRun(options, common).run();
+}
+
+} // namespace abbe

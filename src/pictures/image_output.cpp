@@ -1,0 +1,175 @@
+#include "pictures/image_output.h"
+
+#include "app/version.h"
+#include "io/exr_deep.h"
+#include "io/file.h"
+#include "io/png_writer.h"
+#include "spectrum/color_space.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace abbe {
+
+namespace {
+
+// By which PNGs of this program are known.
+constexpr const char* kSoftwareKey = "Software";
+constexpr const char* kSoftwareName = "abbe ";
+
+void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics& diagnostics) {
+    if (report.halfOverflows > 0)
+        diagnostics
+            .warning("W0630", {},
+                     fmt::format("{} values of `{}` exceed 65504, the largest half float", report.halfOverflows, path))
+            .help = "leave out `half` in the film's output, or lower the exposure";
+    for (const std::string& channel : report.leftOut)
+        if (channel != "variance.Y") // which nobody asked for
+            diagnostics.warning("W0631", {},
+                                fmt::format("`{}` is an ACES container, which cannot hold `{}`", path, channel));
+}
+
+} // namespace
+
+std::string imagePath(const std::string& output, const FilmSettings& film, const std::string& scenePath) {
+    if (!output.empty()) return output;
+    if (!film.output.empty()) return film.output;
+    return std::filesystem::path(scenePath).filename().replace_extension(".exr").string();
+}
+
+std::string pngPath(const PngOptions& png, const std::string& imagePath) {
+    if (png.off) return {};
+    if (!png.path.empty()) return png.path;
+    return std::filesystem::path(imagePath).replace_extension(".png").string();
+}
+
+bool isPngName(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending == ".png";
+}
+
+bool isForeignPng(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    std::ifstream file(path, std::ios::binary);
+    std::string head(4096, '\0'); // texts come before the pixels
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    const std::size_t key = head.find(std::string(kSoftwareKey) + '\0');
+    if (key == std::string::npos) return true;
+    // Zeros that say that the text is neither compressed nor translated stand between.
+    const std::size_t value = head.find_first_not_of('\0', key + std::strlen(kSoftwareKey));
+    return value == std::string::npos || !head.substr(value).starts_with(kSoftwareName);
+}
+
+std::string writeFault(const std::string& path) {
+    try {
+        const AtomicFile probe(path);
+        return {};
+    } catch (const IoError& e) {
+        return e.what();
+    }
+}
+
+ResolvedImage resolveImage(const PixelFilm& film, const FilmSettings& settings, double exposure) {
+    return film.resolve(rgbSpace(settings.space).fromXyz() * settings.whiteBalance, exposure);
+}
+
+FilmPicture resolvePicture(const PixelFilm& film, const FilmSettings& settings, double exposure, Vec3d origin) {
+    FilmPicture picture{resolveImage(film, settings, exposure), {}, {}};
+    const RgbSpace& space = rgbSpace(settings.space);
+    const LayerView view{&space, space.fromXyz() * settings.whiteBalance, exposure, origin};
+    picture.layers = layerPlanes(film, picture.image, view);
+    if (film.layers() && film.layers()->deep()) picture.deep = deepImage(film, view);
+    return picture;
+}
+
+std::string deepPath(const std::string& imagePath) {
+    return std::filesystem::path(imagePath).replace_extension(".deep.exr").string();
+}
+
+namespace {
+
+PixelWindow windowOf(const PixelBounds& b) { return {b.x0, b.y0, b.x1, b.y1}; }
+
+void writeDeep(const std::string& path, const DeepImage& deep, const ExrPicture& flat) {
+    DeepPicture picture{
+        flat.window, flat.display, deep.counts, deep.front,          deep.back,           deep.a,
+        deep.r,      deep.g,       deep.b,      flat.chromaticities, flat.adoptedNeutral, flat.attributes};
+    std::erase_if(picture.attributes, [](const ImageAttribute& a) { return a.name.starts_with("cryptomatte/"); });
+    writeDeepExr(path, picture);
+}
+
+} // namespace
+
+void writeImage(const std::string& path, const FilmPicture& shot, const FilmSettings& film,
+                std::vector<ImageAttribute> attributes, Diagnostics& diagnostics) {
+    const auto& [image, layers, deep] = shot;
+    ExrPicture picture;
+    picture.window = windowOf(image.bounds);
+    picture.display = {0, 0, film.width, film.height};
+    picture.r = image.r;
+    picture.g = image.g;
+    picture.b = image.b;
+    if (!image.variance.empty()) picture.more.push_back({"variance.Y", image.variance});
+    for (const NamedPlane& plane : layers.planes) picture.more.push_back({plane.name, plane.values});
+    for (const auto& [name, value] : layers.header) attributes.push_back({name, value});
+    picture.chromaticities = Chromaticities::of(rgbSpace(film.space));
+    picture.adoptedNeutral = adoptedNeutral(film.space);
+    picture.acesContainer = film.acesContainer;
+    picture.compression = findExrCompression(film.compression).value_or(ExrCompression::zip);
+    picture.half = film.half;
+    picture.parts = film.parts;
+    picture.attributes = std::move(attributes);
+    picture.attributes.push_back({"abbe.sensor", film.sensor});
+    if (film.adoptedWhite)
+        picture.attributes.push_back(
+            {"abbe.whiteBalance", fmt::format("{:.5f} {:.5f} bradford", film.adoptedWhite->x, film.adoptedWhite->y)});
+    picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
+    warnOfLosses(writeExr(path, picture), path, diagnostics);
+    if (deep) writeDeep(deepPath(path), *deep, picture);
+    if (layers.unequalSums > 0)
+        diagnostics.warning(
+            "W0656", {},
+            fmt::format("{} values of the light groups or components of `{}` do not add up to the picture",
+                        layers.unequalSums, path));
+}
+
+void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindow& display) {
+    const PixelWindow inside{std::max(window.x0, display.x0), std::max(window.y0, display.y0),
+                             std::min(window.x1, display.x1), std::min(window.y1, display.y1)};
+    if (inside == window || inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
+    std::vector<float> rgb;
+    rgb.reserve(3 * inside.area());
+    for (int y = inside.y0; y < inside.y1; ++y) {
+        const auto row = static_cast<std::ptrdiff_t>(y - window.y0) * window.width();
+        const auto first = picture.rgb.begin() + 3 * (row + (inside.x0 - window.x0));
+        rgb.insert(rgb.end(), first, first + 3 * inside.width());
+    }
+    picture = {inside.width(), inside.height(), std::move(rgb), picture.space};
+}
+
+void writeDisplayPng(const std::string& path, DisplayPicture picture, const ViewOptions& options, int bits) {
+    const DisplayView display(picture.space, options);
+    display.apply(picture.rgb);
+    const OcioView& view = display.view();
+    PngPicture png;
+    png.width = picture.width;
+    png.height = picture.height;
+    png.rgb = picture.rgb;
+    png.bits = bits;
+    png.srgb = view.isSrgb();
+    png.texts = {{kSoftwareKey, kSoftwareName + versionNumber()},
+                 {"Display", view.display()},
+                 {"View", view.view()},
+                 {"OCIO", view.config().name},
+                 {"OCIO hash", view.config().hash},
+                 {"Exposure", fmt::format("{:g} stops", options.exposure)}};
+    writePng(path, png);
+}
+
+} // namespace abbe

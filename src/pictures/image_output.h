@@ -1,0 +1,65 @@
+// From the film to files.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "film/film_params.h"
+#include "film/layer_planes.h"
+#include "film/pixel_film.h"
+#include "io/exr_writer.h"
+#include "pictures/display_view.h"
+
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// The picture for people beside an EXR.
+struct PngOptions {
+    bool off = false;   // none
+    bool asked = false; // by `--png` or for a view: what stands in its way is an error, and else a warning
+    std::string path;   // empty: named after the EXR
+};
+
+// Where the image goes: -o, else the film's `output`, else the scene's name with .exr; the last two are relative to the
+// current directory like -o. `output`: of -o, or empty.
+std::string imagePath(const std::string& output, const FilmSettings&, const std::string& scenePath);
+// The EXR's name with .png, unless the options name one or ask for none.
+std::string pngPath(const PngOptions&, const std::string& imagePath);
+// Whether the name says that a file is a PNG: `.png` in any case.
+bool isPngName(const std::string& path);
+// Whether a file is there that is no PNG by this program: a texture, say, that must not be lost unasked.
+bool isForeignPng(const std::string& path);
+
+// Whether a file can be written there, found out before hours are spent on it; tries, and leaves nothing behind.
+// The reason, or empty.
+std::string writeFault(const std::string& path);
+
+// The picture in the film's space, with the camera's exposure applied, and the channels beside it.
+struct FilmPicture {
+    ResolvedImage image;
+    LayerPlanes layers;
+    std::optional<DeepImage> deep;
+};
+ResolvedImage resolveImage(const PixelFilm&, const FilmSettings&, double exposure);
+// `origin`: world position of the origin of render space.
+FilmPicture resolvePicture(const PixelFilm&, const FilmSettings&, double exposure, Vec3d origin);
+
+// Where the deep samples of an image go: x.deep.exr beside x.exr.
+std::string deepPath(const std::string& imagePath);
+
+// With the deep image, if there is one. Throws IoError. Warnings (values that half floats cannot hold, channels left
+// out) go to the list.
+void writeImage(const std::string& path, const FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>,
+                Diagnostics&);
+
+// `rgb`: interleaved, linear, in `space`. Throws IoError.
+struct DisplayPicture {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+    OutputSpace space = OutputSpace::aces2065_1;
+};
+// Leaves the pixels within `display`, of those of `window`; all if there are none.
+void cutOut(DisplayPicture&, const PixelWindow& window, const PixelWindow& display);
+void writeDisplayPng(const std::string& path, DisplayPicture, const ViewOptions&, int bits);
+
+} // namespace abbe

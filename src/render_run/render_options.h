@@ -1,0 +1,46 @@
+// What a render was asked to do.
+#pragma once
+
+#include "app/load.h"
+#include "pictures/display_view.h"
+#include "pictures/image_output.h"
+#include "render/integrator.h"
+#include "scene/build.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// How a render is kept from being lost.
+struct CheckpointOptions {
+    double interval = 25; // s; 0: only when interrupted or asked to
+    bool off = false;     // none at all
+    bool keep = false;    // also when it is done
+    bool resume = false;  // go on from it
+};
+
+struct RenderOptions {
+    std::vector<SampleId> replay; // these are taken again, and told
+    SceneInput input;
+    std::string output; // EXR; empty: from the scene
+    PngOptions png;
+    ViewOptions view;
+    BuildOptions build;
+    bool largestKernel = false; // run the instantiation with all effects
+    bool quiet = false;
+    bool strict = false;
+    bool bill = false;            // printed at the end
+    std::optional<bool> preview;  // while it goes on; unless off
+    std::optional<Vec2i> pixel;   // render this one alone and print it
+    std::optional<double> memory; // MiB, the most that may be taken
+    CheckpointOptions checkpoint;
+    std::optional<PixelBounds> crop;
+    std::optional<Vec2i> part;      // x of y equal ranges of the samples; a file for `merge` is written
+    std::vector<std::string> parts; // nothing is rendered, but these are put together
+
+    bool makesFiles() const { return !pixel; }
+};
+
+} // namespace abbe

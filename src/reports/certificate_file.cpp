@@ -1,0 +1,233 @@
+#include "reports/certificate_file.h"
+
+#include "app/version.h"
+#include "base/file.h"
+#include "io/file.h"
+#include "reports/light_path_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr const char* kCertificateFormat = "abbe-certificate 1";
+constexpr const char* kNoVerdict = "none: ";
+constexpr const char* kCaveat =
+    "estimated from the samples: what no sample has hit is not in the image nor in its error";
+
+constexpr const char* kRelative = "abbe.error";
+constexpr const char* kDisplay = "abbe.errorDisplay";
+
+std::string text(PixelBounds b) { return fmt::format("{} {} {} {}", b.x0, b.y0, b.x1, b.y1); }
+
+void addFigure(std::vector<ImageAttribute>& list, const std::string& name, const ErrorFigure& f) {
+    list.push_back({name, f.value});
+    list.push_back({name + "Low", f.low});
+    list.push_back({name + "High", f.high});
+    list.push_back({name + "Pixels", std::to_string(f.pixels)});
+    list.push_back({name + "WorstTile", text(f.worst.pixels)});
+    list.push_back({name + "Worst", f.worst.value});
+    list.push_back({name + "Tail", f.tail});
+    list.push_back({name + "Unseen", f.unseen});
+    list.push_back({name + "Tiles", std::to_string(f.tiles)});
+    list.push_back({name + "TilesUntrusted", std::to_string(f.untrustedTiles)});
+}
+
+// Values of a header by name.
+class Header {
+  public:
+    explicit Header(std::span<const ImageAttribute> attributes) : attributes_(attributes) {}
+
+    template <typename Value> std::optional<Value> get(const std::string& name) const {
+        for (const ImageAttribute& a : attributes_)
+            if (a.name == name)
+                if (const auto* value = std::get_if<Value>(&a.value)) return *value;
+        return std::nullopt;
+    }
+    std::uint64_t whole(const std::string& name) const {
+        std::uint64_t value = 0;
+        const std::string digits = get<std::string>(name).value_or("");
+        std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        return value;
+    }
+    std::optional<ErrorFigure> figure(const std::string& name) const {
+        const auto value = get<double>(name), low = get<double>(name + "Low"), high = get<double>(name + "High");
+        if (!value || !low || !high) return std::nullopt;
+        ErrorFigure f{*value, *low, *high, static_cast<std::int64_t>(whole(name + "Pixels")), {}};
+        f.worst.value = get<double>(name + "Worst").value_or(0);
+        const std::string tile = get<std::string>(name + "WorstTile").value_or("");
+        const char *next = tile.data(), *end = next + tile.size();
+        for (int* edge : {&f.worst.pixels.x0, &f.worst.pixels.y0, &f.worst.pixels.x1, &f.worst.pixels.y1}) {
+            while (next != end && *next == ' ') ++next;
+            next = std::from_chars(next, end, *edge).ptr;
+        }
+        f.tail = get<double>(name + "Tail").value_or(0);
+        f.unseen = get<double>(name + "Unseen").value_or(0);
+        f.tiles = static_cast<std::int64_t>(whole(name + "Tiles"));
+        f.untrustedTiles = static_cast<std::int64_t>(whole(name + "TilesUntrusted"));
+        return f;
+    }
+
+  private:
+    std::span<const ImageAttribute> attributes_;
+};
+
+Json json(const ErrorFigure& f) {
+    const PixelBounds& b = f.worst.pixels;
+    return Json::object(
+        {{"value", f.value},
+         {"low", f.low},
+         {"high", f.high},
+         {"pixels", f.pixels},
+         {"pareto_k", f.tail},
+         {"unseen", f.unseen},
+         {"tiles", f.tiles},
+         {"tiles_untrusted", f.untrustedTiles},
+         {"worst_tile",
+          Json::object({{"x0", b.x0}, {"y0", b.y0}, {"x1", b.x1}, {"y1", b.y1}, {"value", f.worst.value}})}});
+}
+
+Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
+    const auto dropped = [&s](DropCause cause) { return s.dropped[static_cast<std::size_t>(cause)]; };
+    Json object =
+        Json::object({{"per_pixel", Json::object({{"fewest", c.fewest}, {"mean", c.samples}, {"most", c.most}})},
+                      {"replicates", c.replicates},
+                      {"paths", s.paths},
+                      {"capped_paths", s.cappedPaths},
+                      {"dropped", Json::object({{"nan", dropped(DropCause::nan)},
+                                                {"infinite", dropped(DropCause::infinite)},
+                                                {"negative", dropped(DropCause::negative)}})}});
+    if (s.lightPaths > 0) object.set("light_paths", s.lightPaths).set("splats", s.splats);
+    if (s.rounds > 0) object.set("rounds", s.rounds);
+    return object;
+}
+
+} // namespace
+
+std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, const RenderStatistics& s) {
+    std::vector<ImageAttribute> list{
+        {"abbe.certificate", c.reason.empty() ? kCertificateFormat : kNoVerdict + c.reason}};
+    if (c.reason.empty()) {
+        addFigure(list, kRelative, c.relative);
+        if (c.display) addFigure(list, kDisplay, *c.display);
+        list.push_back(
+            {c.display ? "abbe.errorDisplayView" : "abbe.errorDisplayReason", c.display ? c.view : c.displayReason});
+    }
+    list.push_back({"abbe.samplesFewest", std::to_string(c.fewest)});
+    list.push_back({"abbe.samplesMean", c.samples});
+    list.push_back({"abbe.samplesMost", std::to_string(c.most)});
+    list.push_back({"abbe.paths", std::to_string(s.paths)});
+    list.push_back({"abbe.cappedPaths", std::to_string(s.cappedPaths)});
+    if (s.lightPaths > 0) {
+        list.push_back({"abbe.lightPaths", std::to_string(s.lightPaths)});
+        list.push_back({"abbe.splats", std::to_string(s.splats)});
+    }
+    if (c.merged) {
+        list.push_back({"abbe.estimator", "consistent"}); // and not unbiased
+        list.push_back({"abbe.mergedRounds", std::to_string(c.merged->rounds)});
+        list.push_back({"abbe.mergedShare", c.merged->share});
+        list.push_back({"abbe.mergedBias", c.merged->bias});
+        list.push_back({"abbe.mergedBiasOfTiles", c.merged->biasOfTiles});
+    }
+    return list;
+}
+
+std::optional<ErrorCertificate> readCertificate(std::span<const ImageAttribute> attributes) {
+    const Header header(attributes);
+    const auto verdict = header.get<std::string>("abbe.certificate");
+    if (!verdict) return std::nullopt;
+    ErrorCertificate c;
+    c.replicates = header.get<int>("abbe.replicates").value_or(0);
+    c.fewest = header.whole("abbe.samplesFewest");
+    c.samples = header.get<double>("abbe.samplesMean").value_or(0);
+    c.most = header.whole("abbe.samplesMost");
+    if (verdict->starts_with(kNoVerdict)) c.reason = verdict->substr(std::string_view(kNoVerdict).size());
+    const auto relative = header.figure(kRelative);
+    if (relative) c.relative = *relative;
+    if (!relative && c.reason.empty()) c.reason = fmt::format("the header lacks `{}`", kRelative);
+    if (const auto share = header.get<double>("abbe.mergedShare"))
+        c.merged =
+            MergedLight{*share, header.get<double>("abbe.mergedBias").value_or(0),
+                        header.get<double>("abbe.mergedBiasOfTiles").value_or(0), header.whole("abbe.mergedRounds")};
+    c.display = header.figure(kDisplay);
+    c.view = header.get<std::string>("abbe.errorDisplayView").value_or("");
+    c.displayReason = header.get<std::string>("abbe.errorDisplayReason").value_or("");
+    return c;
+}
+
+std::string certificateLine(const ErrorCertificate& c) {
+    if (!c.reason.empty()) return "no certificate: " + c.reason;
+    const ErrorFigure& r = c.relative;
+    std::string line =
+        fmt::format("error {:.3g} % (95 %: {:.3g} to {:.3g} %)", 100 * r.value, 100 * r.low, 100 * r.high);
+    if (c.display)
+        line += fmt::format("   display {:.3g} of 255 ({:.3g} to {:.3g})", c.display->value, c.display->low,
+                            c.display->high);
+    return line;
+}
+
+std::string mergedLine(const MergedLight& m) {
+    return fmt::format("merged light {:.3g} % of the picture, in {} rounds: consistent, not unbiased; its blur changes "
+                       "tiles of 8×8 by at most about {:.2g} %, the whole by {:+.2g} %",
+                       100 * m.share, m.rounds, 100 * m.biasOfTiles, 100 * m.bias);
+}
+
+std::string tailLine(const ErrorFigure& f) {
+    std::string line =
+        fmt::format("variance.Y cannot be trusted in {} of {} tiles of 16×16 pixels: few samples carry it",
+                    f.untrustedTiles, f.tiles);
+    if (f.unseen > 0)
+        line += fmt::format("; what is too rare to have been met adds about {:.2g} % to the squared error (Pareto k "
+                            "{:.2g})",
+                            100 * f.unseen, f.tail);
+    return line;
+}
+
+Json certificateJson(const ErrorCertificate& c) {
+    const bool stated = c.reason.empty();
+    Json object = Json::object({{"stated", stated}, {"reason", stated ? Json() : Json(c.reason)}, {"level", 0.95}});
+    object.set("relative", stated ? json(c.relative) : Json());
+    object.set("display", stated && c.display ? json(*c.display) : Json());
+    object.set("view", c.view).set("display_reason", c.displayReason.empty() ? Json() : Json(c.displayReason));
+    object.set("merged", !c.merged ? Json()
+                                   : Json::object({{"estimator", "consistent"},
+                                                   {"share", c.merged->share},
+                                                   {"rounds", c.merged->rounds},
+                                                   {"bias", c.merged->bias},
+                                                   {"bias_of_tiles", c.merged->biasOfTiles}}));
+    return object.set("caveat", kCaveat);
+}
+
+bool isForeignCertificate(const std::string& path) {
+    RegularFile file(path);
+    if (!file.good()) return false;
+    const std::string known = fmt::format("{{\n  \"format\": \"{}", std::string_view(kCertificateFormat).substr(0, 17));
+    std::string head(known.size(), '\0');
+    return file.readAt(0, head) < head.size() || head != known;
+}
+
+void writeCertificateFile(const std::string& path, const CertificateFacts& facts) {
+    const RenderSummary& s = *facts.summary;
+    double seconds = 0;
+    for (const auto& phase : s.phases) seconds += phase.second;
+    Json file = Json::object({{"format", kCertificateFormat},
+                              {"image", std::filesystem::path(s.image).filename().string()},
+                              {"partial", s.statistics.stopped || s.partial},
+                              {"parts", facts.parts},
+                              {"error", certificateJson(*s.certificate)},
+                              {"samples", samplesJson(*s.certificate, s.statistics)},
+                              {"seconds", seconds},
+                              {"core_seconds", s.statistics.coreSeconds},
+                              {"scene_hash", facts.sceneHash},
+                              {"seed", facts.seed},
+                              {"program", versionNumber()}});
+    if (s.statistics.lightPlan.verdict != LightPathVerdict::undecided)
+        file.set("light_path_plan", lightPathJson(s.statistics.lightPlan));
+    writeAtomically(path, file.text(true) + "\n");
+}
+
+} // namespace abbe

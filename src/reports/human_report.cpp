@@ -1,0 +1,139 @@
+#include "reports/certificate_file.h"
+#include "reports/light_path_text.h"
+#include "reports/picture_text.h"
+#include "reports/progress_text.h"
+#include "reports/render_report.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+namespace abbe {
+
+namespace {
+
+class HumanReport final : public RenderReport {
+  public:
+    HumanReport(const Console& console, bool quiet) : console_(console), quiet_(quiet) {}
+    ~HumanReport() override { clearBar(); }
+
+    void start(const RenderStart& s) override {
+        started_ = true;
+        noiseTarget_ = s.noiseTarget;
+        if (quiet_) return;
+        console_.line(fmt::format("{}  {}×{}  {} thread{}  image {}", s.scene, s.width, s.height, s.threads,
+                                  s.threads == 1 ? "" : "s", s.image));
+    }
+
+    void phase(const std::string& name, double seconds) override {
+        clearBar();
+        if (quiet_ || started_ || seconds < 1) return; // short ones are told in the summary alone
+        console_.line(fmt::format("{} {:.1f} s", name, seconds));
+    }
+
+    void progress(const Progress& p) override {
+        if (quiet_) return;
+        console_.interactive() ? showBar(p) : showLine(p);
+    }
+
+    void image(const std::string& path, bool partial) override {
+        clearBar();
+        if (!quiet_ && partial) console_.line(fmt::format("{} holds the image so far", path));
+    }
+
+    void preview(const std::string& path) override {
+        if (quiet_ || std::exchange(previewTold_, true)) return;
+        clearBar();
+        console_.line(fmt::format("{} shows what there is so far", path));
+    }
+
+    void diagnostics(const Diagnostics& d, const SourceMap& sources) override {
+        clearBar();
+        console_.report(d, sources);
+    }
+
+    void done(const RenderSummary&) override;
+
+  private:
+    // Four times a second, after a minute once a second.
+    void showBar(const Progress& p) {
+        if (p.elapsed - lastShown_ < (p.elapsed < 60 ? 0.25 : 1.0)) return;
+        lastShown_ = p.elapsed;
+        if (console_.status(progressBar(p, noiseTarget_, console_.width()))) barShown_ = true;
+    }
+
+    void showLine(const Progress& p) {
+        const int tenth = static_cast<int>(10 * p.fraction);
+        const double since = p.elapsed - lastShown_;
+        if (since < 2 || (tenth <= lastTenth_ && since < 30)) return;
+        lastTenth_ = tenth;
+        lastShown_ = p.elapsed;
+        console_.line(progressLine(p, noiseTarget_));
+    }
+
+    void clearBar() {
+        if (!barShown_) return;
+        console_.clearStatus();
+        barShown_ = false;
+    }
+
+    Console console_;
+    bool quiet_;
+    double noiseTarget_ = 0;
+    double lastShown_ = 0;
+    int lastTenth_ = 0;
+    bool started_ = false; // rendering
+    bool barShown_ = false;
+    bool previewTold_ = false;
+};
+
+void HumanReport::done(const RenderSummary& s) {
+    clearBar();
+    if (quiet_) return;
+    const RenderStatistics& r = s.statistics;
+    std::string phases;
+    for (const auto& [name, seconds] : s.phases) phases += fmt::format("{} {:.2f} s   ", name, seconds);
+    console_.line(fmt::format("  {}total {:.2f} s", phases, s.totalSeconds));
+    const double rate = r.seconds > 0 ? static_cast<double>(r.paths) / r.seconds : 0;
+    console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
+                              countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
+                              countText(rate), r.samplesPerPixel, r.kernel));
+    if (r.lightPaths > 0)
+        console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
+                                  countText(static_cast<double>(r.splats))));
+    if (r.lightPlan.measured || r.lightPlan.verdict == LightPathVerdict::noPilot)
+        console_.line("  " + lightPathLine(r.lightPlan));
+    if (const std::string line = manifoldLine(r.lightPlan); !line.empty()) console_.line("  " + line);
+    if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
+    if (const std::string line = glintLine(r.lightPlan.glints); !line.empty()) console_.line("  " + line);
+    if (r.manifoldCapped > 0)
+        console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
+                                  r.manifoldCapped, r.manifoldEstimates));
+    if (s.spread) console_.line(fmt::format("  samples of pixels {}", s.spread->text()));
+    if (s.figures) console_.line("  " + pictureLine(*s.figures));
+    if (s.figures && s.exposure.automatic)
+        console_.line(fmt::format("  exposure auto is {0:.1f} stops: `exposure {0:.1f} stops` keeps it, in animations "
+                                  "for example",
+                                  s.exposure.stops));
+    if (s.certificate) console_.line("  " + certificateLine(*s.certificate));
+    if (s.certificate && s.certificate->merged) console_.line("  " + mergedLine(*s.certificate->merged));
+    console_.line(
+        fmt::format("  memory {} MB   {} warning{}", s.memoryBytes / 1000000, s.warnings, s.warnings == 1 ? "" : "s"));
+    if (r.excess.above > 0)
+        console_.line(fmt::format("  {} of {} densities of media above their bound, at most {:.3g} times",
+                                  countText(static_cast<double>(r.excess.above)),
+                                  countText(static_cast<double>(r.excess.lookups)), r.excess.most));
+    if (s.image.empty()) return;
+    console_.line(
+        fmt::format("image {}{}  {}×{} {}", s.image, s.partial ? " (partial)" : "", s.width, s.height, s.space));
+    for (const std::string& path : {s.deep, s.png})
+        if (!path.empty()) console_.line(fmt::format("image {}", path));
+    if (!s.png.empty() && console_.interactive()) console_.line(viewingLine(s.png));
+}
+
+} // namespace
+
+std::unique_ptr<RenderReport> makeHumanReport(const Console& console, bool quiet) {
+    return std::make_unique<HumanReport>(console, quiet);
+}
+
+} // namespace abbe

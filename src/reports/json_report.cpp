@@ -1,0 +1,124 @@
+#include "reports/bill_text.h"
+#include "reports/certificate_file.h"
+#include "reports/found_fault.h"
+#include "reports/light_path_text.h"
+#include "reports/picture_text.h"
+#include "reports/progress_text.h"
+#include "reports/render_report.h"
+
+namespace abbe {
+
+namespace {
+
+Json positiveOrNull(double v) { return v > 0 ? Json(v) : Json(); }
+
+Json faultsJson(const std::vector<FoundFault>& faults) {
+    Json list = Json::list();
+    for (const FoundFault& f : faults) list.push(faultJson(f));
+    return list;
+}
+
+class JsonReport final : public RenderReport {
+  public:
+    explicit JsonReport(const Console& console) : console_(console) {}
+
+    void start(const RenderStart& s) override {
+        emit(Json::object({{"event", "start"},
+                           {"scene", s.scene},
+                           {"image", s.image},
+                           {"width", s.width},
+                           {"height", s.height},
+                           {"threads", s.threads},
+                           {"samples", s.samples},
+                           {"noise_goal", positiveOrNull(s.noiseTarget)},
+                           {"time_limit_s", positiveOrNull(s.timeLimit)}}));
+    }
+
+    void phase(const std::string& name, double seconds) override {
+        emit(Json::object({{"event", "phase"}, {"name", name}, {"seconds", seconds}}));
+    }
+
+    // Four times a second at most, and the end.
+    void progress(const Progress& p) override {
+        if (p.fraction < 1 && p.elapsed - lastShown_ < 0.25) return;
+        lastShown_ = p.elapsed;
+        emit(Json::object({{"event", "progress"},
+                           {"done", p.fraction},
+                           {"pass", p.pass + 1},
+                           {"spp", p.samplesPerPixel},
+                           {"noise", positiveOrNull(p.noise)},
+                           {"rate", p.pathsPerSecond},
+                           {"elapsed_s", p.elapsed},
+                           {"core_s", p.coreSeconds},
+                           {"eta_s", knowsTimeLeft(p) ? Json(p.left) : Json()}}));
+    }
+
+    void image(const std::string& path, bool partial) override {
+        emit(Json::object({{"event", "image"}, {"path", path}, {"partial", partial}}));
+    }
+
+    void preview(const std::string& path) override {
+        emit(Json::object({{"event", "image"}, {"path", path}, {"partial", true}, {"preview", true}}));
+    }
+
+    void diagnostics(const Diagnostics&, const SourceMap&) override;
+
+    void done(const RenderSummary& s) override {
+        const RenderStatistics& r = s.statistics;
+        std::uint64_t dropped = 0;
+        for (const std::uint64_t n : r.dropped) dropped += n;
+        Json event = Json::object({{"event", "done"},
+                                   {"exit", static_cast<int>(s.exit)},
+                                   {"partial", s.partial},
+                                   {"seconds", s.totalSeconds},
+                                   {"render_seconds", r.seconds},
+                                   {"core_seconds", r.coreSeconds},
+                                   {"spp", r.samplesPerPixel},
+                                   {"paths", r.paths},
+                                   {"rays", r.rays()},
+                                   {"pilot_rays", r.pilotRays},
+                                   {"pilot_seconds", r.pilotSeconds},
+                                   {"noise", positiveOrNull(s.noise)},
+                                   {"error", s.certificate ? certificateJson(*s.certificate) : Json()},
+                                   {"picture", s.figures ? pictureJson(*s.figures, s.exposure) : Json()},
+                                   {"kernel", r.kernel},
+                                   {"memory_bytes", s.memoryBytes},
+                                   {"dropped", dropped},
+                                   {"dropped_samples", faultsJson(s.faults)},
+                                   {"densities_above_bound", r.excess.above},
+                                   {"bill", s.bill ? billJson(*s.bill) : Json()},
+                                   {"warnings", static_cast<std::uint64_t>(s.warnings)}});
+        if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
+        if (r.rounds > 0) event.set("rounds", r.rounds);
+        if (r.lightPlan.verdict != LightPathVerdict::undecided)
+            event.set("light_path_plan", lightPathJson(r.lightPlan));
+        if (s.spread)
+            event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
+        emit(event);
+    }
+
+  private:
+    void emit(const Json& event) const { console_.data(event.text() + "\n"); }
+
+    Console console_;
+    double lastShown_ = -1;
+};
+
+void JsonReport::diagnostics(const Diagnostics& list, const SourceMap& sources) {
+    for (const Diagnostic& d : list.all()) {
+        Json event = Json::object(
+            {{"event", d.severity == Severity::error ? "error" : "warning"}, {"code", d.code}, {"message", d.message}});
+        if (d.span.valid()) {
+            const LineColumn at = sources.lineColumn(d.span.file, d.span.begin);
+            event.set("path", sources.path(d.span.file)).set("line", at.line).set("column", at.column);
+        }
+        if (!d.help.empty()) event.set("help", d.help);
+        emit(event);
+    }
+}
+
+} // namespace
+
+std::unique_ptr<RenderReport> makeJsonReport(const Console& console) { return std::make_unique<JsonReport>(console); }
+
+} // namespace abbe
