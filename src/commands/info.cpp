@@ -6,9 +6,9 @@
 #include "command_line/shared_arguments.h"
 #include "io/aces_container.h"
 #include "io/exr_deep.h"
-#include "io/file.h"
-#include "reports/bill_text.h"
+#include "io/file_bytes.h"
 #include "reports/certificate_file.h"
+#include "reports/cost_text.h"
 #include "reports/provenance.h"
 #include "scene/build.h"
 
@@ -238,13 +238,13 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     const ExrInfo info = readExrInfo(options.path);
     const std::string hash = pixelHash(options.path, info);
     const auto certificate = readCertificate(info.attributes);
-    const auto bill = readBill(info.attributes);
+    const auto cost = readCost(info.attributes);
     const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
     if (common.json) {
         Json channels = Json::list(), attributes = Json::object();
         for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
         for (const ImageAttribute& a : info.attributes)
-            if (!bill || a.name != kBillAttribute) attributes.set(a.name, json(a));
+            if (!cost || a.name != kCostAttribute) attributes.set(a.name, json(a));
         Json faults = Json::list();
         if (aces.claimed)
             for (const std::string& fault : aces.faults) faults.push(fault);
@@ -259,7 +259,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"aces_faults", std::move(faults)},
                                           {"pixels", hash},
                                           {"error", certificate ? certificateJson(*certificate) : Json()},
-                                          {"bill", bill ? billJson(*bill) : Json()},
+                                          {"bill", cost ? costJson(*cost) : Json()},
                                           {"attributes", std::move(attributes)}});
         common.console.data(object.text(true) + "\n");
         return ExitCode::done;
@@ -272,9 +272,9 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     if (certificate && certificate->relative.untrustedTiles > 0)
         s += fmt::format("error bars   {}\n", tailLine(certificate->relative));
     if (certificate && certificate->merged) s += fmt::format("bias         {}\n", mergedLine(*certificate->merged));
-    if (bill) s += billTable(*bill);
+    if (cost) s += costTable(*cost);
     for (const ImageAttribute& a : info.attributes)
-        if (!bill || a.name != kBillAttribute) s += fmt::format("{} = {}\n", a.name, text(a));
+        if (!cost || a.name != kCostAttribute) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;
 }

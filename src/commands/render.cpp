@@ -86,7 +86,7 @@ void addArguments(Arguments& a, RenderOptions& o) {
     a.read("--preview", "on|off", o.preview, "on or off", readSwitch,
            "A PNG of what there is so far, until the image is written");
     addJson(a, "Progress as JSON lines on stdout");
-    a.flag("--bill", &o.bill, "Print what the time was spent on");
+    a.flag("--cost,--bill", &o.cost, "Print what the time was spent on");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
     a.flag("--strict", &o.strict, "Exit with 4 when there were warnings");
     a.choice<bool>("--kernel", o.largestKernel, {{"auto", false}, {"all", true}},

@@ -8,7 +8,7 @@
 #include "io/png_writer.h"
 #include "pages/page_text.h"
 #include "pages/study_page.h"
-#include "reports/bill_text.h"
+#include "reports/cost_text.h"
 #include "reports/provenance.h"
 #include "reports/study_progress.h"
 #include "spectrum/color_space.h"
@@ -48,7 +48,7 @@ Json findingJson(const EffectFinding& f, const SourceMap& sources) {
     Json json = Json::object({{"name", f.name}, {"asker", placeOf(f.asker, sources)}});
     if (!f.reason.empty()) return json.set("reason", f.reason);
     std::string note;
-    if (f.predicted) note = fmt::format("the bill foretells {:.1f} %", 100 * *f.predicted);
+    if (f.predicted) note = fmt::format("the cost report foretells {:.1f} %", 100 * *f.predicted);
     return json.set("secondsOn", f.secondsOn)
         .set("secondsOff", f.secondsOff)
         .set("deltaTime", f.deltaTime)
@@ -81,7 +81,7 @@ std::string effectsJson(const EffectStudy& study, const StudyOptions& options, c
                          {"measure", kEffectMeasure},
                          {"curves", Json::list()},
                          {"effects", std::move(effects)},
-                         {"bill", billJson(study.bill)},
+                         {"bill", costJson(study.cost)},
                          {"referencePng", png(study.image)}})
                .text() +
            "\n";

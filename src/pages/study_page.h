@@ -1,6 +1,6 @@
 // The report of `abbe study` as one page of HTML that needs no server and loads nothing: findings in words, plots of
-// error against time and samples, tables, pictures at equal time, the bill and the effects. It is drawn in the browser
-// by the scripts of pages/data/study_page, which are part of the page as the data are.
+// error against time and samples, tables, pictures at equal time, the cost report and the effects. It is drawn in the
+// browser by the scripts of pages/data/study_page, which are part of the page as the data are.
 #pragma once
 
 #include <string>

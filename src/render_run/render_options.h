@@ -31,7 +31,7 @@ struct RenderOptions {
     bool largestKernel = false; // run the instantiation with all effects
     bool quiet = false;
     bool strict = false;
-    bool bill = false;            // printed at the end
+    bool cost = false;            // printed at the end
     std::optional<bool> preview;  // while it goes on; unless off
     std::optional<Vec2i> pixel;   // render this one alone and print it
     std::optional<double> memory; // MiB, the most that may be taken

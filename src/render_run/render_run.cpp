@@ -6,8 +6,8 @@
 #include "checkpoints/render_parts.h"
 #include "pictures/display_view.h"
 #include "rendering/path_tracer.h"
-#include "reports/bill_text.h"
 #include "reports/certificate_file.h"
+#include "reports/cost_text.h"
 #include "reports/render_warnings.h"
 
 #include <algorithm>
@@ -281,8 +281,8 @@ ExitCode RenderRun::finish(int signal, ExitCode otherwise) {
     summary_.height = film_.crop.height();
     summary_.space = spaceName(film_.space);
     summary_.memoryBytes = peakMemory();
-    summary_.bill = bill();
-    if (options_.bill && !common_.json) common_.console.data(billTable(*summary_.bill));
+    summary_.cost = cost();
+    if (options_.cost && !common_.json) common_.console.data(costTable(*summary_.cost));
     report_->done(summary_);
     return summary_.exit;
 }

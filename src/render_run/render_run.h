@@ -15,7 +15,7 @@
 #include "render_run/render_options.h"
 #include "render_run/render_preview.h"
 #include "reports/render_report.h"
-#include "study/bill.h"
+#include "study/cost.h"
 
 #include <memory>
 #include <optional>
@@ -97,7 +97,7 @@ class RenderRun {
     void writeInMemory(const PixelFilm&);
     ExitCode refuseForMemory();
     std::vector<ImageAttribute> attributes(const PixelFilm&);
-    Bill bill();
+    CostReport cost();
     void meter();
     ExitCode checkPng();
     void writePng(const ResolvedImage&);

@@ -3,8 +3,8 @@
 #include "checkpoints/render_identity.h"
 #include "pictures/display_view.h"
 #include "render_run/render_run.h"
-#include "reports/bill_text.h"
 #include "reports/certificate_file.h"
+#include "reports/cost_text.h"
 #include "reports/provenance.h"
 #include "reports/render_warnings.h"
 
@@ -172,10 +172,11 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
 }
 
 // Of all runs, up to now.
-Bill RenderRun::bill() {
+CostReport RenderRun::cost() {
     WorkReading work = earlier_;
     work.add(clock_.read());
-    return makeBill({&work, &summary_.statistics, &built_.scene, earlier_.seconds + whole_.seconds(), threadCount()});
+    return makeCostReport(
+        {&work, &summary_.statistics, &built_.scene, earlier_.seconds + whole_.seconds(), threadCount()});
 }
 
 std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
@@ -188,7 +189,7 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
         for (ImageAttribute& a : certificateAttributes(*summary_.certificate, summary_.statistics))
             list.push_back(std::move(a));
     for (ImageAttribute& a : viewIdentity(options_.view)) list.push_back(std::move(a));
-    list.push_back(billAttribute(bill()));
+    list.push_back(costAttribute(cost()));
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
     if (lookedAt_ > 0) list.push_back({"abbe.pixelsOfFirstLook", static_cast<int>(lookedAt_)});
     if (settings_.adaptive) list.push_back({"abbe.adaptive", std::string("frozen plan (unbiased)")});

@@ -1,5 +1,5 @@
-#include "reports/bill_text.h"
 #include "reports/certificate_file.h"
+#include "reports/cost_text.h"
 #include "reports/found_fault.h"
 #include "reports/light_path_text.h"
 #include "reports/picture_text.h"
@@ -86,7 +86,7 @@ class JsonReport final : public RenderReport {
                                    {"dropped", dropped},
                                    {"dropped_samples", faultsJson(s.faults)},
                                    {"densities_above_bound", r.excess.above},
-                                   {"bill", s.bill ? billJson(*s.bill) : Json()},
+                                   {"bill", s.cost ? costJson(*s.cost) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
         if (r.rounds > 0) event.set("rounds", r.rounds);

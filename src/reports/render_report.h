@@ -8,7 +8,7 @@
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
 #include "reports/found_fault.h"
-#include "study/bill.h"
+#include "study/cost.h"
 
 #include <cstdint>
 #include <memory>
@@ -43,7 +43,7 @@ struct RenderSummary {
     std::optional<SampleSpread> spread;          // of an adaptive render
     std::optional<PictureFigures> figures;       // of the picture, if one was made
     Exposure exposure;                           // of its camera
-    std::optional<Bill> bill;                    // of all of it
+    std::optional<CostReport> cost;              // of all of it
     std::uint64_t memoryBytes = 0;
     std::size_t warnings = 0;
     ExitCode exit = ExitCode::done;

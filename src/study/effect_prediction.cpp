@@ -8,37 +8,37 @@ namespace {
 // rest would do.
 constexpr double kLeastUnscattered = 0.25;
 
-const BillRow* rowOfMedium(const Bill& bill, const std::string& name) {
-    const BillRow* const volume = bill.find("volume " + name);
-    return volume ? volume : bill.find("subsurface " + name);
+const CostRow* rowOfMedium(const CostReport& cost, const std::string& name) {
+    const CostRow* const volume = cost.find("volume " + name);
+    return volume ? volume : cost.find("subsurface " + name);
 }
 
-std::optional<double> withoutMedium(const Bill& bill, const BillRow& medium) {
-    const auto paths = static_cast<double>(bill.paths), rays = static_cast<double>(bill.untouched);
+std::optional<double> withoutMedium(const CostReport& cost, const CostRow& medium) {
+    const auto paths = static_cast<double>(cost.paths), rays = static_cast<double>(cost.untouched);
     const auto scattered = static_cast<double>(medium.first);
     if (!(paths - scattered >= kLeastUnscattered * paths && rays > scattered)) return std::nullopt;
     const double raysWithout = paths * (rays - scattered) / (paths - scattered);
     // Light paths are as many without it.
-    double perPath = bill.find("camera")->seconds + bill.find("film")->seconds;
-    if (const BillRow* const light = bill.find("light-paths")) perPath += light->seconds;
-    const double others = bill.rendering - perPath - medium.seconds - medium.elsewhere;
+    double perPath = cost.find("camera")->seconds + cost.find("film")->seconds;
+    if (const CostRow* const light = cost.find("light-paths")) perPath += light->seconds;
+    const double others = cost.rendering - perPath - medium.seconds - medium.elsewhere;
     return perPath + others * raysWithout / rays;
 }
 
 } // namespace
 
-std::optional<double> renderingWithout(const Bill& bill, const EffectSwitch& effect) {
+std::optional<double> renderingWithout(const CostReport& cost, const EffectSwitch& effect) {
     switch (effect.effect) {
     case SwitchedEffect::medium: {
-        const BillRow* const row = rowOfMedium(bill, effect.medium);
-        return row ? withoutMedium(bill, *row) : std::nullopt;
+        const CostRow* const row = rowOfMedium(cost, effect.medium);
+        return row ? withoutMedium(cost, *row) : std::nullopt;
     }
     case SwitchedEffect::motion:
-        return bill.rendering - bill.find("motion")->seconds;
+        return cost.rendering - cost.find("motion")->seconds;
     case SwitchedEffect::dispersion: // its paths have one wavelength and the same rays
     case SwitchedEffect::absorption:
     case SwitchedEffect::depthOfField:
-        return bill.rendering;
+        return cost.rendering;
     default:
         return std::nullopt;
     }

@@ -132,7 +132,7 @@ class Study {
         return m;
     }
 
-    // The bill is that of all renders with all effects: the more, the surer it is.
+    // The cost report is that of all renders with all effects: the more, the surer it is.
     void charge(const WorkReading& work, const RenderStatistics& s) {
         work_.add(work);
         spent_.paths += s.paths;
@@ -143,13 +143,13 @@ class Study {
         spent_.splats += s.splats;
         spent_.pilotRays += s.pilotRays;
         spent_.effects.add(s.effects);
-        result_.bill = makeBill({&work_, &spent_, &with_.scene, work_.seconds, threadCount()});
+        result_.cost = makeCostReport({&work_, &spent_, &with_.scene, work_.seconds, threadCount()});
     }
 
     void predict() {
-        const double rendering = result_.bill.rendering;
+        const double rendering = result_.cost.rendering;
         for (EffectFinding& f : result_.findings)
-            if (const auto seconds = renderingWithout(result_.bill, f.effect);
+            if (const auto seconds = renderingWithout(result_.cost, f.effect);
                 f.reason.empty() && seconds && rendering > 0)
                 f.predicted = 1 - *seconds / rendering;
     }

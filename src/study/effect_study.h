@@ -4,7 +4,7 @@
 #include "base/diagnostic.h"
 #include "io/image.h"
 #include "scene/build.h"
-#include "study/bill.h"
+#include "study/cost.h"
 
 #include <atomic>
 #include <functional>
@@ -23,7 +23,7 @@ struct EffectFinding {
     double secondsOn = 0, secondsOff = 0;
     // Share of secondsOn that goes with it (negative: it saves time), with its 95 % interval over pairs.
     double deltaTime = 0, low = 0, high = 0;
-    std::optional<double> predicted; // the same share as the bill tells it, see effect_prediction.h
+    std::optional<double> predicted; // the same share as the cost report tells it, see effect_prediction.h
     double flip = 0;                 // mean HDR-FLIP between the two images
     double relMse = 0;               // of the image without it, its noise and that of the reference cancelled
     RgbImage image;                  // without it; linear Rec.709
@@ -32,7 +32,7 @@ struct EffectFinding {
 
 struct EffectStudy {
     std::vector<EffectFinding> findings; // in the order of the scene
-    Bill bill;                           // of all renders with all effects
+    CostReport cost;                     // of all renders with all effects
     RgbImage image;                      // with all effects
     Effects effects;                     // of the scene
     bool stopped = false;

@@ -1,4 +1,4 @@
-// What effects cost and show: found where they are, cancelled where they change nothing, foretold by the bill.
+// What effects cost and show: found where they are, cancelled where they change nothing, foretold by the cost report.
 #include "study/effect_prediction.h"
 #include "study/effect_study.h"
 #include "support/scene_test.h"
@@ -42,13 +42,13 @@ shape back quad { points { - -1 0 -1; - 1 0 -1; - 1 2 -1; - -1 2 -1 }; material 
 TEST_CASE("study of effects: a scene without any has nothing to find") {
     const EffectStudy study = studyOf(kRoom, 2, 4);
     CHECK(study.findings.empty());
-    CHECK(study.bill.paths == 24 * 16 * 4);
+    CHECK(study.cost.paths == 24 * 16 * 4);
     CHECK(study.image.rgb.size() == 3 * 24 * 16);
 }
 
 TEST_CASE("study of effects: a cloud takes time and is seen; glass that hides behind the camera is neither") {
     const EffectStudy study =
-        studyOf(std::string(kRoom) + // what pilots spend in the cloud no bill foretells
+        studyOf(std::string(kRoom) + // what pilots spend in the cloud no cost report foretells
                     "render { light-paths off }\nmedium fog homogeneous { extinction 2 per-m; albedo 0.9 }\n"
                     "shape cloud sphere { center 0 1 0.5; radius 0.6; material boundary; interior fog }\n"
                     "shape far sphere { center 0 1 40; radius 0.01; material dielectric { ior glass SF11 } }\n",
@@ -91,23 +91,23 @@ volume flame vdb "scenes/candle/candle.vdb" { density; temperature; flame; extin
 }
 
 TEST_CASE("prediction: of a volume, by rays that nothing scattered") {
-    Bill bill;
-    bill.rendering = 10;
-    bill.paths = 1000;
-    bill.untouched = 2000;
-    bill.rows = {{"camera", "", 1, 0, 0, 0, 0},
+    CostReport cost;
+    cost.rendering = 10;
+    cost.paths = 1000;
+    cost.untouched = 2000;
+    cost.rows = {{"camera", "", 1, 0, 0, 0, 0},
                  {"film", "", 1, 0, 0, 0, 0},
                  {"motion", "", 0.5, 0, 0, 0, 0},
                  {"volume fog", "", 2, 0, 3, 0, 0}};
-    bill.rows[3].first = 500;
+    cost.rows[3].first = 500;
     // 8 s that are not the camera's or the film's, 5 of them because of the fog; 1000 · 1500/500 rays for 2000.
-    CHECK(*renderingWithout(bill, {SwitchedEffect::medium, "fog"}) == doctest::Approx(2 + 3 * 1.5));
-    CHECK(*renderingWithout(bill, {SwitchedEffect::motion}) == doctest::Approx(9.5));
-    CHECK(*renderingWithout(bill, {SwitchedEffect::dispersion}) == 10);
-    CHECK(!renderingWithout(bill, {SwitchedEffect::displacement}));
-    CHECK(!renderingWithout(bill, {SwitchedEffect::medium, "smoke"}));
-    bill.rows[3].first = 800; // most of them: what the others did says little
-    CHECK(!renderingWithout(bill, {SwitchedEffect::medium, "fog"}));
+    CHECK(*renderingWithout(cost, {SwitchedEffect::medium, "fog"}) == doctest::Approx(2 + 3 * 1.5));
+    CHECK(*renderingWithout(cost, {SwitchedEffect::motion}) == doctest::Approx(9.5));
+    CHECK(*renderingWithout(cost, {SwitchedEffect::dispersion}) == 10);
+    CHECK(!renderingWithout(cost, {SwitchedEffect::displacement}));
+    CHECK(!renderingWithout(cost, {SwitchedEffect::medium, "smoke"}));
+    cost.rows[3].first = 800; // most of them: what the others did says little
+    CHECK(!renderingWithout(cost, {SwitchedEffect::medium, "fog"}));
 }
 
 } // namespace abbe::test

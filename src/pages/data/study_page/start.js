@@ -3,7 +3,7 @@ convergence();
 timeTable();
 efficiencies();
 strips();
-bill();
+costReport();
 effects();
 closing();
 document.documentElement.dataset.ready = "true";

@@ -1,4 +1,4 @@
-// The tables, the efficiencies, the bill, the effects, and what is at the end.
+// The tables, the efficiencies, the cost report, the effects, and what is at the end.
 function table(heads, rows) {
     return make("div", {class: "scroll", tabindex: "0"}, make("table", {}, make("thead", {}, make("tr", {}, heads.map(h => make("th", {scope: "col", class: h === "asked for by" || h === "without it" ? "text" : null}, h)))), make("tbody", {}, rows)));
 }
@@ -52,14 +52,14 @@ function efficiencies() {
             missing ? make("p", {class: "soft"}, `${missing} without a figure: ${curves.filter(c => !c.efficiency || !positive(c.efficiency.ratio)).map(c => c.label).join(", ")}.`) : "");
 }
 
-const billColours = ["c0", "c1", "c2", "c4", "c3", "c5", "c6"];
-function bill() {
+const costColours = ["c0", "c1", "c2", "c4", "c3", "c5", "c6"];
+function costReport() {
     const rows = (study.bill && study.bill.rows || []).filter(r => isNumber(r.seconds) && (r.seconds > 0 || r.elsewhere > 0 || r.rays > 0 || r.count > 0)).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return;
     const total = rows.reduce((sum, r) => sum + Math.max(0, r.seconds), 0) || 1, share = r => isNumber(r.share) ? r.share : r.seconds / total;
-    const colour = i => i < 7 ? `var(--${billColours[i]})` : "var(--soft)";
+    const colour = i => i < 7 ? `var(--${costColours[i]})` : "var(--soft)";
     const accounted = study.bill.accounted, elsewhere = rows.some(r => r.elsewhere > 0), counts = rows.some(r => r.count > 0);
-    section("bill", "Bill", "The bill", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.${elsewhere ? " What was spent because of an effect, but counted in the rows of others, is in a column of its own; these seconds overlap." : ""}`,
+    section("bill", "Cost", "Cost report", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.${elsewhere ? " What was spent because of an effect, but counted in the rows of others, is in a column of its own; these seconds overlap." : ""}`,
         make("div", {class: "stack", role: "img", "aria-label": rows.map(r => `${r.label} ${percent(share(r), 2)}`).join(", ")},
              rows.map((r, i) => make("div", {style: `flex:${Math.max(0, r.seconds) / total} 0 0;background:${colour(i)}`, title: `${r.label}: ${percent(share(r), 2)}`}, share(r) > 0.09 ? r.label : ""))),
         table(["", "seconds", "share", ...(elsewhere ? ["in other rows"] : []), "rays", ...(counts ? ["counted"] : [])], rows.map((r, i) => make("tr", {},

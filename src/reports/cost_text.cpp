@@ -1,4 +1,4 @@
-#include "reports/bill_text.h"
+#include "reports/cost_text.h"
 
 #include "reports/progress_text.h"
 
@@ -10,7 +10,7 @@ namespace abbe {
 
 namespace {
 
-Json rowJson(const BillRow& row, double seconds) {
+Json rowJson(const CostRow& row, double seconds) {
     Json json = Json::object({{"id", row.id},
                               {"label", row.label},
                               {"seconds", row.seconds},
@@ -24,7 +24,7 @@ Json rowJson(const BillRow& row, double seconds) {
     return json;
 }
 
-bool shown(const BillRow& row) { return row.seconds > 0 || row.elsewhere > 0 || row.rays > 0 || row.count > 0; }
+bool shown(const CostRow& row) { return row.seconds > 0 || row.elsewhere > 0 || row.rays > 0 || row.count > 0; }
 
 std::string countOf(std::uint64_t n) {
     std::string text = countText(static_cast<double>(n));
@@ -32,7 +32,7 @@ std::string countOf(std::uint64_t n) {
     return text;
 }
 
-std::string line(const BillRow& row, double seconds) {
+std::string line(const CostRow& row, double seconds) {
     std::string text = fmt::format("  {} {:>9.3f} s ±{:<7.3f}{:>6.1f} %", padded(row.label, 26), row.seconds,
                                    row.uncertainty, seconds > 0 ? 100 * row.seconds / seconds : 0);
     text += row.rays > 0 ? fmt::format("  {:>9} rays", countOf(row.rays)) : std::string(16, ' ');
@@ -42,8 +42,8 @@ std::string line(const BillRow& row, double seconds) {
     return text + "\n";
 }
 
-BillRow readRow(const nlohmann::json& json) {
-    BillRow row;
+CostRow readRow(const nlohmann::json& json) {
+    CostRow row;
     row.id = json.at("id").get<std::string>();
     row.label = json.at("label").get<std::string>();
     row.seconds = json.at("seconds").get<double>();
@@ -59,47 +59,47 @@ BillRow readRow(const nlohmann::json& json) {
 
 } // namespace
 
-Json billJson(const Bill& bill) {
+Json costJson(const CostReport& cost) {
     Json rows = Json::list();
-    for (const BillRow& row : bill.rows) rows.push(rowJson(row, bill.seconds));
-    return Json::object({{"seconds", bill.seconds},
-                         {"accounted", bill.accounted},
-                         {"rendering", bill.rendering},
-                         {"threads", bill.threads},
-                         {"looks", bill.looks},
-                         {"paths", bill.paths},
-                         {"untouched", bill.untouched},
+    for (const CostRow& row : cost.rows) rows.push(rowJson(row, cost.seconds));
+    return Json::object({{"seconds", cost.seconds},
+                         {"accounted", cost.accounted},
+                         {"rendering", cost.rendering},
+                         {"threads", cost.threads},
+                         {"looks", cost.looks},
+                         {"paths", cost.paths},
+                         {"untouched", cost.untouched},
                          {"rows", std::move(rows)}});
 }
 
-std::string billTable(const Bill& bill) {
-    std::string text = fmt::format("bill: {:.2f} s on {} thread{}, of which the rows have {:.1f} %\n", bill.seconds,
-                                   bill.threads, bill.threads == 1 ? "" : "s", 100 * bill.accounted);
-    for (const BillRow& row : bill.rows)
-        if (shown(row)) text += line(row, bill.seconds);
-    for (const BillRow& row : bill.rows)
+std::string costTable(const CostReport& cost) {
+    std::string text = fmt::format("cost: {:.2f} s on {} thread{}, of which the rows have {:.1f} %\n", cost.seconds,
+                                   cost.threads, cost.threads == 1 ? "" : "s", 100 * cost.accounted);
+    for (const CostRow& row : cost.rows)
+        if (shown(row)) text += line(row, cost.seconds);
+    for (const CostRow& row : cost.rows)
         if (shown(row) && !row.note.empty()) text += fmt::format("  {}: {}\n", row.label, row.note);
     return text;
 }
 
-ImageAttribute billAttribute(const Bill& bill) { return {kBillAttribute, billJson(bill).text()}; }
+ImageAttribute costAttribute(const CostReport& cost) { return {kCostAttribute, costJson(cost).text()}; }
 
-std::optional<Bill> readBill(std::span<const ImageAttribute> attributes) {
-    const auto found = std::ranges::find(attributes, kBillAttribute, &ImageAttribute::name);
+std::optional<CostReport> readCost(std::span<const ImageAttribute> attributes) {
+    const auto found = std::ranges::find(attributes, kCostAttribute, &ImageAttribute::name);
     const auto* text = found == attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
     if (!text) return std::nullopt;
     try {
         const auto json = nlohmann::json::parse(*text);
-        Bill bill;
-        bill.seconds = json.at("seconds").get<double>();
-        bill.accounted = json.value("accounted", 0.0);
-        bill.rendering = json.value("rendering", 0.0);
-        bill.threads = json.value("threads", 0);
-        bill.looks = json.value("looks", std::uint64_t{0});
-        bill.paths = json.value("paths", std::uint64_t{0});
-        bill.untouched = json.value("untouched", std::uint64_t{0});
-        for (const auto& row : json.at("rows")) bill.rows.push_back(readRow(row));
-        return bill;
+        CostReport cost;
+        cost.seconds = json.at("seconds").get<double>();
+        cost.accounted = json.value("accounted", 0.0);
+        cost.rendering = json.value("rendering", 0.0);
+        cost.threads = json.value("threads", 0);
+        cost.looks = json.value("looks", std::uint64_t{0});
+        cost.paths = json.value("paths", std::uint64_t{0});
+        cost.untouched = json.value("untouched", std::uint64_t{0});
+        for (const auto& row : json.at("rows")) cost.rows.push_back(readRow(row));
+        return cost;
     } catch (const nlohmann::json::exception&) { // of another program, or of a later one
         return std::nullopt;
     }

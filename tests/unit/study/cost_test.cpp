@@ -1,6 +1,6 @@
-// The bill: every charge is in exactly one row, rays are those that were counted, and what a scene has not is 0.
+// The cost report: every charge is in exactly one row, rays are those that were counted, and what a scene has not is 0.
 #include "render/scene.h"
-#include "study/bill.h"
+#include "study/cost.h"
 
 #include <doctest/doctest.h>
 
@@ -30,32 +30,32 @@ Scene sceneWith(std::vector<MediumUse> media) {
     return scene;
 }
 
-double sumOf(const Bill& bill) {
+double sumOf(const CostReport& cost) {
     double sum = 0;
-    for (const BillRow& row : bill.rows) sum += row.seconds;
+    for (const CostRow& row : cost.rows) sum += row.seconds;
     return sum;
 }
 
 } // namespace
 
-TEST_CASE("bill: rows have every charge once") {
+TEST_CASE("cost report: rows have every charge once") {
     using Place = MediumUse::Place;
     const WorkReading work = everyCharge();
     const RenderStatistics statistics;
     std::vector<MediumUse> media(kVolumeWorks + 3, {"m", Place::space});
     media[2].place = Place::solid;
     const Scene scene = sceneWith(media);
-    const Bill bill = makeBill({&work, &statistics, &scene, work.seconds, 2});
-    CHECK(sumOf(bill) == doctest::Approx(work.seconds).epsilon(1e-9));
-    CHECK(bill.accounted == doctest::Approx(1).epsilon(1e-9));
-    CHECK(bill.find("subsurface m") != nullptr);
-    CHECK(bill.find("volume others") != nullptr);
-    CHECK(bill.find("nothing") == nullptr);
-    CHECK(bill.find("dispersion")->seconds == 0);
-    CHECK(bill.find("dispersion")->elsewhere > 0);
+    const CostReport cost = makeCostReport({&work, &statistics, &scene, work.seconds, 2});
+    CHECK(sumOf(cost) == doctest::Approx(work.seconds).epsilon(1e-9));
+    CHECK(cost.accounted == doctest::Approx(1).epsilon(1e-9));
+    CHECK(cost.find("subsurface m") != nullptr);
+    CHECK(cost.find("volume others") != nullptr);
+    CHECK(cost.find("nothing") == nullptr);
+    CHECK(cost.find("dispersion")->seconds == 0);
+    CHECK(cost.find("dispersion")->elsewhere > 0);
 }
 
-TEST_CASE("bill: light paths have a row with all of their time, and no other row has any") {
+TEST_CASE("cost report: light paths have a row with all of their time, and no other row has any") {
     constexpr auto kLight = static_cast<std::size_t>(WorkFlag::light),
                    kPilot = static_cast<std::size_t>(WorkFlag::pilot);
     WorkReading work;
@@ -71,20 +71,20 @@ TEST_CASE("bill: light paths have a row with all of their time, and no other row
     s.lightRays = 900;
     s.splats = 33;
     const Scene scene = sceneWith({{"fog", MediumUse::Place::space}});
-    const Bill bill = makeBill({&work, &s, &scene, 7.5, 1});
-    CHECK(bill.find("light-paths")->seconds == doctest::Approx(4));
-    CHECK(bill.find("light-paths")->rays == 900);
-    CHECK(bill.find("light-paths")->count == 33);
-    CHECK(bill.find("look-ahead")->seconds == doctest::Approx(0.5));
-    CHECK(bill.find("embree")->seconds == doctest::Approx(3));
-    CHECK(bill.find("embree")->rays == 50);
-    CHECK(bill.find("volume fog")->elsewhere == 0);
-    CHECK(bill.accounted == doctest::Approx(1));
-    CHECK(bill.rendering == doctest::Approx(7));
+    const CostReport cost = makeCostReport({&work, &s, &scene, 7.5, 1});
+    CHECK(cost.find("light-paths")->seconds == doctest::Approx(4));
+    CHECK(cost.find("light-paths")->rays == 900);
+    CHECK(cost.find("light-paths")->count == 33);
+    CHECK(cost.find("look-ahead")->seconds == doctest::Approx(0.5));
+    CHECK(cost.find("embree")->seconds == doctest::Approx(3));
+    CHECK(cost.find("embree")->rays == 50);
+    CHECK(cost.find("volume fog")->elsewhere == 0);
+    CHECK(cost.accounted == doctest::Approx(1));
+    CHECK(cost.rendering == doctest::Approx(7));
     CHECK(s.rays() == 950);
 }
 
-TEST_CASE("bill: rays of the rows are those of the counters") {
+TEST_CASE("cost report: rays of the rows are those of the counters") {
     RenderStatistics s;
     s.paths = 1000;
     s.vertices = 5000;
@@ -98,19 +98,19 @@ TEST_CASE("bill: rays of the rows are those of the counters") {
     s.effects.volumes[1] = {11, 12, 500, 13};
     const WorkReading work;
     const Scene scene = sceneWith({{"unused"}, {"fog", MediumUse::Place::space}});
-    const Bill bill = makeBill({&work, &s, &scene, 1, 2});
-    CHECK(bill.find("camera")->rays == 990);
-    CHECK(bill.find("surface")->rays == 5000 + 300 - 990 - 500);
-    CHECK(bill.find("lights")->rays == 2040);
-    CHECK(bill.find("volume fog")->rays == 500);
-    CHECK(bill.find("volume fog")->count == 23);
-    CHECK(bill.find("volume fog")->first == 13);
-    CHECK(bill.find("volume unused") == nullptr);
-    CHECK(bill.find("embree")->rays == 990 + bill.find("surface")->rays + 2040 + 500);
-    CHECK(bill.find("dispersion")->rays == 7);
-    CHECK(bill.find("textures")->count == 8);
-    CHECK(bill.find("motion")->count == 9);
-    CHECK(bill.find("subsurface")->rays == 0); // no solid holds a medium
+    const CostReport cost = makeCostReport({&work, &s, &scene, 1, 2});
+    CHECK(cost.find("camera")->rays == 990);
+    CHECK(cost.find("surface")->rays == 5000 + 300 - 990 - 500);
+    CHECK(cost.find("lights")->rays == 2040);
+    CHECK(cost.find("volume fog")->rays == 500);
+    CHECK(cost.find("volume fog")->count == 23);
+    CHECK(cost.find("volume fog")->first == 13);
+    CHECK(cost.find("volume unused") == nullptr);
+    CHECK(cost.find("embree")->rays == 990 + cost.find("surface")->rays + 2040 + 500);
+    CHECK(cost.find("dispersion")->rays == 7);
+    CHECK(cost.find("textures")->count == 8);
+    CHECK(cost.find("motion")->count == 9);
+    CHECK(cost.find("subsurface")->rays == 0); // no solid holds a medium
 }
 
 } // namespace abbe::test

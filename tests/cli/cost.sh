@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# The bill of a render adds up to the time on the wall, has nothing for what a scene has not, and its counts are whole
+# The cost report of a render adds up to the time on the wall, has nothing for what a scene has not, and its counts are whole
 # numbers of the samples alone: the same for any threads, for parts put together and for a render that was continued.
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 
 # Of the last event of a render.
-bill() { grep '"event":"done"' out | grep -o '"bill":{.*}]}'; }
-member() { bill | grep -o "^\"bill\":{[^[]*" | grep -o "\"$1\":[^,]*" | cut -d: -f2; } # NAME
-row() { bill | grep -o "{\"id\":\"$1\"[^}]*}"; }                                         # ID
+report() { grep '"event":"done"' out | grep -o '"bill":{.*}]}'; }
+member() { report | grep -o "^\"bill\":{[^[]*" | grep -o "\"$1\":[^,]*" | cut -d: -f2; } # NAME
+row() { report | grep -o "{\"id\":\"$1\"[^}]*}"; }                                         # ID
 figure() { row "$1" | grep -o "\"$2\":[^,}]*" | cut -d: -f2; }                           # ID MEMBER
 event() { grep '"event":"done"' out | grep -o "\"$1\":[^,}]*" | head -n 1 | cut -d: -f2; }
 
@@ -17,11 +17,11 @@ within() { # WHAT A B PERCENT
         fault "$1: $2 and $3 are more than $4 % apart"
 }
 
-sum_of_rows() { bill | grep -o '"seconds":[^,]*,"uncertainty' | grep -o '[0-9.e-]*' | awk '{ s += $1 } END { print s }'; }
+sum_of_rows() { report | grep -o '"seconds":[^,]*,"uncertainty' | grep -o '[0-9.e-]*' | awk '{ s += $1 } END { print s }'; }
 
 # Counts alone: what threads, parts and interruptions must not change. Looking ahead is done by each run.
 counts() {
-    bill | grep -o '{"id":[^}]*}' | grep -v -e '"look-ahead"' -e '"merging"' |
+    report | grep -o '{"id":[^}]*}' | grep -v -e '"look-ahead"' -e '"merging"' |
         grep -o -e '"id":"[^"]*"' -e '"rays":[0-9]*' -e '"count":[0-9]*' -e '"first":[0-9]*'
     member untouched
 }
@@ -30,7 +30,7 @@ adds_up() { # SCENE OPTION…
     expect 0 "$@" --json --checkpoint off -o sum.exr
     within "$1: rows and their sum as told" "$(sum_of_rows)" "$(member seconds)" 1
     # Two clocks of one process. A row that is forgotten or counted twice is more than what a busy machine makes of them.
-    within "$1: the bill and the phases of the program" "$(member seconds)" "$(event seconds)" 25
+    within "$1: the cost report and the phases of the program" "$(member seconds)" "$(event seconds)" 25
     local rendering
     rendering=$(awk -v a="$(member rendering)" -v b="$(figure look-ahead seconds)" -v c="$(figure waiting seconds)" \
         'BEGIN { print a + b + c }')
@@ -85,12 +85,12 @@ awk -v a="$before" -v b="$(member seconds)" 'BEGIN { exit !(b > 0.5 * a) }' || f
 within "continued: rows" "$(sum_of_rows)" "$(member seconds)" 1
 
 # On paper.
-expect 0 "$scenes/bill.scene" -q --bill --checkpoint off -o bill.exr
+expect 0 "$scenes/bill.scene" -q --cost --checkpoint off -o bill.exr
 says out "Embree"
 says out "inside solids: milk"
 says out "in other rows"
 expect 0 "$scenes/room.scene" -q --bill --checkpoint off -o room.exr
-says out "bill: "
+says out "cost: "
 says_not out "dispersion"
 expect 0 "$scenes/room.scene" -q --checkpoint off -o room.exr
 is_empty out

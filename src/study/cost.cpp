@@ -1,4 +1,4 @@
-#include "study/bill.h"
+#include "study/cost.h"
 
 #include "render/scene.h"
 
@@ -18,33 +18,33 @@ constexpr std::size_t kLight = static_cast<std::size_t>(WorkFlag::light);
 constexpr bool ofCamera(std::size_t flags) { return !(flags & (kPilot | kLight)); }
 constexpr bool ofLight(std::size_t flags) { return (flags & kLight) && !(flags & kPilot); }
 
-class BillMaker {
+class CostMaker {
   public:
-    explicit BillMaker(const BillInput& in)
+    explicit CostMaker(const CostInput& in)
         : in_(in), work_(*in.work), statistics_(*in.statistics), effects_(in.statistics->effects) {}
 
-    Bill make() {
-        bill_.seconds = in_.seconds;
-        bill_.threads = in_.threads;
-        bill_.paths = statistics_.paths;
-        bill_.untouched = effects_.untouched;
-        bill_.looks = work_.sum([](Work, std::size_t, std::size_t) { return true; }).looks;
+    CostReport make() {
+        cost_.seconds = in_.seconds;
+        cost_.threads = in_.threads;
+        cost_.paths = statistics_.paths;
+        cost_.untouched = effects_.untouched;
+        cost_.looks = work_.sum([](Work, std::size_t, std::size_t) { return true; }).looks;
         addProgram();
-        const std::size_t firstOfRendering = bill_.rows.size();
+        const std::size_t firstOfRendering = cost_.rows.size();
         addPaths();
         addLightPaths();
         addVolumes();
         addOverlapping();
         add("film", "film, layers and the sums", charged(Work::film)).count = statistics_.paths;
-        bill_.rows.back().counted = "samples";
-        for (std::size_t i = firstOfRendering; i < bill_.rows.size(); ++i) bill_.rendering += bill_.rows[i].seconds;
+        cost_.rows.back().counted = "samples";
+        for (std::size_t i = firstOfRendering; i < cost_.rows.size(); ++i) cost_.rendering += cost_.rows[i].seconds;
         add("waiting", "threads without work",
             work_.sum([](Work w, std::size_t, std::size_t) { return w == Work::none; }));
         addEnd();
         double sum = 0;
-        for (const BillRow& row : bill_.rows) sum += row.seconds;
-        bill_.accounted = bill_.seconds > 0 ? sum / bill_.seconds : 1;
-        return std::move(bill_);
+        for (const CostRow& row : cost_.rows) sum += row.seconds;
+        cost_.accounted = cost_.seconds > 0 ? sum / cost_.seconds : 1;
+        return std::move(cost_);
     }
 
   private:
@@ -54,14 +54,14 @@ class BillMaker {
     }
 
     // Looks are independent of each other: the variance of their sum is that of a Bernoulli trial for each.
-    BillRow& add(std::string id, std::string label, const WorkCharge& charge) {
-        BillRow row;
+    CostRow& add(std::string id, std::string label, const WorkCharge& charge) {
+        CostRow row;
         row.id = std::move(id);
         row.label = std::move(label);
         row.seconds = charge.seconds;
         const double share = work_.seconds > 0 ? std::min(charge.seconds / work_.seconds, 1.0) : 0;
         row.uncertainty = 1.96 * std::sqrt(charge.squares * (1 - share));
-        return bill_.rows.emplace_back(std::move(row));
+        return cost_.rows.emplace_back(std::move(row));
     }
 
     void addProgram() {
@@ -81,13 +81,13 @@ class BillMaker {
         for (const VolumeCounts& v : effects_.volumes) scattered += v.scattered;
         const std::uint64_t shadow = statistics_.shadowRays + effects_.shadowCrossings;
         add("camera", "camera", charged(Work::camera)).rays = camera;
-        BillRow& embree = add("embree", "Embree", charged(Work::tracing));
+        CostRow& embree = add("embree", "Embree", charged(Work::tracing));
         embree.rays = statistics_.vertices + effects_.crossings + shadow;
         embree.note = "all rays of camera paths, which other rows tell by what they were cast for";
         add("surface", "surfaces", charged(Work::surface)).rays =
             statistics_.vertices + effects_.crossings - std::min(statistics_.vertices, camera + scattered);
         add("lights", "light sampling", charged(Work::lights)).rays = shadow;
-        BillRow& textures = add("textures", "textures", charged(Work::textures));
+        CostRow& textures = add("textures", "textures", charged(Work::textures));
         textures.count = effects_.textureLookups;
         textures.counted = "lookups";
     }
@@ -96,7 +96,7 @@ class BillMaker {
     void addLightPaths() {
         const auto any = [](Work w, std::size_t flags, std::size_t) { return w != Work::none && ofLight(flags); };
         const auto embree = [](Work w, std::size_t flags, std::size_t) { return w == Work::tracing && ofLight(flags); };
-        BillRow& row = add("light-paths", "light paths", work_.sum(any));
+        CostRow& row = add("light-paths", "light paths", work_.sum(any));
         row.rays = statistics_.lightRays;
         row.count = statistics_.splats;
         row.counted = "splats";
@@ -109,7 +109,7 @@ class BillMaker {
     void addVolume(std::size_t place, std::string id, std::string label) {
         const VolumeCounts& counts = effects_.volumes[place];
         const Work own = volumeWork(place);
-        BillRow& row = add(std::move(id), std::move(label), charged(own));
+        CostRow& row = add(std::move(id), std::move(label), charged(own));
         row.elsewhere = work_
                             .sum([=](Work w, std::size_t flags, std::size_t cause) {
                                 return w != own && cause == place + 1 && ofCamera(flags);
@@ -139,13 +139,13 @@ class BillMaker {
     }
 
     void addOverlapping() {
-        BillRow& motion = add("motion", "motion", charged(Work::motion));
+        CostRow& motion = add("motion", "motion", charged(Work::motion));
         motion.count = effects_.movingHits;
         motion.counted = "hits of what moves";
         if (motion.count > 0)
             motion.note = "places of moving objects alone: Embree's part of motion is in its row, which "
                           "`abbe study --effects` tells apart";
-        BillRow& dispersion = add("dispersion", "dispersion", {});
+        CostRow& dispersion = add("dispersion", "dispersion", {});
         dispersion.elsewhere = work_
                                    .sum([](Work w, std::size_t flags, std::size_t) {
                                        return w != Work::none && (flags & kHero) && ofCamera(flags);
@@ -162,20 +162,20 @@ class BillMaker {
         add("rest", "the rest", charged(Work::preparing));
     }
 
-    const BillInput& in_;
+    const CostInput& in_;
     const WorkReading& work_;
     const RenderStatistics& statistics_;
     const EffectCounts& effects_;
-    Bill bill_;
+    CostReport cost_;
 };
 
 } // namespace
 
-const BillRow* Bill::find(std::string_view id) const {
-    const auto row = std::ranges::find(rows, id, &BillRow::id);
+const CostRow* CostReport::find(std::string_view id) const {
+    const auto row = std::ranges::find(rows, id, &CostRow::id);
     return row == rows.end() ? nullptr : &*row;
 }
 
-Bill makeBill(const BillInput& input) { return BillMaker(input).make(); }
+CostReport makeCostReport(const CostInput& input) { return CostMaker(input).make(); }
 
 } // namespace abbe

@@ -12,7 +12,7 @@ namespace abbe {
 
 struct Scene;
 
-struct BillRow {
+struct CostRow {
     std::string id;           // "embree", "volume fog": of one word, or two for what the scene names
     std::string label;        // for people
     double seconds = 0;       // on the wall, all threads together; the rows add up
@@ -25,7 +25,7 @@ struct BillRow {
     std::uint64_t first = 0;  // of volumes: paths that it was the first to scatter
 };
 
-struct Bill {
+struct CostReport {
     double seconds = 0;          // on the wall, by a clock of its own, with those of earlier runs and of parts
     double accounted = 0;        // sum of the rows over that
     double rendering = 0;        // s of the rows from camera to film: what takes longer with more samples
@@ -33,18 +33,18 @@ struct Bill {
     std::uint64_t looks = 0;     // of the clock
     std::uint64_t paths = 0;     // of the image
     std::uint64_t untouched = 0; // rays of them that no medium had scattered; 0 in scenes without media
-    std::vector<BillRow> rows;
+    std::vector<CostRow> rows;
 
-    const BillRow* find(std::string_view id) const; // null if there is none
+    const CostRow* find(std::string_view id) const; // null if there is none
 };
 
-struct BillInput {
+struct CostInput {
     const WorkReading* work = nullptr;
     const RenderStatistics* statistics = nullptr;
     const Scene* scene = nullptr;
     double seconds = 0; // on the wall
     int threads = 1;
 };
-Bill makeBill(const BillInput&);
+CostReport makeCostReport(const CostInput&);
 
 } // namespace abbe
