@@ -16,7 +16,7 @@ done
 expect 0 info image.exr
 says out "certificate  error "
 says out "abbe.certificate = abbe-certificate 1"
-says out "abbe.errorDisplayView = sRGB - Display, ACES 1.0 - SDR Video, -1 stops, abbe-aces-1.3"
+tells out abbe.errorDisplayView "-1 stops" abbe-aces-1.3
 
 # Held against long renders; against a picture of something else it is outside.
 expect 0 "${room[@]}" --samples 1024 --seed 2 -q -o long2.exr
@@ -38,7 +38,7 @@ says_not out ": outside"
 is_empty err
 expect 0 "${room[@]}" --samples 256 -q -o own.exr
 expect 0 certify image.exr --ref own.exr "$dark"
-says err "\`own.exr\` has the seed of the image (0), so it holds the image's own samples"
+tells err own.exr seed "(0)"
 expect 0 certify image.exr --ref own.exr --ref long2.exr "$dark"
 says err "is left out"
 expect 0 certify image.exr --ref long2.exr --ref long2.exr "$dark" --json
@@ -59,11 +59,11 @@ expect 2 certify image.exr --ref a --ref b --ref c
 # Noise that few samples carry: said in the summary, in the header and beside the image.
 expect 0 "$scenes/glossy_caustic.scene" -o glossy.exr
 says err W0649
-says err "few samples carry the noise (Pareto k 0."
+tells err W0649 "k 0."
 says glossy.exr.json '"pareto_k"'
 says glossy.exr.json '"tiles_untrusted"'
 expect 0 info glossy.exr
-says out "variance.Y cannot be trusted in"
+tells out variance.Y "error bars"
 says out "abbe.errorUnseen = "
 expect 0 "${room[@]}" --samples 64 -o even.exr
 says_not err W0649

@@ -50,13 +50,13 @@ expect 0 "$scene" "${small[@]}" --pilot $((size % 4 + 1)) -o other.exr
 expect 0 "$scene" "${small[@]}" --time 0.3 -o stopped.exr --checkpoint keep
 size=$(pilot stopped.exr)
 expect 1 "$scene" "${small[@]}" --pilot $(((size + 1) % 5)) -o stopped.exr --resume
-says err "pilot: \`$size\` in the checkpoint"
+tells err pilot: "\`$size\`" checkpoint
 expect 0 "$scene" "${small[@]}" -o stopped.exr --resume
 expect 0 "$scene" "${small[@]}" --pilot "$size" -o whole.exr
 same_pixels stopped.exr whole.exr
 for part in 1 2; do expect 0 "$scene" "${small[@]}" --pilot $part -o part.exr --part $part/2; done
 expect 1 merge part.part{1,2}.abbe -o no.exr
-says err "pilot: 2 in the part, 1 in"
+tells err pilot: 2 1 part
 
 # Small pilots for small pictures.
 expect 0 "$scene" --size 24x24 --samples 16 --json -o tiny.exr

@@ -36,6 +36,15 @@ says() { # FILE TEXT
     grep -qF -e "$2" "$1" || { fault "no \`$2\` in:"; sed 's/^/    /' "$1"; }
 }
 
+# A line of the file has all of these, in any order: codes, names and figures. The words between them are free.
+tells() { # FILE FACT…
+    local file=$1 fact lines
+    lines=$(<"$file")
+    shift
+    for fact in "$@"; do lines=$(grep -F -e "$fact" <<<"$lines"); done
+    [[ -n $lines ]] || { fault "no line with \`$*\` in:"; sed 's/^/    /' "$file"; }
+}
+
 says_not() { # FILE TEXT
     ! grep -qF -e "$2" "$1" || { fault "\`$2\` in:"; sed 's/^/    /' "$1"; }
 }

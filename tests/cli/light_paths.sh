@@ -109,12 +109,12 @@ for frame in "--camera side" "--seed 3" "--size 40x40 --camera side --seed 3"; d
     [[ -n $explained && $(gain) == "$explained" ]] || fault "$frame: $explained explained, $(gain) rendered"
 done
 expect 1 explain cameras.scene --camera rear
-says err "no camera is named \`rear\`"
+tells err E0601 "\`rear\`"
 expect 2 explain camera.lens --camera side
 expect 0 explain off.scene
-says out "Light paths: none, \`light-paths off\`"
+tells out "Light paths: none" "\`light-paths off\`"
 expect 0 explain "$scenes/room.scene"
-says out "Light paths: none, nothing focuses light"
+tells out "Light paths: none" focuses
 expect 0 "$scenes/room.scene" -o room.exr
 says_not err "light paths"
 

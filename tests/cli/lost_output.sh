@@ -43,7 +43,7 @@ for words in "info whole.exr" "--help" "explain camera" "reference json"; do
     [[ $code -eq 3 ]] || fault "abbe $words, whose text is lost, ends with $code"
 done
 "$program" info whole.exr >/dev/full 2>err
-says err "cannot write to stdout: No space left on device"
+tells err stdout "No space left"
 "$program" explain camera | head -n 1 >/dev/null
 [[ ${PIPESTATUS[0]} -eq 0 ]] || fault "a reader who had enough is no fault"
 

@@ -80,7 +80,7 @@ is_there config.png
 # 800 lm over a ball: black at 0 stops, which is said with the stops that mend it; they do, and so does `convert`.
 expect 0 "$lamp" -o lamp.exr
 says err W0644
-says err "is black on the display"
+tells err W0644 black
 says err "first_lamp.scene:6:1"
 stops=$(proposed)
 [[ -n $stops ]] || fault "no stops are proposed"
@@ -89,7 +89,7 @@ says_not err W0644
 expect 0 convert lamp.exr shown.png --exposure "$stops"
 (($(stat -c %s shown.png) > $(stat -c %s lamp.png) + 200)) || fault "convert shows no more than before"
 expect 0 "$lamp" -o white.exr -D stops=60
-says err "is white on the display"
+tells err W0644 white
 [[ $(proposed) == "$stops" ]] || fault "$(proposed) stops are proposed for what is too bright, and $stops for what is too dark"
 expect 4 "$lamp" -o lamp.exr --strict
 expect 0 "$lamp" -o lamp.exr --png off # nobody looks
@@ -140,8 +140,8 @@ says out '"picture":{"median_nits":'
 says out '"exposure_auto":true'
 on_terminal() { timeout 60 script -qec "$1 '$program' '$room' -o room.exr" /dev/null </dev/null >out 2>err; }
 on_terminal "TERM=xterm"
-says out "to look at it:  copy $PWD/room.png"
+tells out copy "$PWD/room.png"
 on_terminal "TERM=xterm DISPLAY=:0"
-says out "to look at it:  xdg-open room.png"
+tells out xdg-open room.png
 
 finish

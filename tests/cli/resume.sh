@@ -27,13 +27,13 @@ says out "abbe.samples = 120"
 says out "abbe.partial = 0"
 expect 1 merge split.part1.abbe split.part2.abbe split.part4.abbe -o no.exr
 says err E0664
-says err "samples 30 to 45 of 60 are missing"
+tells err E0664 30 45 60
 expect 1 merge split.part{1,2,3,4,2}.abbe -o no.exr
-says err "are in \`split.part2.abbe\` and in \`split.part2.abbe\`"
+tells err E0664 split.part2.abbe
 expect 0 "$scene" "${small[@]}" --quiet -o other.exr --part 4/4 --seed 3
 expect 1 merge split.part{1,2,3}.abbe other.part4.abbe -o no.exr
 says err E0663
-says err "seed: \`3\` in the part"
+tells err seed: "\`3\`" part
 
 # Crops, and crops split by samples.
 expect 0 "$scene" "${small[@]}" --quiet -o left.exr --part 1/1 --crop 0,0,21,24
@@ -74,9 +74,9 @@ expect 0 merge left.part1.abbe right.part{1,2}.abbe -o crops.exr
 same_pixels planned.exr crops.exr
 expect 0 "${adaptive[@]}" -o off.exr --part 4/4 --adaptive off
 expect 1 merge plan.part{1,2,3}.abbe off.part4.abbe -o no.exr
-says err "adaptive: \`off\` in the part, \`on\` in the scene as it is"
+tells err adaptive: "\`off\` in the part" "\`on\`"
 expect 1 "$scene" "${small[@]}" --quiet -o more.exr --resume --adaptive on
-says err "adaptive: \`off\` in the checkpoint, \`on\` in this render"
+tells err adaptive: "\`off\` in the checkpoint" "\`on\`"
 
 # Another scene, another film: what differs, with both values.
 sed 's/luminance [0-9]*/luminance 4321/; s/power [0-9]*/power 4321/' "$scene" >other.scene
@@ -84,9 +84,9 @@ expect 1 other.scene "${small[@]}" --quiet -o more.exr --resume
 says err E0663
 says err "4321"
 expect 1 "$scene" "${small[@]}" --quiet -o more.exr --resume --seed 5
-says err "seed: \`0\` in the checkpoint, \`5\` in this render"
+tells err seed: "\`0\` in the checkpoint" "\`5\`"
 expect 1 "$scene" "${small[@]}" --quiet -o more.exr --resume --crop 0,0,9,9
-says err "crop: \`0 0 40 24\` in the checkpoint"
+tells err crop: "\`0 0 40 24\`"
 
 # Damage is found, wherever it is.
 size=$(stat -c %s more.exr.ckpt)

@@ -32,23 +32,23 @@ for file in fifo zero; do
     refuses 1 check --format=short bounds.scene
     [[ $(grep -c "\`$file\` is not a regular file" err) -ge 6 ]] || fault "not all uses of $file are told: $(cat err)"
     refuses 3 check "$file"
-    says err "is not a regular file"
+    says err "regular file"
     refuses 3 render "$file" -o no.exr
     refuses 3 info $file.exr
-    says err "$file.exr\`: it is not a regular file"
+    tells err "$file.exr" "regular file"
     refuses 3 convert $file.exr no.png
-    says err "$file.exr\`: it is not a regular file"
+    tells err "$file.exr" "regular file"
     refuses 3 compare $file.exr $file.exr
     refuses 3 denoise $file.exr -o no.exr
     refuses 3 volume info $file.vdb
     refuses 3 merge -o no.exr $file
-    says err "it is not a regular file"
+    says err "regular file"
 done
 (timeout 10 "$program" check - </dev/zero >out 2>err)
 [[ $? -eq 3 ]] || fault "zeros without an end as a scene: $(cat err)"
 mv fifo.ckpt no.exr.ckpt
 refuses 3 render "$scenes/room.scene" --samples 1 --resume -o no.exr
-says err "no.exr.ckpt\`: it is not a regular file"
+tells err no.exr.ckpt "regular file"
 [[ ! -e no.exr ]] || fault "an image of nothing"
 
 # le32 NUMBER…: least byte first.
@@ -94,7 +94,7 @@ promise 16384 >tiny.exr
     for words in "info tiny.exr" "convert tiny.exr no.png" "denoise tiny.exr -o no.exr" "compare tiny.exr tiny.exr"; do
         # shellcheck disable=SC2086 # words of the command
         refuses 3 $words
-        says err "cannot read \`tiny.exr\`: it is cut short or damaged"
+        tells err tiny.exr damaged
     done
     scene "light environment \"tiny.exr\"" "shape sphere { material diffuse { reflectance image \"tiny.exr\" } }"
     refuses 1 check --textures --format=short bounds.scene

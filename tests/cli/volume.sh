@@ -58,14 +58,14 @@ for size in 500 2000; do
     head -c $size fire.vdb >cut.vdb
     expect 3 volume info cut.vdb
     says err "\`cut.vdb\`"
-    says err "is damaged or cut off (the file has $size bytes)"
+    tells err damaged "$size bytes"
     says_not err "Error:"
 done
 expect 3 volume convert cut.vdb out.vdb
 [[ ! -e out.vdb && -z $(find . -name '*.tmp') ]] || fault "a failed conversion left a file"
 printf 'not a volume' >text.vdb
 expect 3 volume info text.vdb
-says err "\`text.vdb\` is not an OpenVDB file"
+tells err text.vdb OpenVDB
 says_not err "not a vo" # it is nobody's business what is in it
 says_not err "Error:"
 expect 3 volume make fire no/such/folder/x.vdb
