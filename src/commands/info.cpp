@@ -6,7 +6,7 @@
 #include "command_line/shared_arguments.h"
 #include "io/aces_container.h"
 #include "io/exr_deep.h"
-#include "io/file_bytes.h"
+#include "io/file.h"
 #include "reports/certificate_file.h"
 #include "reports/cost_text.h"
 #include "reports/provenance.h"
