@@ -1,6 +1,8 @@
 #include "geometry/disk.h"
 
+#include "geometry/place_shape.h"
 #include "geometry/surface_math.h"
+#include "geometry/transformed.h"
 #include "math/warp.h"
 
 #include <tuple>
@@ -101,6 +103,37 @@ float Disk::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const {
 
 std::optional<SurfacePatch> Disk::patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept {
     return planarPatch(centre_, z_, origin, direction);
+}
+
+schema::TypeInfo diskType() {
+    using namespace schema;
+    using P = DiskParams;
+    std::vector<FieldInfo> fields = {centerField<P>("Centre."), normalField<P>(), radiusField<P>()};
+    addShapeFields<P>(fields);
+    return {
+        Kind::shape, "disk",           "Flat round surface.", "shape disk { center 0 2 0; normal 0 -1 0; radius 0.3 }",
+        false,       std::move(fields)};
+}
+
+std::unique_ptr<const Shape> placeDisk(Vec3d center, Vec3d normal, double radius, const Transform& place, Span span,
+                                       Diagnostics& diagnostics) {
+    if (!(length(normal) > 0)) return reportNoArea(span, diagnostics, "normal"), nullptr;
+    const Vec3d c = place.point(center);
+    const auto scale = place.uniformScale();
+    if (!inReach(c) || (scale && !(*scale * radius < kLargestCoordinate)))
+        return reportOutOfReach(span, diagnostics), nullptr;
+    if (scale) return std::make_unique<Disk>(c, normalize(place.normal(normal)), *scale * radius, place);
+    return std::make_unique<Transformed>(std::make_unique<Disk>(center, normalize(normal), radius), place);
+}
+
+UnplacedShape makeDisk(const DiskParams& params, const ShapeContext& context) {
+    UnplacedShape shape;
+    shape.openBecause = "it has no inside";
+    shape.place = [params, context](const Transform& place) {
+        return placeDisk(params.center, params.normal.value_or(context.up), params.radius, place, context.span,
+                         context.diagnostics);
+    };
+    return shape;
 }
 
 } // namespace abbe

@@ -1,6 +1,7 @@
 // Flat round disks.
 #pragma once
 
+#include "geometry/shape_params.h"
 #include "math/transform.h"
 #include "render/shape.h"
 
@@ -49,5 +50,17 @@ void parametrizeDisk(double x, double y, double radius, Vec3d axisX, Vec3d axisY
 // Two axes across a normal, as a shape in its own space has them, after the map that took it there. `normal` is that
 // after the map.
 std::pair<Vec3d, Vec3d> axesAfter(const Transform& place, Vec3d normal);
+
+struct DiskParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> normal; // unset: up
+    double radius = 0.5;
+};
+
+schema::TypeInfo diskType();
+UnplacedShape makeDisk(const DiskParams&, const ShapeContext&);
+// Null after an error located at `span`.
+std::unique_ptr<const Shape> placeDisk(Vec3d center, Vec3d normal, double radius, const Transform& place, Span,
+                                       Diagnostics&);
 
 } // namespace abbe

@@ -1,5 +1,6 @@
 #include "geometry/frustum.h"
 
+#include "geometry/place_shape.h"
 #include "math/warp.h"
 
 #include <array>
@@ -7,6 +8,14 @@
 namespace abbe {
 
 namespace {
+
+template <typename P> schema::FieldInfo capsField() {
+    return schema::field<P, bool>(schema::FieldType::toggle, "caps", &P::caps)
+        .byDefault("on")
+        .synonyms({"closed", "capped"})
+        .doc("Whether flat disks close the ends.")
+        .example("caps off");
+}
 
 double turns(double x, double z) {
     const double t = std::atan2(x, z) / (2 * kPiD);
@@ -162,6 +171,66 @@ ParametricShape::LocalPoint Frustum::sampleLocal(Vec2d u) const {
     const double within = top ? (x - capAreas_[0]) / capAreas_[1] : x / capAreas_[0];
     const double r = (top ? top_ : bottom_) * std::sqrt(std::clamp(within, 0.0, 1.0)), phi = 2 * kPiD * u.y;
     return capPoint(top ? topCap : bottomCap, r * std::sin(phi), r * std::cos(phi));
+}
+
+schema::TypeInfo cylinderType() {
+    using namespace schema;
+    using P = CylinderParams;
+    std::vector<FieldInfo> fields = {
+        centerField<P>("Middle, half the height up the axis."),
+        axisField<P>(),
+        lengthField<P>("radius", &P::radius, 1e-30, "0.5", "Radius.", "radius 0.5 m", {"r"}),
+        lengthField<P>("height", &P::height, 1e-30, "1", "Length along the axis.", "height 1 m", {"length", "h"}),
+        capsField<P>(),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape, "cylinder",       "Exact round cylinder.", "shape cylinder { radius 0.3; height 2 }",
+            false,       std::move(fields)};
+}
+
+schema::TypeInfo coneType() {
+    using namespace schema;
+    using P = ConeParams;
+    std::vector<FieldInfo> fields = {
+        centerField<P>("Middle, half the height up the axis."),
+        axisField<P>(),
+        lengthField<P>("radius", &P::radius, 0, "0.5", "Radius of the bottom.", "radius 0.5 m", {"r", "bottom-radius"}),
+        lengthField<P>("top-radius", &P::topRadius, 0, "0", "Radius of the top; above 0 the cone is truncated.",
+                       "top-radius 0.2 m", {"radius2"}),
+        lengthField<P>("height", &P::height, 1e-30, "1", "Length along the axis.", "height 1 m", {"length", "h"}),
+        capsField<P>(),
+    };
+    addShapeFields<P>(fields);
+    return {
+        Kind::shape, "cone",           "Exact round cone, pointed or truncated.", "shape cone { radius 0.5; height 1 }",
+        false,       std::move(fields)};
+}
+
+std::optional<UnplacedShape> makeCone(const ConeParams& params, const ShapeContext& context) {
+    if (!checkAxis(params.axis, context)) return std::nullopt;
+    if (!(params.radius + params.topRadius > 0)) {
+        context.diagnostics.error("E0604", context.span, "`cone` has no area", "both of its radii are 0");
+        return std::nullopt;
+    }
+    const Transform upright = uprightAt(params.center, params.axis.value_or(context.up));
+    UnplacedShape shape;
+    if (!params.caps) shape.openBecause = "without its caps it has no inside";
+    shape.place = [params, upright, context](const Transform& place) {
+        return placeParametric(upright.then(place), context, [&](const Transform& map) {
+            return std::make_unique<Frustum>(params.radius, params.topRadius, params.height, params.caps, map);
+        });
+    };
+    return shape;
+}
+
+std::optional<UnplacedShape> makeCylinder(const CylinderParams& params, const ShapeContext& context) {
+    ConeParams cone;
+    cone.center = params.center;
+    cone.axis = params.axis;
+    cone.radius = cone.topRadius = params.radius;
+    cone.height = params.height;
+    cone.caps = params.caps;
+    return makeCone(cone, context);
 }
 
 } // namespace abbe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/parametric_shape.h"
+#include "geometry/shape_params.h"
 
 namespace abbe {
 
@@ -33,5 +34,25 @@ class Frustum final : public ParametricShape {
     Vec2d sideNormal_;              // outwards and along y, unit
     double sideArea_, capAreas_[2]; // own space; caps 0 when open
 };
+
+// Both about their centre.
+struct CylinderParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> axis; // unset: up
+    double radius = 0.5, height = 1;
+    bool caps = true;
+};
+struct ConeParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> axis; // unset: up
+    double radius = 0.5, topRadius = 0, height = 1;
+    bool caps = true;
+};
+
+schema::TypeInfo cylinderType();
+schema::TypeInfo coneType();
+// Nothing after an error.
+std::optional<UnplacedShape> makeCylinder(const CylinderParams&, const ShapeContext&);
+std::optional<UnplacedShape> makeCone(const ConeParams&, const ShapeContext&);
 
 } // namespace abbe

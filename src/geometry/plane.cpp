@@ -1,6 +1,7 @@
 #include "geometry/plane.h"
 
 #include "geometry/disk.h"
+#include "geometry/place_shape.h"
 #include "geometry/surface_math.h"
 
 #include <tuple>
@@ -62,6 +63,28 @@ double Plane::area() const { return std::numeric_limits<double>::infinity(); }
 
 std::optional<SurfacePatch> Plane::patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept {
     return planarPatch(point_, z_, origin, direction);
+}
+
+schema::TypeInfo planeType() {
+    using namespace schema;
+    using P = PlaneParams;
+    std::vector<FieldInfo> fields = {centerField<P>("A point of the plane."), normalField<P>()};
+    addShapeFields<P>(fields);
+    return {Kind::shape, "plane",          "Infinite plane, the ground by default.", "shape plane { material diffuse }",
+            false,       std::move(fields)};
+}
+
+UnplacedShape makePlane(const PlaneParams& params, const ShapeContext& context) {
+    UnplacedShape shape;
+    shape.infinite = true;
+    shape.place = [params, context](const Transform& place) -> std::unique_ptr<const Shape> {
+        const Vec3d normal = params.normal.value_or(context.up);
+        if (!(length(normal) > 0)) return reportNoArea(context.span, context.diagnostics, "normal"), nullptr;
+        const Vec3d p = place.point(params.center);
+        if (!inReach(p)) return reportOutOfReach(context.span, context.diagnostics), nullptr;
+        return std::make_unique<Plane>(p, normalize(place.normal(normal)), place);
+    };
+    return shape;
 }
 
 } // namespace abbe

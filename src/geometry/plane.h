@@ -1,6 +1,7 @@
 // Infinite planes.
 #pragma once
 
+#include "geometry/shape_params.h"
 #include "math/transform.h"
 #include "render/shape.h"
 
@@ -31,5 +32,13 @@ class Plane final : public Shape {
     Vec3d byU_, byV_; // dp/du and dp/dv for textures
     Vec3d toU_, toV_; // whose dot products with a vector of the plane are u and v
 };
+
+struct PlaneParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> normal; // unset: up
+};
+
+schema::TypeInfo planeType();
+UnplacedShape makePlane(const PlaneParams&, const ShapeContext&);
 
 } // namespace abbe

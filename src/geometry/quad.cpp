@@ -1,6 +1,7 @@
 #include "geometry/quad.h"
 
 #include "geometry/mesh_corners.h"
+#include "geometry/place_shape.h"
 #include "geometry/spherical_rectangle.h"
 #include "geometry/surface_math.h"
 #include "math/warp.h"
@@ -220,6 +221,62 @@ std::optional<SurfacePatch> Quad::patch(const SurfaceHit& hit, Vec3d origin, Vec
     const Half& half = halves_[dot(shown, second) > dot(shown, first)];
     const Vec3d n = normalize(cross(Vec3d(half.edgeS), Vec3d(half.edgeT)));
     return planarPatch(Vec3d(half.corner), n, origin, direction);
+}
+
+schema::TypeInfo quadType() {
+    using namespace schema;
+    using P = QuadParams;
+    std::vector<FieldInfo> fields = {
+        field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
+            .unit({Dimension::length})
+            .group("extent")
+            .doc("Four corners, counter-clockwise seen from the outer side.")
+            .example("points 0 0 0   1 0 0   1 1 0   0 1 0"),
+        field<P, Vec2d>(FieldType::vector2, "size", &P::size)
+            .unit({Dimension::length})
+            .range(1e-30, 1e15)
+            .group("extent")
+            .doc("Width and height of a rectangle about the origin in the xy-plane, facing +z; 1 1 when absent.")
+            .example("size 60 120 cm"),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape, "quad",           "Flat four-cornered surface.", "shape quad { size 2 1; material diffuse }",
+            false,       std::move(fields)};
+}
+
+std::unique_ptr<const Shape> placeQuad(const std::vector<Vec3d>& points, Vec2d size, const Transform& place, Span span,
+                                       Diagnostics& diagnostics) {
+    if (!points.empty() && points.size() != 4) {
+        diagnostics.error("E0603", span, "a quad has four `points`", std::to_string(points.size()) + " given");
+        return nullptr;
+    }
+    std::array<Vec3d, 4> corners;
+    const double w = size.x / 2, h = size.y / 2;
+    if (points.empty())
+        corners = {Vec3d{-w, -h, 0}, {w, -h, 0}, {w, h, 0}, {-w, h, 0}};
+    else
+        std::copy(points.begin(), points.end(), corners.begin());
+    const bool mirrored = place.determinant() < 0; // keep the outer side outside
+    if (mirrored) std::swap(corners[1], corners[3]);
+    for (Vec3d& p : corners) {
+        p = place.point(p);
+        if (!inReach(p)) return reportOutOfReach(span, diagnostics), nullptr;
+    }
+    const Vec3d normal = cross(corners[1] - corners[0], corners[3] - corners[0]) +
+                         cross(corners[3] - corners[2], corners[1] - corners[2]);
+    const double extent = std::max(lengthSquared(corners[2] - corners[0]), lengthSquared(corners[3] - corners[1]));
+    if (!(length(normal) > 1e-12 * extent) || !(extent > 0)) return reportNoArea(span, diagnostics, "quad"), nullptr;
+    return std::make_unique<Quad>(Vec3(corners[0]), Vec3(corners[1]), Vec3(corners[2]), Vec3(corners[3]), mirrored);
+}
+
+UnplacedShape makeQuad(const QuadParams& params, const ShapeContext& context) {
+    UnplacedShape shape;
+    shape.openBecause = "it has no inside";
+    shape.quads = 1;
+    shape.place = [params, context](const Transform& place) {
+        return placeQuad(params.points, params.size, place, context.span, context.diagnostics);
+    };
+    return shape;
 }
 
 } // namespace abbe

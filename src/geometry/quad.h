@@ -1,6 +1,7 @@
 // A four-cornered patch: the usual wall, floor or lamp.
 #pragma once
 
+#include "geometry/shape_params.h"
 #include "render/shape.h"
 
 #include <optional>
@@ -56,5 +57,16 @@ class Quad final : public Shape {
     float firstHalf_; // share of the area in halves_[0]
     bool mirrored_;
 };
+
+struct QuadParams : ShapeParams {
+    std::vector<Vec3d> points; // four corners, or empty
+    Vec2d size{1, 1};
+};
+
+schema::TypeInfo quadType();
+UnplacedShape makeQuad(const QuadParams&, const ShapeContext&);
+// From four corners or, without any, a rectangle of the size about the origin. Null after an error located at `span`.
+std::unique_ptr<const Shape> placeQuad(const std::vector<Vec3d>& points, Vec2d size, const Transform& place, Span,
+                                       Diagnostics&);
 
 } // namespace abbe

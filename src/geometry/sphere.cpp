@@ -1,7 +1,9 @@
 #include "geometry/sphere.h"
 
+#include "geometry/place_shape.h"
 #include "geometry/projected_cap.h"
 #include "geometry/surface_math.h"
+#include "geometry/transformed.h"
 #include "math/warp.h"
 
 namespace abbe {
@@ -155,6 +157,33 @@ std::optional<SurfacePatch> Sphere::patch(const SurfaceHit& hit, Vec3d origin, V
     const Vec3d n = normalize(nearest + direction * (beyond ? half : -half));
     const auto [x, y] = tangentsOf(n);
     return SurfacePatch{centre_ + n * radius_, n, n, {x, y}, {x / radius_, y / radius_}};
+}
+
+schema::TypeInfo sphereType() {
+    using namespace schema;
+    using P = SphereParams;
+    std::vector<FieldInfo> fields = {centerField<P>("Centre."), radiusField<P>()};
+    addShapeFields<P>(fields);
+    return {Kind::shape, "sphere",         "Exact sphere.", "shape sphere { center 0 0.5 0; radius 0.5 }",
+            false,       std::move(fields)};
+}
+
+std::unique_ptr<const Shape> placeSphere(Vec3d center, double radius, const Transform& place, Span span,
+                                         Diagnostics& diagnostics) {
+    const Vec3d c = place.point(center);
+    const auto scale = place.uniformScale();
+    if (!inReach(c) || (scale && !(*scale * radius < kLargestCoordinate)))
+        return reportOutOfReach(span, diagnostics), nullptr;
+    if (scale) return std::make_unique<Sphere>(c, *scale * radius, place);
+    return std::make_unique<Transformed>(std::make_unique<Sphere>(center, radius), place);
+}
+
+UnplacedShape makeSphere(const SphereParams& params, const ShapeContext& context) {
+    UnplacedShape shape;
+    shape.place = [params, context](const Transform& place) {
+        return placeSphere(params.center, params.radius, place, context.span, context.diagnostics);
+    };
+    return shape;
 }
 
 } // namespace abbe

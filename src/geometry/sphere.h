@@ -1,6 +1,7 @@
 // Spheres, intersected and sampled in double.
 #pragma once
 
+#include "geometry/shape_params.h"
 #include "math/transform.h"
 #include "render/shape.h"
 
@@ -45,5 +46,15 @@ class Sphere final : public Shape {
 
 // uv, dpdu and dpdv of a sphere about these axes where its normal is n.
 void parametrizeSphere(Vec3 n, float radius, Vec3 x, Vec3 y, Vec3 z, SurfaceHit&);
+
+struct SphereParams : ShapeParams {
+    Vec3d center;
+    double radius = 0.5;
+};
+
+schema::TypeInfo sphereType();
+UnplacedShape makeSphere(const SphereParams&, const ShapeContext&);
+// Null after an error located at `span`.
+std::unique_ptr<const Shape> placeSphere(Vec3d center, double radius, const Transform& place, Span, Diagnostics&);
 
 } // namespace abbe

@@ -1,10 +1,14 @@
 #include "geometry/torus.h"
 
+#include "geometry/place_shape.h"
 #include "geometry/polynomial_roots.h"
 
 namespace abbe {
 
 namespace {
+
+// Thinner tubes drown in the rounding of the quartic.
+constexpr double kThinnestTube = 1e-5;
 
 // The angle around the tube below which a share x of the area lies: θ + e sin θ = 2π x, for e = minor / major. That is
 // Kepler's equation, seen from the far side of the orbit.
@@ -99,6 +103,47 @@ ParametricShape::LocalDerivatives Torus::derivatives(const LocalPoint& at, int) 
 ParametricShape::LocalPoint Torus::sampleLocal(Vec2d u) const {
     const double tube = tubeAngle(u.x, minor_ / major_), longitude = 2 * kPiD * u.y;
     return at(std::sin(longitude), std::cos(longitude), std::cos(tube), std::sin(tube));
+}
+
+schema::TypeInfo torusType() {
+    using namespace schema;
+    using P = TorusParams;
+    std::vector<FieldInfo> fields = {
+        centerField<P>("Centre."),
+        axisField<P>(),
+        lengthField<P>("major-radius", &P::majorRadius, 1e-30, "0.5", "Radius of the circle that the tube follows.",
+                       "major-radius 0.5 m", {"radius", "R"}),
+        lengthField<P>("minor-radius", &P::minorRadius, 1e-30, "0.125", "Radius of the tube, at most the major radius.",
+                       "minor-radius 0.1 m", {"tube-radius", "r"}),
+    };
+    addShapeFields<P>(fields);
+    return {Kind::shape,
+            "torus",
+            "Exact torus: a ring with a round tube.",
+            "shape torus { major-radius 0.5; minor-radius 0.1 }",
+            false,
+            std::move(fields)};
+}
+
+std::optional<UnplacedShape> makeTorus(const TorusParams& params, const ShapeContext& context) {
+    const double major = params.majorRadius, minor = params.minorRadius;
+    if (!checkAxis(params.axis, context)) return std::nullopt;
+    if (!(minor <= major) || !(minor >= kThinnestTube * major)) {
+        const bool thick = minor > major;
+        context.diagnostics
+            .error("E0613", context.span,
+                   thick ? "the tube of a torus is wider than its ring, so that it crosses itself"
+                         : "the tube of a torus is thinner than 1e-5 of its ring")
+            .help = "`minor-radius` is at most `major-radius`, and at least 1e-5 of it";
+        return std::nullopt;
+    }
+    const Transform upright = uprightAt(params.center, params.axis.value_or(context.up));
+    UnplacedShape shape;
+    shape.place = [major, minor, upright, context](const Transform& place) {
+        return placeParametric(upright.then(place), context,
+                               [&](const Transform& map) { return std::make_unique<Torus>(major, minor, map); });
+    };
+    return shape;
 }
 
 } // namespace abbe

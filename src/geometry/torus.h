@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/parametric_shape.h"
+#include "geometry/shape_params.h"
 
 namespace abbe {
 
@@ -23,5 +24,16 @@ class Torus final : public ParametricShape {
 
     double major_, minor_;
 };
+
+// About its centre.
+struct TorusParams : ShapeParams {
+    Vec3d center;
+    std::optional<Vec3d> axis; // unset: up
+    double majorRadius = 0.5, minorRadius = 0.125;
+};
+
+schema::TypeInfo torusType();
+// Nothing after an error.
+std::optional<UnplacedShape> makeTorus(const TorusParams&, const ShapeContext&);
 
 } // namespace abbe

@@ -1,6 +1,5 @@
 #include "media/phase_types.h"
 
-#include "base/check.h"
 #include "media/draine.h"
 #include "media/henyey_greenstein.h"
 #include "media/mie_phase.h"
@@ -8,22 +7,6 @@
 namespace abbe {
 
 namespace {
-
-struct NoParams {};
-struct HenyeyGreensteinParams {
-    double g = 0;
-};
-struct DraineParams {
-    double g = 0, alpha = 1;
-};
-
-struct MieParams {
-    double radius = 10e-6; // m
-    double spread = 0.2;
-    const Curve* index = nullptr;
-    const Curve* absorption = nullptr;
-    const Curve* surroundings = nullptr;
-};
 
 template <typename P> schema::FieldInfo asymmetry() {
     return schema::field<P, double>(schema::FieldType::number, "g", &P::g)
@@ -35,11 +18,11 @@ template <typename P> schema::FieldInfo asymmetry() {
         .example("g 0.85");
 }
 
-template <typename P> bool fill(const std::function<bool(void*)>& bind, P& params) { return bind(&params); }
+} // namespace
 
-schema::TypeInfo mieType() {
+schema::TypeInfo miePhaseType() {
     using namespace schema;
-    using P = MieParams;
+    using P = MiePhaseParams;
     return {
         Kind::phase,
         "mie",
@@ -85,7 +68,7 @@ schema::TypeInfo mieType() {
              .example("surroundings glass water")}};
 }
 
-schema::TypeInfo tableType() {
+schema::TypeInfo tablePhaseType() {
     using namespace schema;
     using P = TablePhaseParams;
     return {Kind::phase,
@@ -108,7 +91,7 @@ schema::TypeInfo tableType() {
                  .example("values { - 0 40; - 10 4; - 60 0.3; - 180 0.5 }")}};
 }
 
-schema::TypeInfo mixType() {
+schema::TypeInfo mixPhaseType() {
     using namespace schema;
     return {Kind::phase,
             "mix",
@@ -124,55 +107,58 @@ schema::TypeInfo mixType() {
                  .example("part rayleigh weight=0.3")}};
 }
 
-} // namespace
-
-std::vector<schema::TypeInfo> phaseTypes() {
-    using namespace schema;
-    return {
-        {Kind::phase, "isotropic", "Scatters evenly into all directions.", "phase even isotropic", false, {}},
-        {Kind::phase,
-         "henyey-greenstein",
-         "One lobe, forward or backward: smoke, cloud.",
-         "phase cloud henyey-greenstein 0.85",
-         false,
-         {asymmetry<HenyeyGreensteinParams>()}},
-        {Kind::phase,
-         "rayleigh",
-         "Particles far smaller than the wavelength: clean air.",
-         "phase air rayleigh",
-         false,
-         {}},
-        {Kind::phase,
-         "draine",
-         "Henyey-Greenstein times 1 + alpha cos²: dust and small drops.",
-         "phase dust draine { g 0.6; alpha 0.5 }",
-         false,
-         {asymmetry<DraineParams>(), field(FieldType::number, "alpha", &DraineParams::alpha)
-                                         .range(0, 1e6)
-                                         .byDefault("1")
-                                         .doc("Weight of cos²; 0 is Henyey-Greenstein, 1 with g 0 is Rayleigh.")
-                                         .example("alpha 0.5")}},
-        mieType(),
-        tableType(),
-        mixType(),
-    };
+schema::TypeInfo isotropicPhaseType() {
+    return {schema::Kind::phase,    "isotropic", "Scatters evenly into all directions.",
+            "phase even isotropic", false,       {}};
 }
 
-std::shared_ptr<const PhaseFunction> makePhase(std::string_view type, const std::function<bool(void*)>& bind) {
-    if (NoParams none; type == "isotropic" || type == "rayleigh") {
-        if (!fill(bind, none)) return nullptr;
-        if (type == "isotropic") return std::make_shared<HenyeyGreenstein>(0);
-        return std::make_shared<Draine>(0, 1);
-    }
-    if (HenyeyGreensteinParams p; type == "henyey-greenstein")
-        return fill(bind, p) ? std::make_shared<HenyeyGreenstein>(p.g) : nullptr;
-    if (DraineParams p; type == "draine") return fill(bind, p) ? std::make_shared<Draine>(p.g, p.alpha) : nullptr;
-    if (MieParams p; type == "mie")
-        return fill(bind, p) ? std::make_shared<MiePhase>(
-                                   MiePhase::Spheres{{p.radius, p.spread}, p.index, p.absorption, p.surroundings})
-                             : nullptr;
-    ABBE_CHECK(!"a registered phase function");
-    return nullptr;
+schema::TypeInfo henyeyGreensteinPhaseType() {
+    return {schema::Kind::phase,
+            "henyey-greenstein",
+            "One lobe, forward or backward: smoke, cloud.",
+            "phase cloud henyey-greenstein 0.85",
+            false,
+            {asymmetry<HenyeyGreensteinPhaseParams>()}};
+}
+
+schema::TypeInfo rayleighPhaseType() {
+    return {schema::Kind::phase,  "rayleigh", "Particles far smaller than the wavelength: clean air.",
+            "phase air rayleigh", false,      {}};
+}
+
+schema::TypeInfo drainePhaseType() {
+    using namespace schema;
+    using P = DrainePhaseParams;
+    return {Kind::phase,
+            "draine",
+            "Henyey-Greenstein times 1 + alpha cos²: dust and small drops.",
+            "phase dust draine { g 0.6; alpha 0.5 }",
+            false,
+            {asymmetry<P>(), field(FieldType::number, "alpha", &P::alpha)
+                                 .range(0, 1e6)
+                                 .byDefault("1")
+                                 .doc("Weight of cos²; 0 is Henyey-Greenstein, 1 with g 0 is Rayleigh.")
+                                 .example("alpha 0.5")}};
+}
+
+std::shared_ptr<const PhaseFunction> makeIsotropicPhase(const IsotropicPhaseParams&) {
+    return std::make_shared<HenyeyGreenstein>(0);
+}
+
+std::shared_ptr<const PhaseFunction> makeHenyeyGreensteinPhase(const HenyeyGreensteinPhaseParams& p) {
+    return std::make_shared<HenyeyGreenstein>(p.g);
+}
+
+std::shared_ptr<const PhaseFunction> makeRayleighPhase(const RayleighPhaseParams&) {
+    return std::make_shared<Draine>(0, 1);
+}
+
+std::shared_ptr<const PhaseFunction> makeDrainePhase(const DrainePhaseParams& p) {
+    return std::make_shared<Draine>(p.g, p.alpha);
+}
+
+std::shared_ptr<const PhaseFunction> makeMiePhase(const MiePhaseParams& p) {
+    return std::make_shared<MiePhase>(MiePhase::Spheres{{p.radius, p.spread}, p.index, p.absorption, p.surroundings});
 }
 
 } // namespace abbe

@@ -4,11 +4,25 @@
 #include "render/phase_function.h"
 #include "schema/type.h"
 
-#include <functional>
 #include <memory>
 
 namespace abbe {
 
+struct IsotropicPhaseParams {};
+struct RayleighPhaseParams {};
+struct HenyeyGreensteinPhaseParams {
+    double g = 0;
+};
+struct DrainePhaseParams {
+    double g = 0, alpha = 1;
+};
+struct MiePhaseParams {
+    double radius = 10e-6; // m
+    double spread = 0.2;
+    const Curve* index = nullptr;
+    const Curve* absorption = nullptr;
+    const Curve* surroundings = nullptr;
+};
 struct TablePhaseParams {
     schema::Text file;
     schema::TableRows values;
@@ -17,9 +31,18 @@ struct MixPhaseParams {
     std::vector<schema::WeightedReference> parts;
 };
 
-std::vector<schema::TypeInfo> phaseTypes();
-// Those that need nothing but their parameters: all but `table` and `mix`. `bind` fills the parameters of the type
-// named and returns false after a diagnostic; null then.
-std::shared_ptr<const PhaseFunction> makePhase(std::string_view type, const std::function<bool(void*)>& bind);
+schema::TypeInfo isotropicPhaseType();
+schema::TypeInfo henyeyGreensteinPhaseType();
+schema::TypeInfo rayleighPhaseType();
+schema::TypeInfo drainePhaseType();
+schema::TypeInfo miePhaseType();
+schema::TypeInfo tablePhaseType();
+schema::TypeInfo mixPhaseType();
+
+std::shared_ptr<const PhaseFunction> makeIsotropicPhase(const IsotropicPhaseParams&);
+std::shared_ptr<const PhaseFunction> makeHenyeyGreensteinPhase(const HenyeyGreensteinPhaseParams&);
+std::shared_ptr<const PhaseFunction> makeRayleighPhase(const RayleighPhaseParams&);
+std::shared_ptr<const PhaseFunction> makeDrainePhase(const DrainePhaseParams&);
+std::shared_ptr<const PhaseFunction> makeMiePhase(const MiePhaseParams&);
 
 } // namespace abbe

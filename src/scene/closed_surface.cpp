@@ -1,6 +1,6 @@
 #include "scene/closed_surface.h"
 
-#include "scene/scene_builder.h"
+#include "scene/shape_builder.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -83,28 +83,26 @@ OpenEdges openEdges(const SubdivisionCage& cage) {
 }
 
 // Media fill what has an inside: a plane has one, below it; a disk has none.
-void SceneBuilder::checkInterior(LoadedShape& shape) {
-    if (!shape.sound || !holdsMedium(shape.common)) return;
+void ShapeBuilder::checkInterior(LoadedShape& shape) {
+    if (!shape.sound || !materials.holdsMedium(shape.common)) return;
     const bool own = shape.common.interior.valid();
     Span span = shape.definition->span;
     for (const schema::Node& property : shape.definition->properties)
         if (property.name() == (own ? "interior" : "material")) span = property.nameSpan();
     const schema::Reference material = shape.common.material;
-    if (own && material.valid() && materials_[material.index]->interior()) {
-        diagnostics_.error("E0725", span, "this shape is filled twice", "its material fills it already").help =
+    if (own && material.valid() && materials[material].interior()) {
+        scene.diagnostics.error("E0725", span, "this shape is filled twice", "its material fills it already").help =
             "take a `dielectric` for the surface of an `interior`";
         shape.sound = false;
         return;
     }
-    if (own && material.valid() && materials_[material.index]->isOpaque())
-        diagnostics_.warning("W0695", span, "nothing is seen of this `interior`", "the material lets no light in")
+    if (own && material.valid() && materials[material].isOpaque())
+        scene.diagnostics.warning("W0695", span, "nothing is seen of this `interior`", "the material lets no light in")
             .help = "a medium needs a surface that light passes: `dielectric`, or `boundary` for a body without one";
     const std::string_view type = shape.definition->type->name;
-    std::string_view open = shape.openBecause;
-    if (type == "quad" || type == "disk") open = "it has no inside";
-    if (!open.empty()) {
-        diagnostics_.error("E0645", span, fmt::format("this `{}` cannot hold a medium", type), std::string(open)).help =
-            "a medium fills closed shapes: a sphere, a box, a cylinder with caps, a mesh without holes";
+    if (const std::string_view open = shape.openBecause; !open.empty()) {
+        scene.diagnostics.error("E0645", span, fmt::format("this `{}` cannot hold a medium", type), std::string(open))
+            .help = "a medium fills closed shapes: a sphere, a box, a cylinder with caps, a mesh without holes";
         shape.sound = false;
         return;
     }
@@ -113,7 +111,7 @@ void SceneBuilder::checkInterior(LoadedShape& shape) {
     const auto number = [](std::uint64_t n, std::string_view what) {
         return fmt::format("{} {}", n, n == 1 ? fmt::format("edge {}", what) : fmt::format("edges {}", what));
     };
-    diagnostics_
+    scene.diagnostics
         .warning("W0694", span, fmt::format("this `{}` is not closed, but holds a medium", type),
                  edges.open == 0     ? number(edges.turned, "between faces that are turned against each other")
                  : edges.turned == 0 ? number(edges.open, "of a single face")

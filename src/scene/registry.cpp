@@ -1,16 +1,25 @@
 #include "scene/registry.h"
 
 #include "base/check.h"
+#include "cameras/camera_params.h"
 #include "cameras/lens_system.h"
 #include "cameras/orthographic.h"
 #include "cameras/perspective.h"
 #include "cameras/spherical.h"
 #include "film/film_params.h"
+#include "geometry/box.h"
+#include "geometry/disk.h"
+#include "geometry/frustum.h"
+#include "geometry/plane.h"
+#include "geometry/quad.h"
+#include "geometry/sphere.h"
+#include "geometry/torus.h"
 #include "lights/area_light_types.h"
 #include "lights/beam_light.h"
 #include "lights/daylight_light.h"
 #include "lights/environment_light.h"
 #include "lights/ies_light.h"
+#include "lights/moving_light.h"
 #include "lights/point_light.h"
 #include "lights/sky_light.h"
 #include "lights/spot_light.h"
@@ -32,12 +41,19 @@
 #include "media/phase_types.h"
 #include "media/vdb_type.h"
 #include "rendering/render_params.h"
+#include "scene/camera_builder.h"
 #include "scene/camera_gltf.h"
 #include "scene/instances_type.h"
+#include "scene/light_builder.h"
+#include "scene/material_builder.h"
+#include "scene/material_parts.h"
+#include "scene/medium_builder.h"
+#include "scene/phase_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_curves.h"
-#include "scene/shape_parametric.h"
+#include "scene/shape_mesh.h"
 #include "scene/shape_subdivision.h"
-#include "scene/shape_types.h"
+#include "scene/texture_builder.h"
 #include "textures/attribute_texture.h"
 #include "textures/checker_texture.h"
 #include "textures/image_texture.h"
@@ -46,175 +62,281 @@
 #include "textures/ramp_texture.h"
 #include "textures/triplanar_texture.h"
 
+#include <concepts>
+#include <map>
+#include <variant>
+
 namespace abbe {
 
 namespace {
 
-// How a material is made and its type dressed.
-struct MaterialMaker {
-    MadeMaterial (*make)(const BindParams&, const MaterialParts&);
-    void (*dress)(schema::TypeInfo&);
-};
-struct MaterialEntry {
-    schema::TypeInfo (*type)();
-    MaterialMaker maker;
-};
+// What makes things of a type; nothing for types that are settings or placements, and are bound where they are used.
+using Maker =
+    std::variant<std::monostate, MakeMaterial, MakeTexture, MakeCamera, MakePhase, MakeMedium, MakeLight, LoadShape>;
 
-// What no single property can say wrong, `checkParams(const Params&, const PlaceOf&, Diagnostics&)` does, and what
-// fills shapes, `insideOf(const Params&)`, where there are such.
-template <typename Params, auto make>
-MadeMaterial made(const BindParams& bind, [[maybe_unused]] const MaterialParts& parts) {
-    WithDress<Params> params;
-    if (!bind(&params)) return {};
-    const Params& own = params;
-    const schema::PlaceOf where = [&](std::string_view property) { return placeOf(parts.definition, property); };
-    if constexpr (requires { checkParams(own, where, parts.diagnostics); })
-        if (!checkParams(own, where, parts.diagnostics)) return {};
-    if constexpr (requires { insideOf(own); }) return {make(params), params.dress, insideOf(own)};
-    return {make(params), params.dress, {}};
-}
-template <typename Params, auto make> constexpr MaterialMaker bound{made<Params, make>, addDress<Params>};
-
-// One that consists of others.
-template <typename Params, auto make> MadeMaterial madeOf(const BindParams& bind, const MaterialParts& parts) {
-    WithDress<Params> params;
-    if (!bind(&params)) return {};
-    return {make(params, parts), params.dress, {}};
-}
-template <typename Params, auto make> constexpr MaterialMaker composed{madeOf<Params, make>, addDress<Params>};
-
-// What is no surface wears nothing.
-template <typename Params, auto make> MadeMaterial madeBare(const BindParams& bind, const MaterialParts&) {
-    Params params;
-    if (!bind(&params)) return {};
-    return {make(params), {}, {}};
-}
-template <typename Params, auto make> constexpr MaterialMaker bare{madeBare<Params, make>, [](schema::TypeInfo&) {}};
-
-// A material is one line here (docs/adding_a_material.md).
-constexpr MaterialEntry kMaterials[] = {
-    {diffuseType, bound<DiffuseParams, makeDiffuse>},
-    {conductorType, bound<ConductorParams, makeConductor>},
-    {dielectricType, bound<DielectricParams, makeDielectric>},
-    {subsurfaceType, bound<SubsurfaceParams, makeSubsurfaceSurface>},
-    {mixMaterialType, composed<MixParams, makeMixOf>},
-    {twoSidedType, composed<TwoSidedParams, makeTwoSidedOf>},
-    {layeredType, composed<LayeredParams, makeLayeredOf>},
-    {boundaryType, bare<BoundaryParams, makeBoundary>},
-    {sheenType, bound<SheenParams, makeSheen>},
-    {thinDielectricType, bound<ThinDielectricParams, makeThinDielectric>},
-    {diffuseTransmissionType, bound<DiffuseTransmissionParams, makeDiffuseTransmission>},
-    {hairType, bound<HairParams, makeHair>},
-    {openPbrType, bound<OpenPbrParams, makeOpenPbr>},
+struct Entry {
+    schema::TypeInfo type;
+    Maker make = {};
 };
 
-struct TextureEntry {
-    schema::TypeInfo (*type)();
-    std::unique_ptr<Texture> (*make)(const BindParams&, const std::shared_ptr<TextureStore>&, Diagnostics&);
-};
+// ---- one adapter for each kind: binds the parameters of a type and calls its maker
 
-std::unique_ptr<Texture> makeImage(const BindParams& bind, const std::shared_ptr<TextureStore>& store,
-                                   Diagnostics& diagnostics) {
-    ImageTextureParams params;
-    return bind(&params) ? makeImageTexture(params, store, diagnostics) : nullptr;
+// What no single property can say wrong, `checkParams(const Params&, const PlaceOf&, Diagnostics&)` does; what fills
+// shapes, `insideOf(const Params&)`; what the command leaves out, `leaveOutEffects(Params&, const MaterialContext&)`:
+// where there are such.
+template <typename Params, auto make> Entry material(schema::TypeInfo type) {
+    addModifiers<Params>(type);
+    const MakeMaterial maker = [](const BindParams& bind, const MaterialContext& context) -> MadeMaterial {
+        WithModifiers<Params> params;
+        if (!bind(&params)) return {};
+        Params& own = params;
+        if constexpr (requires { leaveOutEffects(own, context); }) leaveOutEffects(own, context);
+        if constexpr (requires(const schema::PlaceOf& where) { checkParams(own, where, context.diagnostics()); }) {
+            const schema::PlaceOf where = [&](std::string_view p) { return placeOf(context.definition, p); };
+            if (!checkParams(own, where, context.diagnostics())) return {};
+        }
+        if constexpr (std::invocable<decltype(make), const Params&, const MaterialContext&>)
+            return {make(own, context), params.modifiers, {}}; // it consists of others
+        else if constexpr (requires { insideOf(own); })
+            return {make(own), params.modifiers, insideOf(own)};
+        else
+            return {make(own), params.modifiers, {}};
+    };
+    return {std::move(type), maker};
 }
 
-std::unique_ptr<Texture> makeRamp(const BindParams& bind, const std::shared_ptr<TextureStore>&,
-                                  Diagnostics& diagnostics) {
-    RampTextureParams params;
-    return bind(&params) ? makeRampTexture(params, diagnostics) : nullptr;
+// What is no surface has no modifiers.
+template <typename Params, auto make> Entry bareMaterial(schema::TypeInfo type) {
+    const MakeMaterial maker = [](const BindParams& bind, const MaterialContext&) -> MadeMaterial {
+        Params params;
+        if (!bind(&params)) return {};
+        return {make(params), {}, {}};
+    };
+    return {std::move(type), maker};
 }
 
-template <typename T, typename Params>
-std::unique_ptr<Texture> pattern(const BindParams& bind, const std::shared_ptr<TextureStore>&, Diagnostics&) {
-    Params params;
-    return bind(&params) ? std::make_unique<T>(params) : nullptr;
+// `make` is a function that takes the parameters, the store of images if it reads any, and diagnostics if it can fail.
+template <typename Params, auto make> Entry texture(schema::TypeInfo type) {
+    const MakeTexture maker = [](const BindParams& bind, const std::shared_ptr<TextureStore>& store,
+                                 Diagnostics& diagnostics) -> std::unique_ptr<Texture> {
+        Params params;
+        if (!bind(&params)) return nullptr;
+        if constexpr (std::invocable<decltype(make), const Params&, const std::shared_ptr<TextureStore>&, Diagnostics&>)
+            return make(params, store, diagnostics);
+        else
+            return make(params, diagnostics);
+    };
+    return {std::move(type), maker};
 }
 
-constexpr TextureEntry kTextures[] = {
-    {imageTextureType, makeImage},
-    {noiseTextureType, pattern<NoiseTexture, NoiseTextureParams>},
-    {checkerTextureType, pattern<CheckerTexture, CheckerTextureParams>},
-    {rampTextureType, makeRamp},
-    {triplanarTextureType, pattern<TriplanarTexture, TriplanarTextureParams>},
-    {attributeTextureType, pattern<AttributeTexture, AttributeTextureParams>},
-    {productTextureType, pattern<ProductTexture, ProductTextureParams>},
-};
-
-struct CameraEntry {
-    schema::TypeInfo (*type)();
-    std::optional<PlacedCamera> (*make)(const BindParams&, const CameraContext&, Diagnostics&);
-};
-
-template <typename Params, auto make>
-std::optional<PlacedCamera> placed(const BindParams& bind, const CameraContext& context, Diagnostics& diagnostics) {
-    Params params;
-    return bind(&params) ? make(params, context, diagnostics) : std::nullopt;
+template <typename T, typename Params> std::unique_ptr<Texture> pattern(const Params& params, Diagnostics&) {
+    return std::make_unique<T>(params);
 }
 
-// So is a camera.
-constexpr CameraEntry kCameras[] = {
-    {perspectiveType, placed<PerspectiveParams, makePerspective>},
-    {orthographicType, placed<OrthographicParams, makeOrthographic>},
-    {sphericalType, placed<SphericalParams, makeSpherical>},
-    {lensSystemType, placed<LensSystemParams, makeLensSystem>},
-    {gltfCameraType, placed<GltfCameraParams, makeGltfCamera>},
-};
+template <typename Params, auto make> Entry camera(schema::TypeInfo type) {
+    const MakeCamera maker = [](const BindParams& bind, const CameraContext& context,
+                                Diagnostics& diagnostics) -> std::optional<PlacedCamera> {
+        Params params;
+        if (!bind(&params)) return std::nullopt;
+        return make(params, context, diagnostics);
+    };
+    return {std::move(type), maker};
+}
 
-constexpr schema::TypeInfo (*kOthers[])() = {
-    quadType,      sphereType,    diskType,        planeType,     meshType,
-    lightQuadType, lightDiskType, lightSphereType, lightMeshType, pointLightType,
-    spotLightType, beamLightType, sunLightType,    skyLightType,  environmentLightType,
-    instancesType, filmType,      renderType,      daylightType,  iesLightType,
-};
+template <typename Params, auto make> Entry phase(schema::TypeInfo type) {
+    const MakePhase maker = [](const BindParams& bind,
+                               [[maybe_unused]] const PhaseContext& context) -> std::shared_ptr<const PhaseFunction> {
+        Params params;
+        if (!bind(&params)) return nullptr;
+        if constexpr (std::invocable<decltype(make), const Params&, const PhaseContext&>)
+            return make(params, context);
+        else
+            return make(params);
+    };
+    return {std::move(type), maker};
+}
+
+template <typename Params, auto make> Entry medium(schema::TypeInfo type) {
+    const MakeMedium maker = [](const BindParams& bind, const MediumContext& context) -> MadeMedium {
+        Params params;
+        if (!bind(&params)) return {};
+        return make(params, context);
+    };
+    return {std::move(type), maker};
+}
+
+// A light without a surface, or several that are one for the language. `make` takes the parameters, the context and
+// where it reports to: Diagnostics, or the BuildContext if it reads files.
+template <typename Params, auto make> Entry light(schema::TypeInfo type) {
+    const MakeLight maker = [](const BindParams& bind, LightSite& site) {
+        Params params;
+        if (!bind(&params)) return;
+        const KeyedTransform* own = nullptr;
+        if constexpr (requires { params.transform; }) own = &params.transform;
+        std::optional<LightMotion> motion;
+        const auto context = site.context(own, motion);
+        if (!context) return;
+        Visibility visible = kVisibleToAll;
+        if constexpr (std::derived_from<Params, VisibleParams>) visible = visibilityOf(params.visibleTo);
+        const auto made = [&] {
+            if constexpr (std::invocable<decltype(make), const Params&, const LightContext&, BuildContext&>)
+                return make(params, *context, site.scene());
+            else
+                return make(params, *context, site.scene().diagnostics);
+        };
+        if constexpr (std::same_as<decltype(made()), std::unique_ptr<Light>>)
+            site.add(made(), *context, visible);
+        else
+            for (std::unique_ptr<Light>& one : made()) site.add(std::move(one), *context, visible);
+    };
+    return {std::move(type), maker};
+}
+
+// A light with a surface, which `place` makes.
+template <typename Params, auto place> Entry areaLight(schema::TypeInfo type) {
+    const MakeLight maker = [](const BindParams& bind, LightSite& site) {
+        Params params;
+        if (!bind(&params)) return;
+        site.addArea(params, [&](const Transform& toRender, const ShapeContext& context) {
+            return place(params, toRender, context);
+        });
+    };
+    return {std::move(type), maker};
+}
+
+// `make` returns an UnplacedShape, or an optional one if it can fail.
+template <typename Params, auto make> Entry shape(schema::TypeInfo type) {
+    const LoadShape maker = [](const BindParams& bind, ShapeBuilder& builder, LoadedShape& loaded) {
+        Params params;
+        if (!bind(&params)) return;
+        loaded.common = params;
+        std::optional<UnplacedShape> made = make(params, builder.contextOf(*loaded.definition));
+        if (!made) return;
+        static_cast<UnplacedShape&>(loaded) = std::move(*made);
+        loaded.sound = true;
+    };
+    return {std::move(type), maker};
+}
+
+// One that reads files, deforms, or is diced for the camera.
+template <typename Params, auto load> Entry loadedShape(schema::TypeInfo type) {
+    const LoadShape maker = [](const BindParams& bind, ShapeBuilder& builder, LoadedShape& loaded) {
+        Params params;
+        if (!bind(&params)) return;
+        loaded.common = params;
+        load(params, builder, loaded);
+    };
+    return {std::move(type), maker};
+}
+
+// ---- the list: a type is one line here (docs/adding_a_material.md, adding_a_light.md, adding_a_shape.md)
+
+std::vector<Entry> makeEntries() {
+    std::vector<Entry> entries;
+    const auto add = [&](Entry entry) { entries.push_back(std::move(entry)); };
+
+    add(material<DiffuseParams, makeDiffuse>(diffuseType()));
+    add(material<ConductorParams, makeConductor>(conductorType()));
+    add(material<DielectricParams, makeDielectric>(dielectricType()));
+    add(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
+    add(material<MixParams, makeMixOf>(mixMaterialType()));
+    add(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
+    add(material<LayeredParams, makeLayeredOf>(layeredType()));
+    add(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
+    add(material<SheenParams, makeSheen>(sheenType()));
+    add(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));
+    add(material<DiffuseTransmissionParams, makeDiffuseTransmission>(diffuseTransmissionType()));
+    add(material<HairParams, makeHair>(hairType()));
+    add(material<OpenPbrParams, makeOpenPbr>(openPbrType()));
+
+    add(texture<ImageTextureParams, makeImageTexture>(imageTextureType()));
+    add(texture<NoiseTextureParams, pattern<NoiseTexture, NoiseTextureParams>>(noiseTextureType()));
+    add(texture<CheckerTextureParams, pattern<CheckerTexture, CheckerTextureParams>>(checkerTextureType()));
+    add(texture<RampTextureParams, makeRampTexture>(rampTextureType()));
+    add(texture<TriplanarTextureParams, pattern<TriplanarTexture, TriplanarTextureParams>>(triplanarTextureType()));
+    add(texture<AttributeTextureParams, pattern<AttributeTexture, AttributeTextureParams>>(attributeTextureType()));
+    add(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
+
+    add(camera<PerspectiveParams, makePerspective>(perspectiveType()));
+    add(camera<OrthographicParams, makeOrthographic>(orthographicType()));
+    add(camera<SphericalParams, makeSpherical>(sphericalType()));
+    add(camera<LensSystemParams, makeLensSystem>(lensSystemType()));
+    add(camera<GltfCameraParams, makeGltfCamera>(gltfCameraType()));
+
+    add(shape<QuadParams, makeQuad>(quadType()));
+    add(shape<SphereParams, makeSphere>(sphereType()));
+    add(shape<DiskParams, makeDisk>(diskType()));
+    add(shape<PlaneParams, makePlane>(planeType()));
+    add(loadedShape<MeshParams, loadMeshShape>(meshType()));
+
+    add(areaLight<LightQuadParams, placeLightQuad>(lightQuadType()));
+    add(areaLight<LightDiskParams, placeLightDisk>(lightDiskType()));
+    add(areaLight<LightSphereParams, placeLightSphere>(lightSphereType()));
+    add(areaLight<LightMeshParams, placeLightMesh>(lightMeshType()));
+    add(light<PointLightParams, makePointLight>(pointLightType()));
+    add(light<SpotLightParams, makeSpotLight>(spotLightType()));
+    add(light<BeamLightParams, makeBeamLight>(beamLightType()));
+    add(light<SunLightParams, makeSunLight>(sunLightType()));
+    add(light<SkyLightParams, makeSkyLight>(skyLightType()));
+    add(light<EnvironmentLightParams, loadEnvironmentLight>(environmentLightType()));
+
+    add({instancesType()});
+    add({filmType()});
+    add({renderType()});
+
+    add(light<DaylightParams, makeDaylight>(daylightType()));
+    add(light<IesLightParams, loadIesLight>(iesLightType()));
+
+    add(loadedShape<SubdivisionParams, loadSubdivision>(subdivisionType()));
+    add(loadedShape<CurvesParams, loadCurves>(curvesType()));
+    add(loadedShape<PointsParams, loadPoints>(pointsType()));
+    add(shape<BoxParams, makeBox>(boxType()));
+    add(shape<CylinderParams, makeCylinder>(cylinderType()));
+    add(shape<ConeParams, makeCone>(coneType()));
+    add(shape<TorusParams, makeTorus>(torusType()));
+
+    add(phase<IsotropicPhaseParams, makeIsotropicPhase>(isotropicPhaseType()));
+    add(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
+    add(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
+    add(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
+    add(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
+    add(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
+    add(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
+
+    add(medium<HomogeneousParams, makeHomogeneous>(homogeneousType()));
+    add(medium<AtmosphereParams, makeAtmosphere>(atmosphereType()));
+    add(medium<VdbParams, makeVdbVolume>(vdbType()));
+    add(medium<NoiseMediumParams, makeNoiseMedium>(noiseMediumType()));
+    add(medium<NoiseVolumeParams, makeNoiseVolume>(noiseVolumeType()));
+    return entries;
+}
+
+const std::vector<Entry>& entries() {
+    static const std::vector<Entry> made = makeEntries();
+    return made;
+}
 
 } // namespace
 
 schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
-    for (const MaterialEntry& entry : kMaterials) {
-        schema::TypeInfo type = entry.type();
-        entry.maker.dress(type);
-        table.add(std::move(type));
-    }
-    for (const TextureEntry& entry : kTextures) table.add(entry.type());
-    for (const CameraEntry& entry : kCameras) table.add(entry.type());
-    for (const auto type : kOthers) table.add(type());
-    for (const auto type : {subdivisionType, curvesType, pointsType}) table.add(type());
-    for (const schema::TypeInfo& type : parametricTypes()) table.add(type);
-    for (const schema::TypeInfo& type : phaseTypes()) table.add(type);
-    for (const auto type : {homogeneousType, atmosphereType, vdbType, noiseMediumType, noiseVolumeType})
-        table.add(type());
+    for (const Entry& entry : entries()) table.add(entry.type);
     return table;
 }
 
-MadeMaterial makeMaterial(std::string_view type, const BindParams& bind, const MaterialParts& parts) {
-    for (const MaterialEntry& entry : kMaterials)
-        if (entry.type().name == type) return entry.maker.make(bind, parts);
-    ABBE_CHECK(!"a registered material type");
-    return {};
-}
-
-std::unique_ptr<Texture> makeTexture(std::string_view type, const BindParams& bind,
-                                     const std::shared_ptr<TextureStore>& store, Diagnostics& diagnostics) {
-    for (const TextureEntry& entry : kTextures)
-        if (entry.type().name == type) return entry.make(bind, store, diagnostics);
-    ABBE_CHECK(!"a registered texture type");
+template <typename Make> Make makerOf(const schema::TypeInfo& type) {
+    for (const Entry& entry : entries())
+        if (entry.type.kind == type.kind && entry.type.name == type.name) return std::get<Make>(entry.make);
+    ABBE_CHECK(!"a registered type");
     return nullptr;
 }
 
-std::optional<PlacedCamera> makeCamera(std::string_view type, const BindParams& bind, const CameraContext& context,
-                                       Diagnostics& diagnostics) {
-    for (const CameraEntry& entry : kCameras)
-        if (entry.type().name == type) return entry.make(bind, context, diagnostics);
-    ABBE_CHECK(!"a registered camera type");
-    return std::nullopt;
-}
-
-std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance) {
-    DiffuseParams params;
-    params.reflectance.curve = reflectance;
-    return makeDiffuse(params);
-}
+template MakeMaterial makerOf(const schema::TypeInfo&);
+template MakeTexture makerOf(const schema::TypeInfo&);
+template MakeCamera makerOf(const schema::TypeInfo&);
+template MakePhase makerOf(const schema::TypeInfo&);
+template MakeMedium makerOf(const schema::TypeInfo&);
+template MakeLight makerOf(const schema::TypeInfo&);
+template LoadShape makerOf(const schema::TypeInfo&);
 
 } // namespace abbe

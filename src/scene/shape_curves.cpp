@@ -1,6 +1,6 @@
 #include "scene/shape_curves.h"
 
-#include "scene/scene_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_sized_points.h"
 
 #include <cmath>
@@ -128,36 +128,31 @@ std::unique_ptr<const Shape> placeCurves(CurveData data, const Transform& place,
     return curves;
 }
 
-// Whether the definition asks for light, which these shapes cannot give.
-bool SceneBuilder::refuseEmission(const Definition& d, const ShapeParams& params) {
+bool refuseEmission(const schema::Definition& d, const ShapeParams& params, Diagnostics& diagnostics) {
     if (!params.emits()) return false;
     Span span = d.span;
     for (const schema::Node& property : d.properties)
         if (property.name() == "emission") span = property.nameSpan();
-    diagnostics_.error("E0623", span, "curves and points cannot emit light in this version", "not supported").help =
+    diagnostics.error("E0623", span, "curves and points cannot emit light in this version", "not supported").help =
         "this is planned; small `sphere` shapes can emit";
     return true;
 }
 
-bool SceneBuilder::loadCurves(const Definition& d, LoadedShape& shape) {
-    if (!d.type || (d.type->name != "curves" && d.type->name != "points")) return false;
-    if (d.type->name == "points") return loadPoints(d, shape), true;
-    const auto params = bound<CurvesParams>(d);
-    if (!params) return true;
-    shape.common = *params;
+void loadCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
     shape.openBecause = "curves are open at their ends";
-    if (refuseEmission(d, *params)) return true;
-    if (!params->keys.empty()) return deformCurves(d, *params, shape), true;
-    auto data = loadCurveData(*params, tree_.header.length, d.span, diagnostics_);
-    if (!data) return true;
-    if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
+    if (refuseEmission(*shape.definition, params, context.diagnostics)) return;
+    if (!params.keys.empty()) return deformCurves(params, builder, shape);
+    auto data = loadCurveData(params, context.unit, context.span, context.diagnostics);
+    if (!data) return;
+    if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
     for (const std::uint32_t size : data->strandSizes)
         shape.segments += (size - leastPoints(data->basis)) / pointStep(data->basis) + 1;
     shape.strands = data->strandSizes.size();
     shape.sound = true;
-    shape.place = [this, kept = std::make_shared<const CurveData>(std::move(*data)),
-                   span = d.span](const Transform& t) { return placeCurves(*kept, t, span, diagnostics_); };
-    return true;
+    shape.place = [kept = std::make_shared<const CurveData>(std::move(*data)), context](const Transform& place) {
+        return placeCurves(*kept, place, context.span, context.diagnostics);
+    };
 }
 
 } // namespace abbe

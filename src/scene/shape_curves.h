@@ -3,7 +3,7 @@
 
 #include "geometry/curves.h"
 #include "geometry/points.h"
-#include "scene/shape_types.h"
+#include "scene/shape_mesh.h"
 
 namespace abbe {
 

@@ -9,7 +9,7 @@
 #include "math/transform.h"
 #include "scene/shape_curves.h"
 #include "scene/shape_key.h"
-#include "scene/shape_types.h"
+#include "scene/shape_mesh.h"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 // Meshes and cages with keys.
 #include "geometry/mesh.h"
 #include "geometry/mesh_cleanup.h"
-#include "scene/scene_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_deform.h"
 #include "scene/shape_subdivision.h"
 
@@ -155,26 +155,23 @@ std::unique_ptr<const Shape> placeMeshKeys(const MeshKeys& keys, Interval shutte
     return placeMeshSteps(std::move(faces), std::move(steps), place, span, diagnostics);
 }
 
-void SceneBuilder::noteFiles(const std::vector<ShapeKey>& keys) {
-    for (const ShapeKey& key : keys)
-        if (!key.file.value.empty()) built_->facts.files.push_back(key.file.value);
-}
-
-void SceneBuilder::deformMesh(const Definition& d, const MeshParams& params, LoadedShape& shape) {
+void deformMesh(const MeshParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
     const bool ownPoints = !params.file.value.empty() || !params.points.empty();
-    if (!checkKeys(params, params.keys, ownPoints, false, diagnostics_)) return;
+    if (!checkKeys(params, params.keys, ownPoints, false, context.diagnostics)) return;
     FaceGroups groups;
     const bool grouped = !params.groupMaterials.empty();
-    auto keys = loadMeshKeys(params, tree_.header.length, tree_.header.zUp, grouped ? &groups : nullptr, diagnostics_);
-    if (!keys || !addPointData(params, !params.keys[0].file.value.empty(), keys->states[0], d.span, diagnostics_))
+    auto keys = loadMeshKeys(params, context.unit, context.zUp, grouped ? &groups : nullptr, context.diagnostics);
+    if (!keys ||
+        !addPointData(params, !params.keys[0].file.value.empty(), keys->states[0], context.span, context.diagnostics))
         return;
-    noteFiles(params.keys);
+    builder.noteFiles(params.keys);
     shape.mesh = std::make_shared<const MeshData>(keys->states[0]);
     shape.sound = true;
-    shape.deforms = deforms(keys->times);
-    if (grouped) chooseFaceMaterials(shape, groups);
-    shape.place = [this, kept = std::make_shared<const MeshKeys>(std::move(*keys)), span = d.span](const Transform& t) {
-        return placeMeshKeys(*kept, embree_.shutter(), t, span, diagnostics_);
+    shape.deforms = builder.motion.deforms(keys->times);
+    if (grouped) builder.chooseFaceMaterials(shape, groups);
+    shape.place = [kept = std::make_shared<const MeshKeys>(std::move(*keys)), context](const Transform& place) {
+        return placeMeshKeys(*kept, context.shutter, place, context.span, context.diagnostics);
     };
 }
 

@@ -1,5 +1,5 @@
 // Curves and points with keys.
-#include "scene/scene_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_deform.h"
 
 #include <fmt/format.h>
@@ -109,31 +109,35 @@ std::unique_ptr<const Shape> placePointKeys(const PointKeys& keys, Interval shut
     return placePoints(std::move(data), place, span, diagnostics);
 }
 
-void SceneBuilder::deformCurves(const Definition& d, const CurvesParams& params, LoadedShape& shape) {
-    if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), diagnostics_)) return;
-    auto keys = loadCurveKeys(params, tree_.header.length, diagnostics_);
+void deformCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
+    if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), context.diagnostics)) return;
+    auto keys = loadCurveKeys(params, context.unit, context.diagnostics);
     if (!keys) return;
-    noteFiles(params.keys);
+    builder.noteFiles(params.keys);
     const CurveData& first = keys->states[0];
     for (const std::uint32_t size : first.strandSizes)
         shape.segments += (size - leastPoints(first.basis)) / pointStep(first.basis) + 1;
     shape.strands = first.strandSizes.size();
     shape.sound = true;
-    shape.deforms = deforms(keys->times);
-    shape.place = [this, kept = std::make_shared<const CurveKeys>(std::move(*keys)), span = d.span](
-                      const Transform& t) { return placeCurveKeys(*kept, embree_.shutter(), t, span, diagnostics_); };
+    shape.deforms = builder.motion.deforms(keys->times);
+    shape.place = [kept = std::make_shared<const CurveKeys>(std::move(*keys)), context](const Transform& place) {
+        return placeCurveKeys(*kept, context.shutter, place, context.span, context.diagnostics);
+    };
 }
 
-void SceneBuilder::deformPoints(const Definition& d, const PointsParams& params, LoadedShape& shape) {
-    if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), diagnostics_)) return;
-    auto keys = loadPointKeys(params, tree_.header.length, diagnostics_);
+void deformPoints(const PointsParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
+    if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), context.diagnostics)) return;
+    auto keys = loadPointKeys(params, context.unit, context.diagnostics);
     if (!keys) return;
-    noteFiles(params.keys);
+    builder.noteFiles(params.keys);
     shape.points = keys->states[0].points.size();
     shape.sound = true;
-    shape.deforms = deforms(keys->times);
-    shape.place = [this, kept = std::make_shared<const PointKeys>(std::move(*keys)), span = d.span](
-                      const Transform& t) { return placePointKeys(*kept, embree_.shutter(), t, span, diagnostics_); };
+    shape.deforms = builder.motion.deforms(keys->times);
+    shape.place = [kept = std::make_shared<const PointKeys>(std::move(*keys)), context](const Transform& place) {
+        return placePointKeys(*kept, context.shutter, place, context.span, context.diagnostics);
+    };
 }
 
 } // namespace abbe

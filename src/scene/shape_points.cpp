@@ -1,4 +1,4 @@
-#include "scene/scene_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_curves.h"
 #include "scene/shape_sized_points.h"
 
@@ -91,20 +91,19 @@ std::unique_ptr<const Shape> placePoints(PointData data, const Transform& place,
     return points;
 }
 
-void SceneBuilder::loadPoints(const Definition& d, LoadedShape& shape) {
-    const auto params = bound<PointsParams>(d);
-    if (!params) return;
-    shape.common = *params;
-    if (params->form.word != "sphere") shape.openBecause = "disks have no inside";
-    if (refuseEmission(d, *params)) return;
-    if (!params->keys.empty()) return deformPoints(d, *params, shape);
-    auto data = loadPointData(*params, tree_.header.length, d.span, diagnostics_);
+void loadPoints(const PointsParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
+    if (params.form.word != "sphere") shape.openBecause = "disks have no inside";
+    if (refuseEmission(*shape.definition, params, context.diagnostics)) return;
+    if (!params.keys.empty()) return deformPoints(params, builder, shape);
+    auto data = loadPointData(params, context.unit, context.span, context.diagnostics);
     if (!data) return;
-    if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
+    if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
     shape.points = data->points.size();
     shape.sound = true;
-    shape.place = [this, kept = std::make_shared<const PointData>(std::move(*data)),
-                   span = d.span](const Transform& t) { return placePoints(*kept, t, span, diagnostics_); };
+    shape.place = [kept = std::make_shared<const PointData>(std::move(*data)), context](const Transform& place) {
+        return placePoints(*kept, place, context.span, context.diagnostics);
+    };
 }
 
 } // namespace abbe

@@ -3,7 +3,7 @@
 
 #include "io/ply_points.h"
 #include "scene/shape_curves.h"
-#include "scene/shape_fields.h"
+#include "schema/scene_tree.h"
 
 namespace abbe {
 
@@ -12,6 +12,9 @@ std::optional<std::pair<std::vector<SizedPoint>, PointFile>> loadSizedPoints(con
                                                                              Span, Diagnostics&);
 // Moves the points, scales the radii. False after an error.
 bool placeSizedPoints(std::vector<SizedPoint>&, const Transform& place, Span, Diagnostics&);
+
+// Whether the definition asks for light, which these shapes cannot give: an error.
+bool refuseEmission(const schema::Definition&, const ShapeParams&, Diagnostics&);
 
 template <typename P> void addSizedPointFields(std::vector<schema::FieldInfo>& fields) {
     using namespace schema;

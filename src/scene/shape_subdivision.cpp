@@ -1,8 +1,10 @@
 #include "scene/shape_subdivision.h"
 
 #include "geometry/mesh.h"
+#include "geometry/place_shape.h"
 #include "geometry/subdivision_check.h"
-#include "scene/scene_builder.h"
+#include "scene/camera_builder.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_deform.h"
 
 #include <algorithm>
@@ -70,80 +72,96 @@ std::unique_ptr<const Shape> placeDisplaced(const Cage& cage, const Displacement
     return unlessEmpty(std::unique_ptr<const Mesh>(static_cast<const Mesh*>(shape.release())), span, diagnostics);
 }
 
-// For geometry that is seen from many places, or from none that is known yet.
-std::unique_ptr<const Shape> SceneBuilder::placeInObject(const LoadedShape& shape, const Transform& toObject) {
-    inObject_ = true;
-    auto placed = shape.place(toObject);
-    inObject_ = false;
-    return placed;
-}
-
-bool SceneBuilder::loadSubdivision(const Definition& d, LoadedShape& shape) {
-    if (!d.type || d.type->name != "subdivision") return false;
-    const auto params = bound<SubdivisionParams>(d);
-    if (!params) return true;
-    shape.common = *params;
-    const auto dicing = dicingOf(params->dicing, diagnostics_);
-    SubdivisionParams stated = *params;
-    if (!useFirstKey(stated, diagnostics_)) return true;
-    auto loaded = loadCage(stated, tree_.header.length, d.span, diagnostics_);
-    if (!checkDicingCamera(params->dicing) || !loaded || !dicing) return true;
-    if (!params->file.value.empty()) built_->facts.files.push_back(params->file.value);
-    auto keys = loadCageKeys(*params, loaded->cage, tree_.header.length, diagnostics_);
-    if (!keys) return true;
-    noteFiles(params->keys);
-    const auto choices = cageChoices(*params, *loaded);
-    if (!choices) return true;
-    const Texture* const map = textureFor(params->displacementMap, TextureUse::heights,
-                                          params->displacement ? params->displacement->span : d.span);
-    auto displacement = chooseDisplacement(*params, map, loaded->cage, diagnostics_);
-    if (!displacement) return true;
-    if (displacement->moves && leavesOut({SwitchedEffect::displacement}, d.span)) displacement.emplace();
-    shape.sound = true;
-    shape.deforms = !keys->times.empty() && deforms(keys->times);
-    if (holdsMedium(*params)) shape.cageEdges = openEdges(loaded->cage);
-    const auto cage = std::make_shared<const Cage>(std::move(loaded->cage));
-    shape.place = [this, &shape, cage, dicing = *dicing, asked = params->dicing, offscreen = params->offscreen,
-                   memory = params->memory, choices = *choices, displacement = *displacement, keys = std::move(*keys),
-                   span = d.span](const Transform& t) {
-        const Dicing rate = dicingFor(dicing, asked, offscreen, *cage, t);
-        std::vector<DicedSurface::Face> faces;
-        const Displacement* const moves = displacement.moves ? &displacement.displacement : nullptr;
-        auto placed =
-            !keys.times.empty()
-                ? placeCageKeys(*cage, keys, embree_.shutter(), moves, rate, memory, t, span, diagnostics_, &faces)
-            : displacement.moves
-                ? placeDisplaced(*cage, displacement.displacement, rate, memory, t, span, diagnostics_, &faces)
-                : placeSubdivision(*cage, rate, memory, t, span, diagnostics_, &faces);
-        if (!placed) return placed;
-        shape.dicedTriangles = faces.back().firstTriangle;
-        shape.dicedQuads = faces.back().firstQuad;
-        if (choices.empty()) return placed;
-        shape.faceMaterials.assign(shape.dicedTriangles + shape.dicedQuads, 0);
-        for (std::size_t f = 0; f < choices.size(); ++f) {
-            auto* const first = shape.faceMaterials.data();
-            std::fill(first + faces[f].firstTriangle, first + faces[f + 1].firstTriangle, choices[f]);
-            std::fill(first + shape.dicedTriangles + faces[f].firstQuad,
-                      first + shape.dicedTriangles + faces[f + 1].firstQuad, choices[f]);
-        }
-        return placed;
-    };
-    return true;
-}
+namespace {
 
 // The material of each face of a cage, as groupChoices() numbers them: empty if all have the shape's own.
-std::optional<std::vector<std::uint16_t>> SceneBuilder::cageChoices(const ShapeParams& params,
-                                                                    const LoadedCage& loaded) {
+std::optional<std::vector<std::uint16_t>> cageChoices(const ShapeParams& params, const LoadedCage& loaded,
+                                                      ShapeBuilder& builder) {
     if (params.groupMaterials.empty()) return std::vector<std::uint16_t>{};
     std::vector<std::string> names;
     for (const CageFile::Group& group : loaded.groups) names.push_back(group.name);
-    const auto ofGroup = groupChoices(params, names);
+    const auto ofGroup = builder.groupChoices(params, names);
     if (!ofGroup) return std::nullopt;
     std::vector<std::uint16_t> ofFace(loaded.cage.faceSizes.size());
     for (std::size_t g = 0; g < names.size(); ++g)
         std::fill(ofFace.begin() + static_cast<std::ptrdiff_t>(loaded.groups[g].firstFace), ofFace.end(),
                   (*ofGroup)[g]); // the next group begins where this one ends
     return ofFace;
+}
+
+// Everything about a subdivision surface that does not depend on where it stands.
+struct CageToPlace {
+    std::shared_ptr<const Cage> cage;
+    CageKeys keys;
+    Dicing dicing;
+    schema::Quantity asked; // of the dicing
+    double offscreen, memory;
+    std::vector<std::uint16_t> choices; // see cageChoices
+    DisplacementChoice displacement;
+};
+
+// Places it, and counts in `shape` what it is diced into.
+std::unique_ptr<const Shape> placeCage(const CageToPlace& c, const ShapeContext& context, CameraBuilder& cameras,
+                                       bool inObject, const Transform& place, LoadedShape& shape) {
+    const Dicing rate = cameras.dicingFor(c.dicing, c.asked, c.offscreen, *c.cage, place, inObject);
+    std::vector<DicedSurface::Face> faces;
+    const Displacement* const moves = c.displacement.moves ? &c.displacement.displacement : nullptr;
+    const Span span = context.span;
+    auto placed = !c.keys.times.empty() ? placeCageKeys(*c.cage, c.keys, context.shutter, moves, rate, c.memory, place,
+                                                        span, context.diagnostics, &faces)
+                  : moves ? placeDisplaced(*c.cage, *moves, rate, c.memory, place, span, context.diagnostics, &faces)
+                          : placeSubdivision(*c.cage, rate, c.memory, place, span, context.diagnostics, &faces);
+    if (!placed) return placed;
+    shape.dicedTriangles = faces.back().firstTriangle;
+    shape.dicedQuads = faces.back().firstQuad;
+    if (c.choices.empty()) return placed;
+    shape.faceMaterials.assign(shape.dicedTriangles + shape.dicedQuads, 0);
+    for (std::size_t f = 0; f < c.choices.size(); ++f) {
+        auto* const first = shape.faceMaterials.data();
+        std::fill(first + faces[f].firstTriangle, first + faces[f + 1].firstTriangle, c.choices[f]);
+        std::fill(first + shape.dicedTriangles + faces[f].firstQuad,
+                  first + shape.dicedTriangles + faces[f + 1].firstQuad, c.choices[f]);
+    }
+    return placed;
+}
+
+} // namespace
+
+void loadSubdivision(const SubdivisionParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
+    Diagnostics& diagnostics = context.diagnostics;
+    shape.subdivided = true;
+    const auto dicing = dicingOf(params.dicing, diagnostics);
+    SubdivisionParams stated = params;
+    if (!useFirstKey(stated, diagnostics)) return;
+    auto loaded = loadCage(stated, context.unit, context.span, diagnostics);
+    if (!builder.cameras.checkDicingCamera(params.dicing) || !loaded || !dicing) return;
+    if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
+    auto keys = loadCageKeys(params, loaded->cage, context.unit, diagnostics);
+    if (!keys) return;
+    builder.noteFiles(params.keys);
+    auto choices = cageChoices(params, *loaded, builder);
+    if (!choices) return;
+    const Texture* const map = builder.textures.textureFor(
+        params.displacementMap, TextureUse::heights, params.displacement ? params.displacement->span : context.span);
+    auto displacement = chooseDisplacement(params, map, loaded->cage, diagnostics);
+    if (!displacement) return;
+    if (displacement->moves && builder.scene.leavesOut({SwitchedEffect::displacement}, context.span))
+        displacement.emplace();
+    shape.sound = true;
+    shape.deforms = !keys->times.empty() && builder.motion.deforms(keys->times);
+    if (builder.materials.holdsMedium(params)) shape.cageEdges = openEdges(loaded->cage);
+    CageToPlace cage{std::make_shared<const Cage>(std::move(loaded->cage)),
+                     std::move(*keys),
+                     *dicing,
+                     params.dicing,
+                     params.offscreen,
+                     params.memory,
+                     std::move(*choices),
+                     *displacement};
+    shape.place = [&builder, &shape, context, cage = std::move(cage)](const Transform& place) {
+        return placeCage(cage, context, builder.cameras, builder.placesInObject(), place, shape);
+    };
 }
 
 } // namespace abbe

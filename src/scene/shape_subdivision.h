@@ -5,11 +5,21 @@
 #include "io/mesh_file.h"
 #include "render/camera.h"
 #include "scene/shape_displacement.h"
-#include "scene/shape_types.h"
+#include "scene/shape_mesh.h"
 
 #include <functional>
+#include <string_view>
 
 namespace abbe {
+
+// Words of its options, in the order of the enumerators of SubdivisionCage.
+namespace subdivision_words {
+inline constexpr std::string_view kSchemes[] = {"catmull-clark", "loop", "bilinear"};
+inline constexpr std::string_view kBoundaries[] = {"none", "edge-only", "edge-and-corner"};
+inline constexpr std::string_view kFaceVarying[] = {"none",          "corners-only", "corners-plus1",
+                                                    "corners-plus2", "boundaries",   "all"};
+inline constexpr std::string_view kCreasings[] = {"uniform", "chaikin"};
+} // namespace subdivision_words
 
 struct SubdivisionParams : ShapeParams, DisplacementParams {
     schema::Text file; // resolved path, or empty: points and faces

@@ -2,7 +2,6 @@
 #include "io/mesh_file.h"
 #include "scene/file_faults.h"
 #include "scene/shape_subdivision.h"
-#include "scene/shape_subdivision_words.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 // How large a pixel is where a surface is diced, as the render camera or a named one sees it.
-#include "cameras/camera_params.h"
 #include "math/bounds.h"
+#include "scene/camera_builder.h"
 #include "scene/registry.h"
-#include "scene/scene_builder.h"
 #include "scene/shape_subdivision.h"
 #include "schema/suggest.h"
 
@@ -91,52 +90,47 @@ std::function<double(Vec3)> pixelSizeOf(const Camera& camera, Vec2d filmSize, do
 }
 
 // The definition of the camera that dicing is measured by: null with an error, or for the render camera.
-bool SceneBuilder::checkDicingCamera(const schema::Quantity& dicing) {
+bool CameraBuilder::checkDicingCamera(const schema::Quantity& dicing) {
     for (const auto& [key, name] : dicing.keys)
-        if (!tree_.find(schema::Kind::camera, name)) {
-            unknownCamera(tree_, name, dicing.span, diagnostics_);
+        if (!context_.tree.find(schema::Kind::camera, name)) {
+            unknownCamera(context_.tree, name, dicing.span, context_.diagnostics);
             return false;
         }
     return true;
 }
 
 // Nothing while the camera itself is being made, because it asks where the shape is, and after an error in it.
-std::optional<SceneBuilder::DicingCamera> SceneBuilder::dicingCamera(const schema::Quantity& dicing) {
+std::optional<CameraBuilder::DicingCamera> CameraBuilder::dicingCamera(const schema::Quantity& dicing) {
     const auto renderCamera = [&]() -> std::optional<DicingCamera> {
-        if (!built_->scene.camera) return std::nullopt;
-        return DicingCamera{built_->scene.camera.get(), {}};
+        if (!context_.built.scene.camera) return std::nullopt;
+        return DicingCamera{context_.built.scene.camera.get(), {}};
     };
     if (dicing.keys.empty()) return renderCamera();
-    const Definition* d = tree_.find(schema::Kind::camera, dicing.keys[0].second);
-    if (!d || d == only(schema::Kind::camera, options_.camera)) return renderCamera();
+    const Definition* d = context_.tree.find(schema::Kind::camera, dicing.keys[0].second);
+    if (!d || d == context_.only(schema::Kind::camera, context_.options.camera)) return renderCamera();
     const auto [found, isNew] = dicingCameras_.try_emplace(d);
     if (isNew && d->type) {
-        const auto bindInto = binder(*d, diagnostics_);
-        CameraContext context;
-        context.zUp = tree_.header.zUp;
-        context.filmSize = {static_cast<int>(built_->film.size.x), static_cast<int>(built_->film.size.y)};
-        context.span = d->span;
-        context.middleOf = [this](std::string_view name, double time) { return middleOfShape(name, time); };
-        if (auto placed = makeCamera(d->type->name, bindInto, context, diagnostics_))
+        const auto bindInto = context_.binder(*d, context_.diagnostics);
+        if (auto placed = makerOf<MakeCamera>(*d->type)(bindInto, contextOf(*d), context_.diagnostics))
             found->second = std::make_unique<const PlacedCamera>(std::move(*placed));
     }
     if (!found->second) return std::nullopt;
-    return DicingCamera{found->second->camera.get(), built_->scene.origin - found->second->origin};
+    return DicingCamera{found->second->camera.get(), context_.built.scene.origin - found->second->origin};
 }
 
-Dicing SceneBuilder::dicingFor(Dicing dicing, const schema::Quantity& asked, double offscreen,
-                               const SubdivisionCage& cage, const Transform& place) {
+Dicing CameraBuilder::dicingFor(Dicing dicing, const schema::Quantity& asked, double offscreen,
+                                const SubdivisionCage& cage, const Transform& place, bool inObject) {
     if (dicing.mode != Dicing::Mode::pixels) return dicing;
     const auto camera = dicingCamera(asked);
     if (!camera) {
         dicing.mode = Dicing::Mode::level;
         dicing.rate = 2;
-    } else if (inObject_) {
+    } else if (inObject) {
         Bounds3d box;
         for (const Vec3 p : cage.positions) box.add(place.point(Vec3d(p)));
-        dicing.pixelSize = [size = length(box.upper - box.lower) / built_->film.size.y](Vec3) { return size; };
+        dicing.pixelSize = [size = length(box.upper - box.lower) / context_.built.film.size.y](Vec3) { return size; };
     } else {
-        dicing.pixelSize = [size = pixelSizeOf(*camera->camera, built_->film.size, offscreen),
+        dicing.pixelSize = [size = pixelSizeOf(*camera->camera, context_.built.film.size, offscreen),
                             shift = camera->toCamera](Vec3 p) { return size(Vec3(Vec3d(p) + shift)); };
     }
     return dicing;

@@ -1,6 +1,5 @@
-#include "scene/shape_fields.h"
+#include "scene/shape_mesh.h"
 #include "scene/shape_subdivision.h"
-#include "scene/shape_subdivision_words.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,5 @@
 // Shapes that some kinds of rays do not see.
-#include "scene/scene_builder.h"
+#include "scene/placer.h"
 
 #include <fmt/format.h>
 
@@ -26,66 +26,65 @@ Span visibleSpan(const schema::Definition& d) {
 } // namespace
 
 // Of groups, objects and instances, which have no type.
-Placing SceneBuilder::ownPlacing(const Definition& d) {
+Placing Placer::ownPlacing(const Definition& d) {
     Placing result;
     for (const schema::Node& property : d.properties) {
         if (property.name() == "transform") {
-            result.transform = schema::bindMotion(property, tree_.header, diagnostics_);
+            result.transform = schema::bindMotion(property, context_.tree.header, context_.diagnostics);
         } else if (property.name() == "visible-to") {
-            if (const auto words = schema::bindWords(visibleOfPlacement(), property, tree_, diagnostics_))
+            if (const auto words =
+                    schema::bindWords(visibleOfPlacement(), property, context_.tree, context_.diagnostics))
                 result.visible = visibilityOf(*words);
         } else {
-            diagnostics_.error("E0201", property.nameSpan(),
-                               fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
-                               "only `transform` and `visible-to` are possible here");
+            context_.diagnostics.error(
+                "E0201", property.nameSpan(),
+                fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
+                "only `transform` and `visible-to` are possible here");
         }
     }
     return result;
 }
 
-// What a shape's materials make of it.
-Passing SceneBuilder::passingOf(const ShapeParams& params) {
+Passing Placer::passingOf(const ShapeParams& params) {
     Passing passing;
     const auto add = [&](const Material* material) {
         if (!material) return;
         passing.add({isEntered(*material), material->mayBeOpen()});
     };
-    add(materialOf(params));
-    for (const schema::GroupReference& group : params.groupMaterials) add(materials_[group.reference.index].get());
-    passing.entered = passing.entered || holdsMedium(params);
+    add(materials_.ofShape(params));
+    for (const schema::GroupReference& group : params.groupMaterials) add(&materials_[group.reference]);
+    passing.entered = passing.entered || materials_.holdsMedium(params);
     return passing;
 }
 
-// Notes what the scene asks of those who trace rays. What light goes through it meets on its way in and out, whatever
-// ray it is: such a shape is seen by all.
-void SceneBuilder::noteVisible(Visibility visible, Passing passing, const Definition& asker) {
+void Placer::noteVisible(Visibility visible, Passing passing, const Definition& asker) {
     if (visible == kVisibleToAll) return;
     if (passing.entered) {
-        diagnostics_
+        context_.diagnostics
             .error("E0635", visibleSpan(asker), "light goes through this shape, so all rays have to see it",
                    "hides glass, a boundary or an interior")
             .help = "only opaque shapes can be hidden, and thin sheets, which have no inside";
         return;
     }
     if (passing.open && !seenAlike(visible)) {
-        diagnostics_
+        context_.diagnostics
             .error("E0635", visibleSpan(asker), "shadows and reflections have to see the same openings",
                    "hides a shape whose `opacity` is below 1 from one of them")
             .help = "name both `shadows` and `reflections`, or neither of them";
         return;
     }
-    HiddenShapes& hidden = built_->scene.hidden;
+    HiddenShapes& hidden = context_.built.scene.hidden;
     hidden.fromCamera = hidden.fromCamera || !visible.has(RayKind::camera);
     hidden.splits =
         hidden.splits || !seenAlike(visible) || (visible.has(RayKind::camera) && !visible.has(RayKind::scattered));
 }
 
 // Light paths follow one kind of rays from lights to what they light.
-void SceneBuilder::checkLightPathsSeeAll() {
-    const auto& choice = built_->render.lightPaths.word;
-    if (!built_->scene.hidden.splits || (choice != "always" && choice != "alone")) return;
-    diagnostics_
-        .error("E0636", tree_.header.span,
+void Placer::checkLightPathsSeeAll() {
+    const auto& choice = context_.built.render.lightPaths.word;
+    if (!context_.built.scene.hidden.splits || (choice != "always" && choice != "alone")) return;
+    context_.diagnostics
+        .error("E0636", context_.tree.header.span,
                fmt::format("`light-paths {}` does not go with shapes that only some rays see", choice),
                "`visible-to` of a shape names `shadows` without `reflections`, the other way round, or `camera` alone")
         .help = "leave `light-paths` to `automatic`: camera paths do the work then";

@@ -18,8 +18,14 @@
 #include <vector>
 
 namespace abbe {
+
 class Texture;
-}
+
+// Fills the parameter struct of a type from a definition; false after an error. `params` may be null where the type is
+// not known: what is wrong in every type of the kind is reported all the same.
+using BindParams = std::function<bool(void* params)>;
+
+} // namespace abbe
 
 namespace abbe::schema {
 

@@ -4,7 +4,7 @@
 
 #include "render/scene.h"
 #include "rendering/path_record.h"
-#include "scene/forwarding_material.h"
+#include "scene/wrapped_materials.h"
 #include "support/forwarding_film.h"
 
 #include <array>

@@ -4,7 +4,6 @@
 #include "geometry/quad.h"
 #include "geometry/sphere.h"
 #include "geometry/transformed.h"
-#include "scene/shape_types.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>
@@ -42,9 +41,9 @@ TEST_CASE("texture coordinates lead to their point, and its area, and back") {
     shapes.push_back(std::make_unique<Quad>(Vec3{0, 0, 0}, Vec3{2, 0, 0.3f}, Vec3{1.5f, 2, 0.1f}, Vec3{-0.5f, 1, 0}));
     for (const Vec3d scale : {Vec3d{1, 1, 1}, {2, 2, 2}, {1, 2, 0.5}, {-1, 1, 1}, {-1, 3, 0.5}}) {
         const Transform map = someMap(scale);
-        shapes.push_back(makeQuad({}, {2, 1}, map, {}, diagnostics));
-        shapes.push_back(makeDisk({0.3, 0, 0}, {1, 1, 0}, 0.7, map, {}, diagnostics));
-        shapes.push_back(makeSphere({0, 0.2, 0}, 0.7, map, {}, diagnostics));
+        shapes.push_back(placeQuad({}, {2, 1}, map, {}, diagnostics));
+        shapes.push_back(placeDisk({0.3, 0, 0}, {1, 1, 0}, 0.7, map, {}, diagnostics));
+        shapes.push_back(placeSphere({0, 0.2, 0}, 0.7, map, {}, diagnostics));
     }
     test::Random random(5);
     for (const auto& shape : shapes) {

@@ -7,7 +7,7 @@
 #include "cameras/perspective.h"
 #include "cameras/shutter_camera.h"
 #include "cameras/spherical.h"
-#include "scene/reduced.h"
+#include "cameras/held_camera.h"
 
 #include <algorithm>
 #include <cmath>

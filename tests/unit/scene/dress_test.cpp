@@ -1,7 +1,7 @@
 // What any material may wear: opacity, normal and bump maps, priority.
 #include "materials/diffuse.h"
 #include "math/warp.h"
-#include "scene/dressed_material.h"
+#include "scene/wrapped_materials.h"
 #include "scene_test_fixture.h"
 #include "support/analytic_textures.h"
 #include "support/statistics.h"
@@ -105,7 +105,7 @@ TEST_CASE("a dressed material bends into the hemisphere of the eye, over frames 
         const auto direction = [&] { return squareToSphere({random.uniform(), random.uniform()}); };
         const Constant stored({random.uniform(), random.uniform(), random.uniform()});
         const SpaceWave wave;
-        const DressedMaterial material(plain(), {number(1), {&stored, 20 * random.uniform()}, {&wave, 3}, 0});
+        const ModifiedMaterial material(plain(), {number(1), {&stored, 20 * random.uniform()}, {&wave, 3}, 0});
         SurfaceHit hit = chart();
         hit.ng = direction();
         hit.shading = Frame::fromNormal(normalize(hit.ng + direction() * 0.9f));
@@ -121,7 +121,7 @@ TEST_CASE("a dressed material bends into the hemisphere of the eye, over frames 
 
 TEST_CASE("what a material wears asks for effects, and what it does not wear costs nothing") {
     const auto undressed = build(sphere("diffuse { reflectance 0.3 }"));
-    CHECK(dynamic_cast<const DressedMaterial*>(&materialAt(undressed)) == nullptr);
+    CHECK(dynamic_cast<const ModifiedMaterial*>(&materialAt(undressed)) == nullptr);
     CHECK(undressed.scene().effects.empty());
     const auto thin = build(sphere("diffuse { reflectance 0.3; opacity 40 % }"));
     CHECK(materialAt(thin).mayBeOpen());

@@ -1,0 +1,51 @@
+// The camera, what its focus may be measured to, and how large its pixels are where surfaces are diced.
+#pragma once
+
+#include "cameras/camera_params.h"
+#include "geometry/subdivision_surface.h"
+#include "scene/build_context.h"
+#include "scene/shape_builder.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+// Makes a camera of its registered type from bound parameters; nothing after an error.
+using MakeCamera = std::optional<PlacedCamera> (*)(const BindParams&, const CameraContext&, Diagnostics&);
+
+class CameraBuilder {
+  public:
+    using Definition = schema::Definition;
+
+    CameraBuilder(BuildContext& context, ShapeBuilder& shapes) : context_(context), shapes_(shapes) {}
+
+    void build(); // into the scene, whose exposure is known then
+
+    // shape_subdivision_camera.cpp. Whether a camera of that name exists; false after an error.
+    bool checkDicingCamera(const schema::Quantity& dicing);
+    // With the size of pixels filled in, if that is how the surface is diced. `inObject`: it is seen from many places.
+    Dicing dicingFor(Dicing, const schema::Quantity& asked, double offscreen, const SubdivisionCage&,
+                     const Transform& place, bool inObject);
+
+  private:
+    struct DicingCamera {
+        const Camera* camera;
+        Vec3d toCamera; // what takes render space to the space of its rays
+    };
+
+    CameraContext contextOf(const Definition&);
+    const Definition* findShape(const std::vector<Definition>&, std::string_view name, double time, Transform& place);
+    std::optional<Vec3d> middleOfShape(std::string_view name, double time); // of its bounds, world space
+    void leaveOutEffects(const Definition& camera);
+    std::optional<DicingCamera> dicingCamera(const schema::Quantity& dicing);
+
+    BuildContext& context_;
+    ShapeBuilder& shapes_;
+    std::map<const Definition*, std::unique_ptr<const PlacedCamera>> dicingCameras_; // null: being made, or faulty
+};
+
+} // namespace abbe

@@ -1,0 +1,203 @@
+#include "scene/light_builder.h"
+
+#include "geometry/disk.h"
+#include "geometry/place_shape.h"
+#include "geometry/quad.h"
+#include "geometry/sphere.h"
+#include "lights/area_light.h"
+#include "lights/moving_light.h"
+#include "scene/placer.h"
+#include "scene/shape_mesh.h"
+#include "schema/suggest.h"
+
+#include <fmt/format.h>
+#include <set>
+
+namespace abbe {
+
+LightContext LightBuilder::contextOf(const Definition& d, const Motion& toRender) {
+    LightContext context;
+    context.toRender = motion_.atOpening(toRender);
+    context.defaultColor = context_.curves.daylight();
+    context.span = d.span;
+    context.zUp = context_.tree.header.zUp;
+    context.time = motion_.opening();
+    return context;
+}
+
+bool LightBuilder::checkPower(const Light& light, Span span) {
+    constexpr LightRange kRange = {1e-30, 1e35, "W"};
+    const double power = light.power();
+    if (!light.bounds(0) || kRange.holds(power)) return true;
+    reportBeyondRange(power, kRange, "light", span, fmt::format("gives off {:.3g} W", power), context_.diagnostics)
+        .notes.push_back(
+            fmt::format("the power of a light is 0, or between {:g} and {:g} W", kRange.least, kRange.most));
+    return false;
+}
+
+void LightBuilder::add(std::unique_ptr<Light> light, const Definition& d, Visibility visible) {
+    if (!light) return;
+    light->setVisible(visible);
+    if (!(light->power() > 0))
+        context_.diagnostics.warning("W0740", d.span, "this light is dark; no light is asked of it");
+    if (!checkPower(*light, d.span)) return;
+    context_.built.scene.names[light.get()] = context_.nameOf(d);
+    if (const MediumEmission* glow = light->emission()) context_.built.scene.names[glow] = context_.nameOf(d);
+    lights_.push_back(std::move(light));
+    names_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
+}
+
+const Light* LightBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender,
+                                     Visibility visible) {
+    const ShapeEmission emission = shapes_.emissionOf(shape);
+    const Definition& d = *shape.definition;
+    std::optional<LightMotion> motion;
+    if (!emission.radiance.curve || !motion_.ofLight(toRender, d.span, motion)) return nullptr;
+    if (!checkLightRange(emission.radiance, kSurfaceRadiance, emission.span.valid() ? emission.span : d.span,
+                         context_.diagnostics))
+        return nullptr;
+    // A light that is sampled would shine from its holes, too.
+    if (const Material* material = shapes_.materials.ofShape(shape.common); material && material->mayBeOpen()) {
+        context_.diagnostics
+            .error("E0754", d.span, "a shape that shines has a material with holes", "its `opacity` is below 1")
+            .help = "take the opacity off, or put the light behind a shape with holes";
+        return nullptr;
+    }
+    std::unique_ptr<const LightTexture> texture;
+    if (emission.texture) {
+        if (!textures_.checkLight(*emission.texture, emission.span, {d, placed, shape.uvOnFaces})) return nullptr;
+        const Transform toOwn = motion_.atOpening(toRender).inverse().value_or(Transform{});
+        texture = std::make_unique<const LightTexture>(placed, *emission.texture, toOwn, *emission.radiance.curve,
+                                                       context_.options.geometry);
+        if (texture->black())
+            context_.diagnostics.warning("W0740", d.span, "this light is dark; no light is asked of it");
+    }
+    const bool both = emission.bothSides;
+    if (motion)
+        lights_.push_back(std::make_unique<MovingAreaLight>(placed, emission.radiance, both, std::move(*motion),
+                                                            std::move(texture), emission.veil));
+    else
+        lights_.push_back(
+            std::make_unique<AreaLight>(placed, emission.radiance, both, std::move(texture), emission.veil));
+    if (!checkPower(*lights_.back(), d.span)) return lights_.pop_back(), nullptr;
+    lights_.back()->setVisible(visible);
+    names_.emplace_back(d.name, "shape");
+    context_.built.scene.names[lights_.back().get()] = context_.nameOf(d);
+    return lights_.back().get();
+}
+
+bool LightBuilder::takeTexture(const AreaLightParams& params, const Shape& shape, const Definition& d,
+                               LightContext& context) {
+    context.texturesOpen = context_.options.geometry;
+    context.texture = params.radiance.texture;
+    Span asker = params.radiance.span;
+    if (params.texture.valid()) {
+        if (context.texture) {
+            context_.diagnostics
+                .error("E0755", asker, "`texture` has no effect beside a `radiance` that is a texture itself",
+                       "this texture")
+                .help = "multiply the two: `texture product { first …; second … }`";
+            return false;
+        }
+        for (const schema::Node& property : d.properties)
+            if (property.name() == "texture") asker = property.nameSpan();
+        context.texture = textures_.textureFor(params.texture, TextureUse::light, asker);
+        if (!context.texture) return false;
+    }
+    if (!context.texture) return true;
+    context.textureWhite = textures_.white(*context.texture);
+    return textures_.checkLight(*context.texture, asker, {d, shape});
+}
+
+void LightBuilder::checkGroups() {
+    std::set<std::string_view> known;
+    for (const auto& light : lights_) known.insert(context_.built.scene.names.at(light.get()));
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    for (const LightGroup& group : context_.built.layers.groups)
+        for (const std::string& member : group.members)
+            if (!known.contains(member)) {
+                const std::string_view near = schema::nearest(member, names);
+                context_.diagnostics
+                    .error("E0655", context_.built.film.layers.span, fmt::format("no light is called `{}`", member),
+                           fmt::format("in the light group `{}`", group.name))
+                    .help = near.empty() ? "give the light a name: `light NAME quad { … }`" : schema::didYouMean(near);
+            }
+}
+
+double LightBuilder::commit(const Bounds3& box) {
+    double emitted = 0;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        lights_[i]->commit(box);
+        emitted += lights_[i]->power();
+        context_.built.facts.lightList.push_back({names_[i].first, names_[i].second, lights_[i]->power()});
+    }
+    return emitted;
+}
+
+BuildContext& LightSite::scene() { return lights_.scene(); }
+
+std::optional<LightContext> LightSite::context(const KeyedTransform* own, std::optional<LightMotion>& motion) {
+    LightContext context = lights_.contextOf(definition_, place_.motion);
+    if (!own) return context;
+    if (!lights_.motion().ofLight(lights_.motion().within(place_.motion, *own), definition_.span, motion))
+        return std::nullopt;
+    if (motion) context.motion = &*motion;
+    return context;
+}
+
+void LightSite::add(std::unique_ptr<Light> light, const LightContext& context, Visibility own) {
+    lights_.add(inMotion(std::move(light), context), definition_, place_.visible & own);
+}
+
+void LightSite::addArea(const AreaLightParams& params, const MakeSurface& make) {
+    const Transform outer = lights_.motion().atOpening(place_.motion);
+    const Transform toRender = params.transform.at(lights_.motion().opening()).then(outer);
+    auto shape = make(toRender, lights_.shapes().contextOf(definition_));
+    if (!shape) return;
+    placer_.carry(params.transform, place_, definition_.span, [&](const Place& place) {
+        LightContext context = lights_.contextOf(definition_, place_.motion);
+        std::optional<LightMotion> motion;
+        if (!lights_.motion().ofLight(place.motion, definition_.span, motion) ||
+            !lights_.takeTexture(params, *shape, definition_, context))
+            return;
+        const auto toOwn = toRender.inverse();
+        context.toOwn = toOwn.value_or(Transform{});
+        if (motion) context.motion = &*motion;
+        auto light = makeAreaLight(params, *shape, context, scene().diagnostics);
+        if (!light || !lights_.checkPower(*light, definition_.span)) return;
+        // A lamp emits and reflects nothing.
+        const Shape* const placed = lights_.shapes().keep(std::move(shape));
+        scene().built.scene.names[placed] = scene().nameOf(definition_);
+        scene().built.declared[placed] = definition_.nameSpan;
+        placer_.noteBounds(definition_, placed->bounds(), place);
+        const Visibility visible = place.visible & visibilityOf(params.visibleTo);
+        placer_.noteVisible(visible, {}, definition_);
+        placer_.add(*placed,
+                    {lights_.shapes().materials.plain(0), light.get(), toOwn, context.texture != nullptr, visible},
+                    place);
+        lights_.add(std::move(light), definition_, visible);
+    });
+}
+
+std::unique_ptr<const Shape> placeLightQuad(const LightQuadParams& p, const Transform& place, const ShapeContext& c) {
+    return placeQuad(p.points, p.size, place, c.span, c.diagnostics);
+}
+
+std::unique_ptr<const Shape> placeLightDisk(const LightDiskParams& p, const Transform& place, const ShapeContext& c) {
+    return placeDisk(p.center, p.normal, p.radius, place, c.span, c.diagnostics);
+}
+
+std::unique_ptr<const Shape> placeLightSphere(const LightSphereParams& p, const Transform& place,
+                                              const ShapeContext& c) {
+    return placeSphere(p.center, p.radius, place, c.span, c.diagnostics);
+}
+
+std::unique_ptr<const Shape> placeLightMesh(const LightMeshParams& p, const Transform& place, const ShapeContext& c) {
+    const Vec3d origin = farMiddle(p.points);
+    auto mesh = loadMesh(p.file, c.unit, relativeTo(origin, p.points), p.faces, c.span, c.diagnostics, c.zUp);
+    if (!mesh) return nullptr;
+    if (!p.file.value.empty()) c.files.push_back(p.file.value);
+    return placeMesh(std::move(*mesh), Transform::translate(origin).then(place), c.span, c.diagnostics);
+}
+
+} // namespace abbe

@@ -1,0 +1,92 @@
+// Materials with what modifies them, and what shapes are made of.
+#pragma once
+
+#include "geometry/shape_params.h"
+#include "materials/subsurface_albedo.h"
+#include "render/material.h"
+#include "scene/build_context.h"
+#include "scene/material_modifiers.h"
+#include "scene/medium_builder.h"
+#include "scene/texture_builder.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace abbe {
+
+struct BumpMap;
+struct NormalMap;
+
+// What a material is made from besides its own parameters: the materials of the scene so far, to some of which its
+// definition refers.
+struct MaterialContext {
+    BuildContext& scene;
+    const schema::Definition& definition;
+    const std::vector<std::unique_ptr<const Material>>& made;
+
+    const Material& operator[](schema::Reference reference) const { return *made[reference.index]; }
+    Diagnostics& diagnostics() const { return scene.diagnostics; }
+};
+
+// A material before it is modified; null after an error.
+struct MadeMaterial {
+    std::unique_ptr<const Material> material;
+    MaterialModifiers modifiers;
+    std::optional<SubsurfaceInside> inside; // of translucent solids: a medium to be made of it
+};
+
+// Makes a material of its registered type from bound parameters.
+using MakeMaterial = MadeMaterial (*)(const BindParams&, const MaterialContext&);
+
+// The material of shapes that name none, and of lamps.
+std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance);
+
+class MaterialBuilder {
+  public:
+    using Definition = schema::Definition;
+
+    MaterialBuilder(BuildContext& context, TextureBuilder& textures, MediumBuilder& media)
+        : context_(context), textures_(textures), media_(media) {}
+
+    schema::Reference reference(const Definition&);
+    const Material& operator[](schema::Reference r) const { return *materials_[r.index]; }
+    const Material* plain(double reflectance);
+
+    // Of a shape, which uses it: the surface and what it holds, as one material.
+    const Material* ofShape(const ShapeParams&);
+    const Material* ofGroup(const schema::GroupReference&, const ShapeParams&);
+    bool holdsMedium(const ShapeParams&) const; // of its own, or of its materials
+
+    void noteEffects();      // of what shapes use
+    bool boundaries() const; // whether light goes straight through any surface of these
+    std::size_t count() const { return materials_.size(); }
+    std::vector<std::unique_ptr<const Material>> release();
+
+  private:
+    std::uint32_t keep(std::unique_ptr<const Material>, Span asker);
+    const Material* filled(const Material* surface, const ShapeParams&);
+    std::unique_ptr<const Material> withoutAbsorption(std::unique_ptr<const Material>,
+                                                      Span asker); // where it is left out
+    // The material as modified, or the material itself where nothing is; null after an error.
+    std::unique_ptr<const Material> modified(std::unique_ptr<const Material>, const MaterialModifiers&,
+                                             const Definition&);
+    std::unique_ptr<const Material> translucent(std::unique_ptr<const Material> surface, const SubsurfaceInside&,
+                                                const Definition&);
+    bool checkModifiers(const Material&, const MaterialModifiers&, const Definition&);
+    std::optional<std::pair<NormalMap, BumpMap>> mapsOf(const MaterialModifiers&);
+
+    BuildContext& context_;
+    TextureBuilder& textures_;
+    MediumBuilder& media_;
+    std::vector<std::unique_ptr<const Material>> materials_, inner_; // the second: those that others wrap
+    std::vector<const Definition*> open_;                            // being made
+    std::vector<std::pair<std::uint32_t, Span>> askers_;             // who made it, for effects
+    std::map<double, std::optional<std::uint32_t>> plain_;           // by reflectance
+    std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
+    std::set<std::uint32_t> used_; // of shapes that were placed
+};
+
+} // namespace abbe

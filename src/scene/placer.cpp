@@ -1,0 +1,194 @@
+#include "scene/placer.h"
+
+#include "scene/instance_builder.h"
+#include "scene/registry.h"
+
+#include <cmath>
+#include <utility>
+
+namespace abbe {
+
+using schema::Kind;
+
+void Placer::countShape(const LoadedShape& shape) {
+    SceneFacts& facts = context_.built.facts;
+    ++facts.shapes;
+    if (shape.mesh) {
+        facts.triangles += shape.mesh->triangles.size();
+        facts.quads += shape.mesh->quads.size();
+    } else if (shape.dicedTriangles + shape.dicedQuads > 0) {
+        facts.triangles += shape.dicedTriangles;
+        facts.quads += shape.dicedQuads;
+    } else if (shape.segments + shape.points > 0) {
+        facts.strands += shape.strands;
+        facts.segments += shape.segments;
+        facts.points += shape.points;
+    } else if (shape.quads > 0) {
+        facts.quads += shape.quads;
+    } else {
+        ++facts.analytic;
+    }
+}
+
+// Emitters and planes are placed once for each instance of an object, each by itself; everything else once in it.
+void Placer::placeShape(const Definition& d, const Place& outer) {
+    LoadedShape& loaded = shapes_.loaded(d);
+    if (!loaded.sound) return;
+    if (outer.object && (loaded.infinite || shapes_.emissionOf(loaded).radiance.curve)) {
+        outer.object->unshared.push_back({&d, outer.motion, outer.visible});
+        return;
+    }
+    carry(loaded.common.transform, outer, d.span, [&](const Place& place) { placeLoaded(loaded, place); });
+}
+
+void Placer::placeLoaded(LoadedShape& loaded, const Place& place) {
+    if (loaded.infinite && place.motion.moves()) {
+        context_.diagnostics
+            .error("E0634", loaded.definition->span, "an infinite plane cannot move", "it or what holds it moves")
+            .help = "give it an end: use a quad or a disk";
+        return;
+    }
+    const Transform here = motion_.atOpening(place.motion);
+    auto shape = place.object ? shapes_.placeInObject(loaded, here) : loaded.place(here);
+    if (!shape) return;
+    countShape(loaded);
+    noteEffects(loaded);
+    if (place.object) place.object->hasShapes = true;
+    const Shape* placed = shapes_.keep(std::move(shape));
+    context_.built.scene.names[placed] = context_.nameOf(*loaded.definition);
+    context_.built.declared[placed] = loaded.definition->nameSpan;
+    noteBounds(*loaded.definition, loaded.infinite ? kEverything : placed->bounds(), place);
+    if (!std::exchange(loaded.texturesChecked, true)) checkTextures(loaded, *placed);
+    const Visibility visible = place.visible & visibilityOf(loaded.common.visibleTo);
+    const Passing passing = passingOf(loaded.common);
+    noteVisible(visible, passing, *loaded.definition);
+    if (place.object) place.object->passing.add(passing);
+    add(*placed,
+        {materials_.ofShape(loaded.common), lights_.emitterOf(loaded, *placed, place.motion, visible), here.inverse(),
+         shapes_.emissionOf(loaded).texture != nullptr, visible},
+        place);
+}
+
+void Placer::add(const Shape& shape, EmbreeSceneBuilder::Binding binding, const Place& place) {
+    const Bounds3 box = shape.bounds();
+    media_.notePlaced(*binding.material, place.into ? kEverything : box, place.object != nullptr);
+    noteFocusing(*binding.material, {box, context_.built.scene.names[&shape]}, place.into);
+    context_.built.scene.surfaces.push_back({&shape, binding.material, place.into != nullptr});
+    if (place.into) {
+        place.into->shapes.emplace_back(&shape, binding);
+        place.into->bounds.add(box);
+        return;
+    }
+    if (std::isfinite(shape.area())) extend(box);
+    embree.addShape(shape, binding);
+}
+
+void Placer::placeGroup(const Definition& d, const Place& outer) {
+    const Placing own = ownPlacing(d);
+    Place place = outer;
+    place.visible = place.visible & own.visible;
+    carry(own.transform, place, d.span, [&](const Place& inside) { placeAll(d.children, inside); });
+}
+
+void Placer::placeVolume(const Definition& d, const Place& place) {
+    if (place.object || place.motion.moves()) {
+        context_.diagnostics
+            .error("E0644", d.span, "a volume stands still, at the top level or in a group",
+                   place.object ? "in an object" : "what holds it moves")
+            .help = "media that fill shapes (`interior`) may move and be instanced";
+        return;
+    }
+    MadeMedium made = media_.makeVolume(d, motion_.atOpening(place.motion));
+    if (!made.medium) return;
+    if (made.light) lights_.add(std::move(made.light), d);
+    media_.noteOpen(media_[{media_.keep(std::move(made.medium), d)}], d.span);
+}
+
+// An unknown name has been reported.
+void Placer::placeAtmosphere(const Definition& d) {
+    const Definition* const named = context_.tree.find(Kind::medium, d.target);
+    if (!named) return;
+    if (const schema::Reference medium = context_.reference(*named);
+        medium.valid() && !context_.leavesOut({SwitchedEffect::medium, context_.nameOf(*named)}, d.span))
+        media_.noteOpen(media_[medium], d.span);
+}
+
+void Placer::noteEffects(const LoadedShape& shape) {
+    const Definition& d = *shape.definition;
+    if (shape.deforms) context_.noteEffect(Effect::motion, d.span, "it changes its shape while the shutter is open");
+    if (shape.strands > 0) context_.noteEffect(Effect::curves, d.span, "it is made of curves");
+    if (!shape.subdivided) return;
+    context_.noteEffect(Effect::subdivision, d.span, "its surface is the limit of a cage");
+    for (const schema::Node& property : d.properties)
+        if (property.name() == "displacement")
+            context_.noteEffect(Effect::displacement, property.headSpan(), "a map moves its surface");
+}
+
+void Placer::noteBounds(const Definition& d, const Bounds3& box, const Place& place, std::size_t places) {
+    SceneFacts::ShapeFact fact;
+    const bool placement = d.kind == schema::Kind::instance || d.kind == schema::Kind::instances;
+    fact.kind = schema::keyword(d.kind);
+    fact.name = placement ? d.target : context_.nameOf(d);
+    if (d.type) fact.type = d.type->name;
+    fact.places = places;
+    if (place.object) fact.inside = place.object->name;
+    if (!box.empty()) {
+        const Vec3d origin = place.object ? Vec3d() : context_.built.scene.origin;
+        fact.bounds = {Vec3d(box.lower) + origin, Vec3d(box.upper) + origin};
+    }
+    context_.built.facts.shapeList.push_back(std::move(fact));
+}
+
+void Placer::checkTextures(LoadedShape& loaded, const Shape& shape) {
+    const TexturedShape on{*loaded.definition, shape, loaded.uvOnFaces};
+    shapes_.textures.check(loaded.common.material, on);
+    for (const schema::GroupReference& group : loaded.common.groupMaterials)
+        shapes_.textures.check(group.reference, on);
+}
+
+void Placer::noteFocusing(const Material& material, FocusingShape shape, Assembly* into) {
+    if (material.focuses()) focusingIn(into).push_back(std::move(shape));
+}
+
+void Placer::placeLight(const Definition& d, const Place& place) {
+    if (place.object) {
+        place.object->unshared.push_back({&d, place.motion, place.visible});
+        return;
+    }
+    LightSite site(d, place, *this, lights_);
+    const auto bindInto = context_.binder(d);
+    if (d.type)
+        makerOf<MakeLight> (*d.type)(bindInto, site);
+    else
+        bindInto(nullptr); // unknown type: report what is wrong besides
+}
+
+void Placer::placeAll(const std::vector<Definition>& definitions, const Place& place) {
+    for (const Definition& d : definitions) {
+        switch (d.kind) {
+        case Kind::shape:
+            placeShape(d, place);
+            break;
+        case Kind::light:
+            placeLight(d, place);
+            break;
+        case Kind::group:
+            placeGroup(d, place);
+            break;
+        case Kind::atmosphere:
+            placeAtmosphere(d);
+            break;
+        case Kind::volume:
+            placeVolume(d, place);
+            break;
+        case Kind::instance:
+        case Kind::instances:
+            instances_.place(d, definitions, place);
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+} // namespace abbe

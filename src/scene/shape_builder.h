@@ -1,0 +1,106 @@
+// Shapes as their definitions state them, before it is known where they stand.
+#pragma once
+
+#include "geometry/shape_params.h"
+#include "lights/amount.h"
+#include "scene/build_context.h"
+#include "scene/closed_surface.h"
+#include "scene/material_builder.h"
+#include "scene/scene_motion.h"
+#include "scene/texture_builder.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+class CameraBuilder;
+
+// Made once per definition, placed once or, in objects with lights and planes, once per instance.
+struct LoadedShape : UnplacedShape {
+    const schema::Definition* definition = nullptr;
+    ShapeParams common;
+    std::vector<std::uint16_t> faceMaterials;          // of the last placement: of its triangles, then of its quads
+    std::size_t strands = 0, segments = 0, points = 0; // of curves and points
+    std::size_t dicedTriangles = 0, dicedQuads = 0;    // of the last placement of a subdivision surface
+    OpenEdges cageEdges;                               // of a cage that a medium fills
+    bool subdivided = false;                           // the limit of a cage
+    bool deforms = false;                              // while the shutter is open
+    bool sound = false;
+    bool texturesChecked = false;
+};
+
+// What a shape gives off.
+struct ShapeEmission {
+    ScaledCurve radiance; // no curve: none
+    const Texture* texture = nullptr;
+    Span span; // where the texture is asked for
+    bool bothSides = false;
+    const EmissionVeil* veil = nullptr;
+};
+
+class ShapeBuilder;
+
+// Fills a shape from bound parameters of its registered type: `sound` stays false after an error.
+using LoadShape = void (*)(const BindParams&, ShapeBuilder&, LoadedShape&);
+
+class ShapeBuilder {
+  public:
+    using Definition = schema::Definition;
+
+    ShapeBuilder(BuildContext& context, const SceneMotion& sceneMotion, TextureBuilder& textureBuilder,
+                 MediumBuilder& mediumBuilder, MaterialBuilder& materialBuilder, CameraBuilder& cameraBuilder)
+        : scene(context), motion(sceneMotion), textures(textureBuilder), media(mediumBuilder),
+          materials(materialBuilder), cameras(cameraBuilder) {}
+
+    LoadedShape& loaded(const Definition&);
+    // For geometry that is seen from many places, or from none that is known yet.
+    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
+    bool placesInObject() const { return inObject_; } // there is no camera to measure pixels by
+    const Shape* keep(std::unique_ptr<const Shape> shape) { return shapes_.emplace_back(std::move(shape)).get(); }
+    std::vector<std::unique_ptr<const Shape>> release() { return std::move(shapes_); }
+
+    // Its own emission, or else that of its material.
+    ShapeEmission emissionOf(const LoadedShape&);
+
+    // For those who load shapes.
+    ShapeContext contextOf(const Definition&);
+    void noteFiles(const std::vector<struct ShapeKey>&);
+    // For each group of faces the material that it has, by its position in `groupMaterials` from 1 on; 0: the shape's
+    // own. Nothing after an error.
+    std::optional<std::vector<std::uint16_t>> groupChoices(const ShapeParams&, const std::vector<std::string>& names);
+    void chooseFaceMaterials(LoadedShape&, const FaceGroups&);
+
+    BuildContext& scene;
+    const SceneMotion& motion;
+    TextureBuilder& textures;
+    MediumBuilder& media;
+    MaterialBuilder& materials;
+    CameraBuilder& cameras;
+
+  private:
+    void checkInterior(LoadedShape&); // closed_surface.cpp
+    std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
+
+    std::map<const Definition*, LoadedShape> loaded_;
+    std::vector<std::unique_ptr<const Shape>> shapes_; // those that were placed
+    bool inObject_ = false;                            // placeInObject() is running
+};
+
+struct CurvesParams;
+struct MeshParams;
+struct PointsParams;
+struct SubdivisionParams;
+void loadMeshShape(const MeshParams&, ShapeBuilder&, LoadedShape&);
+void loadCurves(const CurvesParams&, ShapeBuilder&, LoadedShape&);
+void loadPoints(const PointsParams&, ShapeBuilder&, LoadedShape&);
+void loadSubdivision(const SubdivisionParams&, ShapeBuilder&, LoadedShape&);
+// The same for shapes with keys: shape_deform_mesh.cpp, shape_deform_points.cpp.
+void deformMesh(const MeshParams&, ShapeBuilder&, LoadedShape&);
+void deformCurves(const CurvesParams&, ShapeBuilder&, LoadedShape&);
+void deformPoints(const PointsParams&, ShapeBuilder&, LoadedShape&);
+
+} // namespace abbe
