@@ -44,10 +44,6 @@ class Curves final : public Shape {
     Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     double area() const override; // of tubes without ends; of ribbons seen from the side; at first
 
-    // Curves do not emit.
-    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
-
   private:
     void addStrand(std::uint32_t strand, std::uint32_t first, std::uint32_t size);
     void addBounds(const std::vector<SizedPoint>& step, std::uint32_t first);

@@ -17,7 +17,7 @@ struct MeshStep {
 // As Mesh, but between equally spaced steps vertices move in straight lines. At any time the face normals are those of
 // the faces as they are then; vertex normals are interpolated. Texture coordinates and attributes stay with
 // their vertices.
-class DeformingMesh final : public Shape {
+class DeformingMesh final : public Shape, public VertexAttributes {
   public:
     // Requires data in which cleanMesh() finds no error at any step, and 2 … kMaxTimeSteps steps. The positions and
     // normals of `faces` itself are not used. Faces without area at some time are no fault.
@@ -35,13 +35,10 @@ class DeformingMesh final : public Shape {
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     bool hasTextureCoordinates() const override { return !faces_.uvs.empty(); }
+    const VertexAttributes* attributes() const override { return this; }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;
     double area() const override; // the largest of all steps
-
-    // Deforming meshes do not emit: their area changes.
-    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     MeshData faces_; // and texture coordinates, attributes

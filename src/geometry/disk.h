@@ -9,7 +9,7 @@ namespace abbe {
 
 // u is the distance from the centre / radius, v the angle / 2π. Requires normal != 0, radius > 0. Rays may have
 // directions of any length.
-class Disk final : public Shape {
+class Disk final : public Shape, public SurfaceSampling {
   public:
     Disk(Vec3d centre, Vec3d normal, double radius);
     // Of what this map, which keeps angles, makes of a disk in its own space: the angle that textures see starts and
@@ -30,12 +30,14 @@ class Disk final : public Shape {
     EmitterPart emitterPart(std::uint32_t) const override {
         return {.box = bounds(), .area = area(), .axis = Vec3(z_), .cosNormals = 1};
     }
+    const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return kPiD * radius_ * radius_; }
     // Uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
     std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
     float pdfPoint(std::uint32_t, Vec3) const override { return static_cast<float>(1 / area()); }
+    std::optional<RawHit> locate(Vec3, std::uint32_t, const Ray& towards) const override { return intersect(towards); }
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:

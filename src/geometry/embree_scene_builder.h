@@ -21,7 +21,7 @@ class EmbreeSceneBuilder {
   public:
     struct Binding {
         const Material* material = nullptr;
-        const Light* light = nullptr;
+        const SurfaceLight* light = nullptr;
         // For textures: from the coordinates of the shape to its own space, before its transform; nothing: the same.
         std::optional<Transform> toOwn = {};
         bool parametrized = false; // even if no material looks at textures

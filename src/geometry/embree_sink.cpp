@@ -67,7 +67,7 @@ void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id, Visibi
 EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records, bool nested)
     : device_(device), scene_(scene), records_(records), firstRecord_(records.size()), nested_(nested) {}
 
-void EmbreeSink::add(const Shape& shape, const Material* material, const Light* light, std::uint32_t space,
+void EmbreeSink::add(const Shape& shape, const Material* material, const SurfaceLight* light, std::uint32_t space,
                      Visibility visible) {
     visible_ = visible;
     next_ = {&shape, material, light, space, 0, PrimitiveKind::analytic, 1};

@@ -10,7 +10,7 @@
 namespace abbe {
 
 class Material;
-class Light;
+class SurfaceLight;
 
 enum class PrimitiveKind : std::uint8_t { triangles, quads, curves, points, analytic, instance };
 
@@ -18,7 +18,7 @@ enum class PrimitiveKind : std::uint8_t { triangles, quads, curves, points, anal
 struct GeometryRecord {
     const Shape* shape = nullptr;
     const Material* material = nullptr;
-    const Light* light = nullptr;
+    const SurfaceLight* light = nullptr;
     std::uint32_t space = kUntextured; // position of the map to the shape's own space, for textures
     std::uint16_t part = 0;
     PrimitiveKind kind = PrimitiveKind::instance;
@@ -38,7 +38,7 @@ class EmbreeSink final : public GeometrySink {
     // `nested`: meshes of dielectrics can be skipped by rays (RayContext::skips).
     EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records, bool nested);
 
-    void add(const Shape&, const Material*, const Light*, std::uint32_t space = GeometryRecord::kUntextured,
+    void add(const Shape&, const Material*, const SurfaceLight*, std::uint32_t space = GeometryRecord::kUntextured,
              Visibility = kVisibleToAll);
 
     void triangles(TimeSteps<Vec3>, Triangles) override;

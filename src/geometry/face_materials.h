@@ -28,29 +28,11 @@ class FaceMaterials final : public Shape {
         shape_->parametrize(raw, ray, hit);
     }
     bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
-    std::optional<Vec3> attribute(std::string_view name, const SurfaceHit& hit) const override {
-        return shape_->attribute(name, hit);
-    }
+    const SurfaceSampling* sampling() const override { return shape_->sampling(); }
+    const VertexAttributes* attributes() const override { return shape_->attributes(); }
     float meanCurvature(const SurfaceHit& hit) const override { return shape_->meanCurvature(hit); }
-    std::vector<std::string_view> attributeNames() const override { return shape_->attributeNames(); }
     bool usesTextures() const override;
     double area() const override { return shape_->area(); }
-    std::uint32_t emitterParts() const override { return shape_->emitterParts(); }
-    EmitterPart emitterPart(std::uint32_t i) const override { return shape_->emitterPart(i); }
-    std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const override {
-        return shape_->sample(from, part, u);
-    }
-    float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const override {
-        return shape_->pdfSolidAngle(from, hit);
-    }
-    std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override {
-        return shape_->samplePoint(part, u);
-    }
-    float pdfPoint(std::uint32_t part, Vec3 ng) const override { return shape_->pdfPoint(part, ng); }
-    std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray& ray) const override {
-        return shape_->locate(p, part, ray);
-    }
-    std::optional<UvPoint> uvPoint(Vec2 uv) const override { return shape_->uvPoint(uv); }
 
   private:
     std::unique_ptr<const Shape> shape_;

@@ -20,7 +20,7 @@ struct NormalReport {
 
 // Flat-shaded without vertex normals. uv are the barycentrics of the primitive when the data have none.
 // Requires data that cleanMesh() has accepted: indices in range, finite positions.
-class Mesh final : public Shape {
+class Mesh final : public Shape, public SurfaceSampling, public VertexAttributes {
   public:
     // `mirrored`: faces were turned round, because the map that placed them is a mirror.
     explicit Mesh(MeshData, bool mirrored = false);
@@ -38,6 +38,8 @@ class Mesh final : public Shape {
     float meanCurvature(const SurfaceHit&) const override; // of its triangle; 0 without vertex normals
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     Relief relief() const override { return data_.normals.empty() ? Relief::facets : Relief::smooth; }
+    const SurfaceSampling* sampling() const override { return this; }
+    const VertexAttributes* attributes() const override { return this; }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;
     double area() const override { return area_; }

@@ -9,7 +9,7 @@ namespace abbe {
 // A surface that is stated in its own space, about the y axis and near the origin, and lives in render space under a
 // map that may scale its axes differently. All of it is computed in double and rounded to float once, at the end. Rays
 // may have directions of any length.
-class ParametricShape : public Shape {
+class ParametricShape : public Shape, public SurfaceSampling {
   public:
     Bounds3 bounds() const override { return bounds_; }
     void commit(GeometrySink&) const override;
@@ -18,12 +18,15 @@ class ParametricShape : public Shape {
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     Relief relief() const override { return Relief::smooth; }
+    const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return area_; }
     // Uniform per area of the shape in its own space.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
     std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
     float pdfPoint(std::uint32_t part, Vec3 ng) const override;
+    EmitterPart emitterPart(std::uint32_t) const override { return {.box = bounds(), .area = area()}; }
+    std::optional<RawHit> locate(Vec3, std::uint32_t, const Ray& towards) const override { return intersect(towards); }
 
   protected:
     // Own space. `part` tells surfaces apart that meet in an edge.

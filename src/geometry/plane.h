@@ -24,8 +24,6 @@ class Plane final : public Shape {
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     Relief relief() const override { return Relief::smooth; }
     double area() const override;
-    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
 
   private:
     Vec3d point_, x_, y_, z_;

@@ -39,10 +39,6 @@ class Points final : public Shape {
     Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
     double area() const override; // at first
 
-    // Points do not emit.
-    std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
-    float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
-
   private:
     void removeInvisible();
     void addBounds(const std::vector<SizedPoint>&);

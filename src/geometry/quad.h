@@ -10,7 +10,7 @@ namespace abbe {
 
 // Corners in order, counter-clockwise seen from outside. Traced as the two triangles (p00, p10, p01) and
 // (p11, p01, p10); uv runs from p00 to p10 (u) and to p01 (v). Requires finite corners and a nonzero area.
-class Quad final : public Shape {
+class Quad final : public Shape, public SurfaceSampling {
   public:
     // `mirrored`: the corners were turned round, because the map that placed them is a mirror.
     Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01, bool mirrored = false);
@@ -21,6 +21,7 @@ class Quad final : public Shape {
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     Relief relief() const override { return Relief::facets; }
+    const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return area_; }
     EmitterPart emitterPart(std::uint32_t) const override;
     // Rectangles seen large: uniform per solid angle, or, for receivers lit from one side, about in proportion to the

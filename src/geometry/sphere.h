@@ -10,7 +10,7 @@ namespace abbe {
 // Poles on the y axis: u is the longitude / 2π from +z towards +x, v rises from the south pole to the north. Those
 // textures see are about the axes of the shape's own space.
 // Requires radius > 0. Rays may have directions of any length (under instances).
-class Sphere final : public Shape {
+class Sphere final : public Shape, public SurfaceSampling {
   public:
     Sphere(Vec3d centre, double radius);
     // Of what this map, which keeps angles, makes of a sphere in its own space.
@@ -27,12 +27,15 @@ class Sphere final : public Shape {
     float meanCurvature(const SurfaceHit&) const override { return static_cast<float>(1 / radius_); }
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     Relief relief() const override { return Relief::smooth; }
+    const SurfaceSampling* sampling() const override { return this; }
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
     std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;
     float pdfPoint(std::uint32_t, Vec3) const override { return static_cast<float>(1 / area()); }
+    EmitterPart emitterPart(std::uint32_t) const override { return {.box = bounds(), .area = area()}; }
+    std::optional<RawHit> locate(Vec3, std::uint32_t, const Ray& towards) const override { return intersect(towards); }
     std::optional<UvPoint> uvPoint(Vec2 uv) const override;
 
   private:

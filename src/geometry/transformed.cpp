@@ -91,7 +91,7 @@ SurfaceHit Transformed::pointInRender(Vec3 p, Vec3 pError, Vec3 ng) const {
 
 std::optional<ShapeSample> Transformed::sample(const Receiver& from, std::uint32_t, Vec2 u) const {
     const Vec3 origin(inverse_.point(Vec3d(from.p)));
-    const auto inner = shape_->sample(origin, 0, u);
+    const auto inner = shape_->sampling()->sample(origin, 0, u);
     if (!inner) return std::nullopt;
     const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     const Vec3 w = inner->p - origin;
@@ -107,12 +107,12 @@ float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) co
     inner.ng = Vec3(normalize(inverse_.normal(Vec3d(hit.ng))));
     const Vec3 w = inner.p - origin;
     if (!(lengthSquared(w) > 0)) return 0;
-    const double pdf = static_cast<double>(shape_->pdfSolidAngle(origin, inner)) * directionJacobian(normalize(w));
+    const double pdf = static_cast<double>(shape_->sampling()->pdfSolidAngle(origin, inner)) * directionJacobian(normalize(w));
     return std::isfinite(static_cast<float>(pdf)) ? static_cast<float>(pdf) : 0;
 }
 
 std::optional<ShapePoint> Transformed::samplePoint(std::uint32_t part, Vec2 u) const {
-    const auto inner = shape_->samplePoint(part, u);
+    const auto inner = shape_->sampling()->samplePoint(part, u);
     if (!inner) return std::nullopt;
     const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     return ShapePoint{hit.p, hit.pError, hit.ng, pdfPoint(part, hit.ng)};
@@ -121,11 +121,11 @@ std::optional<ShapePoint> Transformed::samplePoint(std::uint32_t part, Vec2 u) c
 // Own area per render area is 1 / |cof(A) n| for the own normal n, and |cof(A⁻¹) n'| for the one here.
 float Transformed::pdfPoint(std::uint32_t part, Vec3 ng) const {
     const Vec3d back = inverse_.normal(Vec3d(ng));
-    return static_cast<float>(static_cast<double>(shape_->pdfPoint(part, Vec3(normalize(back)))) * length(back));
+    return static_cast<float>(static_cast<double>(shape_->sampling()->pdfPoint(part, Vec3(normalize(back)))) * length(back));
 }
 
 std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {
-    const auto inner = shape_->uvPoint(uv);
+    const auto inner = shape_->sampling()->uvPoint(uv);
     if (!inner) return std::nullopt;
     const SurfaceHit hit = pointInRender(inner->p, inner->pError, inner->ng);
     const double stretch = length(map_.map().normal(Vec3d(inner->ng))); // cofactors: render area per own area

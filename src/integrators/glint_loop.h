@@ -19,8 +19,9 @@ struct GlintView {
 
     // What a lamp gives in this direction, if it is what is seen.
     Spectrum emitted(const Light& light, const Wavelengths& lambda) const {
-        if (hit) return hit->light == &light ? light.emitted(*hit, -direction, lambda) : Spectrum(0.f);
-        return light.infinite() ? light.escaped(direction, lambda, time) : Spectrum(0.f);
+        if (hit) return hit->light == &light ? hit->light->emitted(*hit, -direction, lambda) : Spectrum(0.f);
+        const DistantLight* const distant = light.asDistant();
+        return distant && distant->hasExtent() ? distant->escaped(direction, lambda, time) : Spectrum(0.f);
     }
 };
 

@@ -196,8 +196,8 @@ double LightLoop<E>::askedDensity(const EmittedRay& start, const Receiver& from,
     if (start.deltaPosition || start.deltaDirection) return picked;
     const float time = this->path_.time;
     const float pdf = start.density.distant
-                          ? start.light->pdfEscaped(from, direction, time)
-                          : start.light->pdfAtPoint(from, start.part, start.ray.origin, start.n, time);
+                          ? start.light->asDistant()->pdfEscaped(from, direction, time)
+                          : start.light->asPlaced()->pdfAtPoint(from, start.part, start.ray.origin, start.n, time);
     return picked * static_cast<double>(pdf);
 }
 

@@ -70,7 +70,7 @@ template <EffectBits E> void PathLoop<E>::leaveScene(const Ray& ray) {
     checkDirection(direction);
     if (context_.scene.hidden.splits && !arrivesAlike(ray, kInfinity)) [[unlikely]]
         return;
-    for (const Light* light : context_.lights.infinite()) {
+    for (const DistantLight* light : context_.lights.infinite()) {
         if (!light->visible().has(ray.kind)) continue;
         float lightPdf = 0;
         if (!path_.delta && context_.how.asksLights)

@@ -38,7 +38,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
     std::vector<Source> far;
     std::vector<double> farAmounts;
     for (const auto& light : lights) {
-        if (light->infinite()) infinite_.push_back(light.get());
+        if (light->infinite()) infinite_.push_back(light->asDistant());
         for (std::uint32_t part = 0; part < light->parts(); ++part) {
             const std::optional<LightBounds> bounds = light->bounds(part);
             const bool isNear = bounds && hasPlace(*bounds);

@@ -47,7 +47,7 @@ class LightSampler {
     PickedLight pickAlong(float u, const Ray&, RayExtent) const noexcept;
     float probabilityAlong(const Light* light, std::uint32_t part, const Ray&, RayExtent) const noexcept;
     // Lights that rays which leave the scene meet.
-    const std::vector<const Light*>& infinite() const { return infinite_; }
+    const std::vector<const DistantLight*>& infinite() const { return infinite_; }
 
   private:
     struct Source {
@@ -76,7 +76,7 @@ class LightSampler {
     float farIrradiance_ = 0;           // by all far lights, W/m²
     std::vector<double> farCumulative_; // of farProbability_, ends at 1
     std::vector<float> farProbability_; // among them
-    std::vector<const Light*> infinite_;
+    std::vector<const DistantLight*> infinite_;
     std::unordered_map<const Light*, Run> offsets_; // of their parts in places_
     std::vector<std::uint32_t> places_;             // in lights_, or kNone: dark
     std::unordered_map<const MediumEmission*, const Light*> emitters_;

@@ -12,11 +12,12 @@ namespace abbe {
 // Render space.
 struct LightTarget {
     const Light* light = nullptr;
-    LightOrigin origin;     // of a light at a place
-    bool distant = false;   // otherwise what follows:
-    Vec3 direction;         // unit, towards the light
-    Spectrum radiance{0.f}; // from there; irradiance if the light is a single direction
-    bool delta = false;     // of a single point or direction, or of a beam: no path meets it by chance
+    const PlacedLight* placed = nullptr; // the same, unless it is distant
+    LightOrigin origin;                  // of a light at a place
+    bool distant = false;                // otherwise what follows:
+    Vec3 direction;                      // unit, towards the light
+    Spectrum radiance{0.f};              // from there; irradiance if the light is a single direction
+    bool delta = false;                  // of a single point or direction, or of a beam: no path meets it by chance
     // 1/m² of origin.p or 1/sr of the direction, with the probability of the light's part; deltas count as 1.
     float pdf = 0;
     float pick = 1; // probability of the light
@@ -28,8 +29,8 @@ struct LightTarget {
         LightTarget target;
         target.light = &light;
         target.pick = pick;
-        if (light.paths() == LightPaths::distant) {
-            const auto s = light.sampleDistant(u, lambda, time);
+        if (const DistantLight* const far = light.asDistant()) {
+            const auto s = far->sampleDistant(u, lambda, time);
             if (!s) return std::nullopt;
             target.distant = true;
             target.delta = s->delta || light.unmet();
@@ -37,7 +38,9 @@ struct LightTarget {
             target.radiance = s->radiance;
             target.pdf = s->pdfSolidAngle;
         } else {
-            const auto origin = light.sampleOrigin(part, u, lambda, time);
+            target.placed = light.asPlaced();
+            if (!target.placed) return std::nullopt;
+            const auto origin = target.placed->sampleOrigin(part, u, lambda, time);
             if (!origin) return std::nullopt;
             target.takeOrigin(*origin);
         }
@@ -47,12 +50,12 @@ struct LightTarget {
     // The same for a point of an area light that a path has met, without what it gives off.
     static LightTarget met(const SurfaceHit& hit, float time) noexcept {
         LightTarget target;
-        target.light = hit.light;
+        target.light = target.placed = hit.light;
         target.takeOrigin(hit.light->originAt(hit.light->partOf(hit), hit.p, hit.ng, time));
         return target;
     }
     // And for a direction in which a path left the scene.
-    static LightTarget met(const Light& light, Vec3 w, float time) noexcept {
+    static LightTarget met(const DistantLight& light, Vec3 w, float time) noexcept {
         LightTarget target;
         target.light = &light;
         target.distant = true;
@@ -63,17 +66,18 @@ struct LightTarget {
 
     // And for where a light path began, of a light that has an extent.
     static LightTarget begun(const EmittedRay& start, float time) noexcept {
-        if (start.density.distant) return met(*start.light, -start.ray.direction, time);
+        if (start.density.distant) return met(*start.light->asDistant(), -start.ray.direction, time);
         LightTarget target;
         target.light = start.light;
-        target.takeOrigin(start.light->originAt(start.part, start.ray.origin, start.n, time));
+        target.placed = start.light->asPlaced();
+        target.takeOrigin(target.placed->originAt(start.part, start.ray.origin, start.n, time));
         return target;
     }
 
     // Of light that leaves in the unit direction w: radiance times the cosine at the light, intensity of a point, or
     // what arrives from far away.
     Spectrum leaving(Vec3 w, const Wavelengths& lambda) const noexcept {
-        return distant ? radiance : light->leaving(origin, w, lambda) * origin.cosine(w);
+        return distant ? radiance : placed->leaving(origin, w, lambda) * origin.cosine(w);
     }
 
   private:

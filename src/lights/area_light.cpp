@@ -26,19 +26,19 @@ SampledCurve veiledSpectrum(const Curve& spectrum, const EmissionVeil& veil) {
 
 AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided,
                      std::unique_ptr<const LightTexture> texture, const EmissionVeil* veil)
-    : shape_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)), veil_(veil),
+    : shape_(shape), sampling_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)), veil_(veil),
       twoSided_(twoSided) {
     if (veil_) veiled_.emplace(veiledSpectrum(*unveiled(), *veil_));
     const double area = shape.area();
     const double spread = std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiance.scale : 0;
-    const Curve& mean = *powerShape();
+    const Curve& mean = veiled_ ? *veiled_ : *unveiled();
     power_ = spread * radiantIntegral(mean);
     visiblePower_ = spread * visibleIntegral(mean);
 }
 
 std::optional<LightBounds> AreaLight::bounds(std::uint32_t part) const {
     if (!(power_ > 0)) return std::nullopt;
-    const EmitterPart p = shape_.emitterPart(part);
+    const EmitterPart p = sampling_->emitterPart(part);
     const double share = texture_ ? texture_->share(part) : p.area / shape_.area();
     return LightBounds{.box = p.box,
                        .axis = p.axis,
@@ -59,7 +59,7 @@ std::optional<LightSample> AreaLight::sample(const Receiver& from, std::uint32_t
 std::optional<ShapeSample> AreaLight::point(const Receiver& from, std::uint32_t part, Vec2 u, const Wavelengths& lambda,
                                             Spectrum& factor) const noexcept {
     if (!texture_) [[likely]]
-        return shape_.sample(from, part, u);
+        return sampling_->sample(from, part, u);
     return texture_->sample(from, part, u, lambda, factor);
 }
 
@@ -100,7 +100,7 @@ Spectrum AreaLight::radiance(float cosine, const Wavelengths& lambda) const noex
 
 float AreaLight::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float) const noexcept {
     if (!emits(hit.ng, from.p - hit.p)) return 0;
-    const float pdf = texture_ ? texture_->pdfSolidAngle(from, hit) : shape_.pdfSolidAngle(from, hit);
+    const float pdf = texture_ ? texture_->pdfSolidAngle(from, hit) : sampling_->pdfSolidAngle(from, hit);
     return pdf < kInfinity ? pdf : 0; // as in sample
 }
 
@@ -132,7 +132,7 @@ LightOrigin AreaLight::originOf(Vec3 p, Vec3 n, float pdf, float time) const noe
 std::optional<LightOrigin> AreaLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
                                                    float time) const noexcept {
     Spectrum factor(1.f);
-    const auto s = texture_ ? texture_->samplePoint(part, u, lambda, factor) : shape_.samplePoint(part, u);
+    const auto s = texture_ ? texture_->samplePoint(part, u, lambda, factor) : sampling_->samplePoint(part, u);
     if (!s || !(s->pdfArea > 0) || !(s->pdfArea < kInfinity)) return std::nullopt;
     LightOrigin origin = originOf(s->p, s->ng, s->pdfArea, time);
     origin.pError = s->pError;
@@ -141,7 +141,7 @@ std::optional<LightOrigin> AreaLight::sampleOrigin(std::uint32_t part, Vec2 u, c
 }
 
 LightOrigin AreaLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
-    const float pdf = texture_ ? texture_->pdfPoint(part, p, n) : shape_.pdfPoint(part, n);
+    const float pdf = texture_ ? texture_->pdfPoint(part, p, n) : sampling_->pdfPoint(part, n);
     return originOf(p, n, pdf < kInfinity ? pdf : 0, time); // as in sampleOrigin
 }
 
@@ -160,8 +160,8 @@ Spectrum AreaLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths
     return emits(origin.n, w) ? radiance(dot(origin.n, w), lambda) * origin.factor : Spectrum(0.f);
 }
 
-std::unique_ptr<Light> makeAreaLight(const AreaLightParams& params, const Shape& shape, const LightContext& context,
-                                     Diagnostics& diagnostics) {
+std::unique_ptr<SurfaceLight> makeAreaLight(const AreaLightParams& params, const Shape& shape,
+                                            const LightContext& context, Diagnostics& diagnostics) {
     if (!params.stated()) {
         reportMissingAmount(kAreaAmounts, context.span, diagnostics);
         return nullptr;

@@ -12,7 +12,7 @@
 
 namespace abbe {
 
-class AreaLight : public Light {
+class AreaLight : public SurfaceLight {
   public:
     // The shape is in render space; shape and curve outlive the light. `radiance` is that where the texture is 1; the
     // texture is one over the same shape and curve. The veil outlives the light; null: none.
@@ -20,20 +20,19 @@ class AreaLight : public Light {
               const EmissionVeil* veil = nullptr);
 
     // Infinite planes cannot be sampled: 0, so that they are never chosen.
-    double power() const override { return power_; }
-    double visiblePower() const override { return visiblePower_; }
-    std::uint32_t parts() const override { return shape_.emitterParts(); }
+    LightOutput output() const override {
+        return {.power = power_, .visiblePower = visiblePower_, .spectrum = veiled_ ? &*veiled_ : unveiled()};
+    }
+    std::uint32_t parts() const override { return sampling_->emitterParts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
-    const Curve* powerShape() const override { return veiled_ ? &*veiled_ : unveiled(); }
     // Nothing for shapes without an end.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
     Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit& hit, float) const noexcept override;
     float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
 
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
                                             float time) const noexcept override;
     LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
@@ -59,6 +58,7 @@ class AreaLight : public Light {
     // Shape of the spectrum in the mean over the surface.
     const Curve* unveiled() const { return texture_ ? &texture_->spectrum() : radiance_.curve; }
     const Shape& shape_;
+    SamplingOf sampling_;
     Vec3 centre_;
     ScaledCurve radiance_;
     std::unique_ptr<const LightTexture> texture_; // or null
@@ -72,6 +72,6 @@ struct LightContext;
 struct AreaLightParams;
 
 // A light over a shape that the caller has built. Null after an error.
-std::unique_ptr<Light> makeAreaLight(const AreaLightParams&, const Shape&, const LightContext&, Diagnostics&);
+std::unique_ptr<SurfaceLight> makeAreaLight(const AreaLightParams&, const Shape&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

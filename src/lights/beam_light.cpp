@@ -216,8 +216,8 @@ Spectrum BeamLight::leaving(const LightOrigin&, Vec3 w, const Wavelengths& lambd
     return inside(w) ? radiance_.at(lambda) : Spectrum(0.f);
 }
 
-std::unique_ptr<Light> makeBeamLight(const BeamLightParams& params, const LightContext& context,
-                                     Diagnostics& diagnostics) {
+std::unique_ptr<PlacedLight> makeBeamLight(const BeamLightParams& params, const LightContext& context,
+                                           Diagnostics& diagnostics) {
     if (!params.stated()) {
         reportMissingAmount(kBeamAmounts, context.span, diagnostics);
         return nullptr;

@@ -24,7 +24,7 @@ schema::TypeInfo beamLightType();
 
 // Every point of the opening shines evenly into a cone about the axis: what a lens makes of a small round source at its
 // focus. No ray meets the opening.
-class BeamLight final : public Light {
+class BeamLight final : public PlacedLight {
   public:
     // `axis` is a unit vector, the radius in m, the half angle in rad. Radiance in W·m⁻²·sr⁻¹·nm⁻¹; the curve outlives
     // the light.
@@ -33,10 +33,10 @@ class BeamLight final : public Light {
     // ∫ cos θ dω over the cone, sr.
     static double projectedAngle(double halfAngle) { return kPiD * square(std::sin(halfAngle)); }
 
-    double power() const override { return power_; }
-    double visiblePower() const override { return visiblePower_; }
+    LightOutput output() const override {
+        return {.power = power_, .visiblePower = visiblePower_, .spectrum = radiance_.curve};
+    }
     std::optional<LightBounds> bounds(std::uint32_t) const override;
-    const Curve* powerShape() const override { return radiance_.curve; }
     bool bodiless() const override { return true; }
     // Light arrives from where the opening and the cone about the receiver overlap: points are drawn from the smaller
     // of these two disks.
@@ -46,7 +46,6 @@ class BeamLight final : public Light {
     // The part of the ray within the beam.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override;
     LightOrigin originAt(std::uint32_t, Vec3 p, Vec3, float time) const noexcept override;
@@ -69,6 +68,6 @@ class BeamLight final : public Light {
 };
 
 // Null after an error.
-std::unique_ptr<Light> makeBeamLight(const BeamLightParams&, const LightContext&, Diagnostics&);
+std::unique_ptr<PlacedLight> makeBeamLight(const BeamLightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

@@ -82,7 +82,7 @@ DaylightSky::DaylightSky(const Frame& axes, double sunElevation, const AirParams
       sunlight_(std::make_unique<SampledCurve>(solarIrradiance(kPiD / 2 - sunElevation, air))),
       totals_(totals(groundAlbedo, sunOnGround ? std::max(std::sin(sunElevation), 0.0) : 0)), distribution_(tabulate()),
       groundShare_(luminousIntegral(*totals_.ground) * kSkyColumns * kSkyRows / 2 / distribution_.total()),
-      radiant_(radiantIntegral(*totals_.fluence)) {
+      radiant_(radiantIntegral(*totals_.fluence)), visibleFluence_(visibleIntegral(*totals_.fluence)) {
     commit(Bounds3{});
 }
 
@@ -176,8 +176,8 @@ float DaylightSky::density(Vec3 w, double ground) const noexcept {
     return static_cast<float>(p / kCellSolidAngle * half);
 }
 
-std::vector<std::unique_ptr<Light>> makeDaylight(const DaylightParams& params, const LightContext& context,
-                                                 Diagnostics& diagnostics) {
+std::vector<std::unique_ptr<DistantLight>> makeDaylight(const DaylightParams& params, const LightContext& context,
+                                                        Diagnostics& diagnostics) {
     const auto place = sunDirection(params, context.zUp, context.span, diagnostics);
     if (!place) return {};
     const Transform toRender = params.transform.at(context.time).then(context.toRender);
@@ -200,10 +200,10 @@ std::vector<std::unique_ptr<Light>> makeDaylight(const DaylightParams& params, c
     auto sky = std::make_unique<DaylightSky>(Frame::fromNormalTangent(Vec3(zenith), Vec3(sun)), elevation,
                                              AirParams{params.turbidity, params.ozone},
                                              params.groundAlbedo ? *params.groundAlbedo : albedo, params.sun);
-    std::unique_ptr<Light> disk;
+    std::unique_ptr<DistantLight> disk;
     if (params.sun && elevation > 0)
         disk = std::make_unique<SunLight>(sun, kSunHalfAngle, ScaledCurve{&sky->sunlight(), 1});
-    std::vector<std::unique_ptr<Light>> lights;
+    std::vector<std::unique_ptr<DistantLight>> lights;
     lights.push_back(std::move(sky));
     if (disk) lights.push_back(std::move(disk));
     return lights;

@@ -25,7 +25,7 @@ struct DaylightParams : SunPlace, VisibleParams {
 schema::TypeInfo daylightType();
 
 // The sky of ClearSky, and the light that an even ground reflects below it.
-class DaylightSky final : public Light {
+class DaylightSky final : public DistantLight {
   public:
     // The lowest sun, rad: what is left of its light below that is less than the night's own.
     static constexpr double kLowestSun = -12 * kPiD / 180;
@@ -37,16 +37,14 @@ class DaylightSky final : public Light {
     const Curve& sunlight() const { return *sunlight_; } // irradiance on a surface that faces the sun, W·m⁻²·nm⁻¹
 
     void commit(const Bounds3&) override;
-    double power() const override { return power_; }
-    // As if it came from one half of all directions, from all of it alike.
-    double irradiance() const override { return visibleIntegral(*totals_.fluence) / 2; }
-    const Curve* powerShape() const override { return totals_.fluence.get(); }
-    bool infinite() const override { return true; }
+    // The irradiance is as if it came from one half of all directions, from all of it alike.
+    LightOutput output() const override {
+        return {power_, LightOutput::kDaylightShare * power_, visibleFluence_ / 2, totals_.fluence.get()};
+    }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     struct Totals {
@@ -67,10 +65,11 @@ class DaylightSky final : public Light {
     Distribution2D distribution_; // cells of equal solid angle: columns turn about the zenith, rows are even in height
     double groundShare_;          // of its probability: the rows below the horizon
     double radiant_;              // ∫∫ L dω dλ, W/m²
+    double visibleFluence_;       // weighted as LightOutput::visiblePower
     double power_ = 0;
 };
 
 // The sky and, unless it is off, the sun; nothing after an error. The sky must live as long as the sun.
-std::vector<std::unique_ptr<Light>> makeDaylight(const DaylightParams&, const LightContext&, Diagnostics&);
+std::vector<std::unique_ptr<DistantLight>> makeDaylight(const DaylightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

@@ -348,9 +348,9 @@ bool portalCorners(const EnvironmentLightParams& params, const LightContext& con
 
 } // namespace
 
-std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
-                                            std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
-                                            const LightContext& context, Diagnostics& diagnostics) {
+std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
+                                                   std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
+                                                   const LightContext& context, Diagnostics& diagnostics) {
     const double luminance = params.luminance ? params.luminance->value : kUnitLuminance;
     const double scale = luminance / kUnitLuminance * std::exp2(params.exposure);
     if (!checkEnvironmentImage(image, scale, context.span, diagnostics)) return nullptr;

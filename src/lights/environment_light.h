@@ -41,7 +41,7 @@ struct EnvironmentLightParams : VisibleParams {
 schema::TypeInfo environmentLightType();
 
 // Radiance is interpolated bilinearly between the centres of the texels, in RGB, and upsampled after.
-class EnvironmentLight final : public Light {
+class EnvironmentLight final : public DistantLight {
   public:
     static constexpr std::size_t kMaxPortals = 32;
 
@@ -57,16 +57,16 @@ class EnvironmentLight final : public Light {
     double luminance(Vec3 w) const noexcept; // up to a factor, > 0 wherever there is light
 
     void commit(const Bounds3&) override;
-    // Between that of an even sky, a quarter, and that of a sun, all of it; daylight's share of visible light.
-    double irradiance() const override { return 0.4 * 0.5 * fluence_; }
-    double power() const override { return power_; } // 0: all texels are black, and the light must be left out
-    const Curve* powerShape() const override { return powerShape_.get(); }
-    bool infinite() const override { return true; }
+    // No power: all texels are black, and the light must be left out. The irradiance is between that of an even sky, a
+    // quarter, and that of a sun, all of it; daylight's share of visible light.
+    LightOutput output() const override {
+        constexpr double share = LightOutput::kDaylightShare;
+        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get()};
+    }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
     // By the image, and evenly for what compensation took off; portals are seen from places alone.
     std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths&, float) const noexcept override;
     float pdfDistant(Vec3 w, float) const noexcept override;
@@ -107,8 +107,8 @@ class EnvironmentLight final : public Light {
 bool checkEnvironmentImage(EnvironmentImage&, double scale, Span, Diagnostics&);
 
 // Null after an error.
-std::unique_ptr<Light> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,
-                                            std::unique_ptr<const RgbRadiance>, bool compensated, const LightContext&,
-                                            Diagnostics&);
+std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams&, EnvironmentImage,
+                                                   std::unique_ptr<const RgbRadiance>, bool compensated,
+                                                   const LightContext&, Diagnostics&);
 
 } // namespace abbe

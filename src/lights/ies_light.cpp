@@ -225,8 +225,8 @@ Spectrum IesLight::leaving(const LightOrigin&, Vec3 w, const Wavelengths& lambda
     return perCandela_.at(lambda) * static_cast<float>(profile_.candela(at.fromAxis, at.about));
 }
 
-std::unique_ptr<Light> makeIesLight(const IesLightParams& params, IntensityTable table, const LightContext& context,
-                                    Diagnostics& diagnostics) {
+std::unique_ptr<PlacedLight> makeIesLight(const IesLightParams& params, IntensityTable table,
+                                          const LightContext& context, Diagnostics& diagnostics) {
     const Transform toRender = params.transform.at(context.time).then(context.toRender);
     const Vec3d down = context.zUp ? Vec3d{0, 0, -1} : Vec3d{0, -1, 0};
     const Vec3d local = params.lookAt ? *params.lookAt - params.position : params.toward.value_or(down);

@@ -40,26 +40,25 @@ class IesProfile {
     double lumens_;
 };
 
-class IesLight final : public Light {
+class IesLight final : public PlacedLight {
   public:
     // `axes`: z is the axis (down for most lamps), x the plane of 0°; right-handed angles are seen from above, looking
     // along z. Spectral intensity is that of the profile in cd times `perCandela`, W·sr⁻¹·nm⁻¹; the curve outlives the
     // light.
     IesLight(Vec3 position, const Frame& axes, IesProfile, ScaledCurve perCandela);
 
-    double power() const override { return power_; }
-    double visiblePower() const override { return visiblePower_; }
+    LightOutput output() const override {
+        return {.power = power_, .visiblePower = visiblePower_, .spectrum = perCandela_.curve};
+    }
     std::optional<LightBounds> bounds(std::uint32_t) const override {
         return LightBounds{.box = {position_, position_}, .power = static_cast<float>(visiblePower_)};
     }
-    const Curve* powerShape() const override { return perCandela_.curve; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }
 
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
         return LightOrigin::at(position_, time, largestPdf_);
@@ -90,6 +89,6 @@ class IesLight final : public Light {
 };
 
 // Null after an error, and for a table without light, which is a warning unless a `power` is asked of it.
-std::unique_ptr<Light> makeIesLight(const IesLightParams&, IntensityTable, const LightContext&, Diagnostics&);
+std::unique_ptr<PlacedLight> makeIesLight(const IesLightParams&, IntensityTable, const LightContext&, Diagnostics&);
 
 } // namespace abbe

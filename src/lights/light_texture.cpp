@@ -86,11 +86,11 @@ struct LightTexture::Survey {
 
 LightTexture::LightTexture(const Shape& shape, const Texture& texture, const Transform& toOwn, const Curve& light,
                            bool open)
-    : shape_(shape), texture_(texture), own_(toOwn), spectrum_([](double) { return 1.0; }) {
+    : shape_(shape), sampling_(shape), texture_(texture), own_(toOwn), spectrum_([](double) { return 1.0; }) {
     const Bounds3 box = shape.bounds();
     nearness_ = 1e-3f * box.radius() + 0x1p-18f * maxComponent(max(abs(box.lower), abs(box.upper)));
-    for (std::uint32_t i = 0; i < shape.emitterParts(); ++i)
-        shares_.push_back(shape.emitterPart(i).area / shape.area());
+    for (std::uint32_t i = 0; i < sampling_->emitterParts(); ++i)
+        shares_.push_back(sampling_->emitterPart(i).area / shape.area());
     Survey survey(light);
     if (open && !surveyChart(survey)) surveyParts(survey);
     spectrum_ = SampledCurve([&](double nm) { return light.at(nm) * survey.factor(nm); });
@@ -99,7 +99,7 @@ LightTexture::LightTexture(const Shape& shape, const Texture& texture, const Tra
 // The hit of a ray onto a point, as the intersector completes it.
 std::optional<SurfaceHit> LightTexture::hitAt(Vec3 p, Vec3 ng, std::uint32_t part) const noexcept {
     const Ray ray = rayOnto(p, ng, nearness_);
-    const auto raw = shape_.locate(p, part, ray);
+    const auto raw = sampling_->locate(p, part, ray);
     if (!raw) return std::nullopt;
     SurfaceHit hit;
     shape_.surface(*raw, ray, hit);
@@ -114,7 +114,7 @@ std::optional<SurfaceHit> LightTexture::hitAt(Vec3 p, Vec3 ng, std::uint32_t par
 }
 
 bool LightTexture::surveyChart(Survey& survey) {
-    if (shape_.emitterParts() > 1 || !shape_.uvPoint({0.5f, 0.5f})) return false;
+    if (sampling_->emitterParts() > 1 || !sampling_->uvPoint({0.5f, 0.5f})) return false;
     std::vector<double> cells;
     double sum = 0;
     for (int row = 0; row < kGrid; ++row)
@@ -133,7 +133,7 @@ bool LightTexture::surveyChart(Survey& survey) {
 }
 
 double LightTexture::cellArea(int column, int row) const {
-    const auto middle = shape_.uvPoint(placeIn(column, row, 0.5f, 0.5f));
+    const auto middle = sampling_->uvPoint(placeIn(column, row, 0.5f, 0.5f));
     return middle ? static_cast<double>(middle->area) / (kGrid * kGrid) : 0;
 }
 
@@ -147,8 +147,8 @@ double LightTexture::surveyCell(Survey& survey, int column, int row) const {
     for (int k = 0; k < points; ++k) {
         const double i = (row * kGrid + column) * points + k; // of an R₂ sequence [Roberts2018]
         const auto point =
-            shape_.uvPoint(placeIn(column, row, static_cast<float>(std::fmod(0.5 + 0.7548776662466927 * i, 1.0)),
-                                   static_cast<float>(std::fmod(0.5 + 0.5698402909980532 * i, 1.0))));
+            sampling_->uvPoint(placeIn(column, row, static_cast<float>(std::fmod(0.5 + 0.7548776662466927 * i, 1.0)),
+                                       static_cast<float>(std::fmod(0.5 + 0.5698402909980532 * i, 1.0))));
         const auto hit = point ? hitAt(point->p, point->ng, 0) : std::nullopt;
         if (!hit) continue;
         TextureQuery query(*hit);
@@ -182,7 +182,7 @@ void LightTexture::surveyParts(Survey& survey) {
 double LightTexture::surveyPart(Survey& survey, std::uint32_t part, int points) const {
     constexpr std::array<double, 4> kSteps{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
                                            0.5385972572236101}; // of an R₄ sequence [Roberts2018]
-    const EmitterPart p = shape_.emitterPart(part);
+    const EmitterPart p = sampling_->emitterPart(part);
     const Vec3 centre = p.box.centre();
     const float far = 100 * std::max(p.box.radius(), nearness_);
     struct Seen {
@@ -196,7 +196,7 @@ double LightTexture::surveyPart(Survey& survey, std::uint32_t part, int points) 
         for (std::size_t k = 0; k < u.size(); ++k)
             u[k] = std::min(static_cast<float>(std::fmod(0.5 + kSteps[k] * i, 1.0)), kOneMinusEpsilon);
         const Vec3 from = centre + (p.cosNormals > 0.99f ? p.axis : squareToSphere({u[0], u[1]})) * far;
-        const auto s = shape_.sample(from, part, {u[2], u[3]});
+        const auto s = sampling_->sample(from, part, {u[2], u[3]});
         if (!s || !(s->pdfSolidAngle > 0)) continue;
         const auto hit = hitAt(s->p, s->ng, part);
         if (!hit) continue;
@@ -217,7 +217,7 @@ double LightTexture::surveyPart(Survey& survey, std::uint32_t part, int points) 
 
 double LightTexture::pdfChartArea(Vec2 uv) const noexcept {
     const auto cell = [](float x) { return static_cast<std::size_t>(std::clamp(x * kGrid, 0.f, kGrid - 1.f)); };
-    const auto point = shape_.uvPoint(uv);
+    const auto point = sampling_->uvPoint(uv);
     if (!point || !(point->area > 0)) return 0;
     return chart_->probability(cell(uv.x), cell(uv.y)) * (kGrid * kGrid) / static_cast<double>(point->area);
 }
@@ -227,7 +227,7 @@ float LightTexture::pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept
 }
 
 float LightTexture::pdfMixed(std::uint32_t part, Vec3 ng, Vec2 uv) const noexcept {
-    const float even = shape_.pdfPoint(part, ng);
+    const float even = sampling_->pdfPoint(part, ng);
     if (!chart_) return even;
     return kChartShare * static_cast<float>(pdfChartArea(uv)) + (1 - kChartShare) * even;
 }
@@ -239,13 +239,13 @@ std::optional<ShapePoint> LightTexture::samplePoint(std::uint32_t part, Vec2 u, 
     std::optional<ShapePoint> s;
     if (chart_ && u.x < kChartShare) {
         const CellSample cell = chart_->sample({u.x / kChartShare, u.y});
-        const auto point = shape_.uvPoint({(static_cast<float>(cell.column) + cell.offset.x) / kGrid,
-                                           (static_cast<float>(cell.row) + cell.offset.y) / kGrid});
+        const auto point = sampling_->uvPoint({(static_cast<float>(cell.column) + cell.offset.x) / kGrid,
+                                               (static_cast<float>(cell.row) + cell.offset.y) / kGrid});
         if (!point || !(point->area > 0)) return std::nullopt;
         s = ShapePoint{.p = point->p, .pError = point->pError, .ng = point->ng};
     } else {
         if (chart_) u.x = std::min((u.x - kChartShare) / (1 - kChartShare), kOneMinusEpsilon);
-        s = shape_.samplePoint(part, u);
+        s = sampling_->samplePoint(part, u);
     }
     if (!s) return s;
     const auto hit = hitAt(s->p, s->ng, part);
@@ -256,7 +256,7 @@ std::optional<ShapePoint> LightTexture::samplePoint(std::uint32_t part, Vec2 u, 
 }
 
 float LightTexture::pdfPoint(std::uint32_t part, Vec3 p, Vec3 ng) const noexcept {
-    if (!chart_) return shape_.pdfPoint(part, ng);
+    if (!chart_) return sampling_->pdfPoint(part, ng);
     const auto hit = hitAt(p, ng, part);
     return hit ? pdfMixed(part, ng, hit->uv) : 0;
 }
@@ -267,19 +267,19 @@ std::optional<ShapeSample> LightTexture::sample(const Receiver& from, std::uint3
         const CellSample cell = chart_->sample({u.x / kChartShare, u.y});
         const Vec2 uv{(static_cast<float>(cell.column) + cell.offset.x) / kGrid,
                       (static_cast<float>(cell.row) + cell.offset.y) / kGrid};
-        const auto point = shape_.uvPoint(uv);
+        const auto point = sampling_->uvPoint(uv);
         if (!point || !(point->area > 0)) return std::nullopt;
         const auto hit = hitAt(point->p, point->ng, part);
         if (!hit) return std::nullopt;
         factor = at(*hit, lambda);
         const double pdfArea = cell.probability * (kGrid * kGrid) / static_cast<double>(point->area);
         const float pdf = kChartShare * solidAngle(pdfArea, point->p - from.p, point->ng) +
-                          (1 - kChartShare) * shape_.pdfSolidAngle(from, *hit);
+                          (1 - kChartShare) * sampling_->pdfSolidAngle(from, *hit);
         if (!(pdf > 0)) return std::nullopt;
         return std::optional<ShapeSample>(std::in_place, point->p, point->pError, point->ng, pdf);
     }
     if (chart_) u.x = std::min((u.x - kChartShare) / (1 - kChartShare), kOneMinusEpsilon);
-    auto s = shape_.sample(from, part, u);
+    auto s = sampling_->sample(from, part, u);
     if (!s) return s;
     const auto hit = hitAt(s->p, s->ng, part);
     if (!hit) return std::nullopt;
@@ -290,7 +290,7 @@ std::optional<ShapeSample> LightTexture::sample(const Receiver& from, std::uint3
 }
 
 float LightTexture::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const noexcept {
-    const float shape = shape_.pdfSolidAngle(from, hit);
+    const float shape = sampling_->pdfSolidAngle(from, hit);
     if (!chart_) return shape;
     return kChartShare * pdfChart(from.p, hit.p, hit.ng, hit.uv) + (1 - kChartShare) * shape;
 }

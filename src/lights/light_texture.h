@@ -60,6 +60,7 @@ class LightTexture {
     float pdfChart(Vec3 from, Vec3 p, Vec3 ng, Vec2 uv) const noexcept;
 
     const Shape& shape_;
+    SamplingOf sampling_;
     const Texture& texture_;
     OwnSpace own_;
     float nearness_; // for rayOnto()

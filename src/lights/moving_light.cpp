@@ -41,7 +41,7 @@ LightOrigin moved(LightOrigin origin, const LightPose& pose) {
 
 } // namespace
 
-std::optional<LightBounds> MovingLight::bounds(std::uint32_t part) const {
+std::optional<LightBounds> MovingPlacedLight::bounds(std::uint32_t part) const {
     const auto rest = atRest_->bounds(part);
     return rest ? motion_.swept(*rest) : rest;
 }
@@ -51,14 +51,13 @@ std::optional<LightBounds> MovingAreaLight::bounds(std::uint32_t part) const {
     return rest ? motion_.swept(*rest) : rest;
 }
 
-std::optional<LightSample> MovingLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
-                                               const Wavelengths& lambda, float time) const noexcept {
+std::optional<LightSample> MovingPlacedLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
+                                                     const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
     auto s = atRest_->sample(pose->rest(from), part, u, lambda, time);
     if (!s) return s;
     s->wi = Vec3(normalize(pose->toRender.vector(Vec3d(s->wi))));
-    if (!(s->distance < kInfinity)) return s;
     const float scale = static_cast<float>(pose->scale);
     s->p = Vec3(pose->toRender.point(Vec3d(s->p)));
     s->distance *= scale;
@@ -69,53 +68,64 @@ std::optional<LightSample> MovingLight::sample(const Receiver& from, std::uint32
     return s;
 }
 
-Spectrum MovingLight::escaped(Vec3 w, const Wavelengths& lambda, float time) const noexcept {
+std::optional<LightSample> MovingDistantLight::sample(const Receiver& from, std::uint32_t part, Vec2 u,
+                                                      const Wavelengths& lambda, float time) const noexcept {
+    const auto pose = motion_.at(time);
+    if (!pose) return std::nullopt;
+    auto s = atRest_->sample(pose->rest(from), part, u, lambda, time);
+    if (s) s->wi = Vec3(normalize(pose->toRender.vector(Vec3d(s->wi))));
+    return s;
+}
+
+Spectrum MovingDistantLight::escaped(Vec3 w, const Wavelengths& lambda, float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? atRest_->escaped(Vec3(normalize(pose->toRest.vector(Vec3d(w)))), lambda, time) : Spectrum(0.f);
 }
 
-float MovingLight::pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept {
+float MovingDistantLight::pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? atRest_->pdfEscaped(pose->rest(from), Vec3(normalize(pose->toRest.vector(Vec3d(w)))), time) : 0;
 }
 
-std::optional<LightOrigin> MovingLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
-                                                     float time) const noexcept {
+std::optional<LightOrigin> MovingPlacedLight::sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths& lambda,
+                                                           float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
     auto origin = atRest_->sampleOrigin(part, u, lambda, time);
     return origin ? std::optional(moved(*origin, *pose)) : origin;
 }
 
-LightOrigin MovingLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+LightOrigin MovingPlacedLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return {};
     return moved(atRest_->originAt(part, pose->rest(p), turned(pose->toRest, n), time), *pose);
 }
 
-float MovingLight::pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
+float MovingPlacedLight::pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n,
+                                    float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? atRest_->pdfAtPoint(pose->rest(from), part, pose->rest(p), turned(pose->toRest, n), time) : 0;
 }
 
 // The light has no surface, or is a beam: what leaves it depends on the direction alone.
-Vec3 MovingLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {
+Vec3 MovingPlacedLight::sampleDirection(const LightOrigin& origin, Vec2 u) const noexcept {
     const auto pose = motion_.at(origin.time);
     const Vec3 w = atRest_->sampleDirection(origin, u);
     return pose ? turned(pose->toRender, w) : w;
 }
 
-float MovingLight::pdfDirection(const LightOrigin& origin, Vec3 w) const noexcept {
+float MovingPlacedLight::pdfDirection(const LightOrigin& origin, Vec3 w) const noexcept {
     const auto pose = motion_.at(origin.time);
     return pose ? atRest_->pdfDirection(origin, turned(pose->toRest, w)) : 0;
 }
 
-Spectrum MovingLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths& lambda) const noexcept {
+Spectrum MovingPlacedLight::leaving(const LightOrigin& origin, Vec3 w, const Wavelengths& lambda) const noexcept {
     const auto pose = motion_.at(origin.time);
     return pose ? atRest_->leaving(origin, turned(pose->toRest, w), lambda) : Spectrum(0.f);
 }
 
-std::optional<LightSample> MovingLight::sampleDistant(Vec2 u, const Wavelengths& lambda, float time) const noexcept {
+std::optional<LightSample> MovingDistantLight::sampleDistant(Vec2 u, const Wavelengths& lambda,
+                                                             float time) const noexcept {
     const auto pose = motion_.at(time);
     if (!pose) return std::nullopt;
     auto s = atRest_->sampleDistant(u, lambda, time);
@@ -123,12 +133,12 @@ std::optional<LightSample> MovingLight::sampleDistant(Vec2 u, const Wavelengths&
     return s;
 }
 
-float MovingLight::pdfDistant(Vec3 w, float time) const noexcept {
+float MovingDistantLight::pdfDistant(Vec3 w, float time) const noexcept {
     const auto pose = motion_.at(time);
     return pose ? atRest_->pdfDistant(turned(pose->toRest, w), time) : 0;
 }
 
-std::optional<LightReach> MovingLight::reach(const Ray& ray, float tMax) const noexcept {
+std::optional<LightReach> MovingPlacedLight::reach(const Ray& ray, float tMax) const noexcept {
     const auto pose = motion_.at(ray.time);
     if (!pose) return std::nullopt;
     const float scale = static_cast<float>(pose->scale);
@@ -195,9 +205,14 @@ LightOrigin MovingAreaLight::originAt(std::uint32_t part, Vec3 p, Vec3 n, float 
     return origin;
 }
 
-std::unique_ptr<Light> inMotion(std::unique_ptr<Light> light, const LightContext& context) {
+std::unique_ptr<Light> inMotion(std::unique_ptr<PlacedLight> light, const LightContext& context) {
     if (!light || !context.motion) return light;
-    return std::make_unique<MovingLight>(std::move(light), *context.motion);
+    return std::make_unique<MovingPlacedLight>(std::move(light), *context.motion);
+}
+
+std::unique_ptr<Light> inMotion(std::unique_ptr<DistantLight> light, const LightContext& context) {
+    if (!light || !context.motion) return light;
+    return std::make_unique<MovingDistantLight>(std::move(light), *context.motion);
 }
 
 } // namespace abbe

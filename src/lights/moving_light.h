@@ -6,41 +6,53 @@
 
 namespace abbe {
 
-// A light without surface, which may have an extent, or infinitely far away: only its rotation matters then.
-class MovingLight final : public Light {
+// A light without surface, which may have an extent.
+class MovingPlacedLight final : public PlacedLight {
   public:
-    MovingLight(std::unique_ptr<Light> atRest, LightMotion motion)
+    MovingPlacedLight(std::unique_ptr<PlacedLight> atRest, LightMotion motion)
         : atRest_(std::move(atRest)), motion_(std::move(motion)) {}
 
     void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
-    double power() const override { return atRest_->power(); }
-    double visiblePower() const override { return atRest_->visiblePower(); }
-    double irradiance() const override { return atRest_->irradiance(); }
+    LightOutput output() const override { return atRest_->output(); }
     std::uint32_t parts() const override { return atRest_->parts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
-    const Curve* powerShape() const override { return atRest_->powerShape(); }
-    bool infinite() const override { return atRest_->infinite(); }
     bool bodiless() const override { return atRest_->bodiless(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
-    Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
-    float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
     // Intensity stays when the scale changes, or the radiance of what has an extent.
-    LightPaths paths() const override { return atRest_->paths(); }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
                                             float time) const noexcept override;
     LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;
     Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept override;
     float pdfDirection(const LightOrigin&, Vec3 w) const noexcept override;
     Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths&) const noexcept override;
+
+  private:
+    std::unique_ptr<PlacedLight> atRest_;
+    LightMotion motion_;
+};
+
+// One infinitely far away: only its rotation matters.
+class MovingDistantLight final : public DistantLight {
+  public:
+    MovingDistantLight(std::unique_ptr<DistantLight> atRest, LightMotion motion)
+        : atRest_(std::move(atRest)), motion_(std::move(motion)) {}
+
+    void commit(const Bounds3& bounds) override { atRest_->commit(bounds); }
+    LightOutput output() const override { return atRest_->output(); }
+    bool hasExtent() const override { return atRest_->hasExtent(); }
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float time) const noexcept override;
+    Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept override;
+    float pdfEscaped(const Receiver&, Vec3 w, float time) const noexcept override;
     std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths&, float time) const noexcept override;
     float pdfDistant(Vec3 w, float time) const noexcept override;
 
   private:
-    std::unique_ptr<Light> atRest_;
+    std::unique_ptr<DistantLight> atRest_;
     LightMotion motion_;
 };
 
@@ -66,7 +78,8 @@ class MovingAreaLight final : public AreaLight {
     LightMotion motion_;
 };
 
-// As the context says: the light itself, or one that moves. Null stays null.
-std::unique_ptr<Light> inMotion(std::unique_ptr<Light>, const LightContext&);
+// As the context says: the light itself, or one that moves. Null stays null. Placed lights must have no surface.
+std::unique_ptr<Light> inMotion(std::unique_ptr<PlacedLight>, const LightContext&);
+std::unique_ptr<Light> inMotion(std::unique_ptr<DistantLight>, const LightContext&);
 
 } // namespace abbe

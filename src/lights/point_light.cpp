@@ -44,8 +44,8 @@ std::optional<LightSample> PointLight::sample(const Receiver& from, std::uint32_
                                       true);
 }
 
-std::unique_ptr<Light> makePointLight(const PointLightParams& params, const LightContext& context,
-                                      Diagnostics& diagnostics) {
+std::unique_ptr<PlacedLight> makePointLight(const PointLightParams& params, const LightContext& context,
+                                            Diagnostics& diagnostics) {
     if (!params.stated()) {
         reportMissingAmount(kPointAmounts, context.span, diagnostics);
         return nullptr;

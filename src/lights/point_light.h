@@ -17,24 +17,23 @@ struct PointLightParams : AmountParams {
 
 schema::TypeInfo pointLightType();
 
-class PointLight final : public Light {
+class PointLight final : public PlacedLight {
   public:
     // Intensity in W·sr⁻¹·nm⁻¹; the curve outlives the light.
     PointLight(Vec3 position, ScaledCurve intensity);
 
-    double power() const override { return power_; }
-    double visiblePower() const override { return visiblePower_; }
+    LightOutput output() const override {
+        return {.power = power_, .visiblePower = visiblePower_, .spectrum = intensity_.curve};
+    }
     std::optional<LightBounds> bounds(std::uint32_t) const override {
         return LightBounds{.box = {position_, position_}, .power = static_cast<float>(visiblePower_)};
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
-    const Curve* powerShape() const override { return intensity_.curve; }
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
         return LightReach{position_, 0, tMax};
     }
 
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
         return LightOrigin::at(position_, time, kSpherePdf);
@@ -55,6 +54,6 @@ class PointLight final : public Light {
 };
 
 // Null after an error.
-std::unique_ptr<Light> makePointLight(const PointLightParams&, const LightContext&, Diagnostics&);
+std::unique_ptr<PlacedLight> makePointLight(const PointLightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

@@ -49,8 +49,8 @@ float SkyLight::pdfEscaped(const Receiver& from, Vec3 w, float) const noexcept {
     return from.oneSided() ? cosineHemispherePdf(dot(w, from.n)) : kSpherePdf;
 }
 
-std::unique_ptr<Light> makeSkyLight(const SkyLightParams& params, const LightContext& context,
-                                    Diagnostics& diagnostics) {
+std::unique_ptr<DistantLight> makeSkyLight(const SkyLightParams& params, const LightContext& context,
+                                           Diagnostics& diagnostics) {
     AmountParams amount = params;
     if (!amount.stated()) amount.luminance = {kDefaultSkyLuminance, schema::Dimension::luminance, {}};
     const auto radiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD, .range = kSkyRadiance},

@@ -17,21 +17,19 @@ inline constexpr double kDefaultSkyLuminance = 20000; // cd/m²: a bright hazy s
 
 schema::TypeInfo skyLightType();
 
-class SkyLight final : public Light {
+class SkyLight final : public DistantLight {
   public:
     // The curve outlives the light.
     explicit SkyLight(ScaledCurve radiance);
 
     void commit(const Bounds3&) override;
-    double power() const override { return power_; }
-    double irradiance() const override { return irradiance_; }
-    const Curve* powerShape() const override { return radiance_.curve; }
-    bool infinite() const override { return true; }
+    LightOutput output() const override {
+        return {power_, LightOutput::kDaylightShare * power_, irradiance_, radiance_.curve};
+    }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum escaped(Vec3, const Wavelengths& lambda, float) const noexcept override { return radiance_.at(lambda); }
     float pdfEscaped(const Receiver&, Vec3, float) const noexcept override;
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     ScaledCurve radiance_;
@@ -41,6 +39,6 @@ class SkyLight final : public Light {
 };
 
 // Null after an error.
-std::unique_ptr<Light> makeSkyLight(const SkyLightParams&, const LightContext&, Diagnostics&);
+std::unique_ptr<DistantLight> makeSkyLight(const SkyLightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

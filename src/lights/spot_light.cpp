@@ -151,8 +151,8 @@ Vec3 SpotLight::sampleDirection(const LightOrigin&, Vec2 u) const noexcept {
 
 float SpotLight::pdfDirection(const LightOrigin&, Vec3 w) const noexcept { return falloff(w) * largestPdf(); }
 
-std::unique_ptr<Light> makeSpotLight(const SpotLightParams& params, const LightContext& context,
-                                     Diagnostics& diagnostics) {
+std::unique_ptr<PlacedLight> makeSpotLight(const SpotLightParams& params, const LightContext& context,
+                                           Diagnostics& diagnostics) {
     if (!params.stated()) {
         reportMissingAmount(kSpotAmounts, context.span, diagnostics);
         return nullptr;

@@ -20,7 +20,7 @@ struct SpotLightParams : AmountParams {
 
 schema::TypeInfo spotLightType();
 
-class SpotLight final : public Light {
+class SpotLight final : public PlacedLight {
   public:
     // `axis` is a unit vector, the half angles are in rad, 0 <= inner <= outer <= π, outer > 0. Intensity on the axis
     // in W·sr⁻¹·nm⁻¹; the curve outlives the light.
@@ -29,8 +29,9 @@ class SpotLight final : public Light {
     // ∫ falloff dω, sr.
     static double solidAngle(double innerHalfAngle, double outerHalfAngle);
 
-    double power() const override { return power_; }
-    double visiblePower() const override { return visiblePower_; }
+    LightOutput output() const override {
+        return {.power = power_, .visiblePower = visiblePower_, .spectrum = intensity_.curve};
+    }
     std::optional<LightBounds> bounds(std::uint32_t) const override {
         return LightBounds{.box = {position_, position_},
                            .axis = axis_,
@@ -40,11 +41,9 @@ class SpotLight final : public Light {
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
-    const Curve* powerShape() const override { return intensity_.curve; }
     // The part of the ray within the cone.
     std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override;
 
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::placed : LightPaths::none; }
     std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&,
                                             float time) const noexcept override {
         return LightOrigin::at(position_, time, largestPdf());
@@ -71,6 +70,6 @@ class SpotLight final : public Light {
 };
 
 // Null after an error.
-std::unique_ptr<Light> makeSpotLight(const SpotLightParams&, const LightContext&, Diagnostics&);
+std::unique_ptr<PlacedLight> makeSpotLight(const SpotLightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

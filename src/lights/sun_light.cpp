@@ -80,8 +80,8 @@ Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexc
 
 float SunLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
 
-std::unique_ptr<Light> makeSunLight(const SunLightParams& params, const LightContext& context,
-                                    Diagnostics& diagnostics) {
+std::unique_ptr<DistantLight> makeSunLight(const SunLightParams& params, const LightContext& context,
+                                           Diagnostics& diagnostics) {
     const auto place = sunDirection(params, context.zUp, context.span, diagnostics);
     if (!place) return nullptr;
     const Transform toRender = params.transform.at(context.time).then(context.toRender);

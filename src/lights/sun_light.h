@@ -19,7 +19,7 @@ struct SunLightParams : AmountParams, SunPlace, VisibleParams {
 
 schema::TypeInfo sunLightType();
 
-class SunLight final : public Light {
+class SunLight final : public DistantLight {
   public:
     // Disks of a smaller half angle (rad) are single directions: float directions cannot resolve them.
     static constexpr double kSmallestHalfAngle = 1e-5;
@@ -29,15 +29,14 @@ class SunLight final : public Light {
     SunLight(Vec3d direction, double halfAngle, ScaledCurve irradiance);
 
     void commit(const Bounds3&) override;
-    double power() const override { return power_; }
-    double irradiance() const override { return visibleIrradiance_; }
-    const Curve* powerShape() const override { return radiance_.curve; }
-    bool infinite() const override { return !delta_; }
+    LightOutput output() const override {
+        return {power_, LightOutput::kDaylightShare * power_, visibleIrradiance_, radiance_.curve};
+    }
+    bool hasExtent() const override { return !delta_; }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
-    LightPaths paths() const override { return power_ > 0 ? LightPaths::distant : LightPaths::none; }
 
   private:
     bool inside(Vec3 w) const noexcept;
@@ -53,6 +52,6 @@ class SunLight final : public Light {
 };
 
 // Null after an error.
-std::unique_ptr<Light> makeSunLight(const SunLightParams&, const LightContext&, Diagnostics&);
+std::unique_ptr<DistantLight> makeSunLight(const SunLightParams&, const LightContext&, Diagnostics&);
 
 } // namespace abbe

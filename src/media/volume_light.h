@@ -11,9 +11,10 @@ class VolumeLight final : public Light {
     // Must outlive it. Requires that it is not dark.
     explicit VolumeLight(const GridEmission& emission) : emission_(emission) {}
 
-    double power() const override { return emission_.power(); }
-    // A flame's: most of what it gives off is red.
-    double visiblePower() const override { return 0.15 * power(); }
+    // The visible power is a flame's: most of what it gives off is red.
+    LightOutput output() const override {
+        return {.power = emission_.power(), .visiblePower = 0.15 * emission_.power()};
+    }
     std::optional<LightBounds> bounds(std::uint32_t) const override {
         return LightBounds{.box = emission_.bounds(), .power = static_cast<float>(visiblePower())};
     }

@@ -32,8 +32,25 @@ struct LightSample {
 // How paths of light can start at a light.
 enum class LightPaths : std::uint8_t {
     none,    // not at all: it is dark, or a medium that shines, which is found along rays alone
-    placed,  // at points of it
-    distant, // in a direction, from infinitely far away: all across the scene alike
+    placed,  // at points of it: a PlacedLight
+    distant, // in a direction, from infinitely far away, all across the scene alike: a DistantLight
+};
+
+// How much light there is, for choosing among lights. W.
+struct LightOutput {
+    // Of all wavelengths; 0 only if it is dark or cannot be sampled. Infinite lights: through the scene's bounding
+    // disk.
+    double power = 0;
+    // The same as far as the film sees it: weighted with CIE ȳ, and a twentieth of all, so that no light counts for
+    // nothing.
+    double visiblePower = 0;
+    // Of lights without bounds: an estimate of how much they give to a surface that faces them, W/m² weighted likewise.
+    double irradiance = 0;
+    // Shape of the spectrum of that power, of any scale; null if the light cannot tell.
+    const Curve* spectrum = nullptr;
+
+    // Where the visible share is not known: daylight's.
+    static constexpr double kDaylightShare = 0.4;
 };
 
 // Where a light shines along a ray, and what point it shines from, more or less: distances drawn around it find more of
@@ -43,6 +60,10 @@ struct LightReach {
     float tNear = 0, tFar = 0; // light arrives nowhere else; tFar may be infinite
 };
 
+class DistantLight;
+class PlacedLight;
+
+// What every light has. It is also a DistantLight, a PlacedLight (perhaps a SurfaceLight), or a medium that shines.
 // Immutable once the scene is committed, thread-safe, render space.
 class Light {
   public:
@@ -52,93 +73,103 @@ class Light {
     void setVisible(Visibility v) { visible_ = v; }
     // Called once, after the bounds of all finite geometry are known and before anything else.
     virtual void commit(const Bounds3&) {}
-    // Emitted power in W, for choosing lights; 0 only if it is dark or cannot be sampled. Infinite lights: through the
-    // scene's bounding disk.
-    virtual double power() const = 0;
-    // The same as far as the film sees it, for choosing among lights of different colours: W weighted with CIE ȳ, and
-    // a twentieth of all W, so that no light counts for nothing. The default is daylight's.
-    virtual double visiblePower() const { return 0.4 * power(); }
-    // Lights without bounds: an estimate of how much they give to a surface that faces them, W/m² weighted likewise.
-    virtual double irradiance() const { return 0; }
+    virtual LightOutput output() const = 0;
+    double power() const { return output().power; }
+    double visiblePower() const { return output().visiblePower; }
+    double irradiance() const { return output().irradiance; }
+    const Curve* powerShape() const { return output().spectrum; }
     // Lights may consist of parts that are chosen and sampled one at a time (the polygons of a mesh). Fixed, > 0.
     virtual std::uint32_t parts() const { return 1; }
     // Where a part is; nothing if it is infinite or not known. Requires: part < parts(), after commit().
     virtual std::optional<LightBounds> bounds(std::uint32_t /*part*/) const { return std::nullopt; }
     // The part whose surface was hit.
     std::uint32_t partOf(const SurfaceHit& hit) const { return parts() > 1 ? hit.primitive : 0; }
-    // Shape of the spectrum of that power, of any scale; null if the light cannot tell.
-    virtual const Curve* powerShape() const { return nullptr; }
-    // True if rays that leave the scene meet it: `escaped` and `pdfEscaped` apply.
-    virtual bool infinite() const { return false; }
+    // Light of a part that can arrive at `from`; nothing if none can. All that counts there (render/receiver.h) has a
+    // density; u in [0, 1)². Here and below `time` is Ray::time, which only lights that move look at.
+    virtual std::optional<LightSample> sample(const Receiver& from, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                              float time) const noexcept = 0;
+    // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
+    virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // True if it has an extent, but nothing that rays could meet: found by sampling alone, and its samples are deltas
     // whose density counts.
     virtual bool bodiless() const { return false; }
     // Whether nothing that was scattered meets it, whatever its extent.
     bool unmet() const { return bodiless() || !visible_.has(RayKind::scattered); }
-    // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
-    virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
+
+    // What some lights are besides; null if this is none.
+    virtual const DistantLight* asDistant() const { return nullptr; }
+    virtual const PlacedLight* asPlaced() const { return nullptr; }
     // What this light samples, if it is a medium that shines: found along rays, never as a surface.
     virtual const MediumEmission* emission() const { return nullptr; }
-    // Light of a part that can arrive at `from`; nothing if none can. All that counts there (render/receiver.h) has a
-    // density; u in [0, 1)². Here and below `time` is Ray::time, which only lights that move look at.
-    virtual std::optional<LightSample> sample(const Receiver& from, std::uint32_t part, Vec2 u, const Wavelengths&,
-                                              float time) const noexcept = 0;
 
-    // Area lights: radiance that leaves `hit` in the unit direction `w`, and the density with which
-    // sample(from, partOf(hit), ·) makes that point. No other light is ever hit.
-    virtual Spectrum emitted(const SurfaceHit& /*hit*/, Vec3 /*w*/, const Wavelengths&) const noexcept {
-        return Spectrum(0.f);
+    // True if rays that leave the scene meet it.
+    bool infinite() const;
+    LightPaths paths() const {
+        if (!(power() > 0)) return LightPaths::none;
+        return asDistant() ? LightPaths::distant : asPlaced() ? LightPaths::placed : LightPaths::none;
     }
-    virtual float pdfSolidAngle(const Receiver& /*from*/, const SurfaceHit& /*hit*/, float /*time*/) const noexcept {
-        return 0;
-    }
-
-    // pdfSolidAngle() for a point of the part of which no more is known than its unit normal.
-    virtual float pdfAtPoint(const Receiver& from, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept {
-        SurfaceHit hit;
-        hit.p = p;
-        hit.ng = n;
-        hit.primitive = part;
-        return pdfSolidAngle(from, hit, time);
-    }
-
-    // Infinite lights: radiance arriving along a ray of unit direction `w` that left the scene, and the density
-    // with which sample(from, 0, ·) makes that direction. Asked of no other light.
-    virtual Spectrum escaped(Vec3 /*w*/, const Wavelengths&, float /*time*/) const noexcept { return Spectrum(0.f); }
-    virtual float pdfEscaped(const Receiver& /*from*/, Vec3 /*w*/, float /*time*/) const noexcept { return 0; }
-
-    // Paths that start here. What follows is asked as this says.
-    virtual LightPaths paths() const { return LightPaths::none; }
-
-    // Lights at a place. A point of a part, of which every one that gives light has a density; nothing where there is
-    // none. u in [0, 1)².
-    virtual std::optional<LightOrigin> sampleOrigin(std::uint32_t /*part*/, Vec2 /*u*/, const Wavelengths&,
-                                                    float /*time*/) const noexcept {
-        return std::nullopt;
-    }
-    // The same for a point of the part that is known, with its unit normal: its density (0 if sampleOrigin() cannot
-    // make it), and `factor` left at 1. Lights that are a point need neither.
-    virtual LightOrigin originAt(std::uint32_t /*part*/, Vec3 /*p*/, Vec3 /*n*/, float /*time*/) const noexcept {
-        return {};
-    }
-    // The light's own distribution of unit directions, about in proportion to the light that leaves: a direction, and
-    // the density of any, 1/sr. Directions into which light leaves have a density.
-    virtual Vec3 sampleDirection(const LightOrigin& origin, Vec2 /*u*/) const noexcept { return origin.n; }
-    virtual float pdfDirection(const LightOrigin&, Vec3 /*w*/) const noexcept { return 0; }
-    // Radiance that leaves in a unit direction, W·m⁻²·sr⁻¹·nm⁻¹; without a surface intensity, W·sr⁻¹·nm⁻¹.
-    virtual Spectrum leaving(const LightOrigin&, Vec3 /*w*/, const Wavelengths&) const noexcept {
-        return Spectrum(0.f);
-    }
-
-    // Lights far away: a direction for the scene as a whole, as sample() has it, and its density, 1/sr, for the unit
-    // direction w to the light. All that gives light has a density. A delta carries irradiance.
-    virtual std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths& lambda, float time) const noexcept {
-        return sample(Vec3{}, 0, u, lambda, time);
-    }
-    virtual float pdfDistant(Vec3 w, float time) const noexcept { return pdfEscaped(Vec3{}, w, time); }
 
   private:
     Visibility visible_ = kVisibleToAll;
 };
+
+// Infinitely far away.
+class DistantLight : public Light {
+  public:
+    const DistantLight* asDistant() const final { return this; }
+    // False for a single direction, which no ray has but by sampling: nothing is asked of escaped() then.
+    virtual bool hasExtent() const { return true; }
+    // Radiance arriving along a ray of unit direction `w` that left the scene, and the density with which
+    // sample(from, 0, ·) makes that direction.
+    virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
+    virtual float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept = 0;
+
+    // Paths that start here: a direction for the scene as a whole, as sample() has it, and its density, 1/sr, for the
+    // unit direction w to the light. All that gives light has a density. A delta carries irradiance.
+    virtual std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths& lambda, float time) const noexcept {
+        return sample(Vec3{}, 0, u, lambda, time);
+    }
+    virtual float pdfDistant(Vec3 w, float time) const noexcept { return pdfEscaped(Vec3{}, w, time); }
+};
+
+// At a place in the scene: a point, or something with an extent.
+class PlacedLight : public Light {
+  public:
+    const PlacedLight* asPlaced() const final { return this; }
+
+    // Paths that start here. A point of a part, of which every one that gives light has a density; nothing where there
+    // is none. u in [0, 1)².
+    virtual std::optional<LightOrigin> sampleOrigin(std::uint32_t part, Vec2 u, const Wavelengths&,
+                                                    float time) const noexcept = 0;
+    // The same for a point of the part that is known, with its unit normal: its density (0 if sampleOrigin() cannot
+    // make it), and `factor` left at 1. Lights that are a point need neither.
+    virtual LightOrigin originAt(std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept = 0;
+    // The light's own distribution of unit directions, about in proportion to the light that leaves: a direction, and
+    // the density of any, 1/sr. Directions into which light leaves have a density.
+    virtual Vec3 sampleDirection(const LightOrigin&, Vec2 u) const noexcept = 0;
+    virtual float pdfDirection(const LightOrigin&, Vec3 w) const noexcept = 0;
+    // Radiance that leaves in a unit direction, W·m⁻²·sr⁻¹·nm⁻¹; without a surface intensity, W·sr⁻¹·nm⁻¹.
+    virtual Spectrum leaving(const LightOrigin&, Vec3 w, const Wavelengths&) const noexcept = 0;
+    // Density with which sample(from, part, ·) makes a point of the part of which no more is known than its unit
+    // normal; 0 for lights that are a point.
+    virtual float pdfAtPoint(const Receiver& /*from*/, std::uint32_t /*part*/, Vec3 /*p*/, Vec3 /*n*/,
+                             float /*time*/) const noexcept {
+        return 0;
+    }
+};
+
+// A surface that rays meet: what SurfaceHit::light is.
+class SurfaceLight : public PlacedLight {
+  public:
+    // Radiance that leaves `hit` in the unit direction `w`, and the density with which sample(from, partOf(hit), ·)
+    // makes that point.
+    virtual Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths&) const noexcept = 0;
+    virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept = 0;
+};
+
+inline bool Light::infinite() const {
+    const DistantLight* const distant = asDistant();
+    return distant && distant->hasExtent();
+}
 
 } // namespace abbe

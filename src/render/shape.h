@@ -83,6 +83,8 @@ enum class Relief : std::uint8_t {
 };
 
 class Shape;
+class SurfaceSampling;
+class VertexAttributes;
 
 // Data of the same primitives at equally spaced times, the first when the shutter opens (Ray::time 0), the last when it
 // closes (1); in between all moves in straight lines. One: it stands still. As long as the first at every step.
@@ -134,10 +136,6 @@ class Shape {
     virtual Vec3 carried(const RawHit&, const Ray&, const SurfaceHit& hit, float /*time*/) const { return hit.p; }
     // Whether uv are texture coordinates of the whole shape.
     virtual bool hasTextureCoordinates() const { return true; }
-    // The attribute of that name at a hit of this shape, found by part, element and barycentric; nothing if it has
-    // none. A single channel is repeated.
-    virtual std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const { return std::nullopt; }
-    virtual std::vector<std::string_view> attributeNames() const { return {}; }
     // The mean of the two curvatures of the shading normals at a hit of this shape, 1/m; positive where it bulges
     // outwards, 0 where it is not known. For the width of paths beyond mirrors and lenses.
     virtual float meanCurvature(const SurfaceHit&) const { return 0; }
@@ -151,12 +149,20 @@ class Shape {
     // Whether some of its faces have a material of their own that looks at textures.
     virtual bool usesTextures() const { return false; }
 
-    // What only emitters need. Area in m²; infinite for planes.
+    // m²; infinite for planes.
     virtual double area() const = 0;
+    // What some shapes can besides; null for those that cannot.
+    virtual const SurfaceSampling* sampling() const { return nullptr; }
+    virtual const VertexAttributes* attributes() const { return nullptr; }
+};
+
+// Of a shape on which points can be drawn: for lights, and for chains of refractions that lead through it.
+class SurfaceSampling {
+  public:
     // What is sampled at a time: the whole shape, or each of the polygons of a mesh; the part of a hit is then its
     // SurfaceHit::primitive.
     virtual std::uint32_t emitterParts() const { return 1; }
-    virtual EmitterPart emitterPart(std::uint32_t) const { return {.box = bounds(), .area = area()}; }
+    virtual EmitterPart emitterPart(std::uint32_t) const = 0;
     // A point of a part seen from `from`, or nothing if none can be (degenerate, below the horizon). All points that
     // count there have a density. u in [0, 1)².
     virtual std::optional<ShapeSample> sample(const Receiver& from, std::uint32_t part, Vec2 u) const = 0;
@@ -164,20 +170,65 @@ class Shape {
     // cannot.
     virtual float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) const = 0;
 
-    // What paths that start at an emitter need. A point of a part, even per area where the shape was made; nothing for
-    // shapes that cannot emit. u in [0, 1)².
-    virtual std::optional<ShapePoint> samplePoint(std::uint32_t /*part*/, Vec2 /*u*/) const { return std::nullopt; }
+    // What paths that start at an emitter need. A point of a part, even per area where the shape was made. u in
+    // [0, 1)².
+    virtual std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const = 0;
     // Density per m² with which samplePoint(part, ·) makes a point of the part where the unit normal is ng; 0 if it
     // cannot.
-    virtual float pdfPoint(std::uint32_t /*part*/, Vec3 /*ng*/) const { return 0; }
+    virtual float pdfPoint(std::uint32_t part, Vec3 ng) const = 0;
 
     // What only emitters with textures need. What surface() and parametrize() are to be given at a point of a part,
     // where the normal is ng; nothing if it is not on the shape. The ray is the one to go with it.
-    virtual std::optional<RawHit> locate(Vec3 /*p*/, std::uint32_t /*part*/, const Ray& towards) const {
-        return intersect(towards);
-    }
+    virtual std::optional<RawHit> locate(Vec3 p, std::uint32_t part, const Ray& towards) const = 0;
     // The point whose texture coordinates are these, where parametrize() maps the shape one to one to the unit square.
     virtual std::optional<UvPoint> uvPoint(Vec2 /*uv*/) const { return std::nullopt; }
+
+  protected:
+    ~SurfaceSampling() = default; // owned as shapes
+};
+
+// Of any shape: what the shape itself says or, where nothing can be drawn on it, that: such a light is found by rays
+// alone.
+class SamplingOf final {
+  public:
+    // Refers to the shape.
+    explicit SamplingOf(const Shape& shape) : none_(shape), sampling_(shape.sampling()) {}
+    const SurfaceSampling& operator*() const { return sampling_ ? *sampling_ : none_; }
+    const SurfaceSampling* operator->() const { return &**this; }
+
+  private:
+    class None final : public SurfaceSampling {
+      public:
+        explicit None(const Shape& shape) : shape_(shape) {}
+        EmitterPart emitterPart(std::uint32_t) const override {
+            return {.box = shape_.bounds(), .area = shape_.area()};
+        }
+        std::optional<ShapeSample> sample(const Receiver&, std::uint32_t, Vec2) const override { return std::nullopt; }
+        float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override { return 0; }
+        std::optional<ShapePoint> samplePoint(std::uint32_t, Vec2) const override { return std::nullopt; }
+        float pdfPoint(std::uint32_t, Vec3) const override { return 0; }
+        std::optional<RawHit> locate(Vec3, std::uint32_t, const Ray& towards) const override {
+            return shape_.intersect(towards);
+        }
+
+      private:
+        const Shape& shape_;
+    };
+
+    None none_;
+    const SurfaceSampling* sampling_;
+};
+
+// Of a shape with numbers at its vertices, which are blended between them.
+class VertexAttributes {
+  public:
+    // The attribute of that name at a hit of this shape, found by part, element and barycentric; nothing if it has
+    // none. A single channel is repeated.
+    virtual std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const = 0;
+    virtual std::vector<std::string_view> attributeNames() const = 0;
+
+  protected:
+    ~VertexAttributes() = default; // owned as shapes
 };
 
 // The ray that meets a point of a shape from its outer side, from so near that nothing else is in between, as a rule.

@@ -9,7 +9,7 @@ namespace abbe {
 
 class Curve;
 class Material;
-class Light;
+class SurfaceLight;
 class Shape;
 
 // Render space. Plain data, filled by Intersector::intersect.
@@ -21,8 +21,8 @@ struct SurfaceHit {
     Frame shading;      // z is the shading normal, in ng's hemisphere
     Vec2 uv;
     const Material* material = nullptr;
-    const Light* light = nullptr; // the area light that this surface is, or null
-    std::uint32_t primitive = 0;  // within its shape
+    const SurfaceLight* light = nullptr; // that this surface is, or null
+    std::uint32_t primitive = 0;         // within its shape
     static constexpr std::uint32_t kNoInstance = 0xffffffffu;
     std::uint32_t instance = kNoInstance; // number of the outermost placement that it belongs to
 

@@ -47,8 +47,8 @@ void LightBuilder::add(std::unique_ptr<Light> light, const Definition& d, Visibi
     names_.emplace_back(d.name, d.type ? std::string(d.type->name) : std::string());
 }
 
-const Light* LightBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender,
-                                     Visibility visible) {
+const SurfaceLight* LightBuilder::emitterOf(const LoadedShape& shape, const Shape& placed, const Motion& toRender,
+                                            Visibility visible) {
     const ShapeEmission emission = shapes_.emissionOf(shape);
     const Definition& d = *shape.definition;
     std::optional<LightMotion> motion;
@@ -73,17 +73,19 @@ const Light* LightBuilder::emitterOf(const LoadedShape& shape, const Shape& plac
             context_.diagnostics.warning("W0740", d.span, "this light is dark; no light is asked of it");
     }
     const bool both = emission.bothSides;
+    std::unique_ptr<AreaLight> light;
     if (motion)
-        lights_.push_back(std::make_unique<MovingAreaLight>(placed, emission.radiance, both, std::move(*motion),
-                                                            std::move(texture), emission.veil));
+        light = std::make_unique<MovingAreaLight>(placed, emission.radiance, both, std::move(*motion),
+                                                  std::move(texture), emission.veil);
     else
-        lights_.push_back(
-            std::make_unique<AreaLight>(placed, emission.radiance, both, std::move(texture), emission.veil));
-    if (!checkPower(*lights_.back(), d.span)) return lights_.pop_back(), nullptr;
-    lights_.back()->setVisible(visible);
+        light = std::make_unique<AreaLight>(placed, emission.radiance, both, std::move(texture), emission.veil);
+    if (!checkPower(*light, d.span)) return nullptr;
+    light->setVisible(visible);
     names_.emplace_back(d.name, "shape");
-    context_.built.scene.names[lights_.back().get()] = context_.nameOf(d);
-    return lights_.back().get();
+    const SurfaceLight* const kept = light.get();
+    lights_.push_back(std::move(light));
+    context_.built.scene.names[kept] = context_.nameOf(d);
+    return kept;
 }
 
 bool LightBuilder::takeTexture(const AreaLightParams& params, const Shape& shape, const Definition& d,
@@ -145,7 +147,11 @@ std::optional<LightContext> LightSite::context(const KeyedTransform* own, std::o
     return context;
 }
 
-void LightSite::add(std::unique_ptr<Light> light, const LightContext& context, Visibility own) {
+void LightSite::add(std::unique_ptr<PlacedLight> light, const LightContext& context, Visibility own) {
+    lights_.add(inMotion(std::move(light), context), definition_, place_.visible & own);
+}
+
+void LightSite::add(std::unique_ptr<DistantLight> light, const LightContext& context, Visibility own) {
     lights_.add(inMotion(std::move(light), context), definition_, place_.visible & own);
 }
 

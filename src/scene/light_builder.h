@@ -32,7 +32,8 @@ class LightSite {
     // holds it, and outlives the context. Nothing after an error.
     std::optional<LightContext> context(const KeyedTransform* own, std::optional<LightMotion>& motion);
     // What has no surface. Null is nothing.
-    void add(std::unique_ptr<Light>, const LightContext&, Visibility own);
+    void add(std::unique_ptr<PlacedLight>, const LightContext&, Visibility own);
+    void add(std::unique_ptr<DistantLight>, const LightContext&, Visibility own);
     // What has one: makes a shape in render space, which is then a light. `make` returns null after an error.
     using MakeSurface = std::function<std::unique_ptr<const Shape>(const Transform& place, const ShapeContext&)>;
     void addArea(const AreaLightParams&, const MakeSurface& make);
@@ -59,7 +60,7 @@ class LightBuilder {
     bool checkPower(const Light&, Span);
     void add(std::unique_ptr<Light>, const Definition&, Visibility = kVisibleToAll);
     // The light that a placed shape is; null for none, or after an error.
-    const Light* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender, Visibility);
+    const SurfaceLight* emitterOf(const LoadedShape&, const Shape&, const Motion& toRender, Visibility);
     // The texture of an area light, if it has one; false after an error.
     bool takeTexture(const AreaLightParams&, const Shape&, const Definition&, LightContext&);
     ShapeBuilder& shapes() { return shapes_; }
@@ -84,8 +85,8 @@ class LightBuilder {
 struct EnvironmentLightParams;
 struct IesLightParams;
 // light_files.cpp: lights that files describe. Null after an error.
-std::unique_ptr<Light> loadIesLight(const IesLightParams&, const LightContext&, BuildContext&);
-std::unique_ptr<Light> loadEnvironmentLight(const EnvironmentLightParams&, const LightContext&, BuildContext&);
+std::unique_ptr<PlacedLight> loadIesLight(const IesLightParams&, const LightContext&, BuildContext&);
+std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams&, const LightContext&, BuildContext&);
 // The surfaces of area lights; null after an error.
 std::unique_ptr<const Shape> placeLightQuad(const LightQuadParams&, const Transform& place, const ShapeContext&);
 std::unique_ptr<const Shape> placeLightDisk(const LightDiskParams&, const Transform& place, const ShapeContext&);

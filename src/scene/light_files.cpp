@@ -44,7 +44,8 @@ std::unique_ptr<const RgbRadiance> makeRgbRadiance(const RgbSpace& space, std::s
 
 } // namespace
 
-std::unique_ptr<Light> loadIesLight(const IesLightParams& params, const LightContext& context, BuildContext& scene) {
+std::unique_ptr<PlacedLight> loadIesLight(const IesLightParams& params, const LightContext& context,
+                                          BuildContext& scene) {
     IntensityTable table;
     if (!readsFile(
             params.file.value, params.file.span, scene.diagnostics, [&] { table = readIes(params.file.value); },
@@ -55,15 +56,15 @@ std::unique_ptr<Light> loadIesLight(const IesLightParams& params, const LightCon
     return light;
 }
 
-std::unique_ptr<Light> loadEnvironmentLight(const EnvironmentLightParams& params, const LightContext& context,
-                                            BuildContext& scene) {
+std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams& params, const LightContext& context,
+                                                   BuildContext& scene) {
     const std::string& path = params.image.value;
     RgbImage file;
     if (!readsFile(path, params.image.span, scene.diagnostics, [&] { file = readImage(path); })) return nullptr;
     scene.noteFile(path);
     RgbSpace space = file.chromaticities ? file.chromaticities->space() : rgb::rec709;
     for (const auto& [key, word] : params.image.keys)
-        if (key == "space") space = findRgbSpace(word).value_or(space);
+        if (key == "space") space = abbe::findRgbSpace(word).value_or(space);
     std::string reason;
     auto upsampling = makeRgbRadiance(space, reason);
     if (!upsampling) {

@@ -184,10 +184,10 @@ template <typename Params, auto make> Entry light(schema::TypeInfo type) {
             else
                 return make(params, *context, site.scene().diagnostics);
         };
-        if constexpr (std::same_as<decltype(made()), std::unique_ptr<Light>>)
+        if constexpr (std::convertible_to<decltype(made()), std::unique_ptr<Light>>)
             site.add(made(), *context, visible);
         else
-            for (std::unique_ptr<Light>& one : made()) site.add(std::move(one), *context, visible);
+            for (auto& one : made()) site.add(std::move(one), *context, visible);
     };
     return {std::move(type), maker};
 }

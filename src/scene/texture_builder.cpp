@@ -98,7 +98,8 @@ void TextureBuilder::askForPart(std::uint32_t material) {
 // Every attribute that a texture asks for, directly or in its parts.
 void TextureBuilder::checkAttributes(std::uint32_t texture, Span asker, const TexturedShape& on) {
     if (const auto* const attribute = dynamic_cast<const AttributeTexture*>(textures_[texture].get())) {
-        const auto names = on.shape.attributeNames();
+        const VertexAttributes* const attributes = on.shape.attributes();
+        const auto names = attributes ? attributes->attributeNames() : std::vector<std::string_view>{};
         if (std::ranges::find(names, attribute->name()) != names.end()) return;
         auto& d = context_.diagnostics.error(
             "E0734", asker, fmt::format("the shape has no attribute `{}`", attribute->name()), "this texture");

@@ -24,7 +24,9 @@ bool AttributeTexture::prepare(TextureUse use, Span user, Diagnostics& diagnosti
 
 Vec3 AttributeTexture::value(const TextureQuery& query) const noexcept {
     if (!query.hit || !query.hit->shape) return {};
-    Vec3 v = query.hit->shape->attribute(name_, *query.hit).value_or(Vec3{});
+    const VertexAttributes* const attributes = query.hit->shape->attributes();
+    if (!attributes) return {};
+    Vec3 v = attributes->attribute(name_, *query.hit).value_or(Vec3{});
     if (encoded_)
         v = {static_cast<float>(srgbToLinear(static_cast<double>(v.x))),
              static_cast<float>(srgbToLinear(static_cast<double>(v.y))),

@@ -127,19 +127,16 @@ class FaultyMaterial final : public ForwardingMaterial {
     const Injection& injection_;
 };
 
-class FaultyLight final : public Light {
+// What is wrong with any light, whatever else it is.
+template <typename Kind> class FaultyLightOf : public Kind {
   public:
-    FaultyLight(std::unique_ptr<const Light> sound, const Injection& injection)
+    FaultyLightOf(std::unique_ptr<const Light> sound, const Injection& injection)
         : sound_(std::move(sound)), injection_(injection) {
-        setVisible(sound_->visible());
+        this->setVisible(sound_->visible());
     }
-    double power() const override { return sound_->power(); }
-    double visiblePower() const override { return sound_->visiblePower(); }
-    double irradiance() const override { return sound_->irradiance(); }
+    LightOutput output() const override { return sound_->output(); }
     std::uint32_t parts() const override { return sound_->parts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override { return sound_->bounds(part); }
-    const Curve* powerShape() const override { return sound_->powerShape(); }
-    bool infinite() const override { return sound_->infinite(); }
     bool bodiless() const override { return sound_->bodiless(); }
     std::optional<LightReach> reach(const Ray& ray, float tMax) const noexcept override {
         return sound_->reach(ray, tMax);
@@ -154,22 +151,48 @@ class FaultyLight final : public Light {
         s->wi = injection_.apply(Site::lightTurn, s->wi, {u.x, u.y});
         return s;
     }
-    Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept override {
-        return injection_.apply(Site::emitted, sound_->emitted(hit, w, lambda), {w.x, w.y, w.z});
-    }
-    float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept override {
-        return injection_.apply(Site::emittedPdf, sound_->pdfSolidAngle(from, hit, time), {hit.p.x, hit.p.y, hit.p.z});
-    }
-    Spectrum escaped(Vec3 w, const Wavelengths& lambda, float time) const noexcept override {
-        return injection_.apply(Site::emitted, sound_->escaped(w, lambda, time), {w.x, w.y, w.z});
-    }
-    float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept override {
-        return injection_.apply(Site::emittedPdf, sound_->pdfEscaped(from, w, time), {w.x, w.y, w.z});
-    }
+
+  protected:
+    const Light& sound() const { return *sound_; }
+    const Injection& injection() const { return injection_; }
 
   private:
     std::unique_ptr<const Light> sound_;
     const Injection& injection_;
+};
+
+class FaultySurfaceLight final : public FaultyLightOf<SurfaceLight> {
+  public:
+    using FaultyLightOf::FaultyLightOf;
+    Spectrum emitted(const SurfaceHit& hit, Vec3 w, const Wavelengths& lambda) const noexcept override {
+        return injection().apply(Site::emitted, own().emitted(hit, w, lambda), {w.x, w.y, w.z});
+    }
+    float pdfSolidAngle(const Receiver& from, const SurfaceHit& hit, float time) const noexcept override {
+        return injection().apply(Site::emittedPdf, own().pdfSolidAngle(from, hit, time), {hit.p.x, hit.p.y, hit.p.z});
+    }
+    // No paths start at faulty lights.
+    std::optional<LightOrigin> sampleOrigin(std::uint32_t, Vec2, const Wavelengths&, float) const noexcept override {
+        return std::nullopt;
+    }
+    LightOrigin originAt(std::uint32_t, Vec3, Vec3, float) const noexcept override { return {}; }
+    Vec3 sampleDirection(const LightOrigin& origin, Vec2) const noexcept override { return origin.n; }
+    float pdfDirection(const LightOrigin&, Vec3) const noexcept override { return 0; }
+    Spectrum leaving(const LightOrigin&, Vec3, const Wavelengths&) const noexcept override { return Spectrum(0.f); }
+
+  private:
+    const SurfaceLight& own() const { return static_cast<const SurfaceLight&>(sound()); }
+};
+
+class FaultyDistantLight final : public FaultyLightOf<DistantLight> {
+  public:
+    using FaultyLightOf::FaultyLightOf;
+    bool hasExtent() const override { return sound().infinite(); }
+    Spectrum escaped(Vec3 w, const Wavelengths& lambda, float time) const noexcept override {
+        return injection().apply(Site::emitted, sound().asDistant()->escaped(w, lambda, time), {w.x, w.y, w.z});
+    }
+    float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept override {
+        return injection().apply(Site::emittedPdf, sound().asDistant()->pdfEscaped(from, w, time), {w.x, w.y, w.z});
+    }
 };
 
 class FaultyPhase final : public PhaseFunction {
@@ -256,7 +279,7 @@ class FaultyIntersector final : public Intersector {
   public:
     explicit FaultyIntersector(std::unique_ptr<const Intersector> sound) : sound_(std::move(sound)) {}
     std::unordered_map<const Material*, const Material*> materials;
-    std::unordered_map<const Light*, const Light*> lights;
+    std::unordered_map<const Light*, const SurfaceLight*> lights;
 
     bool intersect(const Ray& ray, SurfaceHit& hit) const noexcept override {
         const bool met = sound_->intersect(ray, hit);

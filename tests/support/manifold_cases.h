@@ -115,7 +115,8 @@ class ManifoldCase {
     static double watts(const Light& light, const Wavelengths& lambda) {
         const auto s = LightTarget::sample(light, 0, 1, {0.5f, 0.5f}, lambda, 0);
         if (!s) return 1;
-        const double spectrum = abbe::mean(s->distant ? s->radiance : light.leaving(s->origin, {0, -1, 0}, lambda));
+        const double spectrum =
+            abbe::mean(s->distant ? s->radiance : s->placed->leaving(s->origin, {0, -1, 0}, lambda));
         return s->distant ? spectrum / static_cast<double>(s->pdf) : spectrum;
     }
 };

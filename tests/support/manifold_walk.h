@@ -40,10 +40,11 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
             SurfaceHit hit;
             if (!scene.intersector->intersect(ray, hit)) {
                 for (const auto& light : scene.lights) {
-                    if (!light->infinite()) continue;
-                    const LightTarget met = LightTarget::met(*light, ray.direction, 0);
+                    const DistantLight* const distant = light->asDistant();
+                    if (!distant || !distant->hasExtent()) continue;
+                    const LightTarget met = LightTarget::met(*distant, ray.direction, 0);
                     const bool covered = test.sampler->covers(chain, start, direction, met, lambda);
-                    const Spectrum arriving = light->escaped(ray.direction, lambda, 0) * beta;
+                    const Spectrum arriving = distant->escaped(ray.direction, lambda, 0) * beta;
                     if (length > 0 && covered == (wanted == Found::covered))
                         sum += static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
                 }

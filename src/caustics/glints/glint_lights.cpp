@@ -19,7 +19,7 @@ std::optional<GlintLamp> distantLamp(const Light& light) {
     for (int i = 0; i < kPoints; ++i) {
         const Vec2 u{(static_cast<float>(i) + 0.5f) / kPoints,
                      static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
-        const auto s = light.sampleDistant(u, Wavelengths::sample(0.5f), 0);
+        const auto s = light.asDistant()->sampleDistant(u, Wavelengths::sample(0.5f), 0);
         if (!s || s->delta) return std::nullopt;
         directions.push_back(s->wi);
         sum = sum + s->wi;

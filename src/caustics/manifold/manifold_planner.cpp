@@ -47,7 +47,7 @@ double extentOf(const Light& light) {
     for (int i = 0; i < kLampSamples; ++i) {
         const Vec2 u{(static_cast<float>(i) + 0.5f) / kLampSamples,
                      static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
-        const auto s = light.sampleDistant(u, Wavelengths::sample(0.5f), 0);
+        const auto s = light.asDistant()->sampleDistant(u, Wavelengths::sample(0.5f), 0);
         if (s && s->delta) return 0;
         if (s) sum += static_cast<double>(s->pdfSolidAngle) / kLampSamples;
     }

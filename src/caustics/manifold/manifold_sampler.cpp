@@ -15,7 +15,7 @@ constexpr double kLongestNewtonStep = 1; // of Newton's method, over the sine of
 // that the receiver can see, the other leads to points of the shape.
 class Seeds {
   public:
-    Seeds(const ChainStart& start, const SpecularCaster& caster) : receiver_(start.receiver), shape_(*caster.shape) {
+    Seeds(const ChainStart& start, const SpecularCaster& caster) : receiver_(start.receiver), points_(*caster.shape) {
         if (!(caster.radius < kInfinity)) return;
         cone_ = AimCone::seen({caster.centre, caster.radius}, receiver_.p);
         const double distance = length(Vec3d(caster.centre) - Vec3d(receiver_.p));
@@ -38,15 +38,15 @@ class Seeds {
 
   private:
     std::optional<Vec3d> towardsShape(std::uint64_t choice, Vec2 u) const {
-        const auto part = static_cast<std::uint32_t>(choice * shape_.emitterParts() >> 32);
-        const auto point = shape_.samplePoint(part, u);
+        const auto part = static_cast<std::uint32_t>(choice * points_->emitterParts() >> 32);
+        const auto point = points_->samplePoint(part, u);
         if (!point) return std::nullopt;
         const Vec3d d = Vec3d(point->p) - Vec3d(receiver_.p);
         return lengthSquared(d) > 0 ? std::optional(normalize(d)) : std::nullopt;
     }
 
     const Receiver& receiver_;
-    const Shape& shape_;
+    SamplingOf points_; // of the shape
     std::optional<AimCone> cone_;
     double size_ = 1;
 };

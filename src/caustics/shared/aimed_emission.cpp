@@ -101,7 +101,11 @@ void AimedEmission::addLights(const std::vector<std::unique_ptr<const Light>>& l
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Light& light = *lights[i];
         if (light.paths() == LightPaths::none) continue;
-        Source source{.light = &light, .parts = {}, .row = aim_.size() > 1 ? i : 0};
+        Source source{.light = &light,
+                      .distant = light.asDistant(),
+                      .placed = light.asPlaced(),
+                      .parts = {},
+                      .row = aim_.size() > 1 ? i : 0};
         if (light.parts() > 1) {
             std::vector<double> parts;
             for (std::uint32_t part = 0; part < light.parts(); ++part) {
@@ -125,9 +129,8 @@ std::optional<EmittedRay> AimedEmission::sample(const EmissionNumbers& u, const 
     const std::uint32_t part = source.parts ? source.parts->pick(u.part) : 0;
     const std::uint32_t bin = aim_[source.row].sample(u.aim).index;
     const std::uint32_t target = bin > 0 ? bin - 1 : kOwn;
-    std::optional<EmittedRay> ray = source.light->paths() == LightPaths::distant
-                                        ? sampleDistant(source, target, u, lambda, time)
-                                        : samplePlaced(source, part, target, u, lambda, time);
+    std::optional<EmittedRay> ray = source.distant ? sampleDistant(source, target, u, lambda, time)
+                                                   : samplePlaced(source, part, target, u, lambda, time);
     if (!ray) return ray;
     ray->light = source.light;
     ray->part = part;
@@ -141,7 +144,7 @@ std::optional<EmittedRay> AimedEmission::sample(const EmissionNumbers& u, const 
 std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std::uint32_t part, std::uint32_t target,
                                                       const EmissionNumbers& u, const Wavelengths& lambda,
                                                       float time) const noexcept {
-    const auto origin = source.light->sampleOrigin(part, u.position, lambda, time);
+    const auto origin = source.placed->sampleOrigin(part, u.position, lambda, time);
     if (!origin) return std::nullopt;
     const auto cone = target == kOwn ? std::nullopt : coneOf(plan_.targets[target], *origin);
     EmittedRay ray;
@@ -149,8 +152,8 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     ray.aim = u.direction;
     if (cone && cone->resolves())
         if (const AimGrid* grid = gridOf(source.row, target)) ray.aim = grid->sample(u.direction);
-    const Vec3 w = cone ? cone->sample(ray.aim) : source.light->sampleDirection(*origin, u.direction);
-    ray.beta = source.light->leaving(*origin, w, lambda) * origin->cosine(w);
+    const Vec3 w = cone ? cone->sample(ray.aim) : source.placed->sampleDirection(*origin, u.direction);
+    ray.beta = source.placed->leaving(*origin, w, lambda) * origin->cosine(w);
     if (!anyNonZero(ray.beta)) return std::nullopt;
     ray.ray.origin = spawnOrigin(origin->p, origin->pError, origin->n, w);
     ray.ray.direction = w;
@@ -194,13 +197,13 @@ double AimedEmission::pdfDirection(const Source& source, const LightOrigin& orig
         else if (t == chosen || cone->contains(w))
             density += share * cone->pdf() * litDensity(source.row, t, *cone, w);
     }
-    return density + own * static_cast<double>(source.light->pdfDirection(origin, w));
+    return density + own * static_cast<double>(source.placed->pdfDirection(origin, w));
 }
 
 std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std::uint32_t target,
                                                        const EmissionNumbers& u, const Wavelengths& lambda,
                                                        float time) const noexcept {
-    const auto s = source.light->sampleDistant(u.direction, lambda, time);
+    const auto s = source.distant->sampleDistant(u.direction, lambda, time);
     if (!s || !anyNonZero(s->radiance)) return std::nullopt;
     const AimTarget& ball = target == kOwn ? scene_ : balls_[target];
     const Vec3 w = -s->wi;
@@ -246,8 +249,9 @@ double AimedEmission::pickProbability(std::size_t source, std::uint32_t part) co
 EmissionDensity AimedEmission::density(const Light* light, std::uint32_t part, Vec3 p, Vec3 n, Vec3 w,
                                        float time) const noexcept {
     const auto place = places_.find(light);
-    if (empty() || place == places_.end() || light->paths() != LightPaths::placed) return {};
-    const LightOrigin origin = light->originAt(part, p, n, time);
+    const PlacedLight* const placed = !empty() && place != places_.end() ? sources_[place->second].placed : nullptr;
+    if (!placed) return {};
+    const LightOrigin origin = placed->originAt(part, p, n, time);
     EmissionDensity result;
     result.pick = pickProbability(place->second, part);
     result.position = static_cast<double>(origin.pdf);
@@ -257,11 +261,12 @@ EmissionDensity AimedEmission::density(const Light* light, std::uint32_t part, V
 
 EmissionDensity AimedEmission::density(const Light* light, Vec3 p, Vec3 w, float time) const noexcept {
     const auto place = places_.find(light);
-    if (empty() || place == places_.end() || light->paths() != LightPaths::distant) return {};
+    const DistantLight* const distant = !empty() && place != places_.end() ? sources_[place->second].distant : nullptr;
+    if (!distant) return {};
     EmissionDensity result;
     result.distant = true;
     result.pick = pickProbability(place->second, 0);
-    result.direction = light->infinite() ? static_cast<double>(light->pdfDistant(-w, time)) : 1;
+    result.direction = distant->hasExtent() ? static_cast<double>(distant->pdfDistant(-w, time)) : 1;
     // What lies before the start is never reached: a shape without an end can.
     const float ahead = dot(p - scene_.centre, w);
     if (ahead >= -start_ * (1 + 0x1p-20f)) result.position = pdfPosition(sources_[place->second], p, w, kNowhere);

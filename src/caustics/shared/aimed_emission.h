@@ -65,8 +65,10 @@ class AimedEmission {
   private:
     struct Source {
         const Light* light = nullptr;
-        std::optional<Distribution1D> parts; // none: one
-        std::size_t row = 0;                 // in aim_
+        const DistantLight* distant = nullptr; // the same, if it is far away
+        const PlacedLight* placed = nullptr;   // or at a place
+        std::optional<Distribution1D> parts;   // none: one
+        std::size_t row = 0;                   // in aim_
     };
 
     void addLights(const std::vector<std::unique_ptr<const Light>>&);

@@ -302,7 +302,7 @@ TEST_CASE("case 1: shadow rays end before the lamp") {
             const Vec3 above = at(16 * random.uniform() - 8, 1, 16 * random.uniform() - 8);
             REQUIRE(scene->intersect({above, {0, -1, 0}}, hit));
             const Shape& lamp = i & 1 ? static_cast<const Shape&>(tilted) : ball;
-            const auto s = lamp.sample(hit.p, 0, {random.uniform(), random.uniform()});
+            const auto s = lamp.sampling()->sample(hit.p, 0, {random.uniform(), random.uniform()});
             if (!s) continue;
             const Vec3 to = s->p - hit.p;
             if (dot(to, s->ng) * (i & 1 ? -1.f : 1.f) > -1e-3f * length(to)) continue; // edge-on

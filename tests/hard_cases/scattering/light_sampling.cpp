@@ -86,8 +86,8 @@ TEST_CASE("case 32: on, behind, inside or at a corner of a light") {
             double solidAngle = 0, plain = 0;
             constexpr int kSamples = 20000;
             for (int i = 0; i < kSamples; ++i) {
-                const auto s =
-                    shape->sample(Receiver(from), 0, {random.uniform(), (static_cast<float>(i) + 0.5f) / kSamples});
+                const auto s = shape->sampling()->sample(Receiver(from), 0,
+                                                         {random.uniform(), (static_cast<float>(i) + 0.5f) / kSamples});
                 if (!s) continue;
                 bad += !isFinite(s->p) || !(s->pdfSolidAngle > 0) || !std::isfinite(s->pdfSolidAngle);
                 solidAngle += 1 / (kSamples * static_cast<double>(s->pdfSolidAngle));

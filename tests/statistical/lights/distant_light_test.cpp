@@ -31,8 +31,8 @@ EnvironmentImage noise(int width, int height) {
 }
 
 // χ² over the texels of an image, each cut in four: the density is constant in each part, which its middle tells.
-test::ChiSquareResult imageTest(const Light& light, const Transform& turn, int width, int height, std::uint64_t seed,
-                                const Receiver& from = Vec3{}) {
+test::ChiSquareResult imageTest(const DistantLight& light, const Transform& turn, int width, int height,
+                                std::uint64_t seed, const Receiver& from = Vec3{}) {
     const int columns = 2 * width, rows = 2 * height, samples = test::chiSquareSamples();
     const auto solidAngle = [&](int r) {
         return 2 * kPiD / columns * (std::cos(kPiD * r / rows) - std::cos(kPiD * (r + 1) / rows));
@@ -117,7 +117,7 @@ TEST_CASE("sun: directions are uniform over the disk") {
 }
 
 // By sampling the light.
-test::Moments irradiance(const Light& light, Vec3 n, std::uint64_t seed) {
+test::Moments irradiance(const DistantLight& light, Vec3 n, std::uint64_t seed) {
     test::Moments result;
     test::Random random(seed);
     for (int i = 0; i < 400000; ++i) {

@@ -73,14 +73,14 @@ ChiSquareResult mixtureTest(const Light& light, const AimedEmission& emission, R
         return emission.sample(fixed, kAt, time);
     };
     while (!some) some = draw();
-    const auto origin = light.sampleOrigin(some->part, fixed.position, kAt, time);
+    const auto origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
     return directionTest(
         [&] {
             const auto ray = draw();
             return ray ? std::optional(ray->ray.direction) : std::nullopt;
         },
         [&](Vec3 w) {
-            if (!anyNonZero(light.leaving(*origin, w, kAt))) return 0.0;
+            if (!anyNonZero(light.asPlaced()->leaving(*origin, w, kAt))) return 0.0;
             return emission.density(&light, some->part, origin->p, origin->n, w, time).direction;
         });
 }
@@ -130,21 +130,23 @@ TEST_CASE("emission: directions of every light follow its own density") {
         const Light& light = *test.scene().lights.at(0);
         ChiSquareResult result;
         if (lamp.distant) {
-            if (light.sampleDistant({0.5f, 0.5f}, kAt, 0)->delta || lamp.text.size() < 40) continue; // half a degree
+            if (light.asDistant()->sampleDistant({0.5f, 0.5f}, kAt, 0)->delta || lamp.text.size() < 40)
+                continue; // half a degree
             result = directionTest(
                 [&] {
                     return std::optional(
-                        light.sampleDistant({random.uniform(), random.uniform()}, kAt, 0.4f).value().wi);
+                        light.asDistant()->sampleDistant({random.uniform(), random.uniform()}, kAt, 0.4f).value().wi);
                 },
-                [&](Vec3 w) { return static_cast<double>(light.pdfDistant(w, 0.4f)); });
+                [&](Vec3 w) { return static_cast<double>(light.asDistant()->pdfDistant(w, 0.4f)); });
         } else {
-            const auto origin = light.sampleOrigin(0, {0.37f, 0.61f}, kAt, 0.4f);
+            const auto origin = light.asPlaced()->sampleOrigin(0, {0.37f, 0.61f}, kAt, 0.4f);
             REQUIRE(origin);
             result = directionTest(
                 [&] {
-                    return std::optional(light.sampleDirection(*origin, {random.uniform(), random.uniform()}));
+                    return std::optional(
+                        light.asPlaced()->sampleDirection(*origin, {random.uniform(), random.uniform()}));
                 },
-                [&](Vec3 w) { return static_cast<double>(light.pdfDirection(*origin, w)); });
+                [&](Vec3 w) { return static_cast<double>(light.asPlaced()->pdfDirection(*origin, w)); });
         }
         CAPTURE(result.statistic);
         CAPTURE(result.degrees);
@@ -210,7 +212,7 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
             if (t > 0 && row >= 0 && row < cells && column >= 0 && column < cells)
                 observed[static_cast<std::size_t>(row * cells + column)] += 1;
         }
-        const auto origin = light.sampleOrigin(some->part, fixed.position, kAt, time);
+        const auto origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
         const int fine = pointsPerCell();
         for (int i = 0; i < cells * fine; ++i)
             for (int j = 0; j < cells * fine; ++j) {
@@ -219,7 +221,7 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
                 };
                 const Vec3 p = centre + frame.x * at(j) + frame.y * at(i);
                 const Vec3 way = lamp.distant ? some->ray.direction : p - origin->p, w = normalize(way);
-                if (!lamp.distant && !anyNonZero(light.leaving(*origin, w, kAt))) continue;
+                if (!lamp.distant && !anyNonZero(light.asPlaced()->leaving(*origin, w, kAt))) continue;
                 const EmissionDensity d = lamp.distant
                                               ? emission.density(&light, p, w, time)
                                               : emission.density(&light, some->part, origin->p, origin->n, w, time);
@@ -262,7 +264,7 @@ TEST_CASE("emission: a path that is found from its other end has the density wit
                 different += differs(emission.density(&light, ray.ray.origin + w * 2, w, time), 1e-5);
                 continue;
             }
-            const auto origin = light.sampleOrigin(ray.part, u.position, kAt, time);
+            const auto origin = light.asPlaced()->sampleOrigin(ray.part, u.position, kAt, time);
             different += differs(emission.density(&light, ray.part, origin->p, origin->n, w, time), 1e-5);
             if (ray.deltaPosition) continue;
             // The light as a ray meets it, and as a sample for a receiver names it.
@@ -284,7 +286,7 @@ TEST_CASE("emission: a path that is found from its other end has the density wit
         CAPTURE(met);
         CHECK(made > 1500);
         CHECK(different <= made / 500); // at the edges of cones and cells
-        const bool body = !lamp.distant && !light.bodiless() && !light.sampleOrigin(0, {}, kAt, 0)->point();
+        const bool body = !lamp.distant && !light.bodiless() && !light.asPlaced()->sampleOrigin(0, {}, kAt, 0)->point();
         CHECK((!body || met > made / 2));
         CHECK(metDifferent <= met / 50);
     }

@@ -55,7 +55,7 @@ Moments looked(const Light& light, const Patch& patch, int samples, std::uint64_
     for (int i = 0; i < samples; ++i) {
         const Wavelengths lambda = Wavelengths::sample(random.uniform());
         const Vec3 w = squareToSphere({random.uniform(), random.uniform()});
-        const Spectrum arriving = light.escaped(w, lambda, random.uniform());
+        const Spectrum arriving = light.asDistant()->escaped(w, lambda, random.uniform());
         result.add(watts(arriving * (std::max(0.f, dot(patch.n, w)) / kSpherePdf), lambda));
     }
     return result;
@@ -214,7 +214,7 @@ TEST_CASE("emission: lights are drawn by power and usefulness, and none is lost"
 
 TEST_CASE("emission: what shines in a volume starts no path") {
     struct Dark final : Light {
-        double power() const override { return 1; }
+        LightOutput output() const override { return {.power = 1, .visiblePower = 1}; }
         std::optional<LightSample> sample(const Receiver&, std::uint32_t, Vec2, const Wavelengths&,
                                           float) const noexcept override {
             return std::nullopt;

@@ -13,7 +13,7 @@ namespace {
 
 std::optional<SurfaceHit> hitOf(const Shape& shape, Vec3 p, Vec3 ng, std::uint32_t part) {
     const Ray ray = rayOnto(p, ng, 1e-3f * shape.bounds().radius());
-    const auto raw = shape.locate(p, part, ray);
+    const auto raw = shape.sampling()->locate(p, part, ray);
     if (!raw) return std::nullopt;
     SurfaceHit hit;
     shape.surface(*raw, ray, hit);
@@ -52,7 +52,7 @@ TEST_CASE("texture coordinates lead to their point, and its area, and back") {
         constexpr int kPoints = 4000;
         for (int i = 0; i < kPoints; ++i) {
             const Vec2 uv{random.uniform(), random.uniform()};
-            const auto point = shape->uvPoint(uv);
+            const auto point = shape->sampling()->uvPoint(uv);
             REQUIRE(point);
             area += static_cast<double>(point->area) / kPoints;
             if (i > 200) continue;

@@ -89,15 +89,15 @@ void check(const Shape& shape, const Trace& trace, const Case& c) {
             SurfaceHit hit;
             hit.p = Vec3(*p);
             hit.ng = {0, -1, 0};
-            const double share =
-                static_cast<double>(shape.pdfSolidAngle(c.from, hit)) * 4 * kPiD / (kRows * kColumns * kFine * kFine);
+            const double share = static_cast<double>(shape.sampling()->pdfSolidAngle(c.from, hit)) * 4 * kPiD /
+                                 (kRows * kColumns * kFine * kFine);
             integral += share;
             expected[cell(w)] += share * kSamples;
         }
     Random random(21);
     double worst = 0;
     for (int i = 0; i < kSamples; ++i) {
-        const auto s = shape.sample(c.from, 0, {random.uniform(), random.uniform()});
+        const auto s = shape.sampling()->sample(c.from, 0, {random.uniform(), random.uniform()});
         if (!s) {
             ++observed.back();
             continue;
@@ -108,7 +108,7 @@ void check(const Shape& shape, const Trace& trace, const Case& c) {
         hit.p = s->p;
         hit.ng = s->ng;
         // Where the density all but vanishes its relative error means nothing.
-        const auto pdf = static_cast<double>(shape.pdfSolidAngle(c.from, hit));
+        const auto pdf = static_cast<double>(shape.sampling()->pdfSolidAngle(c.from, hit));
         worst = std::max(worst, std::abs(pdf - static_cast<double>(s->pdfSolidAngle)));
     }
     CHECK(integral == doctest::Approx(c.least).epsilon(0.004));
@@ -188,7 +188,7 @@ TEST_CASE("the spread of irradiance estimates falls by the cosine") {
         Random random(5);
         Moments m;
         for (int i = 0; i < 100000; ++i) {
-            const auto s = shape.sample(at, 0, {random.uniform(), random.uniform()});
+            const auto s = shape.sampling()->sample(at, 0, {random.uniform(), random.uniform()});
             m.add(s ? std::max(0.f, dot(normalize(s->p - at.p), n)) / s->pdfSolidAngle : 0);
         }
         return m;
@@ -234,13 +234,13 @@ TEST_CASE("receivers in, on, above and far from a light do no harm") {
     Random random(8);
     const auto sound = [&random](const Shape& shape, const Receiver& at) {
         for (int i = 0; i < 200; ++i) {
-            const auto s = shape.sample(at, 0, {random.uniform(), random.uniform()});
+            const auto s = shape.sampling()->sample(at, 0, {random.uniform(), random.uniform()});
             if (!s) continue;
             CHECK_UNARY(isFinite(s->p) && isFinite(s->ng) && isFinite(s->pdfSolidAngle) && s->pdfSolidAngle > 0);
             SurfaceHit hit;
             hit.p = s->p;
             hit.ng = s->ng;
-            const float pdf = shape.pdfSolidAngle(at, hit);
+            const float pdf = shape.sampling()->pdfSolidAngle(at, hit);
             CHECK_UNARY(isFinite(pdf) && pdf >= 0);
         }
     };

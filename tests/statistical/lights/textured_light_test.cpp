@@ -44,6 +44,8 @@ bool possible(const std::string& shape, const std::string& texture) {
 struct TexturedFlux {
     double lumens = 0, watts = 0;
 };
+const SurfaceLight& surfaceOf(const Light& light) { return dynamic_cast<const SurfaceLight&>(light); }
+
 TexturedFlux fluxOf(const Light& light, int samples = 60000) {
     constexpr float radius = 40;
     // An R₅ sequence: far more even than random points.
@@ -145,8 +147,8 @@ TEST_CASE("samples of a lamp with a texture are met as they are, with the densit
                 if (!test.scene().intersector->intersect(ray, hit) || light.partOf(hit) != part) continue;
                 if (std::abs(hit.distance - s->distance) > 1e-3f * s->distance) continue; // behind its own front
                 ++met;
-                const float pdf = light.pdfSolidAngle(from, hit, 0);
-                const Spectrum emitted = light.emitted(hit, -s->wi, lambda);
+                const float pdf = surfaceOf(light).pdfSolidAngle(from, hit, 0);
+                const Spectrum emitted = surfaceOf(light).emitted(hit, -s->wi, lambda);
                 different += std::abs(pdf / s->pdfSolidAngle - 1) > 5e-3f ||
                              std::abs(sum(emitted) - sum(s->radiance)) > 0.01f * sum(s->radiance) + 1e-3f;
             }
@@ -191,8 +193,9 @@ TEST_CASE("points on a screen follow their density: χ² over its texture coordi
                 hit.p = Vec3{2 * hit.uv.x - 1, hit.uv.y - 0.5f, 0} - origin;
                 hit.ng = {0, 0, 1};
                 const Vec3 d = hit.p - from.p;
-                const double perArea = static_cast<double>(light.pdfSolidAngle(from, hit, 0) * std::abs(d.z)) /
-                                       std::pow(static_cast<double>(length(d)), 3);
+                const double perArea =
+                    static_cast<double>(surfaceOf(light).pdfSolidAngle(from, hit, 0) * std::abs(d.z)) /
+                    std::pow(static_cast<double>(length(d)), 3);
                 const double share = perArea * 2 / (kColumns * kRows * kFine * kFine);
                 total += share;
                 expected[static_cast<std::size_t>(y / kFine * kColumns + x / kFine)] += share * samples;

@@ -16,7 +16,7 @@ using namespace abbe::test;
 
 namespace {
 
-const Light* light(std::uintptr_t i) { return reinterpret_cast<const Light*>(16 * i); }
+const SurfaceLight* light(std::uintptr_t i) { return reinterpret_cast<const SurfaceLight*>(16 * i); }
 
 Ray ray(Vec3 origin, Vec3 direction) { return {origin, normalize(direction)}; }
 

@@ -63,8 +63,9 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
             for (int hits = 0; hits < 8; ++hits) {
                 SurfaceHit hit;
                 if (!scene->intersect(ray, hit)) break;
-                const double value = static_cast<double>(shape.pdfSolidAngle(from, hit) * std::abs(dot(hit.ng, w))) *
-                                     directions.solidAngle() / (double(n) * n);
+                const double value =
+                    static_cast<double>(shape.sampling()->pdfSolidAngle(from, hit) * std::abs(dot(hit.ng, w))) *
+                    directions.solidAngle() / (double(n) * n);
                 expected[at(i / rays, j / rays)] += value;
                 totalExpected += value;
                 ray.origin = spawnOrigin(hit, w);
@@ -76,7 +77,7 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
     double total = 0;
     for (int i = 0; i < samples; ++i) {
         const Vec2 u{random.uniform(), random.uniform()};
-        const auto s = shape.sample(from, 0, u);
+        const auto s = shape.sampling()->sample(from, 0, u);
         if (!s) continue;
         const Vec3d d = normalize(Vec3d(s->p) - Vec3d(from));
         const Vec2d q = directions.square(d);
@@ -89,7 +90,7 @@ WeightedReport examineWeighted(const Shape& shape, Vec3 from) {
         hit.p = s->p;
         hit.ng = s->ng;
         if (const auto* whole = dynamic_cast<const WholeEmitter*>(&shape)) hit.primitive = whole->partOf(u.x);
-        const double ratio = static_cast<double>(shape.pdfSolidAngle(from, hit) / s->pdfSolidAngle);
+        const double ratio = static_cast<double>(shape.sampling()->pdfSolidAngle(from, hit) / s->pdfSolidAngle);
         report.worstPdfRatio = std::max(report.worstPdfRatio, std::abs(ratio - 1));
     }
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -125,13 +126,13 @@ TEST_CASE("parametric shapes: density is one over the Jacobian of the map") {
         Random random(5);
         int compared = 0, off = 0;
         const auto direction = [&](Vec2 u) -> std::optional<Vec3d> {
-            const auto s = c.shape->sample(from, 0, u);
+            const auto s = c.shape->sampling()->sample(from, 0, u);
             if (!s) return std::nullopt;
             return normalize(Vec3d(s->p) - Vec3d(from));
         };
         for (int i = 0; i < 1000; ++i) {
             const Vec2 u{0.02f + 0.96f * random.uniform(), 0.02f + 0.96f * random.uniform()};
-            const auto s = c.shape->sample(from, 0, u);
+            const auto s = c.shape->sampling()->sample(from, 0, u);
             // Edge-on the direction turns back within the steps of the difference.
             if (!s || std::abs(dot(normalize(s->p - from), s->ng)) < 0.2f) continue;
             const auto area = jacobian(direction, u, 1e-3f);
@@ -157,7 +158,7 @@ TEST_CASE("parametric shapes: irradiance by samples of the lamp and by rays agre
             double value = 0;
             SurfaceHit hit;
             // A one-sided emitter of radiance 1: only what faces the point and is not behind something else counts.
-            if (const auto s = c.shape->sample(from, 0, u)) {
+            if (const auto s = c.shape->sampling()->sample(from, 0, u)) {
                 const Vec3 d = s->p - from, w = normalize(d);
                 if (dot(w, s->ng) < 0 && dot(w, n) > 0) {
                     const Ray shadow{from, w, length(d) * 0.9999f};
@@ -184,14 +185,14 @@ TEST_CASE("parametric shapes: no point of view breaks a sampler") {
         const Bounds3 b = c.shape->bounds();
         std::vector<Vec3> points{b.lower, b.upper, b.centre(), {0, 0, 0}, {1e6f, -1e6f, 1e6f}, {1e15f, 0, 0}};
         for (int i = 0; i < 100; ++i)
-            if (const auto s = c.shape->sample(Vec3{3, 5, 7}, 0, {random.uniform(), random.uniform()})) {
+            if (const auto s = c.shape->sampling()->sample(Vec3{3, 5, 7}, 0, {random.uniform(), random.uniform()})) {
                 points.push_back(s->p);
                 points.push_back(s->p + s->ng * 1e-7f);
             }
         for (Vec3 from : points)
             for (const Vec2 u : {Vec2{0, 0}, Vec2{kOneMinusEpsilon, kOneMinusEpsilon}, Vec2{0, kOneMinusEpsilon},
                                  Vec2{kOneMinusEpsilon, 0}, Vec2{random.uniform(), random.uniform()}}) {
-                const auto s = c.shape->sample(from, 0, u);
+                const auto s = c.shape->sampling()->sample(from, 0, u);
                 if (!s) continue;
                 INFO(c.name << " from " << from.x << " " << from.y << " " << from.z);
                 REQUIRE(isFinite(s->p));

@@ -64,7 +64,7 @@ inline double pdfAlong(const Shape& shape, const Intersector& scene, Vec3 from, 
     for (int i = 0; i < (all ? 64 : 1); ++i) {
         SurfaceHit hit;
         if (!scene.intersect(ray, hit)) break;
-        sum += static_cast<double>(shape.pdfSolidAngle(from, hit));
+        sum += static_cast<double>(shape.sampling()->pdfSolidAngle(from, hit));
         ray.origin = spawnOrigin(hit, w);
     }
     return sum;
@@ -88,7 +88,7 @@ inline SamplingReport examine(const Shape& shape, Vec3 from, bool hidden, int sa
         }
     Random random(17);
     for (int i = 0; i < samples; ++i) {
-        const auto s = shape.sample(from, 0, {random.uniform(), random.uniform()});
+        const auto s = shape.sampling()->sample(from, 0, {random.uniform(), random.uniform()});
         if (!s) {
             ++observed[count];
             continue;
@@ -110,7 +110,7 @@ inline SamplingReport examine(const Shape& shape, Vec3 from, bool hidden, int sa
         }
         // Edge-on the densities of neighbouring points differ; another face may lie just in front.
         if (grazing < 1e-2 || dot(hit.ng, s->ng) < 0.999f) continue;
-        const double ratio = static_cast<double>(s->pdfSolidAngle / shape.pdfSolidAngle(from, hit));
+        const double ratio = static_cast<double>(s->pdfSolidAngle / shape.sampling()->pdfSolidAngle(from, hit));
         report.worstPdfRatio = std::max(report.worstPdfRatio, std::abs(ratio - 1));
     }
     report.missed /= std::max(1, report.samples);

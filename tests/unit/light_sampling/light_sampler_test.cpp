@@ -16,13 +16,10 @@ struct Description {
     std::uint32_t dark = 999; // a part without power
 };
 
-class TestLight final : public Light {
+template <typename Kind> class TestLight : public Kind {
   public:
     TestLight(const Description& d, std::size_t number) : d_(d), x_(static_cast<float>(number)) {}
-    double power() const override { return d_.power; }
-    double visiblePower() const override { return d_.power; }
-    double irradiance() const override { return d_.irradiance; }
-    bool infinite() const override { return d_.infinite; }
+    LightOutput output() const override { return {d_.power, d_.power, d_.irradiance}; }
     std::uint32_t parts() const override { return std::max(d_.parts, 1u); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override {
         if (d_.parts == 0) return std::nullopt;
@@ -40,11 +37,23 @@ class TestLight final : public Light {
     float x_;
 };
 
+class DistantTestLight final : public TestLight<DistantLight> {
+  public:
+    using TestLight::TestLight;
+    Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
+    float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
+};
+
+std::unique_ptr<const Light> lightOf(const Description& d, std::size_t number) {
+    if (d.infinite) return std::make_unique<DistantTestLight>(d, number);
+    return std::make_unique<TestLight<Light>>(d, number);
+}
+
 using Lights = std::vector<std::unique_ptr<const Light>>;
 
 Lights lightsOf(std::initializer_list<Description> list) {
     Lights lights;
-    for (const Description& d : list) lights.push_back(std::make_unique<TestLight>(d, lights.size()));
+    for (const Description& d : list) lights.push_back(lightOf(d, lights.size()));
     return lights;
 }
 

@@ -143,7 +143,7 @@ TEST_CASE("a spot aims at its look-at point, and states cd on its axis") {
 }
 
 // Irradiance of the disk by quadrature over escaped().
-double sunIrradiance(const Light& sun, double halfAngle) {
+double sunIrradiance(const DistantLight& sun, double halfAngle) {
     return luminous([&](const Wavelengths& w) {
         const double e = test::integrate(
             [&](double t) { return 2 * kPiD * std::sin(t) * std::cos(t) * sun.escaped(direction(t, 0.4), w, 0)[0]; }, 0,

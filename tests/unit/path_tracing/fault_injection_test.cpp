@@ -74,8 +74,15 @@ class FaultyScene {
         for (auto& light : scene().lights) {
             const Light* sound = light.get();
             if (scene().names[sound] != name) continue;
-            light = std::make_unique<FaultyLight>(std::move(light), injection_);
-            intersector_->lights[sound] = light.get();
+            if (sound->asDistant()) {
+                light = std::make_unique<FaultyDistantLight>(std::move(light), injection_);
+            } else if (dynamic_cast<const SurfaceLight*>(sound)) {
+                auto faulty = std::make_unique<FaultySurfaceLight>(std::move(light), injection_);
+                intersector_->lights[sound] = faulty.get();
+                light = std::move(faulty);
+            } else {
+                light = std::make_unique<FaultyLightOf<Light>>(std::move(light), injection_);
+            }
             culprits_.emplace_back(light.get(), name);
         }
     }

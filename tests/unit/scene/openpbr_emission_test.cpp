@@ -21,7 +21,7 @@ struct Shining {
         REQUIRE(hit.light);
         return static_cast<double>(hit.light->emitted(hit, Vec3(eye), Wavelengths::single(static_cast<float>(nm)))[0]);
     }
-    const Light& light() const { return *trace(scene, {0, 0, 3}, {0, 0, -1}).hit.light; }
+    const SurfaceLight& light() const { return *trace(scene, {0, 0, 3}, {0, 0, -1}).hit.light; }
 
     TestScene scene;
 };

@@ -135,7 +135,9 @@ std::optional<Vec3> attributeAt(const TestScene& scene, std::string_view name, V
     const WorldHit hit = trace(scene, from, towards);
     REQUIRE(hit.met);
     REQUIRE(hit.hit.shape);
-    return hit.hit.shape->attribute(name, hit.hit);
+    const VertexAttributes* const attributes = hit.hit.shape->attributes();
+    REQUIRE(attributes);
+    return attributes->attribute(name, hit.hit);
 }
 
 const std::string kPainted = "material m diffuse { reflectance attribute \"color\" }\n";
@@ -200,7 +202,7 @@ TEST_CASE("attributes of subdivision surfaces are smoothed as the points are: a 
         for (const Vec3d from : {Vec3d{0.1, 0.2, 3}, Vec3d{0.6, -0.5, 3}, Vec3d{-0.3, 0.4, -3}, Vec3d{0.2, 0.15, 3}}) {
             const WorldHit hit = trace(scene, from, {0, 0, from.z > 0 ? -1.f : 1.});
             REQUIRE(hit.met);
-            const auto copy = hit.hit.shape->attribute("color", hit.hit);
+            const auto copy = hit.hit.shape->attributes()->attribute("color", hit.hit);
             REQUIRE(copy);
             CHECK(length(Vec3d(*copy) - hit.p) < 2e-5);
             ++compared;
@@ -211,7 +213,7 @@ TEST_CASE("attributes of subdivision surfaces are smoothed as the points are: a 
     REQUIRE(codes(deforming).empty());
     const WorldHit moved = trace(deforming, {0.3, 0.4, 5}, {0, 0, -1});
     REQUIRE(moved.met);
-    const Vec3d there(moved.hit.shape->attribute("color", moved.hit).value_or(Vec3{}));
+    const Vec3d there(moved.hit.shape->attributes()->attribute("color", moved.hit).value_or(Vec3{}));
     CHECK(length(there - (moved.p - Vec3d(0, 0, 0.25))) < 2e-5); // a quarter of the way at the start of the shutter
     const TexturedPly file(
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"

@@ -92,8 +92,8 @@ TEST_CASE("aimed emission: a beam that is narrower than its target is not spread
             if (!ray) continue;
             ++lit;
             aimed += ray->target == 0;
-            const LightOrigin origin = light.originAt(0, {}, {}, 0);
-            CHECK(light.pdfDirection(origin, ray->ray.direction) <= origin.largest);
+            const LightOrigin origin = light.asPlaced()->originAt(0, {}, {}, 0);
+            CHECK(light.asPlaced()->pdfDirection(origin, ray->ray.direction) <= origin.largest);
         }
         CHECK(lit == samples);
         CHECK(aimed > (degrees > 100 ? 0.7 * samples : -1));
