@@ -8,7 +8,7 @@
 
 namespace abbe {
 
-// Multiple scattering in a layer of fibres (materials/sheen_layer.h), as a table of linearly transformed cosines
+// Multiple scattering in a layer of fibres (tests/support/sheen_layer.h), as a table of linearly transformed cosines
 // [Zeltner2022; Heitz2016]: for each cosine and roughness the share that is thrown back, and a matrix that turns
 // Lambert's lobe into the one nearest to the simulated one (of the greatest likelihood). Sampling is exact, and the
 // albedo is known, so that a layer below keeps the rest. Not reciprocal: wo decides everything.

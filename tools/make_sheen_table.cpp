@@ -1,9 +1,9 @@
 // Makes the table of the sheen lobe (materials/data/sheen_table.inl): simulates the layer of fibres for each cosine and
 // roughness and finds the linearly transformed cosine under which the directions that come back are likeliest.
 //
-//     g++ -std=c++20 -O3 -ffast-math -Isrc -I. tools/make_sheen_table.cpp -o make_sheen_table
+//     g++ -std=c++20 -O3 -ffast-math -Isrc -I. -Itests tools/make_sheen_table.cpp -o make_sheen_table
 //     ./make_sheen_table > materials/data/sheen_table.inl
-#include "materials/sheen_layer.h"
+#include "support/sheen_layer.h"
 #include "materials/sheen_lobe.h"
 
 #include <array>

@@ -18,7 +18,6 @@ class ExitPupil {
     // `film`: z of the film plane, behind the last surface; `radius`: of its farthest corner, m.
     ExitPupil(const LensTrain&, const Aperture& opening, double film, double radius);
     const Box& at(double filmRadius) const noexcept;
-    double axialArea() const { return boxes_.front().area(); }
 
   private:
     std::vector<Box> boxes_; // of equal intervals of the radius

@@ -57,7 +57,6 @@ class ObjParser {
 
     void read();
     void checkForward() const;
-    void buildVertices(MeshData&);
     std::uint32_t vertexOf(MeshData&, Corner);
     void buildFaces(MeshFile&);
 

@@ -3,7 +3,7 @@
 #include "fuzz/target.h"
 #include "parser/foreign_file.h"
 #include "parser/parse.h"
-#include "parser/print.h"
+#include "support/print_document.h"
 
 using namespace abbe;
 
@@ -19,10 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     formatHuman(diagnostics, sources);
     formatJson(diagnostics, sources);
     // What was understood prints as a text that means the same.
-    const std::string printed = print(*document);
+    const std::string printed = test::print(*document);
     Diagnostics second;
     const FileId again = sources.add("printed.scene", printed);
-    fuzz::require(diagnostics.errorCount() > 0 || print(*parse(sources, again, {}, second)) == printed,
+    fuzz::require(diagnostics.errorCount() > 0 || test::print(*parse(sources, again, {}, second)) == printed,
                   "what was understood prints as something else");
     return 0;
 }

@@ -1,8 +1,8 @@
 // The sheen lobe against the layer of fibres that it stands for, and the cloth that it lies on.
 #include "materials/sheen.h"
-#include "materials/sheen_layer.h"
 #include "materials/sheen_lobe.h"
 #include "sphere_checks.h"
+#include "support/sheen_layer.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

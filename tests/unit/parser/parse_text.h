@@ -3,7 +3,7 @@
 
 #include "base/diagnostic_format.h"
 #include "parser/parse.h"
-#include "parser/print.h"
+#include "support/print_document.h"
 
 #include <fmt/format.h>
 #include <memory>

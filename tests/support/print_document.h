@@ -1,21 +1,24 @@
-#include "parser/print.h"
+// A tree of nodes as KDL text: four spaces of indentation, one node a line, numbers in their shortest exact form.
+#pragma once
 
 #include "parser/characters.h"
+#include "schema/document.h"
 
 #include <cmath>
 #include <fmt/format.h>
+#include <string>
 #include <utility>
 #include <vector>
 
-namespace abbe {
+namespace abbe::test {
 
-namespace {
+namespace printing {
 
 using schema::Node;
 using schema::Value;
 using schema::ValueKind;
 
-std::string quoted(std::string_view text) {
+inline std::string quoted(std::string_view text) {
     std::string out = "\"";
     const char* const end = text.data() + text.size();
     for (const char* p = text.data(); p < end;) {
@@ -35,7 +38,7 @@ std::string quoted(std::string_view text) {
 }
 
 // A name may be any text; quotes only where it would not be one word.
-std::string name(std::string_view text) {
+inline std::string name(std::string_view text) {
     const std::string copy(text);
     const char* const end = copy.c_str() + copy.size();
     const char first = copy.empty() ? '0' : copy[0];
@@ -44,13 +47,13 @@ std::string name(std::string_view text) {
     return letter && !keyword && parser::wordEnd(copy.c_str(), end) == end ? copy : quoted(text);
 }
 
-std::string number(double value) {
+inline std::string number(double value) {
     if (std::isnan(value)) return "#nan";
     if (std::isinf(value)) return value > 0 ? "#inf" : "#-inf";
     return fmt::format("{}", value);
 }
 
-std::string print(const Value& value) {
+inline std::string print(const Value& value) {
     switch (value.kind) {
     case ValueKind::number:
         return number(value.number);
@@ -66,7 +69,7 @@ std::string print(const Value& value) {
     return "#null";
 }
 
-std::string printHead(const Node& node) {
+inline std::string printHead(const Node& node) {
     std::string line = name(node.name());
     if (node.allNumbers())
         for (const double n : node.numbers()) line += " " + number(n);
@@ -76,9 +79,10 @@ std::string printHead(const Node& node) {
     return line;
 }
 
-} // namespace
+} // namespace printing
 
-std::string print(const schema::Document& document) {
+// Parsing the result gives the same names, values, keys and blocks. Parameters have been put in place already.
+inline std::string print(const schema::Document& document) {
     std::string out;
     std::vector<std::pair<schema::NodeIterator, schema::NodeIterator>> open; // rest of each level
     open.emplace_back(document.roots().begin(), document.roots().end());
@@ -90,12 +94,12 @@ std::string print(const schema::Document& document) {
             if (!open.empty()) out += indent.substr(4) + "}\n";
             continue;
         }
-        const Node node = *next;
+        const schema::Node node = *next;
         ++next;
-        out += indent + printHead(node) + (node.hasBlock() ? " {\n" : "\n");
+        out += indent + printing::printHead(node) + (node.hasBlock() ? " {\n" : "\n");
         if (node.hasBlock()) open.emplace_back(node.children().begin(), node.children().end());
     }
     return out;
 }
 
-} // namespace abbe
+} // namespace abbe::test
