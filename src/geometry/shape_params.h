@@ -2,9 +2,8 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "math/interval.h"
-#include "math/keyed_transform.h"
 #include "math/mesh_data.h"
+#include "math/motion.h"
 #include "render/shape.h"
 #include "render/visible_field.h"
 #include "schema/type.h"

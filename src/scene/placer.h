@@ -3,7 +3,7 @@
 
 #include "geometry/embree_scene_builder.h"
 #include "geometry/instance.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "render/focusing_shape.h"
 #include "render/visibility.h"
 #include "scene/build_context.h"

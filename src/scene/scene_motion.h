@@ -4,7 +4,7 @@
 
 #include "lights/light_motion.h"
 #include "math/bounds.h"
-#include "math/keyed_transform.h"
+#include "math/motion.h"
 #include "scene/build_context.h"
 
 #include <optional>
