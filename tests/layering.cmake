@@ -23,16 +23,16 @@ list(APPEND allowed_media volumes)
 list(APPEND allowed_textures io)
 set(allowed_modules textures)
 # Light transport, from what every path does to the render of a picture. A technique for caustics may use those that are
-# planned before it; path_loop.h and its like are still in one folder, between the techniques' plans and their planners.
+# planned before it.
 set(below_techniques ${below_render} transport light_sampling)
 set(allowed_caustics/shared ${below_techniques})
-set(allowed_caustics/light_tracing ${below_techniques} caustics/shared integrators)
+set(allowed_caustics/light_tracing ${below_techniques} caustics/shared)
 set(allowed_caustics/manifold ${allowed_caustics/light_tracing} caustics/light_tracing)
 set(allowed_caustics/merging ${allowed_caustics/manifold} caustics/manifold)
 set(allowed_caustics/glints ${allowed_caustics/merging} caustics/merging)
 set(techniques caustics/shared caustics/light_tracing caustics/manifold caustics/merging caustics/glints)
-set(allowed_integrators ${below_techniques} ${techniques})
-set(allowed_rendering ${allowed_integrators} integrators)
+set(allowed_path_tracing ${below_techniques} ${techniques})
+set(allowed_rendering ${allowed_path_tracing} path_tracing)
 set(allowed_scene ${allowed_rendering} rendering volumes geometry lights cameras film media materials textures io)
 set(allowed_study ${allowed_scene} scene denoise)
 set(allowed_verify ${allowed_scene} scene)
@@ -46,7 +46,7 @@ set(allowed_command_line ${allowed_app} app pictures)
 set(allowed_render_run ${allowed_reports} reports checkpoints)
 set(allowed_commands ${allowed_render_run} render_run command_line denoise doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules transport light_sampling ${techniques} integrators rendering scene study verify doctor
+            modules transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
             app pictures pages checkpoints reports command_line render_run commands)
 
 # Libraries that only one folder may know, or two.

@@ -36,7 +36,7 @@ class LightSampler {
     // Whether any light may have a reach.
     bool placed() const { return placed_; }
     // Whether a ScatterView makes a difference.
-    bool asksForLobes() const { return near_ > 1; }
+    bool usesLobes() const { return near_ > 1; }
     // For light that arrives at a receiver and is scattered. Requires !empty(); u in [0, 1).
     PickedLight pick(float u, const Receiver&, const ScatterView& = {}) const noexcept;
     // Probability with which a part of `light`, one of the scene's, is picked there.

@@ -10,7 +10,7 @@ namespace abbe {
 
 class Shape;
 
-// Paths that surfaces take no light from, so that chance alone ends them (PathLoop::longPathSurvival).
+// Paths that surfaces take no light from, so that chance alone ends them (PathWalk::longPathSurvival).
 struct EndlessPaths {
     double share = 0; // of the paths where they are the longest
     std::vector<const Shape*>

@@ -100,7 +100,7 @@ struct RenderStatistics {
     std::uint32_t samplesPerPixel = 0;             // finished in all pixels; adaptive: as if they were even
     std::array<std::uint64_t, 3> dropped{};        // by DropCause
     std::vector<DroppedSample> examples;           // the first few
-    std::uint64_t cappedPaths = 0;                 // reached the safety cap on vertices (PathLoop::kMaxVertices)
+    std::uint64_t cappedPaths = 0;                 // reached the safety cap on vertices (PathWalk::kMaxVertices)
     std::map<const void*, std::uint64_t> cappedIn; // of this run alone: in which shapes or media, roughly how many
     DensityExcess excess;
     EffectCounts effects;

@@ -30,13 +30,13 @@ class PathObserver {
 
     // What light is made of, before gathers() is told. Sampled on a light and scattered here; `pdf`: of the sample,
     // with the choice of the light.
-    virtual void asks(const void* /*source*/, const LightSample&, const BsdfEval&, float /*pdf*/) noexcept {}
+    virtual void samples(const void* /*source*/, const LightSample&, const BsdfEval&, float /*pdf*/) noexcept {}
     // Met by chance; `pdf`: with which it would have been sampled, 0 if that is not possible.
     virtual void meets(const void* /*source*/, const Spectrum& /*emitted*/, float /*pdf*/) noexcept {}
     // Came over mirrors and lenses that the path itself does not go on to, from the direction wi.
     virtual void chains(const Light*, Vec3 /*wi*/) noexcept {}
     // A number of `who`, a Material or a Medium, is at fault that the other events do not tell: its `what`.
-    virtual void blames(const void* /*who*/, const char* /*what*/, float /*number*/) noexcept {}
+    virtual void findsFault(const void* /*who*/, const char* /*what*/, float /*number*/) noexcept {}
     // The path leaves the scene.
     virtual void leaves(Vec3 /*direction*/) noexcept {}
 };

@@ -11,7 +11,7 @@
 namespace abbe {
 
 // Who brings it: a light path that the lens sees, or a round of merging, in which light paths are gathered where camera
-// paths end (integrators/merge_kernel.h). Each kind is counted, and averaged, by itself.
+// paths end (caustics/merging/merge_kernel.h). Each kind is counted, and averaged, by itself.
 enum class SplatKind : std::uint8_t { lightPath, merged };
 inline constexpr std::size_t kSplatKinds = 2;
 

@@ -24,7 +24,7 @@ struct Technique {
     // Which light is asked: by what it may give to the place; by its power alone, or evenly.
     enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
     // Which paths go on: by what the pixel is expected to show, by their throughput, or all but those that carry next
-    // to nothing. Paths beyond PathLoop::kLongPath vertices are never certain to go on.
+    // to nothing. Paths beyond kLongPath vertices are never certain to go on.
     enum class Roulette : std::uint8_t { pilot, throughput, off } roulette = Roulette::pilot;
     // How many different ones a path has: 1, 2, 4 or 8. Fewer are repeated in the lanes.
     std::uint8_t wavelengths = 8;

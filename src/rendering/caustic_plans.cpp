@@ -20,14 +20,14 @@ LightPathFindings CausticPlans::findings() const {
 }
 
 void CausticPlans::giveTo(PathContext& context) const {
-    context.traced = light.plan.get();
+    context.lightPaths = light.plan.get();
     context.manifold = manifold.sampler.get();
     context.merging = merging.plan.get();
     context.glints = glints.plan.get();
 }
 
 // Each knows of what was planned before it.
-CausticPlans planCaustics(const PathContext& plain, const Film& film, const TracedKernel& kernel,
+CausticPlans planCaustics(const PathContext& plain, const Film& film, const LightPathKernel& kernel,
                           const RouletteReference& roulette, const std::function<bool()>& stop) {
     CausticPlans plans;
     PathContext context = plain;
@@ -38,7 +38,7 @@ CausticPlans planCaustics(const PathContext& plain, const Film& film, const Trac
     if (film.takesMerged()) {
         plans.merging = planMerging(context, kernel, roulette, plans.light.findings, stop);
         if (plans.manifold.sampler && plans.merging.plan)
-            plans.manifold.besideMerging(context.scene, *plans.merging.plan);
+            plans.manifold.besideMerging(context.scene, plans.merging.plan->lights);
         plans.giveTo(context);
     }
     plans.glints = planGlints(context, film, kernel, roulette, stop);

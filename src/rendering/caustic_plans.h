@@ -29,7 +29,7 @@ struct CausticPlans {
 // By pilots of the size PathContext::settings.pilot, above 0. Requires lightBlocksOf() > 0 and a context without plans;
 // the film tells its filter and whether it takes merged light alone, the reference is that of the frame. `stop` cuts
 // it short, and then the plans are good for nothing.
-CausticPlans planCaustics(const PathContext&, const Film&, const TracedKernel&, const RouletteReference&,
+CausticPlans planCaustics(const PathContext&, const Film&, const LightPathKernel&, const RouletteReference&,
                           const std::function<bool()>& stop);
 
 } // namespace abbe

@@ -55,9 +55,8 @@ class LongPathRecorder final : public SampleRecorder {
     void pixelDone(double) noexcept override {}
 
   private:
-    static constexpr std::uint32_t kLong = PathLoop<0>::kLongPath;
-    bool isLong() const { return vertex_ > kLong; }
-    void count() { to_.longPaths += ++vertex_ == kLong + 1; }
+    bool isLong() const { return vertex_ > kLongPath; }
+    void count() { to_.longPaths += ++vertex_ == kLongPath + 1; }
 
     LongScatterings& to_;
     std::uint32_t vertex_ = 0;

@@ -4,6 +4,7 @@
 #include "base/stopwatch.h"
 #include "base/work.h"
 #include "render/render_state.h"
+#include "render/scene.h"
 #include "rendering/endless_paths.h"
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // What is found out about a frame before the first sample of its image.
 #pragma once
 
-#include "integrators/tile_kernel.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "render/first_look.h"
 #include "rendering/sampling_plan.h"
 #include "transport/roulette.h"

@@ -39,7 +39,7 @@ void PathRecorder::collides(Vec3 p, const Spectrum& beta) noexcept {
     add(e);
 }
 
-void PathRecorder::asks(const void* source, const LightSample& light, const BsdfEval& value, float pdf) noexcept {
+void PathRecorder::samples(const void* source, const LightSample& light, const BsdfEval& value, float pdf) noexcept {
     PathEvent e = event(EventKind::sampled);
     e.source = source;
     e.radiance = light.radiance;
@@ -72,8 +72,8 @@ void PathRecorder::scatters(const SurfaceHit& hit, Lobes, const Spectrum& beta, 
     add(e);
 }
 
-void PathRecorder::blames(const void* who, const char* what, float number) noexcept {
-    PathEvent e = event(EventKind::blames);
+void PathRecorder::findsFault(const void* who, const char* what, float number) noexcept {
+    PathEvent e = event(EventKind::fault);
     e.source = who;
     e.what = what;
     e.pdf = number;

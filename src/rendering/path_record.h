@@ -20,7 +20,7 @@ struct PathEvent {
         gathers,  // `light` of it reaches the eye
         scatters, // in direction `next`, if there is one
         collides, // in a medium, at hit.p with `beta`
-        blames,   // `source`, whose `what` is `pdf`
+        fault,    // `source`, whose `what` is `pdf`
         leaves    // the scene, towards `direction`
     };
     Kind kind = Kind::surface;
@@ -86,9 +86,9 @@ class PathRecorder final : public SampleRecorder {
     void gathers(const Spectrum& radiance, const void* source, bool passing) noexcept override;
     void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept override;
     void collides(Vec3 p, const Spectrum& beta) noexcept override;
-    void asks(const void* source, const LightSample&, const BsdfEval&, float pdf) noexcept override;
+    void samples(const void* source, const LightSample&, const BsdfEval&, float pdf) noexcept override;
     void meets(const void* source, const Spectrum& emitted, float pdf) noexcept override;
-    void blames(const void* who, const char* what, float number) noexcept override;
+    void findsFault(const void* who, const char* what, float number) noexcept override;
     void leaves(Vec3 direction) noexcept override;
     void keep(const Spectrum&, const Sensor&, double) noexcept override {}
     void drop() noexcept override {}

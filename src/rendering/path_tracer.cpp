@@ -2,8 +2,10 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "integrators/path_kernels.h"
+#include "light_sampling/light_sampler.h"
+#include "path_tracing/path_kernels.h"
 #include "render/render_state.h"
+#include "render/scene.h"
 #include "render/stand_in_film.h"
 #include "rendering/end_watch.h"
 #include "rendering/pass_schedule.h"
@@ -94,12 +96,13 @@ class RenderJob {
     void plan(const PathContext& context) {
         const std::function<double()> left = [this] { return timeLeft(); };
         const std::function<bool()> stop = [this] { return stopRequested(); };
-        plans_ = planRender({context, kernel_.render, kernel_.traced(), film_, state_, control_.firstLook, left, stop});
+        plans_ =
+            planRender({context, kernel_.render, kernel_.lightPaths, film_, state_, control_.firstLook, left, stop});
         statistics_.lightPlan = plans_.findings;
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
         plans_.caustics.giveTo(context_);
-        if (plans_.caustics.any()) render_ = kernel_.traced().render;
+        if (plans_.caustics.any()) render_ = kernel_.lightPaths.render;
     }
 
     static std::optional<RenderState> ownState(const Scene& scene, const Film& film, const RenderSettings& settings,
@@ -220,14 +223,15 @@ class RenderJob {
         TileResult result;
         if (plans_.caustics.light.plan && at.unit < units) {
             const std::uint64_t paths = plans_.caustics.light.plan->paths;
-            result = kernel_.traced().trace(context_, film_,
-                                            {static_cast<std::uint32_t>(paths * block / blocks),
-                                             static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end, at});
+            result =
+                kernel_.lightPaths.trace(context_, film_,
+                                         {static_cast<std::uint32_t>(paths * block / blocks),
+                                          static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end, at});
             if (result.rest) return result;
         }
         if (plans_.caustics.merging.plan) {
             const std::uint32_t begun = std::max(at.unit, units) - units;
-            result.add(kernel_.traced().merge(context_, film_, {first, end, block, blocks, 1, begun}, nullptr));
+            result.add(kernel_.lightPaths.merge(context_, film_, {first, end, block, blocks, 1, begun}, nullptr));
             if (result.rest) result.rest->unit += units;
         }
         return result;
@@ -390,9 +394,7 @@ class PathTracer final : public Integrator {
 } // namespace
 
 std::unique_ptr<const Integrator> makePathTracer(Effects required) {
-    for (const Kernel& kernel : kKernels)
-        if (kernel.effects.contains(required & kLoopEffects)) return std::make_unique<PathTracer>(kernel);
-    return std::make_unique<PathTracer>(std::end(kKernels)[-1]);
+    return std::make_unique<PathTracer>(kernelFor(required));
 }
 
 } // namespace abbe

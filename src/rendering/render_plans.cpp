@@ -54,7 +54,7 @@ class RenderPlanner {
         return [this](int size, const std::function<bool()>& stop) {
             PathContext context = in_.context;
             context.settings.pilot = size;
-            return planCaustics(context, in_.film, in_.traced, result_.ahead.roulette, stop);
+            return planCaustics(context, in_.film, in_.lightPaths, result_.ahead.roulette, stop);
         };
     }
 

@@ -11,7 +11,7 @@ namespace abbe {
 struct PlanInput {
     const PathContext& context; // without plans; its settings say what the render is to be
     TileFunction render;        // of the kernel without light paths
-    const TracedKernel& traced;
+    const LightPathKernel& lightPaths;
     const Film& film;
     RenderState& state;                                // is told the size of the pilots; one that it has stays
     const std::function<void(const FirstLook&)>& seen; // may be empty

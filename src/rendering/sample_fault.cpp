@@ -11,8 +11,8 @@ namespace {
 using EventKind = PathEvent::Kind;
 using Culprit = SampleFault::Culprit;
 
-// Whose numbers PathObserver::blames() tells.
-Culprit blamedFor(std::string_view what) {
+// Whose numbers PathObserver::findsFault() tells.
+Culprit sourceOf(std::string_view what) {
     if (what == "weight") return Culprit::camera;
     if (what == "opacity") return Culprit::material;
     return what == "direction" ? Culprit::light : Culprit::medium;
@@ -31,7 +31,7 @@ class Search {
 
     SampleFault run() {
         for (const PathEvent& e : record_.events())
-            if (look(e)) return fault_.culprit == Culprit::medium && !fault_.who ? blamed() : fault_;
+            if (look(e)) return fault_.culprit == Culprit::medium && !fault_.who ? namedFault() : fault_;
         return largest();
     }
 
@@ -55,8 +55,8 @@ class Search {
                               density(e, e.next->pdfSolidAngle, scatterer(e)) ||
                               spectrum(e, e.next->pdfRatio, scatterer(e), "ratio of densities") ||
                               direction(e, e.next->wi, scatterer(e)));
-        case EventKind::blames:
-            return found(e, e.pdf, 0xff, blamedFor(e.what), e.what);
+        case EventKind::fault:
+            return found(e, e.pdf, 0xff, sourceOf(e.what), e.what);
         case EventKind::leaves: // of a scattered ray it was found there
             return direction(e, e.direction, Culprit::camera);
         }
@@ -64,16 +64,16 @@ class Search {
     }
 
     static Culprit scatterer(const PathEvent& e) { return e.hit.material ? Culprit::material : Culprit::medium; }
-    // Of whoever was blamed while the path was at e: its own material, one on the way, or a medium.
+    // Of whoever was at fault while the path was at e: its own material, one on the way, or a medium.
     static const void* who(const PathEvent& e, Culprit culprit) {
-        if (e.kind == EventKind::blames || culprit == Culprit::light) return e.source;
+        if (e.kind == EventKind::fault || culprit == Culprit::light) return e.source;
         return culprit == Culprit::material ? e.hit.material : nullptr;
     }
 
     // What a medium did to the light on the way shows before its density is told.
-    SampleFault blamed() {
+    SampleFault namedFault() {
         for (const PathEvent& e : record_.events())
-            if (e.kind == EventKind::blames) look(e);
+            if (e.kind == EventKind::fault) look(e);
         return fault_;
     }
 

@@ -1,6 +1,6 @@
 #include "rendering/sampling_plan.h"
 
-#include "integrators/tile_kernel.h"
+#include "caustics/shared/kernel_jobs.h"
 
 #include <algorithm>
 #include <array>

@@ -74,7 +74,7 @@ std::string eventText(const PathEvent& e, const Scene& scene) {
         return line("gives the eye", e.light);
     case Kind::scatters:
         return scatteringText(e);
-    case Kind::blames:
+    case Kind::fault:
         return fmt::format("   fault: {} of `{}` is {}\n", e.what, light, e.pdf);
     case Kind::leaves:
         return fmt::format("{:<3}leaves the scene towards {}\n", e.vertex + 1, triple(Vec3d(e.direction)));
@@ -123,7 +123,7 @@ Json eventJson(const PathEvent& e, const Scene& scene) {
         json.set("density", static_cast<double>(e.next->pdfSolidAngle));
         json.set("direction", triad(Vec3d(e.hit.shading.toWorld(e.next->wi))));
         break;
-    case Kind::blames:
+    case Kind::fault:
         json.set("what", e.what).set("number", static_cast<double>(e.pdf));
         break;
     case Kind::leaves:

@@ -15,7 +15,7 @@ struct LoopTechnique {
 
     LoopTechnique() = default;
     explicit LoopTechnique(const Technique& t)
-        : wavelengths(t.wavelengths), asksLights(t.strategy != Technique::Strategy::bsdfOnly),
+        : wavelengths(t.wavelengths), nextEvent(t.strategy != Technique::Strategy::bsdfOnly),
           rule(t.strategy == Technique::Strategy::lightsOnly ? Rule::lightsOnly
                : t.weights == Technique::Weights::power      ? Rule::power
                : t.weights == Technique::Weights::equal      ? Rule::equal
@@ -67,7 +67,7 @@ struct LoopTechnique {
     // radiance is the pixel's, not the image's.
     float leastAfterDelta = 1 / RouletteReference::kThreshold;
     int wavelengths = 8;       // different ones of a path
-    bool asksLights = true;    // next-event estimation
+    bool nextEvent = true;     // next-event estimation
     Rule rule = Rule::balance; // between lights and scattering; without lights there is nothing to weigh
     bool balanced = true;      // by the balance heuristic
     bool evenly = false;       // some of the directions are drawn evenly, or all

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "support/scene_test_paths.h"
+#include "transport/surroundings.h"
 
 namespace abbe::test {
 
@@ -15,7 +16,7 @@ inline RayEstimate seenAlong(const TestScene& scene, Vec3 origin, Vec3 direction
     constexpr EffectBits all = kLoopEffects.bits();
     const LightSampler lights(scene.scene().lights);
     const PathContext context{scene.scene(), lights, {}, true};
-    auto media = PathLoop<all>::makeMedia(scene.scene());
+    auto media = PathWalk<all>::makeMedia(scene.scene());
     Sampler sampler;
     sampler.startPixel(7, Technique::Numbers::random, true);
     Arena arena;
@@ -25,9 +26,9 @@ inline RayEstimate seenAlong(const TestScene& scene, Vec3 origin, Vec3 direction
     double sum = 0, squares = 0;
     for (std::uint32_t i = 0; i < paths; ++i) {
         sampler.start(i);
-        PathLoop<all> loop(context, sampler, arena, counters, media);
-        loop.startIn(around);
-        const double x = mean(loop.radiance({eye, normalize(direction)}, Wavelengths::sample(0.3f), 1));
+        CameraPath<all> path(context, sampler, arena, counters, media);
+        path.walk().startIn(around);
+        const double x = mean(path.radiance({eye, normalize(direction)}, Wavelengths::sample(0.3f), 1));
         sum += x;
         squares += x * x;
     }

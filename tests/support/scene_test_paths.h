@@ -1,8 +1,8 @@
-// The path loop without the renderer around it: no passes, no tiles, and wavelengths and roulette as the test wants.
+// Camera paths without the renderer around it: no passes, no tiles, and wavelengths and roulette as the test wants.
 #pragma once
 
 #include "base/parallel.h"
-#include "integrators/path_loop.h"
+#include "path_tracing/camera_path.h"
 #include "spectrum/sensor.h"
 #include "support/scene_test.h"
 
@@ -38,7 +38,7 @@ template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const P
         Sampler sampler;
         Arena arena;
         PathCounters counters;
-        auto media = PathLoop<E>::makeMedia(scene);
+        auto media = PathWalk<E>::makeMedia(scene);
         for (int r = 0; r < s.replicates; ++r) {
             const std::uint64_t seed = combine64(combine64(s.seed, pixel), static_cast<std::uint64_t>(r) + 1000);
             Xyz sum;
@@ -52,8 +52,8 @@ template <EffectBits E> RecordingFilm renderPaths(const TestScene& test, const P
                      sampler.lens(),
                      sampler.time()});
                 const Wavelengths lambda = s.wavelengths(sampler.wavelength());
-                PathLoop<E> loop(context, sampler, arena, counters, media);
-                sum += toXyz(loop.radiance(eye.ray, lambda, s.rouletteScale), lambda) *
+                CameraPath<E> path(context, sampler, arena, counters, media);
+                sum += toXyz(path.radiance(eye.ray, lambda, s.rouletteScale), lambda) *
                        static_cast<double>(eye.weight * filter.weight);
             }
             film.add(x, y, r, sum, s.samples);

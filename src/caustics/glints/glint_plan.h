@@ -44,7 +44,7 @@ struct Glint {
 // Frozen before light is gathered. Which light that is: a camera path whose place on the film is in a glint's box has
 // met delta interfaces alone, with exactly the glint's events, and then one of the lamps. Camera paths leave it out;
 // instead samples of the pixels that see a box send probes into it, which take exactly these events and so need not
-// find them by chance (glint_loop.h). How well the boxes fit decides on the noise alone.
+// find them by chance (glint_path.h). How well the boxes fit decides on the noise alone.
 class GlintPlan {
   public:
     GlintPlan() = default;

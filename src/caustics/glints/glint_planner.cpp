@@ -5,6 +5,8 @@
 #include "caustics/glints/glint_lights.h"
 #include "caustics/light_tracing/light_path_planner.h"
 #include "caustics/shared/pilot.h"
+#include "math/hash.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <array>
@@ -58,7 +60,7 @@ struct Found {
 
 class GlintPlanner {
   public:
-    GlintPlanner(const PathContext& context, const Film& film, const TracedKernel& kernel,
+    GlintPlanner(const PathContext& context, const Film& film, const LightPathKernel& kernel,
                  const RouletteReference& roulette, const std::function<bool()>& stop)
         : context_(context), film_(film), kernel_(kernel), roulette_(roulette), stop_(stop),
           frame_(context.scene.frame), lamps_(glintLamps(context.scene, kMostLamps)) {}
@@ -370,7 +372,7 @@ class GlintPlanner {
 
     const PathContext& context_;
     const Film& film_;
-    const TracedKernel& kernel_;
+    const LightPathKernel& kernel_;
     const RouletteReference& roulette_;
     const std::function<bool()>& stop_;
     PixelBounds frame_;
@@ -380,7 +382,7 @@ class GlintPlanner {
 
 } // namespace
 
-PlannedGlints planGlints(const PathContext& context, const Film& film, const TracedKernel& kernel,
+PlannedGlints planGlints(const PathContext& context, const Film& film, const LightPathKernel& kernel,
                          const RouletteReference& roulette, const std::function<bool()>& stop) {
     if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
     return GlintPlanner(context, film, kernel, roulette, stop).run();

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "caustics/glints/glint_plan.h"
-#include "integrators/light_kernel.h"
+#include "caustics/glints/glint_search.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "render/integrator.h"
 
 #include <functional>
@@ -16,7 +17,7 @@ struct PlannedGlints {
 };
 
 // The film tells the pixel filter alone; the reference is that of the frame. `stop` cuts it short, without a plan.
-PlannedGlints planGlints(const PathContext&, const Film&, const TracedKernel&, const RouletteReference&,
+PlannedGlints planGlints(const PathContext&, const Film&, const LightPathKernel&, const RouletteReference&,
                          const std::function<bool()>& stop);
 
 } // namespace abbe

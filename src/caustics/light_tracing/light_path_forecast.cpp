@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/work.h"
 #include "caustics/shared/pilot.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,7 @@ CameraNoise cameraNoise(const PathContext& context, TileFunction render, const R
     LightPathPlan all = plan; // leaves to light paths what they can bring
     all.alone = true;
     PathContext without = context;
-    without.traced = &all;
+    without.lightPaths = &all;
     std::vector<CameraNoise> pixels(grid.size());
     parallelFor(pixels.size(), [&](std::size_t i) {
         const PixelBounds pixel = grid.pixel(i);

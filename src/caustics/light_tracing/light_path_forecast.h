@@ -2,8 +2,8 @@
 #pragma once
 
 #include "caustics/light_tracing/light_path_plan.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "caustics/shared/noise_measure.h"
-#include "integrators/tile_kernel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,6 +7,8 @@
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"
 #include "caustics/shared/pilot.h"
+#include "math/hash.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +35,7 @@ constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
 class LightPathPlanner {
   public:
-    LightPathPlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+    LightPathPlanner(const PathContext& context, const LightPathKernel& kernel, const RouletteReference& roulette,
                      const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), stop_(stop), frame_(context.scene.frame),
           pixels_(static_cast<double>(frame_.area())), known_(roulette.average() > 0) {
@@ -121,7 +123,7 @@ class LightPathPlanner {
     PathContext withPlan(const LightPathPlan& plan, std::uint64_t key) const {
         PathContext context = context_;
         context.settings.seed = combine64(context_.settings.seed, key);
-        context.traced = &plan;
+        context.lightPaths = &plan;
         return context;
     }
 
@@ -135,7 +137,7 @@ class LightPathPlanner {
             if (stop_()) return;
             Listened& part = parts[i];
             Listener listener(*this, part);
-            Darkroom film(frame_);
+            NullFilm film(frame_);
             const auto begin = static_cast<std::uint32_t>(i) * kBlock;
             addWorkFlag(WorkFlag::pilot);
             const std::uint32_t end = std::min(begin + kBlock, paths);
@@ -240,7 +242,7 @@ class LightPathPlanner {
     }
 
     const PathContext& context_;
-    const TracedKernel& kernel_;
+    const LightPathKernel& kernel_;
     const RouletteReference& roulette_;
     const std::function<bool()>& stop_;
     PixelBounds frame_;
@@ -279,7 +281,7 @@ std::size_t lightBlocksOf(const Scene& scene, const Technique& technique) {
     return std::clamp<std::size_t>(static_cast<std::size_t>(scene.frame.area()) / 4096, 4, 256);
 }
 
-PlannedLightPaths planLightPaths(const PathContext& context, const TracedKernel& kernel,
+PlannedLightPaths planLightPaths(const PathContext& context, const LightPathKernel& kernel,
                                  const RouletteReference& roulette, const std::function<bool()>& stop) {
     return LightPathPlanner(context, kernel, roulette, stop).run();
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "caustics/light_tracing/light_path_plan.h"
-#include "integrators/light_kernel.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "render/integrator.h"
 
 #include <functional>
@@ -26,7 +26,7 @@ std::size_t lightBlocksOf(const Scene&, const Technique&);
 
 // Requires lightBlocksOf() > 0 and a context without a plan; the reference is that of the frame. `stop` cuts it short,
 // without a plan.
-PlannedLightPaths planLightPaths(const PathContext&, const TracedKernel&, const RouletteReference&,
+PlannedLightPaths planLightPaths(const PathContext&, const LightPathKernel&, const RouletteReference&,
                                  const std::function<bool()>& stop);
 
 } // namespace abbe

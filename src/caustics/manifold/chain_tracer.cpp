@@ -1,6 +1,6 @@
 #include "caustics/manifold/chain_tracer.h"
 
-#include "integrators/hidden_face.h"
+#include "transport/hidden_face.h"
 
 namespace abbe {
 
@@ -13,7 +13,7 @@ constexpr int kMaxCrossings = 64; // of boundaries and openings on the way to on
 Spectrum ChainTracer::clearness(const Surroundings& here, const SurfaceHit* end, const Ray& ray, float distance) const {
     Spectrum clear(1.f);
     const Curve* absorption = here.absorption();
-    // What is left without having been entered was there from the start (PathLoop::absorb).
+    // What is left without having been entered was there from the start (PathWalk::absorb).
     if (end && !here.filling() && dot(ray.direction, end->ng) > 0) absorption = end->material->absorption();
     if (absorption && distance < kInfinity) clear = exp(absorption->at(lambda_) * -distance);
     return media_ ? clear * media_->transmittance(ray, distance, here.media(), lambda_, *random_) : clear;

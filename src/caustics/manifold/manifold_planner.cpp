@@ -6,6 +6,9 @@
 #include "caustics/manifold/caster_candidates.h"
 #include "caustics/manifold/manifold_pilot.h"
 #include "caustics/shared/pilot.h"
+#include "math/hash.h"
+#include "math/sobol.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <array>
@@ -74,8 +77,8 @@ struct Cell {
 class CellListener final : public ManifoldListener {
   public:
     CellListener(const Scene& scene, Cell& cell) : scene_(scene), cell_(cell) {}
-    void asked(const ChainStart& start, const Spectrum& beta, const Wavelengths& lambda, const Spectrum& light,
-               const Spectrum& chance) override {
+    void sampled(const ChainStart& start, const Spectrum& beta, const Wavelengths& lambda, const Spectrum& light,
+                 const Spectrum& chance) override {
         const bool even = cell_.asked++ % 2 == 0; // a path asks at one vertex, or none
         if (cell_.looks.empty()) cell_.looks.push_back({start, mean(beta), lambda});
         const double found = scene_.sensor(light, lambda).y;
@@ -94,7 +97,7 @@ class CellListener final : public ManifoldListener {
 
 class ManifoldPlanner {
   public:
-    ManifoldPlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+    ManifoldPlanner(const PathContext& context, const LightPathKernel& kernel, const RouletteReference& roulette,
                     const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), stop_(stop), frame_(context.scene.frame) {}
 
@@ -157,7 +160,7 @@ class ManifoldPlanner {
             PilotPixel film(grid.pixel(i), kPilotReplicates);
             CellListener listener(context_.scene, cell);
             PathContext context = base;
-            context.hears = &listener;
+            context.manifoldListener = &listener;
             addWorkFlag(WorkFlag::pilot);
             const TileResult r = kernel_.render(context, film, {film.bounds(), 0, 1, &roulette_});
             removeWorkFlag(WorkFlag::pilot);
@@ -219,7 +222,7 @@ class ManifoldPlanner {
     }
 
     const PathContext& context_;
-    const TracedKernel& kernel_;
+    const LightPathKernel& kernel_;
     const RouletteReference& roulette_;
     const std::function<bool()>& stop_;
     PixelBounds frame_;
@@ -229,9 +232,9 @@ class ManifoldPlanner {
 
 } // namespace
 
-void PlannedManifold::besideMerging(const Scene& scene, const MergePlan& merging) {
+void PlannedManifold::besideMerging(const Scene& scene, const std::unordered_set<const Light*>& mergedLights) {
     ManifoldPlan plan = sampler->plan();
-    const auto merged = [&](const ManifoldPlan::AskedLight& light) { return merging.lights.contains(light.light); };
+    const auto merged = [&](const ManifoldPlan::AskedLight& light) { return mergedLights.contains(light.light); };
     for (auto& light : plan.lights)
         if (merged(light)) light.largestImage = kLargestBesideMerging;
     if (std::ranges::all_of(plan.lights, merged)) {
@@ -242,8 +245,8 @@ void PlannedManifold::besideMerging(const Scene& scene, const MergePlan& merging
     sampler = findings.used ? std::make_unique<const ManifoldSampler>(scene, std::move(plan)) : nullptr;
 }
 
-PlannedManifold planManifold(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
-                             const std::function<bool()>& stop) {
+PlannedManifold planManifold(const PathContext& context, const LightPathKernel& kernel,
+                             const RouletteReference& roulette, const std::function<bool()>& stop) {
     if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
     return ManifoldPlanner(context, kernel, roulette, stop).run();
 }

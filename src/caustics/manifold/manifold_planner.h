@@ -1,11 +1,13 @@
 // Whether caustics behind glass and in mirrors are worth manifold sampling in a scene.
 #pragma once
 
-#include "integrators/light_kernel.h"
+#include "caustics/manifold/manifold_sampler.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "render/integrator.h"
 
 #include <functional>
 #include <memory>
+#include <unordered_set>
 
 namespace abbe {
 
@@ -16,13 +18,13 @@ struct PlannedManifold {
 
     // Leaves large images of lamps whose light is merged to merging, and rare kinds of chains if all of it is. Requires
     // a sampler; may leave none.
-    void besideMerging(const Scene&, const MergePlan&);
+    void besideMerging(const Scene&, const std::unordered_set<const Light*>& mergedLights);
 };
 
 // A context with the plan of light paths, if any; the reference is that of the frame. `stop` cuts it short, without a
 // plan. Depends on the scene, the frame, the seed and the
 // size of the pilots alone.
-PlannedManifold planManifold(const PathContext&, const TracedKernel&, const RouletteReference&,
+PlannedManifold planManifold(const PathContext&, const LightPathKernel&, const RouletteReference&,
                              const std::function<bool()>& stop);
 
 } // namespace abbe

@@ -21,29 +21,10 @@ struct ManifoldSample {
     const Light* light = nullptr;
     int length = 0; // interfaces on the way
     // The chain refracts where indices vary with wavelength: it is that of the hero alone. Lane 0 then counts for all
-    // of them, eightfold, and the others are 0 (as PathLoop::endSecondaryWavelengths; divide by the hero's own ratio of
+    // of them, eightfold, and the others are 0 (as PathWalk::endSecondaryWavelengths; divide by the hero's own ratio of
     // densities there).
     bool heroOnly = false;
     bool capped = false; // trials ended before the solution came back: `irradiance` is too low in the mean
-};
-
-// Whole numbers: the same in any order of adding.
-struct ManifoldCounts {
-    std::uint64_t estimates = 0;  // calls
-    std::uint64_t found = 0;      // that came to some light
-    std::uint64_t trials = 0;     // first directions
-    std::uint64_t iterations = 0; // of Newton's method
-    std::uint64_t rays = 0;
-    std::uint64_t capped = 0;
-
-    void add(const ManifoldCounts& b) {
-        estimates += b.estimates;
-        found += b.found;
-        trials += b.trials;
-        iterations += b.iterations;
-        rays += b.rays;
-        capped += b.capped;
-    }
 };
 
 } // namespace abbe

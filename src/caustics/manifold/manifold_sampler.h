@@ -5,10 +5,11 @@
 #include "caustics/manifold/chain_tracer.h"
 #include "caustics/manifold/manifold_plan.h"
 #include "caustics/manifold/manifold_sample.h"
-#include "integrators/covered_chain.h"
+#include "caustics/shared/chain_signature.h"
 #include "math/distribution.h"
 #include "math/hash.h"
 #include "render/bsdf.h"
+#include "transport/path_context.h"
 
 #include <memory>
 #include <optional>
@@ -22,6 +23,21 @@ struct ManifoldChoice {
     std::uint32_t caster = 0;
     ChainSignature signature;
     float probability = 0;
+};
+
+// What a camera path has met since the last vertex at which manifold sampling was tried. Plain data of a path;
+// ManifoldSampler::follow() and covers() look after it.
+struct CoveredChain {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+
+    // At a vertex where light was looked for by ManifoldSampler::sample(), whatever came of it.
+    void start() { *this = {.following = true}; }
+    // At any other vertex that is not a delta.
+    void stop() { following = false; }
+
+    ChainSignature signature = {};
+    std::uint32_t caster = kNone; // the first interface's place in the plan
+    bool following = false;
 };
 
 // Light and chain are drawn; then first directions towards the caster, from each of which Newton's method finds a
@@ -81,11 +97,11 @@ class ManifoldSampler {
 class ManifoldListener {
   public:
     virtual ~ManifoldListener() = default;
-    // A path of throughput `beta` asked at `start` and was told of `light` at the eye; a path that meets the same lamp
-    // by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates; `light` is
-    // that of one, not its share of the mean.
-    virtual void asked(const ChainStart& start, const Spectrum& beta, const Wavelengths&, const Spectrum& light,
-                       const Spectrum& chance) = 0;
+    // For a path of throughput `beta` an estimate at `start` came to `light` at the eye; a path that meets the same
+    // lamp by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates;
+    // `light` is that of one, not its share of the mean.
+    virtual void sampled(const ChainStart& start, const Spectrum& beta, const Wavelengths&, const Spectrum& light,
+                         const Spectrum& chance) = 0;
 };
 
 } // namespace abbe

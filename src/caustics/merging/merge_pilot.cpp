@@ -2,8 +2,11 @@
 
 #include "base/parallel.h"
 #include "base/work.h"
+#include "caustics/merging/photon_map.h"
 #include "caustics/shared/aim_cone.h"
 #include "caustics/shared/pilot.h"
+#include "light_sampling/emitted_ray.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +78,7 @@ std::vector<LightDeposit> MergePilot::Heard::shown() const {
     return list;
 }
 
-MergePilot::MergePilot(const PathContext& context, const TracedKernel& kernel, const std::function<bool()>& stop)
+MergePilot::MergePilot(const PathContext& context, const LightPathKernel& kernel, const std::function<bool()>& stop)
     : context_(context), kernel_(kernel), stop_(stop),
       photons_(PilotSize(context.settings).count(kPhotons, kLeastPhotons)),
       step_(std::max(1, std::max(context.scene.frame.width(), context.scene.frame.height()) /
@@ -93,7 +96,7 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
     parallelFor(kRounds, [&](std::size_t i) {
         if (stop_()) return;
         Listener listener(*this, parts[i]);
-        Darkroom film(context_.scene.frame);
+        NullFilm film(context_.scene.frame);
         const auto round = static_cast<std::uint32_t>(i);
         addWorkFlag(WorkFlag::pilot);
         const TileResult r = kernel_.merge(context, film, {round, round + 1, 0, 1, step_}, &listener);

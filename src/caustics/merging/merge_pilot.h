@@ -1,8 +1,8 @@
 // Rounds of merging that are looked at before a render.
 #pragma once
 
+#include "caustics/shared/kernel_jobs.h"
 #include "caustics/shared/noise_measure.h"
-#include "integrators/light_kernel.h"
 
 #include <functional>
 #include <unordered_map>
@@ -35,7 +35,7 @@ class MergePilot {
         std::vector<LightDeposit> shown() const;
     };
 
-    MergePilot(const PathContext& context, const TracedKernel& kernel, const std::function<bool()>& stop);
+    MergePilot(const PathContext& context, const LightPathKernel& kernel, const std::function<bool()>& stop);
     // Light paths of a round.
     std::uint32_t photons() const { return photons_; }
     // Depends on the scene, the frame, the settings of the context and the key alone, unless `stop` cuts it short.
@@ -45,7 +45,7 @@ class MergePilot {
     class Listener;
 
     const PathContext& context_;
-    const TracedKernel& kernel_;
+    const LightPathKernel& kernel_;
     const std::function<bool()>& stop_;
     std::uint32_t photons_;
     int step_;

@@ -6,6 +6,8 @@
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"
 #include "caustics/shared/pilot.h"
+#include "math/hash.h"
+#include "render/scene.h"
 
 #include <algorithm>
 #include <array>
@@ -37,7 +39,7 @@ struct Moments {
 
 class MergePlanner {
   public:
-    MergePlanner(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+    MergePlanner(const PathContext& context, const LightPathKernel& kernel, const RouletteReference& roulette,
                  const LightPathFindings& light, const std::function<bool()>& stop)
         : context_(context), kernel_(kernel), roulette_(roulette), light_(light), stop_(stop),
           frame_(context.scene.frame), pilot_(context, kernel, stop) {}
@@ -152,7 +154,7 @@ class MergePlanner {
     }
 
     const PathContext& context_;
-    const TracedKernel& kernel_;
+    const LightPathKernel& kernel_;
     const RouletteReference& roulette_;
     const LightPathFindings& light_;
     const std::function<bool()>& stop_;
@@ -164,7 +166,7 @@ class MergePlanner {
 
 } // namespace
 
-PlannedMerging planMerging(const PathContext& context, const TracedKernel& kernel, const RouletteReference& roulette,
+PlannedMerging planMerging(const PathContext& context, const LightPathKernel& kernel, const RouletteReference& roulette,
                            const LightPathFindings& light, const std::function<bool()>& stop) {
     if (context.settings.technique.merging == Technique::Merging::off) return {};
     return MergePlanner(context, kernel, roulette, light, stop).run();

@@ -1,7 +1,8 @@
 // Whether merging is worth its time, and its bias, in a scene.
 #pragma once
 
-#include "integrators/light_kernel.h"
+#include "caustics/merging/merge_plan.h"
+#include "caustics/shared/kernel_jobs.h"
 #include "render/integrator.h"
 
 #include <functional>
@@ -17,7 +18,7 @@ struct PlannedMerging {
 
 // A context with the plans of light paths and of manifold sampling, if any, and what was found about the first; the
 // reference is that of the frame. `stop` cuts it short, without a plan.
-PlannedMerging planMerging(const PathContext&, const TracedKernel&, const RouletteReference&, const LightPathFindings&,
-                           const std::function<bool()>& stop);
+PlannedMerging planMerging(const PathContext&, const LightPathKernel&, const RouletteReference&,
+                           const LightPathFindings&, const std::function<bool()>& stop);
 
 } // namespace abbe

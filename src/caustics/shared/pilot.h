@@ -83,9 +83,9 @@ class PilotPixel final : public Film {
 };
 
 // A film that forgets all light, for looks ahead that listen or count.
-class Darkroom final : public Film {
+class NullFilm final : public Film {
   public:
-    explicit Darkroom(PixelBounds frame) : frame_(frame) {}
+    explicit NullFilm(PixelBounds frame) : frame_(frame) {}
     PixelBounds bounds() const override { return frame_; }
     int replicates() const override { return 1; }
     FilterSample filter(Vec2 u) const noexcept override { return {{u.x - 0.5f, u.y - 0.5f}, 1}; }

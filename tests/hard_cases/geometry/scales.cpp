@@ -5,6 +5,7 @@
 #include "hard_cases/hard_case.h"
 #include "math/warp.h"
 #include "support/ray_estimate.h"
+#include "transport/surroundings.h"
 #include "unit/geometry/test_meshes.h"
 
 using namespace abbe;
@@ -28,16 +29,16 @@ std::string meshText(const MeshData& m, Vec3d offset, bool rounded) {
 double carried(const TestScene& scene, Vec3 origin, Vec3 direction) {
     static const LightSampler lights(scene.scene().lights);
     static const PathContext context{scene.scene(), lights, {}, true};
-    static auto media = PathLoop<kLoopEffects.bits()>::makeMedia(scene.scene());
+    static auto media = PathWalk<kLoopEffects.bits()>::makeMedia(scene.scene());
     static Sampler sampler;
     static Arena arena;
     PathCounters counters;
     sampler.startPixel(7, Technique::Numbers::random, true);
     sampler.start(0);
-    PathLoop<kLoopEffects.bits()> loop(context, sampler, arena, counters, media);
+    CameraPath<kLoopEffects.bits()> path(context, sampler, arena, counters, media);
     const Vec3 eye = Vec3(Vec3d(origin) - scene.scene().origin);
-    loop.startIn(surroundingsAt(scene.scene(), eye, 0));
-    return mean(loop.radiance({eye, direction}, Wavelengths::sample(0.3f), 1e9f));
+    path.walk().startIn(surroundingsAt(scene.scene(), eye, 0));
+    return mean(path.radiance({eye, direction}, Wavelengths::sample(0.3f), 1e9f));
 }
 
 } // namespace

@@ -1,5 +1,4 @@
 // Light paths at every material against camera paths there: both directions must carry the same light.
-#include "integrators/defensive_bsdf.h"
 #include "materials/diffuse_transmission.h"
 #include "materials/hair.h"
 #include "materials/layered.h"
@@ -9,6 +8,7 @@
 #include "materials/thin_dielectric.h"
 #include "materials/two_sided.h"
 #include "math/frame.h"
+#include "path_tracing/defensive_bsdf.h"
 #include "render/light_vertex.h"
 #include "statistical/materials/openpbr_suite.h"
 

@@ -1,3 +1,5 @@
+#include "light_sampling/light_sampler.h"
+#include "path_tracing/path_kernels.h"
 #include "render/render_state.h"
 #include "rendering/look_ahead.h"
 #include "support/scene_test.h"
@@ -22,7 +24,7 @@ light sky { luminance 100 nits }
     const RecordingFilm film(scene.built().film, 2);
     const auto costs = [&](std::size_t blocks) {
         const RenderState state(film.bounds(), 0, blocks);
-        return lookAhead(context, renderTile<kPlainKernel.bits()>, film, state, [] { return false; }).tileCosts;
+        return lookAhead(context, kernelFor({}).render, film, state, [] { return false; }).tileCosts;
     };
     const std::vector<double> without = costs(0), with = costs(4);
     REQUIRE(without.size() == 9);

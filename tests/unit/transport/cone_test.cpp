@@ -1,8 +1,8 @@
 // The width of paths beyond curved mirrors and lenses, against neighbouring rays traced in double precision.
 #include "geometry/mesh.h"
 #include "geometry/sphere.h"
-#include "integrators/path_state.h"
 #include "support/scene_test.h"
+#include "transport/path_state.h"
 
 #include <doctest/doctest.h>
 #include <optional>
@@ -31,7 +31,7 @@ Beam turned(const Beam& b, double radius, bool inside, Turn turn, double ior) {
 constexpr double kSpread = 1e-4;
 struct Bundle {
     std::array<Beam, 5> rays;
-    path_detail::Cone cone{0, static_cast<float>(kSpread)};
+    RayCone cone{0, static_cast<float>(kSpread)};
 
     explicit Bundle(const Beam& middle) {
         const Vec3d x = normalize(cross(middle.d, Vec3d(0, 1, 0))), y = cross(x, middle.d);
@@ -63,7 +63,7 @@ struct Bundle {
         return std::sqrt(0.25 * length(cross(rim[0] - rim[1], rim[2] - rim[3])));
     }
     double coneAfter(double distance) const {
-        path_detail::Cone c = cone;
+        RayCone c = cone;
         c.advance(static_cast<float>(distance));
         return static_cast<double>(c.radius);
     }
@@ -109,7 +109,7 @@ TEST_CASE("cones: through a ball of glass as wide as neighbouring rays show, wit
             CHECK(b.coneAfter(6) == doctest::Approx(b.radiusAfter(6)).epsilon(0.1));
         }
     // A flat face narrows the spread by the index, and the next one widens it again.
-    path_detail::Cone flat{0.001f, 0.01f};
+    RayCone flat{0.001f, 0.01f};
     flat.refract(0, 1.5f, 1);
     CHECK(flat.spread == doctest::Approx(0.01 / 1.5));
     flat.refract(0, 1 / 1.5f, 1);

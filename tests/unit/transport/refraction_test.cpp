@@ -6,6 +6,7 @@
 #include "spectrum/curve.h"
 #include "spectrum/dispersion.h"
 #include "support/scene_test_paths.h"
+#include "transport/surroundings.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -151,12 +152,12 @@ shape sphere { center 0 0 -3; radius 1; material dielectric { ior 1; absorption 
             sampler.start(0);
             Arena arena;
             PathCounters counters;
-            auto media = PathLoop<E>::makeMedia(scene.scene());
+            auto media = PathWalk<E>::makeMedia(scene.scene());
             // The eye is the origin of render space.
             const Ray ray{origin - Vec3{0, 0, 5}, normalize(direction)};
-            PathLoop<E> loop(context, sampler, arena, counters, media);
-            if constexpr (PathLoop<E>::kInterfaces) loop.startIn(surroundingsAt(scene.scene(), ray.origin, 0));
-            const Spectrum seen = loop.radiance(ray, lambda, 1e9f); // no roulette
+            CameraPath<E> path(context, sampler, arena, counters, media);
+            if constexpr (PathWalk<E>::kInterfaces) path.walk().startIn(surroundingsAt(scene.scene(), ray.origin, 0));
+            const Spectrum seen = path.radiance(ray, lambda, 1e9f); // no roulette
             for (int lane = 0; lane < kLanes; ++lane) {
                 const double sigma = ink->at(static_cast<double>(lambda.nm[lane]));
                 CHECK(seen[lane] == doctest::Approx(2 * std::exp(-sigma * inInk - 0.25 * inSphere)).epsilon(1e-5));

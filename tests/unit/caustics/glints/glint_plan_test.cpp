@@ -1,6 +1,6 @@
 // Which light is left to probes, and where they go.
+#include "caustics/glints/forced_lobe.h"
 #include "caustics/glints/glint_plan.h"
-#include "integrators/forced_lobe.h"
 #include "render/light.h"
 #include "support/scene_test.h"
 

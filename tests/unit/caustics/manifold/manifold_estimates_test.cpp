@@ -1,6 +1,10 @@
 // Several estimates by manifold sampling at one vertex: each counts its share.
+#include "caustics/light_tracing/light_path_plan.h"
+#include "caustics/manifold/manifold_sampler.h"
+#include "caustics/shared/aimed_emission.h"
 #include "film/pixel_film.h"
-#include "integrators/tile_kernel.h"
+#include "light_sampling/light_sampler.h"
+#include "path_tracing/path_kernels.h"
 #include "support/manifold_cases.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +18,7 @@ constexpr std::uint32_t kEstimateSamples = 64;
 class Sum final : public ManifoldListener {
   public:
     explicit Sum(const Scene& scene) : scene_(scene) {}
-    void asked(const ChainStart&, const Spectrum&, const Wavelengths& lambda, const Spectrum& light,
+    void sampled(const ChainStart&, const Spectrum&, const Wavelengths& lambda, const Spectrum& light,
                const Spectrum&) override {
         const double y = scene_.sensor(light, lambda).y;
         sum += y;
@@ -44,10 +48,10 @@ Told renderedWith(std::uint32_t estimates, const TestScene& test) {
     const LightPathPlan none{AimedEmission(scene.lights, scene.intersector->bounds(), {}), 0, false, 1};
     PathContext context{scene, lights, settings, true, 1, LoopTechnique(settings.technique), &none, &sampler};
     Sum heard(scene);
-    context.hears = &heard;
+    context.manifoldListener = &heard;
     PixelFilm film({0, 0, kWidth, kHeight}, {FilterShape::box, 0.5}, 1);
     const RouletteReference roulette = RouletteReference::constant(1);
-    renderTile<kTracedFullKernel.bits()>(context, film, {film.bounds(), 0, kEstimateSamples, &roulette});
+    kernelFor(kLoopEffects).lightPaths.render(context, film, {film.bounds(), 0, kEstimateSamples, &roulette});
     Told told{0, heard.sum, heard.calls, heard.with};
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) told.picture += film.mean(x, y).y * kEstimateSamples;

@@ -32,9 +32,9 @@ class BesideMerging {
         planned_.findings.used = true;
         planned_.findings.chains = 1000;
         planned_.sampler = std::make_unique<const ManifoldSampler>(scene, std::move(plan));
-        MergePlan merging{AimedEmission(scene.lights, scene.intersector->bounds(), {}), {}, 1, 1, 1e-3f};
-        for (std::size_t i = 0; i < mergedLamps; ++i) merging.lights.insert(scene.lights.at(i).get());
-        planned_.besideMerging(scene, merging);
+        std::unordered_set<const Light*> merged;
+        for (std::size_t i = 0; i < mergedLamps; ++i) merged.insert(scene.lights.at(i).get());
+        planned_.besideMerging(scene, merged);
     }
     const PlannedManifold& planned() const { return planned_; }
     float rare() const { return planned_.sampler->plan().casters.at(0).weights[kRare]; }

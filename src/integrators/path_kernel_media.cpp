@@ -1,7 +1,0 @@
-#include "integrators/tile_kernel.h"
-
-namespace abbe {
-
-template TileResult renderTile<kMediaKernel.bits()>(const PathContext&, Film&, const TileJob&);
-
-} // namespace abbe
