@@ -3,7 +3,6 @@
 #include "app/json.h"
 #include "app/load.h"
 #include "base/diagnostic.h"
-#include "caustics/light_tracing/light_path_planner.h"
 #include "command_line/command.h"
 #include "command_line/parser.h"
 #include "command_line/shared_arguments.h"
@@ -155,19 +154,20 @@ bool looksLikeFile(const std::string& topic) {
 bool hasFrame(const BuildOptions& b) { return !b.camera.empty() || b.size || b.seed || b.pilot; }
 
 // Decided by a look at the scene if need be, which takes its geometry. Undecided if that is at fault.
-LightPathFindings lightPathsOf(const LoadedScene& loaded, const BuiltScene& described, const BuildOptions& build) {
+CausticFindings causticsOf(const LoadedScene& loaded, const BuiltScene& described, const BuildOptions& build) {
     RenderSettings settings = renderSettings(described.render);
     settings.pilot = build.pilot.value_or(RenderSettings::kPilotByWork);
-    LightPathFindings found;
-    found.verdict = lightPathVerdict(described.scene, settings.technique);
-    if (found.verdict != LightPathVerdict::undecided) return found;
+    CausticFindings found;
+    auto& verdict = found.of<LightPathFindings>().verdict;
+    verdict = lightPathVerdict(described.scene, settings.technique);
+    if (verdict != LightPathVerdict::undecided) return found;
     Diagnostics faults; // those of the scene's text have been told
     const BuiltScene built = buildScene(loaded.tree, loaded.types, build, faults);
     if (faults.hasErrors()) return found;
     const FilmSettings film = filmSettings(built.film);
     const PixelFilm like({0, 0, 1, 1}, PixelFilter(film.filter, film.filterRadius),
                          static_cast<int>(built.render.replicates));
-    return makePathTracer(built.scene.effects)->findLightPaths(built.scene, like, settings);
+    return makePathTracer(built.scene.effects)->findCaustics(built.scene, like, settings);
 }
 
 ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common) {
@@ -178,7 +178,7 @@ ExitCode explainScene(const ExplainOptions& options, const CommonOptions& common
     if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
     common.console.report(loaded->diagnostics, loaded->sources);
     if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
-    const LightPathFindings found = lightPathsOf(*loaded, built, options.build);
+    const CausticFindings found = causticsOf(*loaded, built, options.build);
     common.console.data(common.json
                             ? effectsJson(*loaded, built).set("light_paths", lightPathJson(found)).text(true) + "\n"
                             : effectsText(*loaded, built) + lightPathText(found));

@@ -1,10 +1,10 @@
 // An algorithm that turns a scene into an image.
 #pragma once
 
+#include "render/caustic_findings.h"
 #include "render/effect_counts.h"
 #include "render/film.h"
 #include "render/first_look.h"
-#include "render/light_path_findings.h"
 #include "render/technique.h"
 
 #include <algorithm>
@@ -93,7 +93,7 @@ struct RenderStatistics {
     std::uint64_t splats = 0;     // pixels that they were added to
     std::uint64_t rounds = 0;     // of merging, whose paths count as light paths
     std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
-    LightPathFindings lightPlan;
+    CausticFindings caustics; // by which it was decided how light is found
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;                   // of looks ahead that are not in the image, of this run alone
     double pilotSeconds = 0;                       // wall clock of these
@@ -150,9 +150,9 @@ class Integrator {
     virtual std::size_t lightBlocks(const Scene&, const RenderSettings&) const { return 0; }
     // Whether the film is to take merged light, too; only if there are such blocks.
     virtual bool merges(const Scene&, const RenderSettings&) const { return false; }
-    // What render() decides on light paths of the scene's whole frame, without rendering. Takes a fraction of a second
-    // where it has to look. The film tells the pixel filter and the number of replicates alone.
-    virtual LightPathFindings findLightPaths(const Scene&, const Film&, const RenderSettings&) const = 0;
+    // By what render() decides how caustics of the scene's whole frame are found, without rendering. Takes a fraction
+    // of a second where it has to look. The film tells the pixel filter and the number of replicates alone.
+    virtual CausticFindings findCaustics(const Scene&, const Film&, const RenderSettings&) const = 0;
 };
 
 } // namespace abbe

@@ -1,48 +1,79 @@
 #include "rendering/caustic_plans.h"
 
+#include "caustics/glints/glint_probing.h"
+#include "caustics/light_tracing/light_tracing.h"
+#include "caustics/manifold/manifold_sampling.h"
+#include "caustics/merging/photon_merging.h"
+
+#include <algorithm>
+
 namespace abbe {
 
+bool CausticPlans::any() const {
+    return std::ranges::any_of(techniques_, [](const auto& t) { return t->used(); });
+}
+
 std::uint64_t CausticPlans::pilotRays() const {
-    return light.findings.rays + manifold.findings.rays + merging.findings.rays + glints.findings.pilotRays;
+    std::uint64_t sum = 0;
+    for (const auto& technique : techniques_) sum += technique->rays().pilot;
+    return sum;
 }
 
 double CausticPlans::raysOfSample(double alone) const {
     if (!any()) return alone;
-    return kTracedCost * alone + light.raysBeside + manifold.raysBeside + merging.raysBeside + glints.findings.rays;
+    double sum = kCostBesideLightPaths * alone;
+    for (const auto& technique : techniques_) sum += technique->rays().beside;
+    return sum;
 }
 
-LightPathFindings CausticPlans::findings() const {
-    LightPathFindings all = light.findings;
-    all.manifold = manifold.findings;
-    all.merging = merging.findings;
-    all.glints = glints.findings;
+CausticFindings CausticPlans::findings() const {
+    CausticFindings all;
+    for (const auto& technique : techniques_) technique->report(all);
     return all;
 }
 
 void CausticPlans::giveTo(PathContext& context) const {
-    context.lightPaths = light.plan.get();
-    context.manifold = manifold.sampler.get();
-    context.merging = merging.plan.get();
-    context.glints = glints.plan.get();
+    for (const auto& technique : techniques_) technique->giveTo(context);
 }
 
-// Each knows of what was planned before it.
+// Units of a technique follow those of the one before it.
+TileResult CausticPlans::render(const PathContext& context, const LightPathKernel& kernel, Film& film,
+                                const BlockJob& job) const {
+    TileResult all;
+    std::uint32_t before = 0;
+    for (const auto& technique : techniques_) {
+        BlockJob own = job;
+        own.from = job.from.unit < before ? PortionPlace() : PortionPlace{job.from.unit - before, job.from.done};
+        std::optional<TileResult> result = technique->render(context, kernel, film, own);
+        if (!result) continue;
+        if (result->rest) result->rest->unit += before;
+        all.add(*result);
+        if (all.rest) break;
+        before += job.units(film);
+    }
+    return all;
+}
+
 CausticPlans planCaustics(const PathContext& plain, const Film& film, const LightPathKernel& kernel,
                           const RouletteReference& roulette, const std::function<bool()>& stop) {
-    CausticPlans plans;
+    std::vector<std::unique_ptr<CausticTechnique>> techniques; // each knows of what was planned before it
+    techniques.push_back(std::make_unique<LightTracing>());
+    techniques.push_back(std::make_unique<ManifoldSampling>());
+    techniques.push_back(std::make_unique<PhotonMerging>());
+    techniques.push_back(std::make_unique<GlintProbing>());
     PathContext context = plain;
-    plans.light = planLightPaths(context, kernel, roulette, stop);
-    plans.giveTo(context);
-    plans.manifold = planManifold(context, kernel, roulette, stop);
-    plans.giveTo(context);
-    if (film.takesMerged()) {
-        plans.merging = planMerging(context, kernel, roulette, plans.light.findings, stop);
-        if (plans.manifold.sampler && plans.merging.plan)
-            plans.manifold.besideMerging(context.scene, plans.merging.plan->lights);
-        plans.giveTo(context);
+    CausticFindings found;
+    for (const auto& technique : techniques) {
+        technique->plan({context, film, kernel, roulette, found, stop});
+        technique->report(found);
+        if (const LightSet* const taken = technique->takes())
+            for (const auto& before : techniques) {
+                if (before == technique) break;
+                before->leave(context.scene, *taken);
+            }
+        for (const auto& other : techniques) other->giveTo(context);
     }
-    plans.glints = planGlints(context, film, kernel, roulette, stop);
-    return plans;
+    return CausticPlans(std::move(techniques));
 }
 
 } // namespace abbe

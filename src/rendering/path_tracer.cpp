@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "caustics/light_tracing/light_path_findings.h"
 #include "light_sampling/light_sampler.h"
 #include "path_tracing/path_kernels.h"
 #include "render/render_state.h"
@@ -76,9 +77,9 @@ class RenderJob {
         return std::move(statistics_);
     }
 
-    LightPathFindings lightPaths() {
+    CausticFindings caustics() {
         plan(context_);
-        return statistics_.lightPlan;
+        return statistics_.caustics;
     }
 
     void repeat(std::span<const SampleId> samples) {
@@ -98,7 +99,7 @@ class RenderJob {
         const std::function<bool()> stop = [this] { return stopRequested(); };
         plans_ =
             planRender({context, kernel_.render, kernel_.lightPaths, film_, state_, control_.firstLook, left, stop});
-        statistics_.lightPlan = plans_.findings;
+        statistics_.caustics = plans_.findings;
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
         plans_.caustics.giveTo(context_);
@@ -210,31 +211,11 @@ class RenderJob {
     TileResult work(std::size_t i, const CutPortion& portion) {
         const std::uint32_t first = state_.tile(i).reached;
         if (state_.isLightBlock(i))
-            return workOnBlock(static_cast<std::uint32_t>(state_.lightBlock(i)), first, portion);
+            return plans_.caustics.render(context_, kernel_.lightPaths, film_,
+                                          {first, portion.end, static_cast<std::uint32_t>(state_.lightBlock(i)),
+                                           static_cast<std::uint32_t>(state_.lightBlockCount()), portion.at});
         return render_(context_, film_,
                        {state_.pixels(i), first, portion.end, &plans_.ahead.roulette, samplePlan(), portion.at});
-    }
-
-    // A share of the light paths, and then some of the rounds of merging.
-    TileResult workOnBlock(std::uint32_t block, std::uint32_t first, const CutPortion& portion) {
-        const auto [end, at] = portion;
-        const std::uint32_t units = (end - first) * static_cast<std::uint32_t>(film_.replicates());
-        const auto blocks = static_cast<std::uint32_t>(state_.lightBlockCount());
-        TileResult result;
-        if (plans_.caustics.light.plan && at.unit < units) {
-            const std::uint64_t paths = plans_.caustics.light.plan->paths;
-            result =
-                kernel_.lightPaths.trace(context_, film_,
-                                         {static_cast<std::uint32_t>(paths * block / blocks),
-                                          static_cast<std::uint32_t>(paths * (block + 1) / blocks), first, end, at});
-            if (result.rest) return result;
-        }
-        if (plans_.caustics.merging.plan) {
-            const std::uint32_t begun = std::max(at.unit, units) - units;
-            result.add(kernel_.lightPaths.merge(context_, film_, {first, end, block, blocks, 1, begun}, nullptr));
-            if (result.rest) result.rest->unit += units;
-        }
-        return result;
     }
 
     const SamplingPlan* samplePlan() const { return plans_.ahead.plan.even() ? nullptr : &plans_.ahead.plan; }
@@ -375,16 +356,15 @@ class PathTracer final : public Integrator {
     bool merges(const Scene&, const RenderSettings& settings) const override {
         return settings.technique.merging != Technique::Merging::off;
     }
-    LightPathFindings findLightPaths(const Scene& scene, const Film& like,
-                                     const RenderSettings& settings) const override {
-        LightPathFindings known;
-        known.verdict = lightPathVerdict(scene, settings.technique);
+    CausticFindings findCaustics(const Scene& scene, const Film& like, const RenderSettings& settings) const override {
+        CausticFindings known;
+        known.of<LightPathFindings>().verdict = lightPathVerdict(scene, settings.technique);
         if (lightBlocks(scene, settings) == 0) return known;
         RenderSettings even = settings; // a plan of the samples changes nothing
         even.adaptive = false;
         even.timeLimit = 0; // nor the size of its pilots, which a render's clock may lessen
         PlanFilm film(like, scene.frame);
-        return RenderJob(kernel_, scene, film, even, {}).lightPaths();
+        return RenderJob(kernel_, scene, film, even, {}).caustics();
     }
 
   private:

@@ -1,7 +1,9 @@
 #include "rendering/render_plans.h"
 
 #include "base/stopwatch.h"
+#include "caustics/light_tracing/light_path_findings.h"
 #include "render/render_state.h"
+#include "render/scene.h"
 
 namespace abbe {
 
@@ -26,13 +28,15 @@ class RenderPlanner {
         if (in_.film.takesSplats() && in_.state.lightBlockCount() > 0) {
             planForCaustics();
         } else {
-            result_.findings.verdict = lightPathVerdict(in_.context.scene, settings_.technique);
+            verdict() = lightPathVerdict(in_.context.scene, settings_.technique);
             in_.state.setPilot(0);
         }
         return std::move(result_);
     }
 
   private:
+    LightPathVerdict& verdict() { return result_.findings.of<LightPathFindings>().verdict; }
+
     void planForCaustics() {
         const int known = in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; // of a render that goes on
         LadderedPlans found = known >= 0 ? plansOf(pilots(), known, in_.stop) : largestThatPays();
@@ -46,7 +50,7 @@ class RenderPlanner {
         result_.findings = result_.caustics.findings();
         result_.findings.pilot = found.size;
         if (in_.stop()) return; // whoever goes on looks again
-        if (found.size == 0) result_.findings.verdict = LightPathVerdict::noPilot;
+        if (found.size == 0) verdict() = LightPathVerdict::noPilot;
         in_.state.setPilot(found.size);
     }
 

@@ -22,7 +22,7 @@ struct PlanInput {
 struct RenderPlans {
     LookAhead ahead;
     CausticPlans caustics;
-    LightPathFindings findings;
+    CausticFindings findings;
     std::uint64_t rays = 0; // that all of it took
     double seconds = 0;     // of the clock, likewise
 };

@@ -225,8 +225,8 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
                               {"scene_hash", facts.sceneHash},
                               {"seed", facts.seed},
                               {"program", versionNumber()}});
-    if (s.statistics.lightPlan.verdict != LightPathVerdict::undecided)
-        file.set("light_path_plan", lightPathJson(s.statistics.lightPlan));
+    if (s.statistics.caustics.of<LightPathFindings>().verdict != LightPathVerdict::undecided)
+        file.set("light_path_plan", lightPathJson(s.statistics.caustics));
     writeAtomically(path, file.text(true) + "\n");
 }
 

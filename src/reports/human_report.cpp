@@ -100,11 +100,12 @@ void HumanReport::done(const RenderSummary& s) {
     if (r.lightPaths > 0)
         console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
                                   countText(static_cast<double>(r.splats))));
-    if (r.lightPlan.measured || r.lightPlan.verdict == LightPathVerdict::noPilot)
-        console_.line("  " + lightPathLine(r.lightPlan));
-    if (const std::string line = manifoldLine(r.lightPlan); !line.empty()) console_.line("  " + line);
-    if (const std::string line = mergeLine(r.lightPlan.merging); !line.empty()) console_.line("  " + line);
-    if (const std::string line = glintLine(r.lightPlan.glints); !line.empty()) console_.line("  " + line);
+    const auto& lightPaths = r.caustics.of<LightPathFindings>();
+    if (lightPaths.measured || lightPaths.verdict == LightPathVerdict::noPilot)
+        console_.line("  " + lightPathLine(lightPaths));
+    if (const std::string line = manifoldLine(r.caustics); !line.empty()) console_.line("  " + line);
+    if (const std::string line = mergeLine(r.caustics.of<MergeFindings>()); !line.empty()) console_.line("  " + line);
+    if (const std::string line = glintLine(r.caustics.of<GlintFindings>()); !line.empty()) console_.line("  " + line);
     if (r.manifoldCapped > 0)
         console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",
                                   r.manifoldCapped, r.manifoldEstimates));

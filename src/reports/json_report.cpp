@@ -90,8 +90,8 @@ class JsonReport final : public RenderReport {
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
         if (r.rounds > 0) event.set("rounds", r.rounds);
-        if (r.lightPlan.verdict != LightPathVerdict::undecided)
-            event.set("light_path_plan", lightPathJson(r.lightPlan));
+        if (r.caustics.of<LightPathFindings>().verdict != LightPathVerdict::undecided)
+            event.set("light_path_plan", lightPathJson(r.caustics));
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
         emit(event);

@@ -169,8 +169,8 @@ std::string lightPathLine(const LightPathFindings& f) {
                        forecast(f), sharesInLine(f));
 }
 
-std::string manifoldLine(const LightPathFindings& all) {
-    const ManifoldFindings& f = all.manifold;
+std::string manifoldLine(const CausticFindings& all) {
+    const auto& f = all.of<ManifoldFindings>();
     std::string text;
     if (f.used)
         text = fmt::format("{} behind glass and in mirrors: forecast {} as efficient", manifoldName(f), times(f.gain));
@@ -178,7 +178,7 @@ std::string manifoldLine(const LightPathFindings& all) {
         text += fmt::format("; {} polished shape{} cannot be followed: what {} focus{} is {} there", f.obstacleCount,
                             f.obstacleCount == 1 ? "" : "s", f.obstacleCount == 1 ? "it" : "they",
                             f.obstacleCount == 1 ? "es" : "",
-                            all.merging.used ? "merged or found by chance" : "found by chance");
+                            all.of<MergeFindings>().used ? "merged or found by chance" : "found by chance");
     return text;
 }
 
@@ -195,7 +195,8 @@ std::string glintLine(const GlintFindings& f) {
                        f.found, f.found == 1 ? "" : "s", f.found == 1 ? "is" : "are", f.rays);
 }
 
-std::string lightPathText(const LightPathFindings& f) {
+std::string lightPathText(const CausticFindings& all) {
+    const auto& f = all.of<LightPathFindings>();
     if (f.verdict == undecided) return {};
     if (!f.measured) return fmt::format("Light paths: none, {}\n", reason(f));
     std::string text = f.used() ? fmt::format("Light paths: {:.3g} per camera path{}\n", f.share,
@@ -205,19 +206,21 @@ std::string lightPathText(const LightPathFindings& f) {
         text += fmt::format("  {:.3g} % of them go on past what first spreads them, a rough surface or a medium\n",
                             100 * f.afterSpread);
     text += fmt::format("  {} light{}, {} target{}; a pilot of size {} took {} rays\n", f.lights,
-                        f.lights == 1 ? "" : "s", f.targets, f.targets == 1 ? "" : "s", f.pilot, f.rays);
+                        f.lights == 1 ? "" : "s", f.targets, f.targets == 1 ? "" : "s", all.pilot, f.rays);
     if (f.bestShare > 0)
         text += fmt::format("  {} as camera paths alone with {:.3g} light paths for each of them\n", forecast(f),
                             f.bestShare);
     text += fmt::format("  relative variance of a sample by what light paths can bring: {} by camera paths alone",
                         moment(f.before));
     if (f.bestShare > 0) text += fmt::format(", {} by both; by everything else {}", moment(f.after), moment(f.rest));
-    return text + "\n" + shareTable(f) + manifoldText(f.manifold) + mergeText(f.merging) + glintText(f.glints);
+    return text + "\n" + shareTable(f) + manifoldText(all.of<ManifoldFindings>()) + mergeText(all.of<MergeFindings>()) +
+           glintText(all.of<GlintFindings>());
 }
 
-Json lightPathJson(const LightPathFindings& f) {
+Json lightPathJson(const CausticFindings& all) {
+    const auto& f = all.of<LightPathFindings>();
     Json json = Json::object({{"verdict", std::string(wordOf(f.verdict))}, {"text", lightPathLine(f)}});
-    json.set("pilot", f.pilot);
+    json.set("pilot", all.pilot);
     if (!f.measured) return json;
     json.set("per_camera_path", f.share).set("go_on_after_spread", f.afterSpread);
     json.set("judged_per_camera_path", f.bestShare).set("gain", f.gain);
@@ -230,7 +233,7 @@ Json lightPathJson(const LightPathFindings& f) {
                                   {"share", s.share},
                                   {"before", s.before},
                                   {"after", s.after}}));
-    const ManifoldFindings& m = f.manifold;
+    const auto& m = all.of<ManifoldFindings>();
     Json obstacles = Json::list();
     for (const std::string& obstacle : m.obstacles) obstacles.push(Json(obstacle));
     json.set("manifold", Json::object({{"measured", m.measured},
@@ -244,7 +247,7 @@ Json lightPathJson(const LightPathFindings& f) {
                                        {"estimates", m.estimates},
                                        {"pilot_rays", m.rays},
                                        {"not_followed", std::move(obstacles)}}));
-    const MergeFindings& g = f.merging;
+    const auto& g = all.of<MergeFindings>();
     Json lights = Json::list(), unseen = Json::list();
     for (const std::string& light : g.lights) lights.push(Json(light));
     for (const std::string& light : g.unseen) unseen.push(Json(light));
@@ -260,11 +263,12 @@ Json lightPathJson(const LightPathFindings& f) {
                                       {"pilot_rays", g.rays},
                                       {"lights", std::move(lights)},
                                       {"never_found", std::move(unseen)}}));
-    json.set("glints", Json::object({{"measured", f.glints.measured},
-                                     {"probed", static_cast<std::uint64_t>(f.glints.found)},
-                                     {"error_without", f.glints.error},
-                                     {"rays_per_camera_path", f.glints.rays},
-                                     {"pilot_rays", f.glints.pilotRays}}));
+    const auto& glints = all.of<GlintFindings>();
+    json.set("glints", Json::object({{"measured", glints.measured},
+                                     {"probed", static_cast<std::uint64_t>(glints.found)},
+                                     {"error_without", glints.error},
+                                     {"rays_per_camera_path", glints.rays},
+                                     {"pilot_rays", glints.pilotRays}}));
     return json.set("shares", std::move(shares));
 }
 

@@ -56,10 +56,10 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.roulette", std::string(word(technique.roulette)));
     text("abbe.lightPathTechnique", std::string(word(technique.lightPaths)));
     text("abbe.mergingTechnique", std::string(word(technique.merging)));
-    const LightPathFindings& found = statistics.lightPlan;
+    const auto& found = statistics.caustics.of<LightPathFindings>();
     if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
     if (found.measured || found.verdict == LightPathVerdict::noPilot)
-        whole("abbe.pilot", static_cast<std::uint64_t>(found.pilot));
+        whole("abbe.pilot", static_cast<std::uint64_t>(statistics.caustics.pilot));
     if (found.measured) {
         real("abbe.lightPathShare", found.share);
         real("abbe.lightPathGain", found.gain);

@@ -64,9 +64,9 @@ void warnOfMissingSamples(const MissingSamples& missing, Diagnostics& diagnostic
 }
 
 void warnOfMissingLight(const RenderStatistics& statistics, Diagnostics& diagnostics) {
-    const LightPathFindings& plan = statistics.lightPlan;
-    const bool noLightPaths = plan.used() && statistics.splats == 0 && statistics.lightPaths == 0;
-    const bool noRounds = plan.merging.used && statistics.rounds == 0;
+    const bool noLightPaths =
+        statistics.caustics.of<LightPathFindings>().used() && statistics.splats == 0 && statistics.lightPaths == 0;
+    const bool noRounds = statistics.caustics.of<MergeFindings>().used && statistics.rounds == 0;
     if (!noLightPaths && !noRounds) return;
     diagnostics
         .warning("W0669", {},

@@ -1,5 +1,7 @@
 #include "study/study_variant.h"
 
+#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/merging/merge_findings.h"
 #include "film/pixel_film.h"
 #include "light_sampling/light_sampler.h"
 #include "rendering/path_tracer.h"
@@ -55,17 +57,17 @@ Reason needsHalves(const StudySubject& s) {
     return std::nullopt;
 }
 
-LightPathFindings lightPathsOf(const StudySubject& s, const RenderSettings& settings) {
+CausticFindings causticsOf(const StudySubject& s, const RenderSettings& settings) {
     const Scene& scene = s.built->scene;
     const PixelFilm like({0, 0, 1, 1}, PixelFilter(s.film.filter, s.film.filterRadius), s.replicates);
-    return makePathTracer(scene.effects)->findLightPaths(scene, like, settings);
+    return makePathTracer(scene.effects)->findCaustics(scene, like, settings);
 }
 
 // What is done about light paths where the scene leaves it to the program.
 LightPathVerdict automaticLightPaths(const StudySubject& s) {
     RenderSettings settings = s.settings;
     settings.technique.lightPaths = Technique::LightPaths::automatic;
-    return lightPathsOf(s, settings).verdict;
+    return causticsOf(s, settings).of<LightPathFindings>().verdict;
 }
 
 Reason needsLightPaths(const StudySubject& s) {
@@ -96,7 +98,7 @@ Reason needsUsedLightPaths(const StudySubject& s) {
 Reason needsUsedMerging(const StudySubject& s) {
     if (const Reason reason = needsLightPaths(s)) return reason;
     if (s.settings.technique.merging == Technique::Merging::off) return "`merging off` of `render`";
-    if (!lightPathsOf(s, s.settings).merging.used) return "no light is merged";
+    if (!causticsOf(s, s.settings).of<MergeFindings>().used) return "no light is merged";
     return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 // Where light paths go, for people to read.
 #pragma once
 
-#include "render/light_path_findings.h"
+#include "caustics/light_tracing/light_path_findings.h"
 
 #include <vector>
 

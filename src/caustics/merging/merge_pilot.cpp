@@ -6,6 +6,7 @@
 #include "caustics/shared/aim_cone.h"
 #include "caustics/shared/pilot.h"
 #include "light_sampling/emitted_ray.h"
+#include "math/hash.h"
 #include "render/scene.h"
 
 #include <algorithm>

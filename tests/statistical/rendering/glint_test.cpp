@@ -1,5 +1,6 @@
 // Probed glints against closed forms, sharp enough to see a fault of one per cent: the image of a sun in one level face
 // of glass, and in two.
+#include "caustics/glints/glint_findings.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/sensor.h"
 #include "support/scene_test.h"
@@ -46,7 +47,7 @@ void compare(const std::string& name, double down, const std::string& glass, con
     INFO(c.text());
     CHECK(c.wholeP > 1e-3);
     CHECK(c.error < 0.002);
-    CHECK(image.statistics.lightPlan.glints.found > 0);
+    CHECK(image.statistics.caustics.of<GlintFindings>().found > 0);
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 // merged, but for one: their glass stands in instances, over which chains are not followed, and the eye sees all
 // through it. It is even where it is gathered, so that disks of any size blur nothing; and a sphere within a chord r of
 // a point has the area π r² of a flat disk.
+#include "caustics/manifold/manifold_findings.h"
+#include "caustics/merging/merge_findings.h"
 #include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/sensor.h"
@@ -48,8 +50,8 @@ void compare(const std::string& name, const std::string& film, const std::string
     CHECK(c.wholeP > kLevel);
     CHECK(c.error < kResolution);
     if (!shared) CHECK(s.rounds == settings.samples); // fewer would be coarser, not wrong
-    CHECK(s.lightPlan.manifold.used == shared);
-    CHECK(s.lightPlan.merging.used);
+    CHECK(s.caustics.of<ManifoldFindings>().used == shared);
+    CHECK(s.caustics.of<MergeFindings>().used);
     CHECK(s.cappedPaths == 0);
 }
 

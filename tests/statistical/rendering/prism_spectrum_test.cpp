@@ -1,4 +1,5 @@
 // The spectrum behind a prism, scenes/check/prism-spectrum.scene: where it lies and which colours it has.
+#include "caustics/light_tracing/light_path_findings.h"
 #include "support/prism_spectrum.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
@@ -89,7 +90,7 @@ void compare(double diameter, std::uint32_t samples, double resolution) {
         }
     CHECK(image.statistics.cappedPaths == 0);
     CHECK(image.statistics.lightPaths > 0);
-    CHECK(std::isfinite(image.statistics.lightPlan.gain));
+    CHECK(std::isfinite(image.statistics.caustics.of<LightPathFindings>().gain));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // Small images of lamps in mirrors and glass, probed and by camera paths alone, of lamps that these do find.
+#include "caustics/glints/glint_findings.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
 
@@ -24,7 +25,7 @@ SummedPicture renderProbed(const TestScene& test, bool probed, std::uint32_t sam
 void agree(const std::string& name, const TestScene& scene, double error) {
     const SummedPicture expected = renderProbed(scene, false, 512), found = renderProbed(scene, true, 64);
     const Agreement a = compare(expected.sums, found.sums, 2e-3);
-    const GlintFindings& glints = found.statistics.lightPlan.glints;
+    const auto& glints = found.statistics.caustics.of<GlintFindings>();
     MESSAGE(agreementText(name, a) << fmt::format("; {} glints, {:.3g} rays", glints.found, glints.rays));
     INFO(culpritText(a));
     CHECK(a.agrees());
@@ -76,7 +77,7 @@ TEST_CASE("glints: fog on the way") {
 
 TEST_CASE("glints: a filter with negative parts has none") {
     const TestScene scene = inlineScene(kSun, kGlass, "", "filter mitchell");
-    CHECK(renderProbed(scene, true, 1).statistics.lightPlan.glints.found == 0);
+    CHECK(renderProbed(scene, true, 1).statistics.caustics.of<GlintFindings>().found == 0);
 }
 
 } // namespace abbe::test

@@ -1,5 +1,6 @@
 // Paths from the lights give the picture that paths from the camera give.
 #include "caustics/light_tracing/light_path.h"
+#include "caustics/manifold/manifold_findings.h"
 #include "caustics/shared/aimed_emission.h"
 #include "path_tracing/path_kernels.h"
 #include "support/scene_test.h"
@@ -87,7 +88,7 @@ class TwoWays {
 };
 
 TileSums seen(const TestScene& test, std::uint32_t samples,
-              Technique::LightPaths lightPaths = Technique::LightPaths::off, LightPathFindings* plan = nullptr) {
+              Technique::LightPaths lightPaths = Technique::LightPaths::off, ManifoldFindings* manifold = nullptr) {
     PixelFilm film({0, 0, kWidth, kHeight}, box(), kLoopReplicates);
     RenderSettings settings = test.settings();
     settings.technique.lightPaths = lightPaths;
@@ -95,7 +96,7 @@ TileSums seen(const TestScene& test, std::uint32_t samples,
     settings.samples = samples * kLoopReplicates;
     settings.seed = 5;
     const auto statistics = makePathTracer(test.scene().effects)->render(test.scene(), film, settings, {});
-    if (plan) *plan = statistics.lightPlan;
+    if (manifold) *manifold = statistics.caustics.of<ManifoldFindings>();
     return TileSums(film);
 }
 
@@ -206,10 +207,10 @@ TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampl
     }
     // Where little else is seen several estimates for each vertex are worth it.
     const TestScene scene = sceneOf(narrow, "1.5", "radius 0.2; radiance 100");
-    LightPathFindings plan;
-    const TileSums found = seen(scene, 64, Technique::LightPaths::always, &plan);
-    CHECK(plan.manifold.estimates > 1);
-    check(fmt::format("{} estimates", plan.manifold.estimates), seen(scene, 600), found, 0.02);
+    ManifoldFindings manifold;
+    const TileSums found = seen(scene, 64, Technique::LightPaths::always, &manifold);
+    CHECK(manifold.estimates > 1);
+    check(fmt::format("{} estimates", manifold.estimates), seen(scene, 600), found, 0.02);
 }
 
 } // namespace abbe::test

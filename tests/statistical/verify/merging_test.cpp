@@ -1,5 +1,6 @@
 // Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
 // lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
+#include "caustics/manifold/manifold_findings.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
 
@@ -78,7 +79,7 @@ TEST_CASE("merging: glass that disperses") {
 TEST_CASE("merging: beside manifold sampling, which has some of the light") {
     const TestScene scene = inlineScene(kBallUnderLamp);
     const Picture found = renderMerged(scene, true, 64, Technique::LightPaths::always);
-    CHECK(found.statistics.lightPlan.manifold.used);
+    CHECK(found.statistics.caustics.of<ManifoldFindings>().used);
     mergedAgree("ball", renderMerged(scene, false, 256), found, 0.02);
 }
 

@@ -7,8 +7,9 @@
 namespace abbe::test {
 namespace {
 
-LightPathFindings measured() {
-    LightPathFindings f;
+CausticFindings measured() {
+    CausticFindings all;
+    auto& f = all.of<LightPathFindings>();
     f.verdict = LightPathVerdict::used;
     f.measured = true;
     f.before = 3;
@@ -24,13 +25,14 @@ LightPathFindings measured() {
                 {"lamp", "", 0.22, 0.3, 0.03},
                 {"sky", "ring", 0.1, 0.2, 0.02},
                 {"", "", 0.05, 0, 0}};
-    return f;
+    return all;
 }
 
 } // namespace
 
 TEST_CASE("light paths in a line") {
-    LightPathFindings f = measured();
+    CausticFindings all = measured();
+    auto& f = all.of<LightPathFindings>();
     CHECK(lightPathLine(f) == "light paths 2 per camera path: forecast 12 × as efficient (lamp → ball 63 %, "
                               "lamp → elsewhere 22 %, sky → ring 10 %, …)");
     f.shares.resize(1);
@@ -51,9 +53,9 @@ TEST_CASE("light paths: each reason why there are none has words and a word of i
     using enum LightPathVerdict;
     std::vector<std::string> texts, words;
     for (const auto v : {off, otherTechnique, noLights, nothingFocuses, nothingFound, noGain, noPilot}) {
-        LightPathFindings f;
-        f.verdict = v;
-        const std::string line = lightPathLine(f);
+        CausticFindings f;
+        f.of<LightPathFindings>().verdict = v;
+        const std::string line = lightPathLine(f.of<LightPathFindings>());
         CHECK(line.starts_with("no light paths: "));
         CHECK(lightPathText(f).starts_with("Light paths: none, "));
         for (const std::string& other : texts) CHECK(line != other);
@@ -65,17 +67,18 @@ TEST_CASE("light paths: each reason why there are none has words and a word of i
 }
 
 TEST_CASE("what manifold sampling cannot follow is said to be merged only where merging is used") {
-    LightPathFindings f = measured();
+    CausticFindings f = measured();
     CHECK(manifoldLine(f).empty());
-    f.manifold.used = true;
-    f.manifold.gain = 3;
-    f.manifold.estimates = 1;
-    f.manifold.obstacleCount = 1;
+    auto& manifold = f.of<ManifoldFindings>();
+    manifold.used = true;
+    manifold.gain = 3;
+    manifold.estimates = 1;
+    manifold.obstacleCount = 1;
     CHECK(manifoldLine(f) ==
           "manifold sampling behind glass and in mirrors: forecast 3 × as efficient; 1 polished shape "
           "cannot be followed: what it focuses is found by chance there");
-    f.manifold.obstacleCount = 2;
-    f.merging.used = true;
+    manifold.obstacleCount = 2;
+    f.of<MergeFindings>().used = true;
     CHECK(
         manifoldLine(f).ends_with("2 polished shapes cannot be followed: what they focus is merged or found by chance "
                                   "there"));
@@ -95,8 +98,8 @@ TEST_CASE("light paths at length and in JSON") {
     CHECK(json["shares"][1]["target"].is_null());
     CHECK(json["shares"][3]["light"].is_null());
     CHECK(json["shares"][0]["share"] == 0.63);
-    LightPathFindings known;
-    known.verdict = LightPathVerdict::nothingFocuses;
+    CausticFindings known;
+    known.of<LightPathFindings>().verdict = LightPathVerdict::nothingFocuses;
     CHECK_FALSE(nlohmann::json::parse(lightPathJson(known).text()).contains("gain")); // nothing was measured
 }
 

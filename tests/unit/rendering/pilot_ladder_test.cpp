@@ -3,7 +3,7 @@
 #include "render/render_state.h"
 #include "rendering/path_tracer.h"
 #include "rendering/pilot_ladder.h"
-#include "support/light_plan.h"
+#include "support/caustics_of.h"
 
 #include <chrono>
 #include <cmath>
@@ -14,6 +14,20 @@ namespace abbe::test {
 namespace {
 
 const std::function<bool()> kGoesOn = [] { return false; };
+
+// Took so many rays to find nothing.
+class RaysAlone final : public CausticTechnique {
+  public:
+    explicit RaysAlone(std::uint64_t rays) : rays_(rays) {}
+    void plan(const PilotInput&) override {}
+    bool used() const override { return false; }
+    void giveTo(PathContext&) const override {}
+    void report(CausticFindings&) const override {}
+    Rays rays() const override { return {rays_, 0}; }
+
+  private:
+    std::uint64_t rays_;
+};
 
 // In the place of pilots: so many rays, four times as many for each larger size.
 struct RaysOfPilots {
@@ -27,9 +41,10 @@ struct RaysOfPilots {
             const auto end =
                 std::chrono::steady_clock::now() + std::chrono::duration<double>(secondsOfSmallest * factor);
             while (std::chrono::steady_clock::now() < end && !stop()) std::this_thread::yield();
-            CausticPlans plans;
-            plans.light.findings.rays = static_cast<std::uint64_t>(static_cast<double>(raysOfSmallest) * factor);
-            return plans;
+            std::vector<std::unique_ptr<CausticTechnique>> techniques;
+            techniques.push_back(
+                std::make_unique<RaysAlone>(static_cast<std::uint64_t>(static_cast<double>(raysOfSmallest) * factor)));
+            return CausticPlans(std::move(techniques));
         };
     }
 };
@@ -74,7 +89,7 @@ TEST_CASE("pilots: the largest that a budget of rays has room for") {
         const LadderedPlans found = climb(pilots.run(1000), {c.budget, 0, true}, kGoesOn);
         CAPTURE(c.budget);
         CHECK(found.size == c.size);
-        CHECK(found.plans.light.findings.rays == static_cast<std::uint64_t>(1000 * std::pow(4, c.size - 1)));
+        CHECK(found.plans.pilotRays() == static_cast<std::uint64_t>(1000 * std::pow(4, c.size - 1)));
         CHECK(static_cast<double>(found.rays) <= std::max(c.budget, 1000.0));
         CHECK(pilots.sent.front() == 1);
         CHECK(pilots.sent.size() <= 2);
@@ -100,7 +115,7 @@ TEST_CASE("pilots: what they would take too long for is not begun, and what take
 
 TEST_CASE("pilots: of a size, or none") {
     RaysOfPilots pilots;
-    CHECK(plansOf(pilots.run(10), 3, kGoesOn).plans.light.findings.rays == 160);
+    CHECK(plansOf(pilots.run(10), 3, kGoesOn).plans.pilotRays() == 160);
     CHECK(plansOf(pilots.run(10), 0, kGoesOn).size == 0);
     CHECK(pilots.sent == std::vector{3});
     CHECK(plansOf(pilots.run(10), 2, [] { return true; }).size == 0);
@@ -116,26 +131,26 @@ TEST_CASE("pilots: a tenth of the rays of a render at most, larger for larger on
         const TestImage image = renderByPilot(scene, RenderSettings::kPilotByWork);
         const RenderStatistics& s = image.statistics;
         CAPTURE(samples);
-        CAPTURE(s.lightPlan.pilot);
+        CAPTURE(s.caustics.pilot);
         CHECK(static_cast<double>(s.pilotRays) <= 0.1 * static_cast<double>(s.rays()) + static_cast<double>(smallest));
-        CHECK(s.lightPlan.pilot >= before);
-        before = s.lightPlan.pilot;
+        CHECK(s.caustics.pilot >= before);
+        before = s.caustics.pilot;
         CHECK(s.pilotRays > 0);
     }
     CHECK(before > 1);
-    CHECK(renderByPilot(tiny, RenderSettings::kPilotByWork).statistics.lightPlan.pilot == 1);
+    CHECK(renderByPilot(tiny, RenderSettings::kPilotByWork).statistics.caustics.pilot == 1);
     CHECK(renderByPilot(tiny, 4).statistics.pilotRays > 8 * smallest);
 }
 
 TEST_CASE("pilots: a render by its work has the bits of one with pilots of that size, for any threads") {
     const TestScene scene = TestScene::parse(ballPictureText(20, 128));
     const TestImage byWork = renderByPilot(scene, RenderSettings::kPilotByWork);
-    const int size = byWork.statistics.lightPlan.pilot;
-    CHECK(byWork.statistics.lightPlan.used());
+    const int size = byWork.statistics.caustics.pilot;
+    CHECK(byWork.statistics.caustics.of<LightPathFindings>().used());
     CHECK(samePilotPictures(byWork, renderByPilot(scene, size)));
     CHECK_FALSE(samePilotPictures(byWork, renderByPilot(scene, size == 4 ? 1 : size + 1)));
     const TestImage none = renderByPilot(scene, 0);
-    CHECK(none.statistics.lightPlan.verdict == LightPathVerdict::noPilot);
+    CHECK(none.statistics.caustics.of<LightPathFindings>().verdict == LightPathVerdict::noPilot);
     CHECK(none.statistics.lightPaths == 0);
 }
 
@@ -184,7 +199,7 @@ TEST_CASE("a time limit ends a render in time, whatever pilots and light paths w
     settings.timeLimit = 1e-3; // less than anything takes
     const TestImage least = renderAsProgram(scene, settings, 2);
     CHECK(least.statistics.seconds < 0.5);
-    CHECK_FALSE(least.statistics.lightPlan.used());
+    CHECK_FALSE(least.statistics.caustics.of<LightPathFindings>().used());
 }
 
 } // namespace abbe::test

@@ -1,3 +1,6 @@
+#include "caustics/glints/glint_findings.h"
+#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/merging/merge_findings.h"
 #include "film/pixel_film.h"
 #include "rendering/path_record.h"
 #include "support/scene_test.h"
@@ -39,10 +42,10 @@ light sun { elevation 40 deg; azimuth 150 deg; irradiance 1 klx; angular-diamete
     PixelFilm film(s.crop, PixelFilter(s.filter, s.filterRadius), 2);
     const auto tracer = makePathTracer(scene.scene().effects);
     film.keepSplatsOf(*tracer, scene.scene(), settings);
-    const LightPathFindings plan = tracer->render(scene.scene(), film, settings, {}).lightPlan;
-    REQUIRE(plan.verdict == LightPathVerdict::asked);
-    REQUIRE(plan.merging.used);
-    REQUIRE(plan.glints.found > 0);
+    const CausticFindings plan = tracer->render(scene.scene(), film, settings, {}).caustics;
+    REQUIRE(plan.of<LightPathFindings>().verdict == LightPathVerdict::asked);
+    REQUIRE(plan.of<MergeFindings>().used);
+    REQUIRE(plan.of<GlintFindings>().found > 0);
     std::vector<SampleId> all;
     for (int y = 0; y < 18; ++y)
         for (int x = 0; x < 24; ++x)

@@ -1,7 +1,7 @@
 // Pictures that light paths are part of: their layers, their single samples, and what is said of them.
 #include "film/layer_planes.h"
 #include "rendering/path_tracer.h"
-#include "support/light_plan.h"
+#include "support/caustics_of.h"
 #include "support/scene_test.h"
 
 #include <doctest/doctest.h>
@@ -59,7 +59,9 @@ struct Picture {
     }
 };
 
-LightPathFindings findingsOf(const TestScene& scene) { return lightPlanOf(scene, scene.settings()); }
+LightPathFindings findingsOf(const TestScene& scene) {
+    return causticsOf(scene, scene.settings()).of<LightPathFindings>();
+}
 
 LightPathFindings findingsOf(const std::string& text) { return findingsOf(TestScene::parse(text)); }
 
@@ -120,7 +122,7 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     using enum LightPathVerdict;
     const std::string text = lightPathScene("");
     const Picture image(text);
-    const LightPathFindings& found = image.statistics.lightPlan;
+    const auto& found = image.statistics.caustics.of<LightPathFindings>();
     CHECK(found.verdict == used);
     CHECK(found.gain > 1.15);
     CHECK(found.lights == 2);

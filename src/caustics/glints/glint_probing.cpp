@@ -1,12 +1,15 @@
-#include "caustics/glints/glint_planner.h"
+#include "caustics/glints/glint_probing.h"
 
 #include "base/parallel.h"
 #include "base/work.h"
 #include "caustics/glints/glint_lights.h"
-#include "caustics/light_tracing/light_path_planner.h"
+#include "caustics/glints/glint_search.h"
+#include "caustics/shared/light_path_verdict.h"
 #include "caustics/shared/pilot.h"
+#include "math/frame.h"
 #include "math/hash.h"
 #include "render/scene.h"
+#include "transport/roulette.h"
 
 #include <algorithm>
 #include <array>
@@ -382,10 +385,9 @@ class GlintPlanner {
 
 } // namespace
 
-PlannedGlints planGlints(const PathContext& context, const Film& film, const LightPathKernel& kernel,
-                         const RouletteReference& roulette, const std::function<bool()>& stop) {
-    if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
-    return GlintPlanner(context, film, kernel, roulette, stop).run();
+void GlintProbing::plan(const PilotInput& in) {
+    if (lightPathVerdict(in.context.scene, in.context.settings.technique) != LightPathVerdict::undecided) return;
+    planned_ = GlintPlanner(in.context, in.film, in.kernel, in.roulette, in.stop).run();
 }
 
 } // namespace abbe

@@ -1,30 +1,13 @@
 // What was found out about paths of light before a render, for people to read.
 #pragma once
 
-#include "render/glint_findings.h"
-#include "render/manifold_findings.h"
-#include "render/merge_findings.h"
+#include "caustics/shared/light_path_verdict.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace abbe {
-
-// What has been decided on light paths, and why. All but `used` and `asked` mean that there are none.
-enum class LightPathVerdict : std::uint8_t {
-    undecided,      // nobody looked, or the look was cut short
-    used,           // forecast to pay
-    asked,          // whatever is forecast: `light-paths always` or `alone`
-    off,            // `light-paths off`
-    otherTechnique, // another choice of `render` is at odds with them
-    hiddenShapes,   // shadows and reflections see different shapes, which light paths cannot tell apart
-    noLights,       // no light can start paths
-    nothingFocuses, // no shape focuses light
-    nothingFound,   // what light paths could bring has next to no noise in camera paths
-    noGain,         // forecast to cost more than they bring
-    noPilot,        // no pilot was sent, or there is no time for a first pass with what one found
-};
 
 // Light paths of one light towards one target.
 struct LightPathShare {
@@ -41,7 +24,6 @@ struct LightPathFindings {
     static constexpr std::size_t kShares = 8;
 
     LightPathVerdict verdict = LightPathVerdict::undecided;
-    int pilot = 0; // the size of the pilots: RenderSettings::pilot
     // A pilot has run: whether what follows has been measured.
     bool measured = false;
     // In the mean over pixels, as the shown noise is relative: variance of the light that light paths could bring, as
@@ -57,11 +39,6 @@ struct LightPathFindings {
     std::uint32_t targets = 0; // what light paths are aimed at, shapes near one another put together
     // As judged, the largest first; at most kShares, the last of them stands for all further ones.
     std::vector<LightPathShare> shares;
-
-    // What light paths cannot show to the lens.
-    ManifoldFindings manifold;
-    MergeFindings merging;
-    GlintFindings glints; // and what needs no light path: lamps that mirrors and glass show
 
     bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
 };

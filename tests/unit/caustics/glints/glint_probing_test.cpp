@@ -1,5 +1,5 @@
 // Which glints the pilot finds.
-#include "support/light_plan.h"
+#include "support/caustics_of.h"
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ TEST_CASE("glints: the lamp in a ball in a mirror in that ball") {
         RenderSettings settings = scene.settings();
         settings.seed = seed;
         CAPTURE(seed);
-        CHECK(lightPlanOf(scene, settings).glints.found == 3);
+        CHECK(causticsOf(scene, settings).of<GlintFindings>().found == 3);
     }
 }
 

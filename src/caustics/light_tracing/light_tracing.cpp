@@ -1,4 +1,4 @@
-#include "caustics/light_tracing/light_path_planner.h"
+#include "caustics/light_tracing/light_tracing.h"
 
 #include "base/parallel.h"
 #include "base/work.h"
@@ -9,6 +9,7 @@
 #include "caustics/shared/pilot.h"
 #include "math/hash.h"
 #include "render/scene.h"
+#include "transport/roulette.h"
 
 #include <algorithm>
 #include <array>
@@ -223,7 +224,7 @@ class LightPathPlanner {
         seeded.settings.seed = combine64(context_.settings.seed, kJudgeLightPaths);
         const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
         const double each = kLightCost / static_cast<double>(heard.paths);
-        costs_ = {kTracedCost * camera.rays, each * static_cast<double>(heard.rays),
+        costs_ = {kCostBesideLightPaths * camera.rays, each * static_cast<double>(heard.rays),
                   each * static_cast<double>(heard.raysAfterSpread)};
         findings_.rays += camera.pilotRays;
         findings_.before = forecast.variance(0, camera.shared);
@@ -262,28 +263,18 @@ class LightPathPlanner {
 
 } // namespace
 
-LightPathVerdict lightPathVerdict(const Scene& scene, const Technique& t) {
-    using enum LightPathVerdict;
-    const Technique plain;
-    if (t.lightPaths == Technique::LightPaths::off) return off;
-    if (t.strategy != plain.strategy || t.weights != plain.weights || t.directions != plain.directions ||
-        t.numbers != plain.numbers || t.wavelengths != plain.wavelengths)
-        return otherTechnique;
-    if (scene.hidden.splits) return hiddenShapes;
-    if (std::ranges::none_of(scene.lights, [](const auto& l) { return l->paths() != LightPaths::none; }))
-        return noLights;
-    if (scene.focusing.empty() && t.lightPaths == Technique::LightPaths::automatic) return nothingFocuses;
-    return undecided;
+void LightTracing::plan(const PilotInput& in) {
+    planned_ = LightPathPlanner(in.context, in.kernel, in.roulette, in.stop).run();
 }
 
-std::size_t lightBlocksOf(const Scene& scene, const Technique& technique) {
-    if (scene.frame.area() == 0 || lightPathVerdict(scene, technique) != LightPathVerdict::undecided) return 0;
-    return std::clamp<std::size_t>(static_cast<std::size_t>(scene.frame.area()) / 4096, 4, 256);
-}
-
-PlannedLightPaths planLightPaths(const PathContext& context, const LightPathKernel& kernel,
-                                 const RouletteReference& roulette, const std::function<bool()>& stop) {
-    return LightPathPlanner(context, kernel, roulette, stop).run();
+std::optional<TileResult> LightTracing::render(const PathContext& context, const LightPathKernel& kernel, Film& film,
+                                               const BlockJob& job) const {
+    if (!planned_.plan || job.from.unit >= job.units(film)) return TileResult();
+    const std::uint64_t paths = planned_.plan->paths;
+    return kernel.trace(context, film,
+                        {static_cast<std::uint32_t>(paths * job.block / job.blocks),
+                         static_cast<std::uint32_t>(paths * (job.block + 1) / job.blocks), job.first, job.last,
+                         job.from});
 }
 
 } // namespace abbe

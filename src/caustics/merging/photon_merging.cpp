@@ -1,13 +1,15 @@
-#include "caustics/merging/merge_planner.h"
+#include "caustics/merging/photon_merging.h"
 
 #include "base/parallel.h"
 #include "base/work.h"
+#include "caustics/light_tracing/light_path_findings.h"
 #include "caustics/merging/merge_pilot.h"
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"
 #include "caustics/shared/pilot.h"
 #include "math/hash.h"
 #include "render/scene.h"
+#include "transport/roulette.h"
 
 #include <algorithm>
 #include <array>
@@ -166,10 +168,15 @@ class MergePlanner {
 
 } // namespace
 
-PlannedMerging planMerging(const PathContext& context, const LightPathKernel& kernel, const RouletteReference& roulette,
-                           const LightPathFindings& light, const std::function<bool()>& stop) {
-    if (context.settings.technique.merging == Technique::Merging::off) return {};
-    return MergePlanner(context, kernel, roulette, light, stop).run();
+void PhotonMerging::plan(const PilotInput& in) {
+    if (!in.film.takesMerged() || in.context.settings.technique.merging == Technique::Merging::off) return;
+    planned_ = MergePlanner(in.context, in.kernel, in.roulette, in.found.of<LightPathFindings>(), in.stop).run();
+}
+
+std::optional<TileResult> PhotonMerging::render(const PathContext& context, const LightPathKernel& kernel, Film& film,
+                                                const BlockJob& job) const {
+    if (!planned_.plan) return TileResult();
+    return kernel.merge(context, film, {job.first, job.last, job.block, job.blocks, 1, job.from.unit}, nullptr);
 }
 
 } // namespace abbe

@@ -1,6 +1,7 @@
 // What manifold sampling leaves to merging.
-#include "caustics/manifold/manifold_planner.h"
-#include "support/light_plan.h"
+#include "caustics/manifold/manifold_sampling.h"
+#include "caustics/merging/merge_plan.h"
+#include "support/caustics_of.h"
 #include "support/manifold_cases.h"
 
 #include <doctest/doctest.h>
@@ -8,12 +9,12 @@
 namespace abbe::test {
 namespace {
 
-LightPathFindings planned(const char* file, Technique::Merging merging) {
+CausticFindings planned(const char* file, Technique::Merging merging) {
     const TestScene scene = TestScene::load(file);
     REQUIRE(scene.report() == "");
     RenderSettings settings = scene.settings();
     settings.technique.merging = merging;
-    return lightPlanOf(scene, settings);
+    return causticsOf(scene, settings);
 }
 
 // A plan of a ball of glass and two lamps, in which kind TRT is one that a pilot hardly saw; beside merging of the
@@ -29,22 +30,24 @@ class BesideMerging {
         ManifoldPlan plan = planOfAll(scene, 0.5f);
         if (onlyRare) plan.casters.at(0).weights.fill(0);
         plan.casters.at(0).weights[kRare] = ManifoldPilot::kLeastWeight;
-        planned_.findings.used = true;
-        planned_.findings.chains = 1000;
-        planned_.sampler = std::make_unique<const ManifoldSampler>(scene, std::move(plan));
-        std::unordered_set<const Light*> merged;
+        PlannedManifold pilots;
+        pilots.findings.used = true;
+        pilots.findings.chains = 1000;
+        pilots.sampler = std::make_unique<const ManifoldSampler>(scene, std::move(plan));
+        technique_ = ManifoldSampling(std::move(pilots));
+        LightSet merged;
         for (std::size_t i = 0; i < mergedLamps; ++i) merged.insert(scene.lights.at(i).get());
-        planned_.besideMerging(scene, merged);
+        technique_.leave(scene, merged);
     }
-    const PlannedManifold& planned() const { return planned_; }
-    float rare() const { return planned_.sampler->plan().casters.at(0).weights[kRare]; }
-    float frequent() const { return planned_.sampler->plan().casters.at(0).weights[ChainSignature::of("TT").index()]; }
-    float largestImage(std::size_t lamp) const { return planned_.sampler->plan().lights.at(lamp).largestImage; }
+    const PlannedManifold& planned() const { return technique_.planned(); }
+    float rare() const { return planned().sampler->plan().casters.at(0).weights[kRare]; }
+    float frequent() const { return planned().sampler->plan().casters.at(0).weights[ChainSignature::of("TT").index()]; }
+    float largestImage(std::size_t lamp) const { return planned().sampler->plan().lights.at(lamp).largestImage; }
 
   private:
     static inline const std::size_t kRare = ChainSignature::of("TRT").index();
     ManifoldCase test_;
-    PlannedManifold planned_;
+    ManifoldSampling technique_;
 };
 
 } // namespace
@@ -77,23 +80,23 @@ TEST_CASE("manifold sampling: none is left where all kinds are rare and all ligh
 
 // Behind the facets of the stone the pilot finds next to nothing.
 TEST_CASE("manifold sampling: chains that are hardly ever found are left to merging, if there is any") {
-    const LightPathFindings both = planned("scenes/diamond/diamond.scene", Technique::Merging::automatic);
-    CHECK(both.merging.used);
-    CHECK(both.manifold.chains < 8);
-    CHECK(both.manifold.leftToMerging);
-    CHECK_FALSE(both.manifold.used);
-    const LightPathFindings alone = planned("scenes/diamond/diamond.scene", Technique::Merging::off);
-    CHECK_FALSE(alone.merging.used);
-    CHECK_FALSE(alone.manifold.leftToMerging);
-    CHECK(alone.manifold.used);
+    const CausticFindings both = planned("scenes/diamond/diamond.scene", Technique::Merging::automatic);
+    CHECK(both.of<MergeFindings>().used);
+    CHECK(both.of<ManifoldFindings>().chains < 8);
+    CHECK(both.of<ManifoldFindings>().leftToMerging);
+    CHECK_FALSE(both.of<ManifoldFindings>().used);
+    const CausticFindings alone = planned("scenes/diamond/diamond.scene", Technique::Merging::off);
+    CHECK_FALSE(alone.of<MergeFindings>().used);
+    CHECK_FALSE(alone.of<ManifoldFindings>().leftToMerging);
+    CHECK(alone.of<ManifoldFindings>().used);
 }
 
 TEST_CASE("manifold sampling: chains that are often found stay, beside merging") {
-    const LightPathFindings both = planned("scenes/mirror-caustic/mirror-caustic.scene", Technique::Merging::automatic);
-    CHECK(both.merging.used);
-    CHECK(both.manifold.chains > 50);
-    CHECK(both.manifold.used);
-    CHECK_FALSE(both.manifold.leftToMerging);
+    const CausticFindings both = planned("scenes/mirror-caustic/mirror-caustic.scene", Technique::Merging::automatic);
+    CHECK(both.of<MergeFindings>().used);
+    CHECK(both.of<ManifoldFindings>().chains > 50);
+    CHECK(both.of<ManifoldFindings>().used);
+    CHECK_FALSE(both.of<ManifoldFindings>().leftToMerging);
 }
 
 } // namespace abbe::test

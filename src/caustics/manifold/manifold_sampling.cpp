@@ -1,14 +1,15 @@
-#include "caustics/manifold/manifold_planner.h"
+#include "caustics/manifold/manifold_sampling.h"
 
 #include "base/parallel.h"
 #include "base/work.h"
-#include "caustics/light_tracing/light_path_planner.h"
 #include "caustics/manifold/caster_candidates.h"
 #include "caustics/manifold/manifold_pilot.h"
+#include "caustics/shared/light_path_verdict.h"
 #include "caustics/shared/pilot.h"
 #include "math/hash.h"
 #include "math/sobol.h"
 #include "render/scene.h"
+#include "transport/roulette.h"
 
 #include <algorithm>
 #include <array>
@@ -232,23 +233,24 @@ class ManifoldPlanner {
 
 } // namespace
 
-void PlannedManifold::besideMerging(const Scene& scene, const std::unordered_set<const Light*>& mergedLights) {
+void ManifoldSampling::plan(const PilotInput& in) {
+    if (lightPathVerdict(in.context.scene, in.context.settings.technique) != LightPathVerdict::undecided) return;
+    planned_ = ManifoldPlanner(in.context, in.kernel, in.roulette, in.stop).run();
+}
+
+void ManifoldSampling::leave(const Scene& scene, const LightSet& merged) {
+    auto& [sampler, findings, raysBeside] = planned_;
+    if (!sampler) return;
     ManifoldPlan plan = sampler->plan();
-    const auto merged = [&](const ManifoldPlan::AskedLight& light) { return mergedLights.contains(light.light); };
+    const auto isMerged = [&](const ManifoldPlan::AskedLight& light) { return merged.contains(light.light); };
     for (auto& light : plan.lights)
-        if (merged(light)) light.largestImage = kLargestBesideMerging;
-    if (std::ranges::all_of(plan.lights, merged)) {
+        if (isMerged(light)) light.largestImage = kLargestBesideMerging;
+    if (std::ranges::all_of(plan.lights, isMerged)) {
         leaveRareKinds(plan);
         findings.leftToMerging = plan.casters.empty() || findings.chains < kLeastChains;
         findings.used = !findings.leftToMerging;
     }
     sampler = findings.used ? std::make_unique<const ManifoldSampler>(scene, std::move(plan)) : nullptr;
-}
-
-PlannedManifold planManifold(const PathContext& context, const LightPathKernel& kernel,
-                             const RouletteReference& roulette, const std::function<bool()>& stop) {
-    if (lightPathVerdict(context.scene, context.settings.technique) != LightPathVerdict::undecided) return {};
-    return ManifoldPlanner(context, kernel, roulette, stop).run();
 }
 
 } // namespace abbe
