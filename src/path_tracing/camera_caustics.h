@@ -51,7 +51,7 @@ class GlintExclusion {
     // At a surface, before the path goes on. `specular`: it has met nothing but deltas so far.
     void arrive(const Bsdf& bsdf, Vec3 wo, const BsdfSample& next, bool specular) {
         if (glintsOfRow_.empty() || !specular || !next.lobe.has(Lobe::delta)) return;
-        events_.add(next.lobe.has(Lobe::transmission));
+        events_.add(chainEvent(next.lobe.has(Lobe::transmission)));
         forced_ = forced_ && isForced(bsdf, wo, next);
     }
     // Whether the light that is met is left to probes.
@@ -63,8 +63,8 @@ class GlintExclusion {
   private:
     std::span<const std::uint32_t> glintsOfRow_;
     Vec2 film_;
-    GlintChain events_;  // so far
-    bool forced_ = true; // all of them as forcedLobe() has them
+    ChainSignature events_; // so far
+    bool forced_ = true;    // all of them as forcedLobe() has them
 };
 
 // The parts of one camera path.

@@ -184,7 +184,7 @@ template <EffectBits E> class TileKernel {
         return sum;
     }
 
-    Spectrum probe(const GlintChain& chain, const CameraSample& at, const Wavelengths& lambda, float share) {
+    Spectrum probe(const ChainSignature& chain, const CameraSample& at, const Wavelengths& lambda, float share) {
         const CameraRay camera = context_.scene.camera->ray(at);
         Spectrum sum(0.f);
         if (!(camera.weight > 0)) return sum;

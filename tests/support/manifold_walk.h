@@ -36,7 +36,7 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
         const Vec3 direction = ray.direction;
         Spectrum beta(cone ? static_cast<float>(1 / cone->pdf()) : 4 * kPi);
         double sum = 0;
-        for (int length = 0; length <= ChainSignature::kMaxLength; ++length) {
+        for (int length = 0; length <= kLongestManifoldChain; ++length) {
             SurfaceHit hit;
             if (!scene.intersector->intersect(ray, hit)) {
                 for (const auto& light : scene.lights) {

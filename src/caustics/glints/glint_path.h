@@ -35,11 +35,12 @@ template <EffectBits E> class GlintPath {
     void trace(Ray ray, const Wavelengths& lambda, bool heroOnly, Choose choose, Tell tell);
     // The events of `chain`; tells of what is seen behind the last.
     template <typename Tell>
-    void follow(const Ray& ray, const Wavelengths& lambda, bool heroOnly, GlintChain chain, Tell tell) {
+    void follow(const Ray& ray, const Wavelengths& lambda, bool heroOnly, ChainSignature chain, Tell tell) {
         trace(
             ray, lambda, heroOnly,
-            [&](const GlintChain& so, bool, bool) {
-                return so.length() < chain.length() ? std::optional(chain.transmits(so.length())) : std::nullopt;
+            [&](const ChainSignature& so, bool, bool) {
+                return so.length() < chain.length() ? std::optional(chain[so.length()] == ChainEvent::transmission)
+                                                    : std::nullopt;
             },
             [&](const GlintView& view) {
                 if (view.chain.length() == chain.length()) tell(view);
@@ -50,7 +51,7 @@ template <EffectBits E> class GlintPath {
     const Wavelengths& wavelengths() const { return walk_.path.lambda; }
 
   private:
-    static constexpr std::uint32_t kLongest = GlintChain::kMaxLength;
+    static constexpr std::uint32_t kLongest = ChainSignature::kMaxLength;
 
     Walk walk_;
 };
@@ -60,7 +61,7 @@ template <typename Choose, typename Tell>
 void GlintPath<E>::trace(Ray ray, const Wavelengths& lambda, bool heroOnly, Choose choose, Tell tell) {
     auto& path = walk_.path;
     walk_.start(lambda, ray.time, heroOnly);
-    GlintChain chain;
+    ChainSignature chain;
     double probability = 1;
     SurfaceHit hit;
     for (std::uint32_t depth = 0; depth <= kLongest; ++depth) {
@@ -87,7 +88,7 @@ void GlintPath<E>::trace(Ray ray, const Wavelengths& lambda, bool heroOnly, Choo
         const auto& next = *event ? transmits : reflects;
         if (!next || !walk_.scatter(hit, next->sample, eye, ray)) return;
         probability *= static_cast<double>(next->probability);
-        chain.add(*event);
+        chain.add(chainEvent(*event));
     }
 }
 
@@ -116,7 +117,7 @@ void searchGlints(const PathContext& context, std::span<const GlintQuery> querie
         else
             path.trace(
                 camera.ray, lambda, camera.heroOnly,
-                [&](const GlintChain&, bool reflects, bool transmits) -> std::optional<bool> {
+                [&](const ChainSignature&, bool reflects, bool transmits) -> std::optional<bool> {
                     if (!reflects && !transmits) return std::nullopt;
                     return reflects && transmits ? random.uniform() < 0.5f : transmits;
                 },

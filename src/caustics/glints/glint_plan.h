@@ -36,7 +36,7 @@ struct FilmBox {
 
 // In the box, by that chain.
 struct Glint {
-    GlintChain chain;
+    ChainSignature chain;
     FilmBox box;
     std::uint32_t side = 2; // side² probes of it belong to every sample of a pixel that sees the box
 };
@@ -59,7 +59,7 @@ class GlintPlan {
     std::span<const std::uint32_t> ofRow(int y) const;
     // Whether the light of a plan's lamp that was met by `chain` from there is left to probes. `row`: ofRow() of a
     // pixel that has that place within reach.
-    bool covers(std::span<const std::uint32_t> row, const GlintChain& chain, Vec2 film) const {
+    bool covers(std::span<const std::uint32_t> row, const ChainSignature& chain, Vec2 film) const {
         for (const std::uint32_t i : row)
             if (glints_[i].chain == chain && glints_[i].box.contains(film)) return true;
         return false;

@@ -41,7 +41,7 @@ constexpr std::array kHeroes{0.01f, 0.25f, 0.5f, 0.75f, 0.99f}; // of chains tha
 
 // A place from which Newton's method starts.
 struct Candidate {
-    GlintChain chain;
+    ChainSignature chain;
     std::size_t lamp = 0;
     Vec2 film;
     float miss = 0;
@@ -138,7 +138,7 @@ class GlintPlanner {
             if (stop_()) return;
             const auto part = std::span(queries).subspan(i * kPart, std::min(kPart, queries.size() - i * kPart));
             ask(part, rays[i], [&](std::size_t k, const GlintView& view, const Wavelengths&) {
-                if (most > 0 && view.chain.length() > most) return;
+                if (most > 0 && static_cast<std::uint32_t>(view.chain.length()) > most) return;
                 for (std::size_t l = 0; l < lamps_.size(); ++l) {
                     const float miss = length(view.direction - lamps_[l].from(view.p));
                     if (miss < kNear) parts[i].push_back({view.chain, l, part[k].film, miss});
@@ -146,7 +146,7 @@ class GlintPlanner {
             });
         });
         for (const std::uint64_t r : rays) rays_ += r;
-        std::map<std::tuple<GlintChain, std::size_t, int, int>, Candidate> nearest;
+        std::map<std::tuple<ChainSignature, std::size_t, int, int>, Candidate> nearest;
         for (const auto& part : parts)
             for (const Candidate& c : part) {
                 const auto place = nearest.try_emplace({c.chain, c.lamp, static_cast<int>(c.film.x) / kPixelBlock,

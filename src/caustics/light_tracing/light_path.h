@@ -97,7 +97,7 @@ template <EffectBits E> class LightPath {
     bool focused_ = false;     // by the first vertex
     std::uint32_t spread_ = 0; // how often so far
     bool fewerSpread_ = false; // LightPathPlan::afterSpread
-    static constexpr std::size_t kMostLinks = ChainSignature::kMaxLength;
+    static constexpr std::size_t kMostLinks = kLongestManifoldChain;
     std::array<Link, kMostLinks> links_{}; // of the chain of deltas that the path has been so far,
     std::size_t linkCount_ = 0;            // kMostLinks + 1 where it is none or too long
     std::optional<std::uint64_t> raysAtSpread_;

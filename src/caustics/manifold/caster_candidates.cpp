@@ -79,8 +79,8 @@ SpecularCaster CasterCandidate::caster() const {
     const bool finite = std::isfinite(shape->area());
     SpecularCaster result{shape, (box.lower + box.upper) * 0.5f, 0.5f * length(box.upper - box.lower), {}};
     if (!finite) result.radius = kInfinity;
-    for (std::size_t i = 0; i < ChainSignature::kCount; ++i) {
-        const ChainSignature signature = ChainSignature::ofIndex(i);
+    for (std::size_t i = 0; i < ManifoldKinds::kCount; ++i) {
+        const ChainSignature signature = ManifoldKinds::ofIndex(i);
         if (!(signature[0] == ChainEvent::transmission ? transmits : reflects)) continue;
         float weight = 1;
         for (int k = 0; k < signature.length(); ++k) {

@@ -24,7 +24,7 @@ struct ChainVertex {
 
 // As a camera path runs: from the receiver to the light. Render space, in double.
 struct SpecularChain {
-    std::array<ChainVertex, ChainSignature::kMaxLength> vertices;
+    std::array<ChainVertex, kLongestManifoldChain> vertices;
     int length = 0;
     Vec3d direction;            // unit, at the receiver
     Vec2d miss;                 // of the last direction past the target; 0 for a solution

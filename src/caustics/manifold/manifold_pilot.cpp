@@ -9,12 +9,12 @@ ManifoldPilot::ManifoldPilot(const Scene& scene, ManifoldPlan plan)
 
 void ManifoldPilot::look(const ChainStart& start, float importance, const Wavelengths& lambda, RandomStream& random) {
     for (std::uint32_t caster = 0; caster < tallies_.size(); ++caster)
-        for (std::size_t i = 0; i < ChainSignature::kCount; ++i) {
+        for (std::size_t i = 0; i < ManifoldKinds::kCount; ++i) {
             if (!(sampler_.plan().casters[caster].weights[i] > 0)) continue;
             const auto target = sampler_.drawTarget(lambda, start.time, random);
             if (!target) continue;
             ManifoldCounts counts;
-            const ManifoldChoice choice{caster, ChainSignature::ofIndex(i), 1};
+            const ManifoldChoice choice{caster, ManifoldKinds::ofIndex(i), 1};
             const auto sample = sampler_.estimate(start, *target, choice, lambda, random, counts);
             Tally& tally = tallies_[caster][i];
             tally.rays += static_cast<double>(counts.rays);
@@ -26,7 +26,7 @@ void ManifoldPilot::look(const ChainStart& start, float importance, const Wavele
 ManifoldPlan ManifoldPilot::learned() const {
     ManifoldPlan plan = sampler_.plan();
     for (std::size_t caster = 0; caster < tallies_.size(); ++caster) {
-        std::array<double, ChainSignature::kCount> worth{};
+        std::array<double, ManifoldKinds::kCount> worth{};
         for (std::size_t i = 0; i < worth.size(); ++i) {
             const Tally& tally = tallies_[caster][i];
             if (tally.rays > 0) worth[i] = std::sqrt(tally.square / tally.rays);

@@ -28,7 +28,7 @@ class ManifoldPilot {
     };
 
     ManifoldSampler sampler_;
-    std::vector<std::array<Tally, ChainSignature::kCount>> tallies_; // by caster
+    std::vector<std::array<Tally, ManifoldKinds::kCount>> tallies_; // by caster
     ManifoldCounts counts_;
 };
 

@@ -6,18 +6,40 @@
 #include "render/shape.h"
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <vector>
 
 namespace abbe {
+
+// Chains that are followed: those of one to kLongestManifoldChain events, numbered.
+struct ManifoldKinds {
+    static constexpr std::size_t kCount = 14; // 2 + 4 + 8
+
+    // The shorter ones first, reflection before transmission. Requires 0 < length() <= kLongestManifoldChain.
+    static std::size_t indexOf(const ChainSignature& chain) {
+        std::size_t number = 1;
+        for (int i = 0; i < chain.length(); ++i) number = 2 * number + static_cast<std::size_t>(chain[i]);
+        return number - 2;
+    }
+    // Requires index < kCount.
+    static ChainSignature ofIndex(std::size_t index) {
+        const std::size_t number = index + 2;
+        ChainSignature chain;
+        for (int i = static_cast<int>(std::bit_width(number)) - 2; i >= 0; --i)
+            chain.add(chainEvent((number >> i) & 1));
+        return chain;
+    }
+};
 
 // A shape that chains may start at, seen from the receiver. Render space, m.
 struct SpecularCaster {
     const Shape* shape = nullptr;
     Vec3 centre; // of a ball around the shape: first directions are drawn towards it
     float radius = 0;
-    // How often each kind of chain is tried, relative to the others, by ChainSignature::index(). 0: never, and such
+    // How often each kind of chain is tried, relative to the others, by ManifoldKinds::indexOf(). 0: never, and such
     // chains are not covered: the path tracer keeps them.
-    std::array<float, ChainSignature::kCount> weights{};
+    std::array<float, ManifoldKinds::kCount> weights{};
 };
 
 // Frozen before light is gathered: it says which light the path tracer leaves out.

@@ -143,7 +143,7 @@ ManifoldChoice ManifoldSampler::choose(Vec3 p, RandomStream& random) const noexc
         u -= own;
     }
     const BinSample bin = signatureChoice_[choice.caster].sample(random.uniform());
-    choice.signature = ChainSignature::ofIndex(bin.index);
+    choice.signature = ManifoldKinds::ofIndex(bin.index);
     choice.probability = static_cast<float>(bin.probability) * preference(plan_.casters[choice.caster], p) / total;
     return choice;
 }
@@ -206,7 +206,7 @@ std::optional<ManifoldSample> ManifoldSampler::sample(const ChainStart& start, c
 void ManifoldSampler::follow(CoveredChain& chain, const Shape* shape, Lobes lobe) const noexcept {
     if (!chain.following) return;
     const bool first = chain.signature.length() == 0;
-    const bool longer = chain.signature.length() == ChainSignature::kMaxLength;
+    const bool longer = chain.signature.length() == kLongestManifoldChain;
     chain.following = !longer && lobe.has(Lobe::delta) && followed_.contains(shape);
     if (!chain.following) return;
     if (first) {
@@ -215,12 +215,12 @@ void ManifoldSampler::follow(CoveredChain& chain, const Shape* shape, Lobes lobe
         if (!chain.following) return;
         chain.caster = found->second;
     }
-    chain.signature.add(lobe.has(Lobe::transmission) ? ChainEvent::transmission : ChainEvent::reflection);
+    chain.signature.add(chainEvent(lobe.has(Lobe::transmission)));
 }
 
 bool ManifoldSampler::coversKind(const CoveredChain& chain, const Light* light) const noexcept {
     return chain.following && chain.signature.length() > 0 && lights_.contains(light) &&
-           plan_.casters[chain.caster].weights[chain.signature.index()] > 0;
+           plan_.casters[chain.caster].weights[ManifoldKinds::indexOf(chain.signature)] > 0;
 }
 
 bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,

@@ -16,39 +16,39 @@ GlintPlan plan(std::vector<Glint> glints) { return {{0, 0, 40, 30}, 1.5f, std::m
 } // namespace
 
 TEST_CASE("glints: chains are told apart by their events and their length") {
-    CHECK(GlintChain::of("TRT") == GlintChain::of("TRT"));
-    CHECK(GlintChain::of("TRT") != GlintChain::of("TTR"));
-    CHECK(GlintChain::of("R") != GlintChain::of("RR"));
-    CHECK(GlintChain::of("TRT").transmits(0));
-    CHECK(!GlintChain::of("TRT").transmits(1));
-    GlintChain longest;
-    for (std::uint32_t i = 0; i < GlintChain::kMaxLength; ++i) longest.add(true);
-    GlintChain longer = longest;
-    longer.add(true);
+    CHECK(ChainSignature::of("TRT") == ChainSignature::of("TRT"));
+    CHECK(ChainSignature::of("TRT") != ChainSignature::of("TTR"));
+    CHECK(ChainSignature::of("R") != ChainSignature::of("RR"));
+    CHECK(ChainSignature::of("TRT")[0] == ChainEvent::transmission);
+    CHECK(ChainSignature::of("TRT")[1] == ChainEvent::reflection);
+    ChainSignature longest;
+    for (int i = 0; i < ChainSignature::kMaxLength; ++i) longest.add(ChainEvent::transmission);
+    ChainSignature longer = longest;
+    longer.add(ChainEvent::transmission);
     CHECK(longer != longest);
-    CHECK(longer.length() > GlintChain::kMaxLength);
+    CHECK(longer.length() > ChainSignature::kMaxLength);
 }
 
 TEST_CASE("glints: a place belongs to the chain whose box has it") {
     const GlintPlan p =
-        plan({{GlintChain::of("R"), {{4, 4}, {6, 6}}, 4}, {GlintChain::of("TRT"), {{5, 5}, {9, 9}}, 4}});
+        plan({{ChainSignature::of("R"), {{4, 4}, {6, 6}}, 4}, {ChainSignature::of("TRT"), {{5, 5}, {9, 9}}, 4}});
     const auto row = p.ofRow(5);
-    CHECK(p.covers(row, GlintChain::of("R"), {4.5f, 5.5f}));
-    CHECK(!p.covers(row, GlintChain::of("R"), {7, 7}));
-    CHECK(p.covers(row, GlintChain::of("TRT"), {7, 7}));
-    CHECK(!p.covers(row, GlintChain::of("TT"), {5.5f, 5.5f}));
+    CHECK(p.covers(row, ChainSignature::of("R"), {4.5f, 5.5f}));
+    CHECK(!p.covers(row, ChainSignature::of("R"), {7, 7}));
+    CHECK(p.covers(row, ChainSignature::of("TRT"), {7, 7}));
+    CHECK(!p.covers(row, ChainSignature::of("TT"), {5.5f, 5.5f}));
     CHECK(p.has(kLamp));
     CHECK(!p.has(kLamp + 1));
 }
 
 TEST_CASE("glints: boxes of one chain that overlap become one, so that nothing is probed twice") {
-    const GlintChain r = GlintChain::of("R");
+    const ChainSignature r = ChainSignature::of("R");
     // The third joins the first two, which then reach the fourth.
     const GlintPlan p = plan({{r, {{0, 0}, {2, 2}}, 2},
                               {r, {{10, 0}, {12, 2}}, 3},
                               {r, {{1, 0}, {11, 3}}, 4},
                               {r, {{5, 2.5f}, {6, 8}}, 2},
-                              {GlintChain::of("T"), {{0, 0}, {2, 2}}, 2}});
+                              {ChainSignature::of("T"), {{0, 0}, {2, 2}}, 2}});
     REQUIRE(p.glints().size() == 2);
     const auto& whole = p.glints()[0].chain == r ? p.glints()[0] : p.glints()[1];
     CHECK(whole.box.lower.x == 0);
@@ -58,7 +58,7 @@ TEST_CASE("glints: boxes of one chain that overlap become one, so that nothing i
 }
 
 TEST_CASE("glints: pixels within reach of the filter know of a box") {
-    const GlintPlan p = plan({{GlintChain::of("R"), {{4, 10}, {6, 11}}, 4}});
+    const GlintPlan p = plan({{ChainSignature::of("R"), {{4, 10}, {6, 11}}, 4}});
     for (int y = 0; y < 30; ++y) {
         const float nearest = std::max({0.f, 10 - (static_cast<float>(y) + 0.5f), static_cast<float>(y) + 0.5f - 11});
         CHECK(p.ofRow(y).empty() == (nearest >= 1.5f));

@@ -91,7 +91,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     const Scene& scene = test.scene.scene();
     ManifoldPlan plan = test.sampler->plan();
     plan.lights.resize(1);
-    plan.casters[0].weights[ChainSignature::of("RR").index()] = 0;
+    plan.casters[0].weights[ManifoldKinds::indexOf(ChainSignature::of("RR"))] = 0;
     const ManifoldSampler sampler(scene, plan);
     const Shape& ball = *plan.casters[0].shape;
     const Light& lamp = *plan.lights[0].light;

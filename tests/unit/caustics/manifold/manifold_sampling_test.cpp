@@ -41,11 +41,13 @@ class BesideMerging {
     }
     const PlannedManifold& planned() const { return technique_.planned(); }
     float rare() const { return planned().sampler->plan().casters.at(0).weights[kRare]; }
-    float frequent() const { return planned().sampler->plan().casters.at(0).weights[ChainSignature::of("TT").index()]; }
+    float frequent() const {
+        return planned().sampler->plan().casters.at(0).weights[ManifoldKinds::indexOf(ChainSignature::of("TT"))];
+    }
     float largestImage(std::size_t lamp) const { return planned().sampler->plan().lights.at(lamp).largestImage; }
 
   private:
-    static inline const std::size_t kRare = ChainSignature::of("TRT").index();
+    static inline const std::size_t kRare = ManifoldKinds::indexOf(ChainSignature::of("TRT"));
     ManifoldCase test_;
     ManifoldSampling technique_;
 };
