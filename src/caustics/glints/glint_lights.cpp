@@ -13,7 +13,7 @@ namespace {
 constexpr float kLargest = 0.1f; // rad: what is wider has no small images
 constexpr int kPoints = 16;
 
-std::optional<GlintLamp> distantLamp(const Light& light) {
+std::optional<GlintLight> smallDistantLight(const Light& light) {
     std::vector<Vec3> directions;
     Vec3 sum;
     for (int i = 0; i < kPoints; ++i) {
@@ -24,35 +24,35 @@ std::optional<GlintLamp> distantLamp(const Light& light) {
         directions.push_back(s->wi);
         sum = sum + s->wi;
     }
-    GlintLamp lamp{&light, true, normalize(sum), 0};
-    for (const Vec3 w : directions) lamp.size = std::max(lamp.size, length(w - lamp.place));
-    return lamp.size > 0 && lamp.size < kLargest ? std::optional(lamp) : std::nullopt;
+    GlintLight small{&light, true, normalize(sum), 0};
+    for (const Vec3 w : directions) small.size = std::max(small.size, length(w - small.place));
+    return small.size > 0 && small.size < kLargest ? std::optional(small) : std::nullopt;
 }
 
-std::optional<GlintLamp> placedLamp(const Light& light) {
+std::optional<GlintLight> smallPlacedLight(const Light& light) {
     if (light.parts() != 1) return std::nullopt;
     const auto bounds = light.bounds(0);
     const auto target = LightTarget::sample(light, 0, 1, {0.5f, 0.5f}, Wavelengths::sample(0.5f), 0);
     if (!bounds || !target || target->delta) return std::nullopt;
     const Vec3 size = bounds->box.upper - bounds->box.lower;
-    return GlintLamp{&light, false, (bounds->box.lower + bounds->box.upper) * 0.5f,
-                     0.5f * std::max({size.x, size.y, size.z})};
+    return GlintLight{&light, false, (bounds->box.lower + bounds->box.upper) * 0.5f,
+                      0.5f * std::max({size.x, size.y, size.z})};
 }
 
 } // namespace
 
-std::vector<GlintLamp> glintLamps(const Scene& scene, std::size_t most) {
-    std::vector<GlintLamp> lamps;
+std::vector<GlintLight> glintLights(const Scene& scene, std::size_t most) {
+    std::vector<GlintLight> lights;
     for (const auto& light : scene.lights) {
         if (light->paths() == LightPaths::none || !(light->visiblePower() > 0)) continue;
-        const auto lamp = light->paths() == LightPaths::distant ? distantLamp(*light) : placedLamp(*light);
-        if (lamp) lamps.push_back(*lamp);
+        const auto small = light->paths() == LightPaths::distant ? smallDistantLight(*light) : smallPlacedLight(*light);
+        if (small) lights.push_back(*small);
     }
-    std::ranges::stable_sort(lamps, [](const GlintLamp& a, const GlintLamp& b) {
-        return a.light->visiblePower() > b.light->visiblePower();
+    std::ranges::stable_sort(lights, [](const GlintLight& a, const GlintLight& b) {
+        return a.source->visiblePower() > b.source->visiblePower();
     });
-    if (lamps.size() > most) lamps.resize(most);
-    return lamps;
+    if (lights.size() > most) lights.resize(most);
+    return lights;
 }
 
 } // namespace abbe

@@ -1,4 +1,4 @@
-// Lamps that are small enough to be seen as glints.
+// Lights that are small enough to be seen as glints.
 #pragma once
 
 #include "render/scene.h"
@@ -8,8 +8,8 @@
 namespace abbe {
 
 // Render space.
-struct GlintLamp {
-    const Light* light = nullptr;
+struct GlintLight {
+    const Light* source = nullptr;
     bool distant = false;
     Vec3 place;     // unit direction to its middle, or the middle
     float size = 0; // radius, rad or m
@@ -20,6 +20,6 @@ struct GlintLamp {
 };
 
 // The brightest of those that rays can meet, at most so many.
-std::vector<GlintLamp> glintLamps(const Scene&, std::size_t most);
+std::vector<GlintLight> glintLights(const Scene&, std::size_t most);
 
 } // namespace abbe

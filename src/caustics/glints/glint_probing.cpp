@@ -23,7 +23,7 @@ namespace abbe {
 namespace {
 
 constexpr std::uint64_t kKey = 0x676c696e74; // "glint"
-constexpr std::size_t kMostLamps = 8;
+constexpr std::size_t kMostLights = 8;
 constexpr int kStep = 4, kWalks = 36; // pixels between places from which so many walks start
 constexpr double kMostSeeds = 16384;  // such places; larger frames and smaller pilots have wider steps
 constexpr float kNear = 1.2f;         // of the lamp's direction: from where Newton's method starts
@@ -42,7 +42,7 @@ constexpr std::array kHeroes{0.01f, 0.25f, 0.5f, 0.75f, 0.99f}; // of chains tha
 // A place from which Newton's method starts.
 struct Candidate {
     ChainSignature chain;
-    std::size_t lamp = 0;
+    std::size_t light = 0;
     Vec2 film;
     float miss = 0;
 };
@@ -66,11 +66,11 @@ class GlintPlanner {
     GlintPlanner(const PathContext& context, const Film& film, const LightPathKernel& kernel,
                  const RouletteReference& roulette, const std::function<bool()>& stop)
         : context_(context), film_(film), kernel_(kernel), roulette_(roulette), stop_(stop),
-          frame_(context.scene.frame), lamps_(glintLamps(context.scene, kMostLamps)) {}
+          frame_(context.scene.frame), lights_(glintLights(context.scene, kMostLights)) {}
 
     PlannedGlints run() {
         PlannedGlints result;
-        if (lamps_.empty() || !mayBeProbed()) return result;
+        if (lights_.empty() || !mayBeProbed()) return result;
         result.findings.measured = true;
         addWorkFlag(WorkFlag::pilot);
         std::vector<Found> list = measured(candidates());
@@ -78,7 +78,7 @@ class GlintPlanner {
         result.findings.pilotRays = rays_;
         if (stop_()) return result;
         std::unordered_set<const Light*> lights;
-        for (const GlintLamp& lamp : lamps_) lights.insert(lamp.light);
+        for (const GlintLight& light : lights_) lights.insert(light.source);
         result.plan = worthwhile(std::move(list), std::move(lights), result.findings);
         return result;
     }
@@ -100,8 +100,8 @@ class GlintPlanner {
 
     // How far off a lamp a segment goes, across two axes. Stereographic: it grows all the way to the opposite
     // direction, or Newton's method would not find the way back.
-    static Vec2 missOf(const GlintView& view, const GlintLamp& lamp, const Frame& about) {
-        const Vec3 towards = lamp.from(view.p);
+    static Vec2 missOf(const GlintView& view, const GlintLight& light, const Frame& about) {
+        const Vec3 towards = light.from(view.p);
         const float cosine = dot(view.direction, towards), scale = 2 / (1 + std::max(cosine, -1 + 1e-4f));
         const Vec3 off = (view.direction - towards * cosine) * scale;
         return {dot(off, about.x), dot(off, about.y)};
@@ -139,8 +139,8 @@ class GlintPlanner {
             const auto part = std::span(queries).subspan(i * kPart, std::min(kPart, queries.size() - i * kPart));
             ask(part, rays[i], [&](std::size_t k, const GlintView& view, const Wavelengths&) {
                 if (most > 0 && static_cast<std::uint32_t>(view.chain.length()) > most) return;
-                for (std::size_t l = 0; l < lamps_.size(); ++l) {
-                    const float miss = length(view.direction - lamps_[l].from(view.p));
+                for (std::size_t l = 0; l < lights_.size(); ++l) {
+                    const float miss = length(view.direction - lights_[l].from(view.p));
                     if (miss < kNear) parts[i].push_back({view.chain, l, part[k].film, miss});
                 }
             });
@@ -149,7 +149,7 @@ class GlintPlanner {
         std::map<std::tuple<ChainSignature, std::size_t, int, int>, Candidate> nearest;
         for (const auto& part : parts)
             for (const Candidate& c : part) {
-                const auto place = nearest.try_emplace({c.chain, c.lamp, static_cast<int>(c.film.x) / kPixelBlock,
+                const auto place = nearest.try_emplace({c.chain, c.light, static_cast<int>(c.film.x) / kPixelBlock,
                                                         static_cast<int>(c.film.y) / kPixelBlock},
                                                        c);
                 if (c.miss < place.first->second.miss) place.first->second = c;
@@ -173,7 +173,7 @@ class GlintPlanner {
         double luminance = 0, probability = 0;
     };
     Look look(const Candidate& c, float hero, float difference, std::uint64_t& rays) const {
-        const GlintLamp& lamp = lamps_[c.lamp];
+        const GlintLight& light = lights_[c.light];
         std::array<GlintQuery, 5> queries;
         for (GlintQuery& q : queries) q = {c.film, hero, c.chain, kKey};
         queries[1].film.x -= 0.5f * difference;
@@ -184,16 +184,16 @@ class GlintPlanner {
         Frame about;
         ask(queries, rays, [&](std::size_t k, const GlintView& view, const Wavelengths& lambda) {
             if (k == 0) {
-                about = Frame::fromNormal(lamp.from(view.p));
+                about = Frame::fromNormal(light.from(view.p));
                 look.p = view.p;
-                const Spectrum emitted = view.emitted(*lamp.light, lambda);
+                const Spectrum emitted = view.emitted(*light.source, lambda);
                 look.met = anyNonZero(emitted);
                 look.luminance =
                     context_.scene.sensor(view.throughput * emitted, context_.scene.wavelengths.sample(hero)).y;
                 look.probability = view.probability;
             }
             look.seen[k] = true;
-            look.miss[k] = missOf(view, lamp, about);
+            look.miss[k] = missOf(view, light, about);
         });
         return look;
     }
@@ -245,7 +245,7 @@ class GlintPlanner {
             }
             const Slope slope(at, difference);
             if (!(std::abs(slope.determinant) > 0)) return std::nullopt;
-            const float radius = lamps_[c.lamp].sine(at.p);
+            const float radius = lights_[c.light].sine(at.p);
             before = c.film;
             if (at.met && off < 0.5f * radius) {
                 const Image image = slope.image(c.film, radius, at);
@@ -280,7 +280,7 @@ class GlintPlanner {
             if (!images[i]) continue;
             const auto same = [&](std::size_t k) {
                 const Vec2 off = images[k]->film - images[i]->film, half = images[k]->half;
-                return list[k].chain == list[i].chain && list[k].lamp == list[i].lamp && std::abs(off.x) < half.x &&
+                return list[k].chain == list[i].chain && list[k].light == list[i].light && std::abs(off.x) < half.x &&
                        std::abs(off.y) < half.y;
             };
             if (std::ranges::none_of(single, same)) single.push_back(i);
@@ -379,7 +379,7 @@ class GlintPlanner {
     const RouletteReference& roulette_;
     const std::function<bool()>& stop_;
     PixelBounds frame_;
-    std::vector<GlintLamp> lamps_;
+    std::vector<GlintLight> lights_;
     std::uint64_t rays_ = 0;
 };
 

@@ -104,7 +104,7 @@ LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, Pix
         terms_.push_back({u * u * d.stands / pixels, rho, u / rho});
     }
     limitOutliers();
-    std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::spark);
+    std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::firefly);
 }
 
 // A few deposits that camera paths would meet once in millions would say all of a second moment, and next to nothing of
@@ -117,22 +117,22 @@ void LightPathForecast::limitOutliers() {
     std::ranges::nth_element(terms_, ninth, largest);
     const double most = ninth->ofCamera(0);
     for (auto t = terms_.begin(); t != ninth; ++t) {
-        t->spark *= most * t->rho / t->u2;
+        t->firefly *= most * t->rho / t->u2;
         t->rho = t->u2 / most;
     }
 }
 
-double LightPathForecast::sparks() const {
-    constexpr double kSpark = 3; // light that is asked for varies by less
+double LightPathForecast::fireflies() const {
+    constexpr double kFirefly = 3; // light that is asked for varies by less
     double sum = 0;
     for (const Term& t : terms_)
-        if (t.spark > kSpark) sum += t.ofCamera(0);
+        if (t.firefly > kFirefly) sum += t.ofCamera(0);
     return sum;
 }
 
-// The second moment that light paths tell and a look at some pixels has not seen is that of the brightest sparks, which
-// are the rarest; a mean of samples has all of it, stratified or not. The rest is as noisy as it was seen to be, which
-// is less than its second moment: most of it may be light that camera paths find with next to no noise.
+// The second moment that light paths tell and a look at some pixels has not seen is that of the brightest fireflies,
+// which are the rarest; a mean of samples has all of it, stratified or not. The rest is as noisy as it was seen to be,
+// which is less than its second moment: most of it may be light that camera paths find with next to no noise.
 double LightPathForecast::variance(double share, const CameraVariance& alone) const {
     double foretold = 0;
     for (const Term& t : terms_) foretold += t.ofCamera(0);

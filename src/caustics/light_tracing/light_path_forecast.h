@@ -44,7 +44,7 @@ class LightPathForecast {
     LightPathForecast(std::span<const LightDeposit>, PixelBounds frame, const NoiseMeasure&);
 
     // Second moment of what camera paths find now and then, far brighter than its pixel: what light paths are for.
-    double sparks() const;
+    double fireflies() const;
     // Variance of what light paths can bring, with `share` of them for each camera path; camera paths were seen to have
     // `alone` of it without them. Of light paths the second moment is the variance: they are many for a pixel and bring
     // little each. They count as independent, although they are stratified over the picture as a whole: pixels have
@@ -55,13 +55,13 @@ class LightPathForecast {
     struct Term {
         double u2 = 0;  // squared relative luminance that a light path brings to a pixel, times how many it stands for
         double rho = 0; // as LightDeposit
-        double spark = 0; // relative luminance of a camera path that finds the same
+        double firefly = 0; // relative luminance of a camera path that finds the same
         double ofCamera(double share) const { return u2 * rho / square(rho + share); }
         double ofLight(double share) const { return u2 * share / square(rho + share); }
     };
     void limitOutliers();
 
-    std::vector<Term> terms_; // the brightest sparks first
+    std::vector<Term> terms_; // the brightest fireflies first
 };
 
 } // namespace abbe

@@ -31,7 +31,7 @@ constexpr double kLightCost = 2.5;
 // Of all that a picture takes, what is spent against light that comes too seldom for a pilot to see it, and shines the
 // brighter for it.
 constexpr double kInsurance = 0.1;
-constexpr double kLeastSparks = 0.02; // second moment of what light paths could bring better
+constexpr double kLeastFireflies = 0.02; // second moment of what light paths could bring better
 constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
 class LightPathPlanner {
@@ -77,8 +77,8 @@ class LightPathPlanner {
         if (stop_()) return undecided;
         measure_.emplace(frame_, roulette_, heard.deposits);
         const LightPathForecast forecast(heard.deposits, frame_, *measure_);
-        findings_.before = findings_.after = forecast.sparks();
-        if (!forced && known_ && findings_.before < kLeastSparks) {
+        findings_.before = findings_.after = forecast.fireflies();
+        if (!forced && known_ && findings_.before < kLeastFireflies) {
             describe(heard, 0);
             return nothingFound;
         }

@@ -47,13 +47,13 @@ void leaveRareKinds(ManifoldPlan& plan) {
 // Solid angle of a light far away, in the harmonic mean over what it samples; 0 for a single direction.
 double extentOf(const Light& light) {
     double sum = 0;
-    constexpr int kLampSamples = 16;
-    for (int i = 0; i < kLampSamples; ++i) {
-        const Vec2 u{(static_cast<float>(i) + 0.5f) / kLampSamples,
+    constexpr int kLightSamples = 16;
+    for (int i = 0; i < kLightSamples; ++i) {
+        const Vec2 u{(static_cast<float>(i) + 0.5f) / kLightSamples,
                      static_cast<float>(reverseBits(static_cast<std::uint32_t>(i))) * 0x1p-32f};
         const auto s = light.asDistant()->sampleDistant(u, Wavelengths::sample(0.5f), 0);
         if (s && s->delta) return 0;
-        if (s) sum += static_cast<double>(s->pdfSolidAngle) / kLampSamples;
+        if (s) sum += static_cast<double>(s->pdfSolidAngle) / kLightSamples;
     }
     return sum > 0 ? 1 / sum : 4 * kPiD;
 }

@@ -36,7 +36,7 @@ template <EffectBits E> class GatherPath {
     // `heroOnly`: the ray is that of the hero alone. Of photons of the same wavelengths and time, `radius` over that of
     // the path's cone, at least MergePlan's.
     template <typename Tell>
-    void gather(Ray ray, const Wavelengths& lambda, bool heroOnly, const RoundPhotons& photons, float radius,
+    void gather(Ray ray, const Wavelengths& lambda, bool heroOnly, const PhotonMaps& photons, float radius,
                 Tell&& tell);
 
   private:
@@ -65,7 +65,7 @@ template <EffectBits E> class GatherPath {
 
 template <EffectBits E>
 template <typename Tell>
-void GatherPath<E>::gather(Ray ray, const Wavelengths& lambda, bool heroOnly, const RoundPhotons& photons, float radius,
+void GatherPath<E>::gather(Ray ray, const Wavelengths& lambda, bool heroOnly, const PhotonMaps& photons, float radius,
                            Tell&& tell) {
     auto& path = walk_.path;
     walk_.start(lambda, ray.time, heroOnly);

@@ -46,7 +46,7 @@ template <EffectBits E> class MergeKernel {
         time_ = sampler_.time();
         radius_ = MergePlan::radius(number);
         const PathCounters before = result_.counters;
-        const RoundPhotons photons(trace(replicate, number));
+        const PhotonMaps photons(trace(replicate, number));
         const std::uint64_t photonRays = raysOf(result_.counters) - raysOf(before);
         if (!gatherAll(replicate, number, photons)) {
             result_.counters = before;
@@ -64,7 +64,7 @@ template <EffectBits E> class MergeKernel {
     static std::uint64_t raysOf(const PathCounters& c) { return c.vertices + c.shadowRays; }
 
     // In all pixels, unless it is told to stop.
-    bool gatherAll(int replicate, std::uint32_t number, const RoundPhotons& photons) {
+    bool gatherAll(int replicate, std::uint32_t number, const PhotonMaps& photons) {
         const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         gathered_.clear();
         for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
@@ -106,7 +106,7 @@ template <EffectBits E> class MergeKernel {
         removeWorkFlag(WorkFlag::heroOnly);
     }
 
-    void gather(int x, int y, int replicate, std::uint32_t number, const RoundPhotons& photons) {
+    void gather(int x, int y, int replicate, std::uint32_t number, const PhotonMaps& photons) {
         const auto place =
             (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
         sampler_.startPixel(combine64(key(kGather, replicate), place), Technique::Numbers::sobol, true);

@@ -123,10 +123,10 @@ class PhotonMap {
 };
 
 // The photons of one round.
-struct RoundPhotons {
+struct PhotonMaps {
     PhotonMap onSurfaces, inMedia;
 
-    explicit RoundPhotons(std::vector<Photon> photons) {
+    explicit PhotonMaps(std::vector<Photon> photons) {
         const auto surfaces = std::ranges::partition(photons, [](const Photon& p) { return p.medium != nullptr; });
         onSurfaces = PhotonMap({surfaces.begin(), surfaces.end()});
         photons.erase(surfaces.begin(), surfaces.end());

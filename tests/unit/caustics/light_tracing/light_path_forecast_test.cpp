@@ -57,8 +57,8 @@ TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths o
     CHECK(seen.planned() == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
     CHECK(forecast.variance(0, seen) == doctest::Approx(seen.planned()));
     CHECK(forecast.variance(1, seen) == doctest::Approx(seen.planned() * 0.04 + weight / 1.5625));
-    CHECK(forecast.sparks() == doctest::Approx(weight / rho));
-    CHECK(LightPathForecast(even(1, 1), kFrame, measure).sparks() == 0); // all camera paths find it
+    CHECK(forecast.fireflies() == doctest::Approx(weight / rho));
+    CHECK(LightPathForecast(even(1, 1), kFrame, measure).fireflies() == 0); // all camera paths find it
 }
 
 TEST_CASE("light path forecast: what is met once in a million is no reason") {
@@ -69,7 +69,7 @@ TEST_CASE("light path forecast: what is met once in a million is no reason") {
     for (int i = 0; i < 8; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-9;
     const LightPathForecast forecast(deposits, kFrame, measure);
     CHECK(forecast.variance(0, {}) == doctest::Approx(usual));
-    CHECK(forecast.sparks() == doctest::Approx(usual));
+    CHECK(forecast.fireflies() == doctest::Approx(usual));
     for (int i = 0; i < 100; ++i) deposits[static_cast<std::size_t>(i)].rho = 1e-4; // these are many
     CHECK(LightPathForecast(deposits, kFrame, measure).variance(0, {}) > 50 * usual);
 }
