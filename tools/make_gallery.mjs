@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Builds docs/gallery: for each scene of the table below a picture with its bill, a study, its report and its plot, and the page that
-// shows them all.
+// Builds docs/gallery: for each scene of the table below a picture with its cost report, a study, its report and its plot, and the page
+// that shows them all.
 //   tools/make_gallery.mjs [--abbe PROGRAM] [--out FOLDER] [--work FOLDER] [--threads N] [--study-time SECONDS] [--study-samples N]
 //                          [--study-size PIXELS] [--seeds N] [--variants LIST] [--samples-scale X] [--size-scale X] [--only index] [NAME …]
 // What WORK holds already with the same arguments and scene files is kept, and what was interrupted goes on: run it again to continue. Everything but
@@ -22,8 +22,8 @@ const gallery = [
     {name: "prism", shows: "dispersion: a rainbow from a prism of flint", size: [320, 240], samples: 4096},
     {name: "color-bleeding", shows: "colour bleeding: light that takes the colour of walls", size: [400, 250], samples: 256},
     {name: "cornell-box", shows: "the Cornell box from its measured data", size: [320, 320], samples: 512},
-    {name: "veach-mis", shows: "multiple importance sampling: plates from rough to smooth, lamps from small to large", size: [400, 267], samples: 256},
-    {name: "many-lights", shows: "many lights: a thousand lamps over a square at night", size: [320, 320], samples: 256},
+    {name: "veach-mis", shows: "multiple importance sampling: plates from rough to smooth, lights from small to large", size: [400, 267], samples: 256},
+    {name: "many-lights", shows: "many lights: a thousand of them over a square at night", size: [320, 320], samples: 256},
     {name: "light-shaft", shows: "volumes: sun through a window into haze, and smoke", size: [400, 250], samples: 256},
     {name: "milk-and-juice", shows: "dense media in glass: measured milk and juice", size: [400, 250], samples: 64},
     {name: "parametric-shapes", shows: "glass, gold and paint on box, cylinder, cone and torus", size: [400, 200], samples: 512},
@@ -115,19 +115,19 @@ function facts(entry) {
     const info = JSON.parse(readFileSync(at(entry, ".info.json"), "utf8")), measured = JSON.parse(readFileSync(at(entry, ".study.json"), "utf8"));
     return {...entry, info, attributes: info.attributes, study: measured, fit: (measured.curves[0] || {}).fit || {}};
 }
-function billRows(f) {
+function costRows(f) {
     const rows = ((f.info.bill || f.study.bill || {}).rows || []).filter(r => r.seconds > 0 || r.elsewhere > 0).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return [];
     const total = f.info.bill ? f.info.bill.seconds : rows.reduce((sum, r) => sum + r.seconds, 0);
     const small = rows.filter(r => r.seconds < 0.005 * total && !(r.elsewhere > 0));
     if (small.length > 1) rows.splice(0, rows.length, ...rows.filter(r => !small.includes(r)), {label: `${small.length} smaller rows`, seconds: small.reduce((sum, r) => sum + r.seconds, 0)});
-    return ["", "| the bill | seconds | share | and in other rows | rays |", "|---|--:|--:|--:|--:|",
+    return ["", "| cost | seconds | share | in other rows | rays |", "|---|--:|--:|--:|--:|",
             ...rows.map(r => `| ${inMarkdown(r.label)} | ${r.seconds.toFixed(2)} | ${page.percent(r.seconds / total, 2)} | ${r.elsewhere > 0 ? r.elsewhere.toFixed(2) : ""} | ${r.rays > 0 ? page.countText(r.rays) : ""} |`)];
 }
 function sectionOf(f) {
     const findings = page.findingsOf(f.study).map(words => `- ${words.map((text, i) => i % 2 ? `**${inMarkdown(text)}**` : inMarkdown(text)).join("")}`);
     return [`## ${f.name}`, "", `${f.shows[0].toUpperCase()}${f.shows.slice(1)}. [Scene](${relativeTo(join(root, "scenes", f.name))}) · [report](${f.name}.html)`, "",
-            `<img src="${f.name}.png" alt="${f.name}" height="260"> <img src="${f.name}.svg" alt="Error against time of ${f.name}" height="260">`, "", ...findings, ...billRows(f), "",
+            `<img src="${f.name}.png" alt="${f.name}" height="260"> <img src="${f.name}.svg" alt="Error against time of ${f.name}" height="260">`, "", ...findings, ...costRows(f), "",
             "    " + (f.attributes["abbe.command"] || "").replaceAll(`${work}/`, "").replace(/\s+/g, " "), ""];
 }
 const relativeTo = path => relative(resolve(options.out), path);
@@ -138,9 +138,12 @@ function lineOf(f) {
 }
 function writeIndex(entries) {
     const all = entries.map(facts), machine = all[0].study.machine || {};
-    const lines = ["# Gallery", "", "Made by `tools/make_gallery.mjs`; edits by hand are lost.", "",
-        `Each scene has a picture with the error that its header states, where its time went (seconds "in other rows" are those that an effect caused and other rows count), and a study of what accuracy costs on it. The reports are single files that need no network: save one and open it in a browser. ` +
-        `Times are of ${inMarkdown(machine.cpu || cpus()[0].model)} with ${machine.threads || availableParallelism()} threads, in one run. The slope is the power of the number of samples with which the relative error falls; averaging gives −0.5.`, "",
+    const lines = ["# Gallery", "", `${all.length} scenes, each with its picture, its error, where its time went, and what accuracy costs on it.`, "",
+        "* **error** is the relative error that the header of the picture states.",
+        "* **slope** is the power of the number of samples with which the relative error falls; averaging gives −0.5.",
+        "* **report** is a single file that needs no network: save it and open it in a browser.",
+        "* **in other rows** are seconds that an effect caused and other rows count.", "",
+        `Times are of ${inMarkdown(machine.cpu || cpus()[0].model)} with ${machine.threads || availableParallelism()} threads, in one run. \`tools/make_gallery.mjs\` makes this page; edits by hand are lost.`, "",
         "| scene | shows | time | samples | error | slope | report |", "|---|---|--:|--:|--:|--:|---|", ...all.map(lineOf), "", ...all.flatMap(sectionOf)];
     mkdirSync(options.out, {recursive: true});
     const written = new Set(["README.md"]);

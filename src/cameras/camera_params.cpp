@@ -169,8 +169,8 @@ std::vector<FieldInfo> placementFields() {
             .byDefault("0 stops")
             .range(-100, 100)
             .choices({"auto"})
-            .doc("Brightness of the picture; each stop doubles it. With `auto` a look at the scene before the first "
-                 "sample finds what shows it in middle grey; the render prints the stops, and the image states them.")
+            .doc("Brightness of the picture; each stop doubles it. With `auto` a pilot finds the stops that show the "
+                 "scene in middle grey, before the first sample; the render prints them, and the image states them.")
             .example("exposure 3 stops")
             .synonyms({"ev", "gain"})};
 }

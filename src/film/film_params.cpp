@@ -183,7 +183,7 @@ schema::TypeInfo filmType() {
                               .choices(std::move(sensors)));
     type.fields.push_back(field(FieldType::spectrum, "white-balance", &FilmParams::whiteBalance)
                               .role(schema::SpectrumRole::shape)
-                              .doc("Light that shall look neutral; without it colours stay as they are.")
+                              .doc("The light that looks neutral; without it colours stay as they are.")
                               .example("white-balance blackbody 3200 K")
                               .synonyms({"whitebalance", "white", "adopted-white"}));
     return type;

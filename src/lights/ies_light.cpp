@@ -90,7 +90,7 @@ schema::TypeInfo iesLightType() {
                               .unit({Dimension::angle})
                               .byDefault("0 deg")
                               .range(-2 * kPiD, 2 * kPiD)
-                              .doc("Turns the lamp about its axis. At 0 the file's plane of 0 deg lies towards +x.")
+                              .doc("Turns the light about its axis. At 0 the file's plane of 0 deg lies towards +x.")
                               .example("turn 90 deg")
                               .synonyms({"rotation", "roll"}));
     addAmountFields<IesLightParams>(type.fields, AmountField::power);

@@ -107,7 +107,7 @@ schema::TypeInfo atmosphereType() {
     addOpticsFields<AtmosphereParams>(fields);
     return {Kind::volume,
             "atmosphere",
-            "Air, haze or fog everywhere, thinner with height if asked.",
+            "Air, haze or fog everywhere, with `scale-height` thinner at height.",
             "volume haze atmosphere { extinction 0.02 per-km; phase rayleigh }",
             false,
             std::move(fields)};

@@ -77,7 +77,7 @@ schema::TypeInfo homogeneousType() {
             .unit({Dimension::temperature})
             .range(0, 1e9)
             .synonyms({"blackbody", "kelvin"})
-            .doc("It glows as a black body of this temperature would that absorbs as much.")
+            .doc("It emits by Kirchhoff's law: what it absorbs, times a black body of this temperature.")
             .example("temperature 1900 K"));
     return {schema::Kind::medium,
             "homogeneous",

@@ -41,7 +41,7 @@ template <typename P> void addPatternFields(std::vector<FieldInfo>& fields) {
                          .range(0, 10)
                          .byDefault("0")
                          .synonyms({"distortion", "turbulence"})
-                         .doc("How far the pattern is pulled about by another noise, in units of `scale`.")
+                         .doc("How far another noise distorts the pattern, in units of `scale`.")
                          .example("warp 0.4"));
 }
 

@@ -37,8 +37,8 @@ std::vector<FieldInfo> gridFields() {
             .key(numberKey("scale", 0, "Kelvin per unit of its values; 1 when absent."))
             .key(numberKey("offset", -1e12, "Kelvin where its values are 0; 0 when absent."))
             .synonyms({"temperature_grid", "heat", "temp"})
-            .doc("Name of the grid that is the temperature: the medium glows as a black body of that temperature would "
-                 "that absorbs as much.")
+            .doc("Name of the grid of temperatures. The medium emits by Kirchhoff's law: what it absorbs, times a "
+                 "black body of that temperature.")
             .example("temperature heat scale=1500 offset=300"),
         gridField("flame", &P::flame)
             .key(numberKey("scale", 0, "Factor of its values; 1 when absent."))

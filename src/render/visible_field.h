@@ -28,8 +28,8 @@ inline Visibility visibilityOf(const schema::Words& given) {
 template <typename P> schema::FieldInfo visibleField() {
     return schema::field<P, schema::Words>(schema::FieldType::words, "visible-to", &P::visibleTo)
         .choices({"camera", "shadows", "reflections", kVisibleToNone})
-        .doc("Which rays see it: those of the camera, those that look whether something shades a light, and all that "
-             "surfaces and media have scattered. `none` stands alone. Without it: all of them.")
+        .doc("Which rays see it: those of the camera, shadow rays, and all that surfaces and media have "
+             "scattered. `none` stands alone. Without it: all of them.")
         .example("visible-to shadows reflections")
         .synonyms({"visibility", "primary-visibility", "visible", "hide", "hidden", "cast-shadows", "casts-shadows",
                    "visible-in-reflections", "camera-visibility", "ray-visibility"});

@@ -136,47 +136,47 @@ std::vector<FieldInfo> techniqueFields() {
             field(FieldType::choice, "strategy", &P::strategy)
                 .choices({"mis", "lights", "bsdf"})
                 .byDefault("mis")
-                .doc("How light is found: by both techniques, or by one alone, for comparison.")
+                .doc("How light is found: by next-event estimation and BSDF sampling, or by one alone, to compare.")
                 .example("strategy mis"),
             field(FieldType::choice, "mis-weights", &P::weights)
                 .choices({"balance", "power", "equal", "lights", "scattering"})
                 .byDefault("balance")
                 .synonyms({"mis-heuristic", "heuristic"})
-                .doc("How `strategy mis` weighs its two techniques; other than `balance` to compare.")
+                .doc("How `strategy mis` weights its two techniques; all but `balance` are to compare.")
                 .example("mis-weights power"),
             field(FieldType::choice, "directions", &P::directions)
                 .choices({"importance", "uniform", "mixed"})
                 .byDefault("importance")
-                .doc("Where paths go on: as the surface scatters; evenly all around, or by a mixture, to compare.")
+                .doc("How directions are sampled: as the surface scatters; evenly, or by a mixture, to compare.")
                 .example("directions uniform"),
             field(FieldType::choice, "roulette", &P::roulette)
                 .choices({"pilot", "throughput", "off"})
                 .byDefault("pilot")
                 .synonyms({"rr", "russian-roulette"})
-                .doc("Which paths end early: by what the pixel shows; by throughput or none, to compare.")
+                .doc("Russian roulette: by what the pixel shows; by throughput or none, to compare.")
                 .example("roulette throughput"),
             field(FieldType::choice, "light-paths", &P::lightPaths)
                 .choices({"automatic", "off", "always", "alone"})
                 .byDefault("automatic")
                 .synonyms({"caustics", "light-tracing", "photons"})
-                .doc("Paths from the lights, for caustics: where they pay; never, always or alone, to compare.")
+                .doc("Light tracing, for caustics: where it pays; never, always or alone, to compare.")
                 .example("light-paths off"),
             field(FieldType::choice, "merging", &P::merging)
                 .choices({"automatic", "off", "always"})
                 .byDefault("automatic")
                 .synonyms({"photon-map", "sppm", "vertex-merging"})
-                .doc("Caustics behind glass and in mirrors that nothing else finds, by merging of paths: biased.")
+                .doc("Photon merging, for caustics behind glass and in mirrors that nothing else finds: biased.")
                 .example("merging off"),
             field(FieldType::integer, "wavelengths", &P::wavelengths)
                 .range(1, 8)
                 .byDefault("8")
-                .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer for comparison.")
+                .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer to compare.")
                 .example("wavelengths 4"),
             field(FieldType::choice, "light-choice", &P::lightChoice)
                 .choices({"tree", "power", "uniform"})
                 .byDefault("tree")
                 .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
-                .doc("Which light is asked: by what it may give to each place; by power or evenly to compare.")
+                .doc("How a light is chosen: by what each may give to a point; by power or evenly, to compare.")
                 .example("light-choice tree")};
 }
 

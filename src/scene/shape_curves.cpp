@@ -66,7 +66,7 @@ schema::TypeInfo curvesType() {
             .choices({"round", "flat"})
             .byDefault("round")
             .synonyms({"mode", "style"})
-            .doc("Round tubes, or flat ribbons that turn to whoever looks: cheaper, for hair thinner than a pixel.")
+            .doc("Round tubes, or flat ribbons that face each ray: cheaper, for hair thinner than a pixel.")
             .example("form flat"),
         field<P, std::vector<double>>(FieldType::numbers, "counts", &P::counts)
             .range(1, 4294967294.0)

@@ -15,7 +15,7 @@ schema::TypeInfo pointsType() {
             .choices({"sphere", "disk"})
             .byDefault("sphere")
             .synonyms({"mode", "style"})
-            .doc("Spheres, or flat disks: across `normals` where there are some, else turned to whoever looks.")
+            .doc("Spheres, or flat disks: across `normals` where there are some, else facing each ray.")
             .example("form disk"),
         field<P, std::vector<Vec3d>>(FieldType::points, "normals", &P::normals)
             .unit({Dimension::none})

@@ -11,9 +11,9 @@ constexpr auto kKindTexts = std::to_array<KindText>({
      "From where and through which lens the scene is seen. A file has one or more; the first one is rendered "
      "unless `--camera NAME` says otherwise.",
      "camera [NAME] [TYPE] { … }", "camera { from 0 1.3 4; look-at 0 0.5 0; fov 40 deg }"},
-    {Kind::light, "What shines. How much is said in real units: lm, cd, lx, nits or W.", "light [NAME] TYPE { … }",
+    {Kind::light, "A source of light. Its amount is in real units: lm, cd, lx, nits or W.", "light [NAME] TYPE { … }",
      "light key quad { size 60 120 cm; power 3600 lm; transform { rotate x 90 deg; translate 0 2.8 0 } }"},
-    {Kind::shape, "A surface with a material. Closed shapes may have an inside, and most may shine.",
+    {Kind::shape, "A surface with a material. Closed shapes may have an inside, and most may emit.",
      "shape [NAME] TYPE { … }",
      "shape ball sphere { center 0 0.5 0; radius 0.5; material diffuse { reflectance 0.8 } }"},
     {Kind::group, "Definitions that are moved together. Groups may hold groups.", "group [NAME] { transform { … }; … }",

@@ -30,11 +30,16 @@ constexpr const char* kIntroduction =
     R"(<!-- Made from tests/hard_cases by `hard_case_page`; edit cases.md there. -->
 # Numerically hard cases
 
-Places where the obvious formula fails in floating point, or where a special input breaks a general method. Numbers are
-used by comments and tests. Each case is a test of that name under `tests/hard_cases`, which measures what is *here*
-against a *tolerance*, and, where that is cheap, what the obvious formula gives in its place (*naive*): it has to miss the
-tolerance. Code is named below `src/` or the root, other tests of the same case below `tests/`. `abbe doctor --numerics`
-measures some of them on any machine.
+Places where the obvious formula fails in floating point, or where a special input breaks a general method. Each row says what
+goes wrong, what is done about it, and what a test measured.
+
+    abbe doctor --numerics     # measures some of them on this machine
+
+* **here** is what the test of that number under `tests/hard_cases` measures, with its tolerance.
+* **naive** is what the obvious formula gives in its place, where that is cheap to measure. It must miss the tolerance.
+* **code; other tests** names code below `src/` or the root, and other tests of the same case below `tests/`.
+
+Comments and tests refer to cases by number.
 
 )";
 

@@ -69,13 +69,13 @@ TEST_CASE("case 9: degenerate faces that nobody removed give no NaN") {
         const auto s = mesh.sample(o, random.bits() % mesh.emitterParts(), {random.uniform(), random.uniform()});
         bad += s && !isFinite(s->p);
     }
-    c.measured("hits and samples that are no numbers, with empty faces left in", bad, 0);
+    c.measured("hits and samples that are not finite, with empty faces left in", bad, 0);
     int naive = 0;
     for (const auto& t : m.triangles) {
         const Vec3 a = m.positions[t[0]], n = cross(m.positions[t[1]] - a, m.positions[t[2]] - a);
         naive += !isFinite(n * (1 / length(n)));
     }
-    c.naive("normals that are no numbers by the cross product of two edges", naive);
+    c.naive("normals that are not finite by the cross product of two edges", naive);
 }
 
 TEST_CASE("case 10: texture coordinates that give no direction") {
@@ -109,7 +109,7 @@ TEST_CASE("case 10: texture coordinates that give no direction") {
         naive += !isFinite(((m.positions[1] - m.positions[0]) * d2.y - (m.positions[2] - m.positions[0]) * d1.y) *
                            (1 / det));
     }
-    c.measured("derivatives and footprints that are no numbers, of four meshes", bad, 0);
+    c.measured("derivatives and footprints that are not finite, of four meshes", bad, 0);
     c.naive("of four dp/du by the inverse of the determinant", naive);
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("case 11: vertex normals that are zero, inverted, not finite") {
                                  flipped.normals[t[2]] * b.y);
         naive += isFinite(n) && dot(Frame::fromNormal(n).toWorld(w), hit.ng) > 0;
     }
-    c.measured("shading normals that are no numbers or point inwards, 2.5 % of the vertices damaged", black, 0);
+    c.measured("shading normals that are not finite or point inwards, 2.5 % of the vertices damaged", black, 0);
     c.measured("light that such a white sphere loses in a furnace", 1 - kept / met, 0.01);
     c.naive("normals interpolated as they are", 1 - naive / met);
 }

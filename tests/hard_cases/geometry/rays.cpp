@@ -319,6 +319,6 @@ TEST_CASE("case 1: shadow rays end before the lamp") {
         CHECK(tried > 40000);
         all += blocked;
     }
-    c.measured("shadow rays stopped by the lamp they go to, of 3e5 in scenes of 1e-5, 1 and 1e5 times the size", all,
+    c.measured("shadow rays stopped by the light they go to, of 3e5 in scenes of 1e-5, 1 and 1e5 times the size", all,
                0);
 }

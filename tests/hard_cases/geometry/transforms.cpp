@@ -177,7 +177,7 @@ TEST_CASE("case 21: a shutter or motion without duration") {
         !scene("shutter 1 s", "shape sphere { transform { at 1 s { translate 0 0 0 }\nat 1 s { translate 1 0 0 } } }\n")
              .diagnostics()
              .hasErrors();
-    c.measured("pixels that are no numbers, samples dropped and bad keys accepted", bad, 0);
+    c.measured("pixels that are not finite, samples dropped and bad keys accepted", bad, 0);
     const volatile float from = 1, to = 1, at = 1;
     c.naive("place between two equal times", static_cast<double>((at - from) / (to - from)));
 }

@@ -100,5 +100,5 @@ TEST_CASE("case 71: equal priorities, open meshes, too many dielectrics at once"
     int bad = image.statistics.dropped != std::array<std::uint64_t, 3>{};
     for (int i = 0; i < 256; ++i)
         bad += !(image.film.mean(i % 16, i / 16).y >= 0) || !std::isfinite(image.film.mean(i % 16, i / 16).y);
-    c.measured("pixels of a soup of 300 triangles of glass that are no numbers, negative or infinite", bad, 0);
+    c.measured("pixels of a soup of 300 triangles of glass that are NaN, negative or infinite", bad, 0);
 }

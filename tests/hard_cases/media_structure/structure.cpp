@@ -178,7 +178,7 @@ TEST_CASE("case 77: uv of ±1e6, uv that are no numbers, pictures of 1×1 and 65
         for (const float u : {1e6f, -1e6f, 1e30f, NAN, INFINITY, -INFINITY, -0.f})
             for (const float du : {0.f, 1e-30f, 1e30f, NAN, INFINITY})
                 bad += !std::isfinite(t->at(u, 0.5f, {du, 0}, {0, du}));
-    c.measured("lookups that are no numbers", bad, 0);
+    c.measured("lookups that are not finite", bad, 0);
     c.measured("error of a texel of 65536 columns", std::abs(wide.at(100.5f / 256, 0.5f) - 100 / 255.0), 1e-3);
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("case 79: angles of view of 0 and 180°, no aperture, focus at 0 or no
             }
     CHECK(refused > 20);
     CHECK(made > 10);
-    c.measured("of 252 cameras at the ends of their ranges, rays that are no numbers and errors without a place", bad,
+    c.measured("of 252 cameras at the ends of their ranges, rays that are not finite and errors without a place", bad,
                0);
     const volatile float angle = 0;
     c.naive("distance of the film at an angle of view of 0", static_cast<double>(0.018f / std::tan(angle / 2)));

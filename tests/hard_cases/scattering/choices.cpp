@@ -121,7 +121,7 @@ TEST_CASE("case 38: MIS weights of extreme densities") {
         const double off = std::abs(lamp / point - 1);
         worst = off <= worst ? worst : off;
     }
-    c.measured("light of lamps of 1e-3 to 1e-15 m over that of a point", worst, 1e-3);
+    c.measured("light of area lights of 1e-3 to 1e-15 m over that of a point", worst, 1e-3);
     const volatile float light = 3e19f, bsdf = 3e19f;
     c.naive("power heuristic of two densities of 3e19",
             static_cast<double>(light * light / (light * light + bsdf * bsdf)));

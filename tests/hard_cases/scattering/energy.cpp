@@ -105,7 +105,7 @@ TEST_CASE("case 43: hair of small width") {
                     bad += !allFinite(hair.eval(wo, -wo, Transport::radiance).fcos);
                 }
     c.measured("light that a white fibre loses in a furnace, widths from 0 to 1", worst, 0.01);
-    c.measured("values that are no numbers", bad, 0);
+    c.measured("values that are not finite", bad, 0);
     // I₀(x) of the longitudinal lobe, x = cos θi cos θo / v, and 1 / sinh(1/v).
     const volatile float v = 1e-3f, bessel = std::exp(1 / v), sinh = std::sinh(1 / v);
     c.naive("I₀ of 1/v over sinh of 1/v at v = 1e-3", static_cast<double>(bessel / sinh));
@@ -164,7 +164,7 @@ TEST_CASE("case 45: textures with NaN, negative or huge values") {
     }
     CHECK(read > 10);
     c.measured("pictures with numbers that are none that are accepted", silent, 0);
-    c.measured("lookups that are no numbers, of the others", bad, 0);
+    c.measured("lookups that are not finite, of the others", bad, 0);
     c.naive("mean of a row of texels with one infinite and one minus infinite",
             static_cast<double>(INFINITY - INFINITY));
 }

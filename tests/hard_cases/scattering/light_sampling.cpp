@@ -122,7 +122,7 @@ TEST_CASE("case 33: poles and seam of an environment") {
     const float before = sky.escaped(normalize(Vec3{1e-6f, 0.2f, 1}), w, 0)[2],
                 after = sky.escaped(normalize(Vec3{-1e-6f, 0.2f, 1}), w, 0)[2];
     bad += !(std::abs(before / after - 1) < 1e-4f);
-    c.measured("densities and values at poles and seam that are no numbers or jump", bad, 0);
+    c.measured("densities and values at poles and seam that are not finite or jump", bad, 0);
     const volatile float sine = std::sin(0.f);
     c.naive("density over the sine at the pole", static_cast<double>(1 / (2 * kPi * kPi * sine)));
     // Fluence of the environment turned seven ways, by its own samples.

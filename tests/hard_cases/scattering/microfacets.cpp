@@ -62,7 +62,7 @@ TEST_CASE("case 25: α near 0, also in one direction only") {
             for (const Vec3 m : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, withCosine(0.5f, 0.3f)})
                 bad += !std::isfinite(ggx.D(m)) || !std::isfinite(ggx.visible(m));
         }
-    c.measured("densities that are no numbers, α of 0 and of one direction 0", bad, 0);
+    c.measured("densities that are not finite, α of 0 and of one direction 0", bad, 0);
     const volatile float zero = 0;
     c.naive("density along x with αx = 0", static_cast<double>(zero / (zero * zero)));
 }
@@ -83,7 +83,7 @@ TEST_CASE("case 26: `wi` equal or opposite to `wo`") {
                        e.pdfSolidAngle < 0 || anyNonZero(Spectrum(min(e.fcos, Spectrum(0.f))));
             }
     CHECK(pairs > 100000);
-    c.measured("values that are negative or no numbers, over all pairs of 60 directions and 43 materials", bad, 0);
+    c.measured("values that are negative or not finite, over all pairs of 60 directions and 43 materials", bad, 0);
     const Vec3 wo = withCosine(0.5f, 0.4f), sum = wo + -wo;
     c.naive("half vector of opposite directions", static_cast<double>((sum * (1 / length(sum))).z));
 }
@@ -113,7 +113,7 @@ TEST_CASE("case 27: grazing directions") {
                             }
                             heaviest = std::max(heaviest, maxLane(s->weight) / std::max(1.f, scale));
                         }
-    c.measured("samples that are no numbers, cosines from 1 to 0", bad, 0);
+    c.measured("samples that are not finite, cosines from 1 to 0", bad, 0);
     c.measured("largest weight", static_cast<double>(heaviest), 1.5);
     // The value with its cosine in the denominator, over the density with the same.
     const float cosine = 1e-38f, d = 1, g = 2e-38f;

@@ -147,9 +147,9 @@ TEST_CASE("case 58: a NaN sample") {
         if (count == cleanCount) different += sum.y != cleanSum.y || sum.x != cleanSum.x || sum.z != cleanSum.z;
     }
     c.measured("pixels that differ from the clean picture's beside those with a fault", different, 0);
-    c.measured("samples that are no numbers and not counted",
+    c.measured("samples that are not finite and not counted",
                std::abs(static_cast<double>(broken.statistics.dropped[0]) - static_cast<double>(broken.faults)), 0);
-    c.measured("pixels that are no numbers", bad, 0);
+    c.measured("pixels that are not finite", bad, 0);
     c.naive("if such samples are added, of 1152 replicates of pixels", struck);
 }
 

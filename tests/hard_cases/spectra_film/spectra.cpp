@@ -60,7 +60,7 @@ TEST_CASE("case 47: densities of all wavelengths but one vanish") {
         }
         bad += !(std::abs(largest - 1) < 1e-5f);
     }
-    c.measured("weights that are no numbers, or all 0, optical depths from 1e-3 to 1e3", bad, 0);
+    c.measured("weights that are not finite, or all 0, optical depths from 1e-3 to 1e3", bad, 0);
     const volatile float thin = std::exp(-1e4f), thick = std::exp(-2e4f);
     c.naive("ratio of two transmittances of depths 1e4 and 2e4", static_cast<double>(thick / thin));
     // What comes through in each lane: the mean of beta over density is its transmittance.
