@@ -101,7 +101,7 @@ template <EffectBits E> class CameraCaustics<E, true> {
         return leaveOut(hit.light, [&] { return LightTarget::met(hit, walk_.path.time); });
     }
     // or that of one far away, in the direction.
-    bool leaveOut(const Light& light, Vec3 direction) const {
+    bool leaveOut(const DistantLight& light, Vec3 direction) const {
         return leaveOut(&light, [&] { return LightTarget::met(light, direction, walk_.path.time); });
     }
 

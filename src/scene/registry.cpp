@@ -74,7 +74,7 @@ namespace {
 using Maker =
     std::variant<std::monostate, MakeMaterial, MakeTexture, MakeCamera, MakePhase, MakeMedium, MakeLight, LoadShape>;
 
-struct Entry {
+struct RegistryEntry {
     schema::TypeInfo type;
     Maker make = {};
 };
@@ -84,7 +84,7 @@ struct Entry {
 // What no single property can say wrong, `checkParams(const Params&, const PlaceOf&, Diagnostics&)` does; what fills
 // shapes, `insideOf(const Params&)`; what the command leaves out, `leaveOutEffects(Params&, const MaterialContext&)`:
 // where there are such.
-template <typename Params, auto make> Entry material(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry material(schema::TypeInfo type) {
     addModifiers<Params>(type);
     const MakeMaterial maker = [](const BindParams& bind, const MaterialContext& context) -> MadeMaterial {
         WithModifiers<Params> params;
@@ -106,7 +106,7 @@ template <typename Params, auto make> Entry material(schema::TypeInfo type) {
 }
 
 // What is no surface has no modifiers.
-template <typename Params, auto make> Entry bareMaterial(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry bareMaterial(schema::TypeInfo type) {
     const MakeMaterial maker = [](const BindParams& bind, const MaterialContext&) -> MadeMaterial {
         Params params;
         if (!bind(&params)) return {};
@@ -116,7 +116,7 @@ template <typename Params, auto make> Entry bareMaterial(schema::TypeInfo type) 
 }
 
 // `make` is a function that takes the parameters, the store of images if it reads any, and diagnostics if it can fail.
-template <typename Params, auto make> Entry texture(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry texture(schema::TypeInfo type) {
     const MakeTexture maker = [](const BindParams& bind, const std::shared_ptr<TextureStore>& store,
                                  Diagnostics& diagnostics) -> std::unique_ptr<Texture> {
         Params params;
@@ -133,7 +133,7 @@ template <typename T, typename Params> std::unique_ptr<Texture> pattern(const Pa
     return std::make_unique<T>(params);
 }
 
-template <typename Params, auto make> Entry camera(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry camera(schema::TypeInfo type) {
     const MakeCamera maker = [](const BindParams& bind, const CameraContext& context,
                                 Diagnostics& diagnostics) -> std::optional<PlacedCamera> {
         Params params;
@@ -143,7 +143,7 @@ template <typename Params, auto make> Entry camera(schema::TypeInfo type) {
     return {std::move(type), maker};
 }
 
-template <typename Params, auto make> Entry phase(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry phase(schema::TypeInfo type) {
     const MakePhase maker = [](const BindParams& bind,
                                [[maybe_unused]] const PhaseContext& context) -> std::shared_ptr<const PhaseFunction> {
         Params params;
@@ -156,7 +156,7 @@ template <typename Params, auto make> Entry phase(schema::TypeInfo type) {
     return {std::move(type), maker};
 }
 
-template <typename Params, auto make> Entry medium(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry medium(schema::TypeInfo type) {
     const MakeMedium maker = [](const BindParams& bind, const MediumContext& context) -> MadeMedium {
         Params params;
         if (!bind(&params)) return {};
@@ -167,7 +167,7 @@ template <typename Params, auto make> Entry medium(schema::TypeInfo type) {
 
 // A light without a surface, or several that are one for the language. `make` takes the parameters, the context and
 // where it reports to: Diagnostics, or the BuildContext if it reads files.
-template <typename Params, auto make> Entry light(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry light(schema::TypeInfo type) {
     const MakeLight maker = [](const BindParams& bind, LightSite& site) {
         Params params;
         if (!bind(&params)) return;
@@ -193,7 +193,7 @@ template <typename Params, auto make> Entry light(schema::TypeInfo type) {
 }
 
 // A light with a surface, which `place` makes.
-template <typename Params, auto place> Entry areaLight(schema::TypeInfo type) {
+template <typename Params, auto place> RegistryEntry areaLight(schema::TypeInfo type) {
     const MakeLight maker = [](const BindParams& bind, LightSite& site) {
         Params params;
         if (!bind(&params)) return;
@@ -205,7 +205,7 @@ template <typename Params, auto place> Entry areaLight(schema::TypeInfo type) {
 }
 
 // `make` returns an UnplacedShape, or an optional one if it can fail.
-template <typename Params, auto make> Entry shape(schema::TypeInfo type) {
+template <typename Params, auto make> RegistryEntry shape(schema::TypeInfo type) {
     const LoadShape maker = [](const BindParams& bind, ShapeBuilder& builder, LoadedShape& loaded) {
         Params params;
         if (!bind(&params)) return;
@@ -219,7 +219,7 @@ template <typename Params, auto make> Entry shape(schema::TypeInfo type) {
 }
 
 // One that reads files, deforms, or is diced for the camera.
-template <typename Params, auto load> Entry loadedShape(schema::TypeInfo type) {
+template <typename Params, auto load> RegistryEntry loadedShape(schema::TypeInfo type) {
     const LoadShape maker = [](const BindParams& bind, ShapeBuilder& builder, LoadedShape& loaded) {
         Params params;
         if (!bind(&params)) return;
@@ -231,9 +231,9 @@ template <typename Params, auto load> Entry loadedShape(schema::TypeInfo type) {
 
 // ---- the list: a type is one line here (docs/adding_a_material.md, adding_a_light.md, adding_a_shape.md)
 
-std::vector<Entry> makeEntries() {
-    std::vector<Entry> entries;
-    const auto add = [&](Entry entry) { entries.push_back(std::move(entry)); };
+std::vector<RegistryEntry> makeEntries() {
+    std::vector<RegistryEntry> entries;
+    const auto add = [&](RegistryEntry entry) { entries.push_back(std::move(entry)); };
 
     add(material<DiffuseParams, makeDiffuse>(diffuseType()));
     add(material<ConductorParams, makeConductor>(conductorType()));
@@ -311,8 +311,8 @@ std::vector<Entry> makeEntries() {
     return entries;
 }
 
-const std::vector<Entry>& entries() {
-    static const std::vector<Entry> made = makeEntries();
+const std::vector<RegistryEntry>& entries() {
+    static const std::vector<RegistryEntry> made = makeEntries();
     return made;
 }
 
@@ -320,12 +320,12 @@ const std::vector<Entry>& entries() {
 
 schema::TypeTable makeTypeTable() {
     schema::TypeTable table;
-    for (const Entry& entry : entries()) table.add(entry.type);
+    for (const RegistryEntry& entry : entries()) table.add(entry.type);
     return table;
 }
 
 template <typename Make> Make makerOf(const schema::TypeInfo& type) {
-    for (const Entry& entry : entries())
+    for (const RegistryEntry& entry : entries())
         if (entry.type.kind == type.kind && entry.type.name == type.name) return std::get<Make>(entry.make);
     ABBE_CHECK(!"a registered type");
     return nullptr;
