@@ -10,6 +10,7 @@
 // which the sum does not know. What no replicate has found is in no error bar: a render without light paths that misses
 // a caustic looks better here than it is, and the difference of the means shows it.
 #include "base/parallel.h"
+#include "caustics/light_tracing/light_path_findings.h"
 #include "io/exr_reader.h"
 #include "io/image.h"
 #include "support/scene_test.h"
@@ -133,7 +134,7 @@ void measure(const std::string& file, bool lightPaths, const Options& o) {
     pixels.keepSplatsOf(*tracer, scene.scene(), settings);
     const RenderStatistics s = tracer->render(scene.scene(), pixels, settings, {});
     std::printf("%-44s  %3s  %4dx%-4d %5u  %8.1f  %7.4g  ", file.c_str(), lightPaths ? "on" : "off", film.crop.width(),
-                film.crop.height(), settings.samples, s.coreSeconds, s.lightPlan.share);
+                film.crop.height(), settings.samples, s.coreSeconds, s.caustics.of<LightPathFindings>().share);
     print(errorsOf(tilesOf(TileSums(pixels))));
 }
 
