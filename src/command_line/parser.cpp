@@ -296,8 +296,8 @@ CLI::Option* Parser::addValue(CLI::App& app, const Argument& argument) {
     option->type_name(argument.value);
     const bool list =
         std::holds_alternative<Words*>(argument.place) || std::holds_alternative<Argument::ListReader>(argument.place);
-    if (list) option->expected(1, CLI::detail::expected_max_vector_size);
-    if (list && argument.isFlag()) option->allow_extra_args(false);
+    // What is left on the line goes to an argument, and one value to each use of a flag.
+    if (list) option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(!argument.isFlag());
     if (argument.numbers > 1) option->delimiter(',')->expected(argument.numbers);
     if (argument.required) option->required();
     if (!argument.choices.empty()) option->check(CLI::IsMember(argument.choices).description(""));
