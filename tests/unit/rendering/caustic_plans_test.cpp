@@ -55,7 +55,7 @@ struct FakePlans {
         plans = CausticPlans(std::move(list));
     }
     TileResult render(PortionPlace from) const {
-        const TestScene test = TestScene::parse("scene 1\nlight sky { luminance 1 nits }\n");
+        const TestScene test = TestScene::parse("scene 1\ncamera { from 0 0 5; look-at 0 0 0 }\nlight sky { luminance 1 nits }\n");
         const LightSampler lights(test.scene().lights);
         PilotPixel film({0, 0, 1, 1}, 2);
         return plans.render({test.scene(), lights, {}}, {}, film, {4, 7, 0, 1, from});
