@@ -107,7 +107,8 @@ float Transformed::pdfSolidAngle(const Receiver& from, const SurfaceHit& hit) co
     inner.ng = Vec3(normalize(inverse_.normal(Vec3d(hit.ng))));
     const Vec3 w = inner.p - origin;
     if (!(lengthSquared(w) > 0)) return 0;
-    const double pdf = static_cast<double>(shape_->sampling()->pdfSolidAngle(origin, inner)) * directionJacobian(normalize(w));
+    const double pdf =
+        static_cast<double>(shape_->sampling()->pdfSolidAngle(origin, inner)) * directionJacobian(normalize(w));
     return std::isfinite(static_cast<float>(pdf)) ? static_cast<float>(pdf) : 0;
 }
 
@@ -121,7 +122,8 @@ std::optional<ShapePoint> Transformed::samplePoint(std::uint32_t part, Vec2 u) c
 // Own area per render area is 1 / |cof(A) n| for the own normal n, and |cof(A⁻¹) n'| for the one here.
 float Transformed::pdfPoint(std::uint32_t part, Vec3 ng) const {
     const Vec3d back = inverse_.normal(Vec3d(ng));
-    return static_cast<float>(static_cast<double>(shape_->sampling()->pdfPoint(part, Vec3(normalize(back)))) * length(back));
+    return static_cast<float>(static_cast<double>(shape_->sampling()->pdfPoint(part, Vec3(normalize(back)))) *
+                              length(back));
 }
 
 std::optional<UvPoint> Transformed::uvPoint(Vec2 uv) const {

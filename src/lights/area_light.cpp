@@ -26,8 +26,8 @@ SampledCurve veiledSpectrum(const Curve& spectrum, const EmissionVeil& veil) {
 
 AreaLight::AreaLight(const Shape& shape, ScaledCurve radiance, bool twoSided,
                      std::unique_ptr<const LightTexture> texture, const EmissionVeil* veil)
-    : shape_(shape), sampling_(shape), centre_(shape.bounds().centre()), radiance_(radiance), texture_(std::move(texture)), veil_(veil),
-      twoSided_(twoSided) {
+    : shape_(shape), sampling_(shape), centre_(shape.bounds().centre()), radiance_(radiance),
+      texture_(std::move(texture)), veil_(veil), twoSided_(twoSided) {
     if (veil_) veiled_.emplace(veiledSpectrum(*unveiled(), *veil_));
     const double area = shape.area();
     const double spread = std::isfinite(area) ? (twoSided ? 2 : 1) * kPiD * area * radiance.scale : 0;

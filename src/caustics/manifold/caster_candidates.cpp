@@ -64,8 +64,7 @@ std::string obstacleOf(const SurfaceUse& use, CasterCandidate& found) {
     if (use.shape->relief() == Relief::unknown) return "how its surface curves is not known";
     const std::uint32_t parts = SamplingOf(*use.shape)->emitterParts();
     if (use.shape->relief() == Relief::facets && parts > kMaxFacets)
-        return fmt::format("its {} faces are flat: without vertex normals there is no smooth surface to follow",
-                           parts);
+        return fmt::format("its {} faces are flat: without vertex normals there is no smooth surface to follow", parts);
     if (material.bends()) return "a texture bends its normals";
     if (material.mayBeOpen()) return "it is partly open";
     if (!predicted) return "its light does not go where its refractive index sends it";
