@@ -75,29 +75,28 @@ bool readWork(ByteReader& in, WorkReading& work) {
     return in.sound();
 }
 
+// A record of counters, in the order of its list.
+template <typename Record> void writeCounters(const Record& record, ByteWriter& out) {
+    for (const auto& c : countersOf(record)) out.number(*c.place);
+}
+
+template <typename Record> void readCounters(ByteReader& in, Record& record) {
+    for (const auto& c : countersOf(record)) *c.place = in.number<std::uint64_t>();
+}
+
 void writeEffects(const EffectCounts& e, ByteWriter& out) {
-    for (const std::uint64_t v :
-         {e.noRays, e.crossings, e.shadowCrossings, e.heroRays, e.textureLookups, e.movingHits, e.untouched})
-        out.number(v);
+    writeCounters(e, out);
     std::uint32_t used = kVolumeWorks;
     while (used > 0 && e.volumes[used - 1] == VolumeCounts{}) --used;
     out.number(used);
-    for (std::uint32_t i = 0; i < used; ++i)
-        for (const std::uint64_t v :
-             {e.volumes[i].collisions, e.volumes[i].lookups, e.volumes[i].scattered, e.volumes[i].first})
-            out.number(v);
+    for (std::uint32_t i = 0; i < used; ++i) writeCounters(e.volumes[i], out);
 }
 
 bool readEffects(ByteReader& in, EffectCounts& e) {
-    for (std::uint64_t* v :
-         {&e.noRays, &e.crossings, &e.shadowCrossings, &e.heroRays, &e.textureLookups, &e.movingHits, &e.untouched})
-        *v = in.number<std::uint64_t>();
+    readCounters(in, e);
     const auto used = in.number<std::uint32_t>();
     if (used > e.volumes.size()) return false;
-    for (std::uint32_t i = 0; i < used; ++i)
-        for (std::uint64_t* v :
-             {&e.volumes[i].collisions, &e.volumes[i].lookups, &e.volumes[i].scattered, &e.volumes[i].first})
-            *v = in.number<std::uint64_t>();
+    for (std::uint32_t i = 0; i < used; ++i) readCounters(in, e.volumes[i]);
     return in.sound();
 }
 
@@ -148,10 +147,7 @@ void writeTile(const TileState& tile, ByteWriter& out) {
     const PathTally& t = tile.tally;
     const CutPortion cut = tile.cut.value_or(CutPortion{});
     for (const std::uint32_t v : {tile.reached, cut.end, cut.at.unit, cut.at.done}) out.number(v);
-    for (const std::uint64_t v :
-         {t.paths, t.vertices, t.shadowRays, t.cappedPaths, t.dropped[0], t.dropped[1], t.dropped[2], t.excess.lookups,
-          t.excess.above, t.lightPaths, t.lightRays, t.splats, t.rounds})
-        out.number(v);
+    writeCounters(t, out);
     out.number(t.excess.most);
     out.number(t.coreSeconds);
     writeEffects(t.effects, out);
@@ -195,10 +191,7 @@ bool readTile(ByteReader& in, TileState& tile) {
     for (std::uint32_t* v : {&tile.reached, &cut.end, &cut.at.unit, &cut.at.done}) *v = in.number<std::uint32_t>();
     if (cut.end > 0) tile.cut = cut;
     if (tile.cut && cut.end <= tile.reached) return false;
-    for (std::uint64_t* v :
-         {&t.paths, &t.vertices, &t.shadowRays, &t.cappedPaths, &t.dropped[0], &t.dropped[1], &t.dropped[2],
-          &t.excess.lookups, &t.excess.above, &t.lightPaths, &t.lightRays, &t.splats, &t.rounds})
-        *v = in.number<std::uint64_t>();
+    readCounters(in, t);
     t.excess.most = in.number<float>();
     t.coreSeconds = in.number<double>();
     if (!readEffects(in, t.effects)) return false;

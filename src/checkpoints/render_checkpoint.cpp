@@ -117,11 +117,9 @@ bool RenderCheckpoint::writeTo(const std::string& path) {
 
 // Requires the mutex.
 void RenderCheckpoint::write() {
-    const Stopwatch writing;
     const WorkScope work(Work::saving);
     if (!writeTo(path_)) return;
     ours_ = stamp();
-    writingSeconds_ += writing.seconds();
     ++writes_;
 }
 

@@ -52,8 +52,7 @@ class RenderCheckpoint {
     // The file is not needed any more, if it is there.
     void remove();
 
-    // What writing took so far, in seconds of the clock, and how often it was.
-    double writingSeconds() const { return writingSeconds_; }
+    // How often it was written.
     int writes() const { return writes_; }
 
   private:
@@ -86,7 +85,6 @@ class RenderCheckpoint {
     std::optional<FileStamp> ours_;    // the file when this render wrote it or went on from it
     std::optional<std::string> fault_; // not yet taken
     std::string lastFault_;            // so that a disk that stays full is told once
-    double writingSeconds_ = 0;
     int writes_ = 0;
 };
 

@@ -124,18 +124,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
         for (const DroppedSample& s : state.examples())
             if (statistics.examples.size() < TileState::kExamples) statistics.examples.push_back(s);
     }
-    statistics.paths = sum.paths;
-    statistics.vertices = sum.vertices;
-    statistics.shadowRays = sum.shadowRays;
-    statistics.lightPaths = sum.lightPaths;
-    statistics.lightRays = sum.lightRays;
-    statistics.splats = sum.splats;
-    statistics.rounds = sum.rounds;
-    statistics.cappedPaths = sum.cappedPaths;
-    statistics.dropped = sum.dropped;
-    statistics.excess = sum.excess;
-    statistics.effects = sum.effects;
-    statistics.coreSeconds = sum.coreSeconds;
+    statistics.add(sum);
     statistics.samplesPerPixel =
         readers_[0].header().whole * static_cast<std::uint32_t>(readers_[0].header().replicates);
     statistics.kernel = "merged";

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "base/work.h"
+#include "render/counter.h"
 
 #include <array>
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 namespace abbe {
 
@@ -15,14 +18,21 @@ struct VolumeCounts {
     std::uint64_t scattered = 0;  // collisions from which a path went on: rays that start in it
     std::uint64_t first = 0;      // paths that met it before any other medium: see EffectCounts::untouched
 
-    void add(const VolumeCounts& v) {
-        collisions += v.collisions;
-        lookups += v.lookups;
-        scattered += v.scattered;
-        first += v.first;
-    }
+    void add(const VolumeCounts&);
     bool operator==(const VolumeCounts&) const = default;
 };
+
+// Here and below in the order in which checkpoints hold them; the records may be const.
+template <typename Counts>
+requires std::same_as<std::remove_const_t<Counts>, VolumeCounts>
+auto countersOf(Counts& v) {
+    return std::array{
+        counter(v.collisions, "collisions", "tentative collisions"),
+        counter(v.lookups, "lookups", "densities"),
+        counter(v.scattered, "scattered", "collisions"),
+        counter(v.first, "first", "paths"),
+    };
+}
 
 // Beside PathTally, whose vertices and shadow rays are the rest of the rays.
 struct EffectCounts {
@@ -35,17 +45,30 @@ struct EffectCounts {
     std::uint64_t untouched = 0;  // rays of paths that no medium has scattered, in kernels with media
     std::array<VolumeCounts, kVolumeWorks> volumes{}; // by volumeRow()
 
-    void add(const EffectCounts& c) {
-        noRays += c.noRays;
-        crossings += c.crossings;
-        shadowCrossings += c.shadowCrossings;
-        heroRays += c.heroRays;
-        textureLookups += c.textureLookups;
-        movingHits += c.movingHits;
-        untouched += c.untouched;
-        for (std::size_t i = 0; i < volumes.size(); ++i) volumes[i].add(c.volumes[i]);
-    }
+    void add(const EffectCounts&);
     bool operator==(const EffectCounts&) const = default;
 };
+
+// Without those of volumes.
+template <typename Counts>
+requires std::same_as<std::remove_const_t<Counts>, EffectCounts>
+auto countersOf(Counts& c) {
+    return std::array{
+        counter(c.noRays, "no_rays", "paths"),
+        counter(c.crossings, "crossings", "rays"),
+        counter(c.shadowCrossings, "shadow_crossings", "shadow rays"),
+        counter(c.heroRays, "hero_rays", "rays"),
+        counter(c.textureLookups, "texture_lookups", "lookups"),
+        counter(c.movingHits, "moving_hits", "hits"),
+        counter(c.untouched, "untouched", "rays"),
+    };
+}
+
+inline void VolumeCounts::add(const VolumeCounts& v) { addCounters(countersOf(*this), countersOf(v)); }
+
+inline void EffectCounts::add(const EffectCounts& c) {
+    addCounters(countersOf(*this), countersOf(c));
+    for (std::size_t i = 0; i < volumes.size(); ++i) volumes[i].add(c.volumes[i]);
+}
 
 } // namespace abbe

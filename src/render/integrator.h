@@ -2,9 +2,9 @@
 #pragma once
 
 #include "render/caustic_findings.h"
-#include "render/effect_counts.h"
 #include "render/film.h"
 #include "render/first_look.h"
+#include "render/path_tally.h"
 #include "render/technique.h"
 
 #include <algorithm>
@@ -56,9 +56,6 @@ struct RenderSettings {
     }
 };
 
-// Why samples were dropped.
-enum class DropCause : std::uint8_t { nan, infinite, negative }; // infinite: or beyond ExactSum::kLargest
-
 // One sample of a render, which can be repeated by itself: `abbe replay … --pixel x,y --sample replicate:index`.
 struct SampleId {
     int x = 0, y = 0;
@@ -70,50 +67,24 @@ struct DroppedSample : SampleId {
     DropCause cause = DropCause::nan;
 };
 
-// Densities of media that were found above the bound that tracking took for them. The image stays right, but is
-// noisier if there are many.
-struct DensityExcess {
-    std::uint64_t lookups = 0; // all densities
-    std::uint64_t above = 0;
-    float most = 0; // density over bound
-
-    void add(const DensityExcess& e) {
-        lookups += e.lookups;
-        above += e.above;
-        most = most > e.most ? most : e.most;
-    }
-};
-
-struct RenderStatistics {
-    std::uint64_t paths = 0;
-    std::uint64_t vertices = 0;
-    std::uint64_t shadowRays = 0;
-    std::uint64_t lightPaths = 0; // that started at lights, beside `paths`
-    std::uint64_t lightRays = 0;  // of theirs; all other counts of rays are of camera paths
-    std::uint64_t splats = 0;     // pixels that they were added to
-    std::uint64_t rounds = 0;     // of merging, whose paths count as light paths
-    std::uint64_t rays() const { return vertices + shadowRays + lightRays; }
+// What a render came to.
+struct RenderStatistics : PathTally {
     CausticFindings caustics; // by which it was decided how light is found
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;                   // of looks ahead that are not in the image, of this run alone
     double pilotSeconds = 0;                       // wall clock of these
     std::uint32_t samplesPerPixel = 0;             // finished in all pixels; adaptive: as if they were even
-    std::array<std::uint64_t, 3> dropped{};        // by DropCause
     std::vector<DroppedSample> examples;           // the first few
-    std::uint64_t cappedPaths = 0;                 // reached the safety cap on vertices (PathWalk::kMaxVertices)
     std::map<const void*, std::uint64_t> cappedIn; // of this run alone: in which shapes or media, roughly how many
-    DensityExcess excess;
-    EffectCounts effects;
-    double seconds = 0;     // wall clock, with that of earlier runs
-    double coreSeconds = 0; // summed over threads
-    double noise = 0;       // estimated relative error of the image
-    bool stopped = false;   // by the caller
-    std::string kernel;     // the instantiation that ran, e.g. "dispersion+absorption"
+    double seconds = 0;                            // wall clock, with that of earlier runs
+    double noise = 0;                              // estimated relative error of the image
+    bool stopped = false;                          // by the caller
+    std::string kernel;                            // the instantiation that ran, e.g. "dispersion+absorption"
 };
 
 struct Progress {
     double fraction = 0; // of the work that will end the render
-    std::uint32_t pass = 0, passes = 0;
+    std::uint32_t pass = 0;
     std::uint32_t samplesPerPixel = 0, totalSamples = 0;
     double noise = 0;              // relative; 0 while unknown
     double pathsPerSecond = 0;     // all threads

@@ -5,6 +5,7 @@
 #include "base/work_clock.h"
 #include "render/integrator.h"
 #include "render/light_gate.h"
+#include "render/path_tally.h"
 #include "render/portion.h"
 
 #include <algorithm>
@@ -15,34 +16,6 @@
 #include <vector>
 
 namespace abbe {
-
-// What the samples of a tile, or of a block of light paths, came to. Whole numbers: the same in any order, but for rays
-// of paths that were left because the render was to end (PathCounters::left) and were taken again.
-struct PathTally {
-    std::uint64_t paths = 0, vertices = 0, shadowRays = 0, cappedPaths = 0;
-    std::array<std::uint64_t, 3> dropped{}; // by DropCause
-    DensityExcess excess;
-    EffectCounts effects;
-    double coreSeconds = 0;
-    // Paths that started at lights, their rays, and pixels that they were added to. The rest is of camera paths.
-    std::uint64_t lightPaths = 0, lightRays = 0, splats = 0;
-    std::uint64_t rounds = 0; // of merging
-
-    void add(const PathTally& t) {
-        paths += t.paths;
-        vertices += t.vertices;
-        shadowRays += t.shadowRays;
-        cappedPaths += t.cappedPaths;
-        for (std::size_t i = 0; i < dropped.size(); ++i) dropped[i] += t.dropped[i];
-        excess.add(t.excess);
-        effects.add(t.effects);
-        coreSeconds += t.coreSeconds;
-        lightPaths += t.lightPaths;
-        lightRays += t.lightRays;
-        splats += t.splats;
-        rounds += t.rounds;
-    }
-};
 
 // The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and of a
 // portion that was cut short those before the place where it was; no others. Of a block of light paths, its paths of

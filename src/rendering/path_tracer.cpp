@@ -57,7 +57,7 @@ class RenderJob {
           state_(control.state ? *control.state : *ownState_), pass_(passesBefore(state_.reached())) {
         statistics_.kernel = kernel.name;
         context_.stop = &watch_.over();
-        count(state_.tally());
+        statistics_.add(state_.tally());
     }
 
     RenderStatistics run() {
@@ -196,7 +196,7 @@ class RenderJob {
                     if (tile.examples.size() < TileState::kExamples) tile.examples.push_back(s);
             }
             const std::lock_guard lock(mutex_);
-            count(tally);
+            statistics_.add(tally);
             statistics_.manifoldEstimates += chains.estimates;
             statistics_.manifoldTrials += chains.trials;
             statistics_.manifoldCapped += chains.capped;
@@ -258,21 +258,6 @@ class RenderJob {
         statistics_.noise = film_.relativeNoise();
         timeLeft_->passEnded(state_.reached(), statistics_.noise);
         if (control_.passEnded) control_.passEnded();
-    }
-
-    void count(const PathTally& t) {
-        statistics_.paths += t.paths;
-        statistics_.vertices += t.vertices;
-        statistics_.shadowRays += t.shadowRays;
-        statistics_.cappedPaths += t.cappedPaths;
-        statistics_.excess.add(t.excess);
-        statistics_.effects.add(t.effects);
-        statistics_.coreSeconds += t.coreSeconds;
-        statistics_.lightPaths += t.lightPaths;
-        statistics_.lightRays += t.lightRays;
-        statistics_.splats += t.splats;
-        statistics_.rounds += t.rounds;
-        for (std::size_t i = 0; i < t.dropped.size(); ++i) statistics_.dropped[i] += t.dropped[i];
     }
 
     void maybeReport() {

@@ -6,6 +6,7 @@
 #include "reports/light_path_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
@@ -92,18 +93,25 @@ Json json(const ErrorFigure& f) {
 }
 
 Json samplesJson(const ErrorCertificate& c, const RenderStatistics& s) {
-    const auto dropped = [&s](DropCause cause) { return s.dropped[static_cast<std::size_t>(cause)]; };
     Json object =
         Json::object({{"per_pixel", Json::object({{"fewest", c.fewest}, {"mean", c.samples}, {"most", c.most}})},
-                      {"replicates", c.replicates},
-                      {"paths", s.paths},
-                      {"capped_paths", s.cappedPaths},
-                      {"dropped", Json::object({{"nan", dropped(DropCause::nan)},
-                                                {"infinite", dropped(DropCause::infinite)},
-                                                {"negative", dropped(DropCause::negative)}})}});
-    if (s.lightPaths > 0) object.set("light_paths", s.lightPaths).set("splats", s.splats);
-    if (s.rounds > 0) object.set("rounds", s.rounds);
-    return object;
+                      {"replicates", c.replicates}});
+    Json dropped = Json::object();
+    for (const auto& counter : countersOf(s)) {
+        if (isReported(counter, s)) object.set(counter.name, *counter.place);
+        if (counter.reported == Reported::asDropped) dropped.set(counter.name, *counter.place);
+    }
+    return object.set("dropped", dropped);
+}
+
+// "abbe.lightPaths" for "light_paths".
+std::string attributeName(std::string_view name) {
+    std::string attribute = "abbe.";
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const bool word = name[i] == '_' && i + 1 < name.size();
+        attribute += word ? static_cast<char>(std::toupper(static_cast<unsigned char>(name[++i]))) : name[i];
+    }
+    return attribute;
 }
 
 } // namespace
@@ -120,12 +128,9 @@ std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, con
     list.push_back({"abbe.samplesFewest", std::to_string(c.fewest)});
     list.push_back({"abbe.samplesMean", c.samples});
     list.push_back({"abbe.samplesMost", std::to_string(c.most)});
-    list.push_back({"abbe.paths", std::to_string(s.paths)});
-    list.push_back({"abbe.cappedPaths", std::to_string(s.cappedPaths)});
-    if (s.lightPaths > 0) {
-        list.push_back({"abbe.lightPaths", std::to_string(s.lightPaths)});
-        list.push_back({"abbe.splats", std::to_string(s.splats)});
-    }
+    for (const auto& counter : countersOf(s))
+        if (counter.reported != Reported::withRounds && isReported(counter, s)) // those are told with the bias
+            list.push_back({attributeName(counter.name), std::to_string(*counter.place)});
     if (c.merged) {
         list.push_back({"abbe.estimator", "consistent"}); // and not unbiased
         list.push_back({"abbe.mergedRounds", std::to_string(c.merged->rounds)});

@@ -97,9 +97,14 @@ void HumanReport::done(const RenderSummary& s) {
     console_.line(fmt::format("  {}paths   {}rays   {}paths/s   {} samples per pixel   kernel {}",
                               countText(static_cast<double>(r.paths)), countText(static_cast<double>(r.rays())),
                               countText(rate), r.samplesPerPixel, r.kernel));
-    if (r.lightPaths > 0)
-        console_.line(fmt::format("  {}paths from lights   {}splats", countText(static_cast<double>(r.lightPaths)),
-                                  countText(static_cast<double>(r.splats))));
+    if (r.lightPaths > 0) {
+        std::string line;
+        for (const auto& c : countersOf(r))
+            if (c.reported == Reported::withLightPaths)
+                line += fmt::format("{}{}{}", line.empty() ? "  " : "   ", countText(static_cast<double>(*c.place)),
+                                    c.unit);
+        console_.line(line);
+    }
     const auto& lightPaths = r.caustics.of<LightPathFindings>();
     if (lightPaths.measured || lightPaths.verdict == LightPathVerdict::noPilot)
         console_.line("  " + lightPathLine(lightPaths));

@@ -88,8 +88,8 @@ class JsonReport final : public RenderReport {
                                    {"densities_above_bound", r.excess.above},
                                    {"bill", s.cost ? costJson(*s.cost) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
-        if (r.lightPaths > 0) event.set("light_paths", r.lightPaths).set("splats", r.splats);
-        if (r.rounds > 0) event.set("rounds", r.rounds);
+        for (const auto& c : countersOf(r))
+            if (c.reported != Reported::always && isReported(c, r)) event.set(c.name, *c.place);
         if (r.caustics.of<LightPathFindings>().verdict != LightPathVerdict::undecided)
             event.set("light_path_plan", lightPathJson(r.caustics));
         if (s.spread)

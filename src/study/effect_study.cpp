@@ -135,14 +135,8 @@ class Study {
     // The cost report is that of all renders with all effects: the more, the surer it is.
     void charge(const WorkReading& work, const RenderStatistics& s) {
         work_.add(work);
-        spent_.paths += s.paths;
-        spent_.vertices += s.vertices;
-        spent_.shadowRays += s.shadowRays;
-        spent_.lightPaths += s.lightPaths;
-        spent_.lightRays += s.lightRays;
-        spent_.splats += s.splats;
+        spent_.add(s);
         spent_.pilotRays += s.pilotRays;
-        spent_.effects.add(s.effects);
         result_.cost = makeCostReport({&work_, &spent_, &with_.scene, work_.seconds, threadCount()});
     }
 
