@@ -4,8 +4,8 @@
 #include "bench/measure.h"
 #include "geometry/deforming_mesh.h"
 #include "geometry/embree_scene_builder.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
-#include "geometry/quad.h"
 #include "unit/geometry/test_meshes.h"
 
 #include <cstdio>

@@ -5,7 +5,7 @@
 //   2. collisions per second while rays are followed to where they scatter.
 #include "measure.h"
 #include "media/grid_medium.h"
-#include "media/henyey_greenstein.h"
+#include "media/phase_functions.h"
 #include "spectrum/curve.h"
 #include "transport/medium_tracker.h"
 #include "volumes/brick_walk.h"

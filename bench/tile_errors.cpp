@@ -10,11 +10,11 @@
 // which the sum does not know. What no replicate has found is in no error bar: a render without light paths that misses
 // a caustic looks better here than it is, and the difference of the means shows it.
 #include "base/parallel.h"
-#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/light_tracing/light_path_plan.h"
 #include "io/exr_reader.h"
 #include "io/image.h"
 #include "support/scene_test.h"
-#include "verify/replicate_mean.h"
+#include "verify/tile_sums.h"
 
 #include <cstdio>
 #include <cstring>

@@ -1,11 +1,10 @@
 #include "materials/conductor.h"
 
 #include "base/check.h"
-#include "materials/delta_pairs.h"
+#include "materials/direction_pairs.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/ggx_albedo.h"
-#include "materials/stretched_albedo.h"
+#include "materials/stretched_ggx.h"
 #include "render/surface_input.h"
 
 namespace abbe {

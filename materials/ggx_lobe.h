@@ -2,10 +2,8 @@
 #pragma once
 
 #include "materials/ggx.h"
-#include "materials/ggx_albedo.h"
 #include "materials/microfacet_cosines.h"
-#include "materials/stretched_interface.h"
-#include "materials/stretched_lobe.h"
+#include "materials/stretched_ggx.h"
 
 namespace abbe {
 

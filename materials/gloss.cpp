@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "materials/fresnel.h"
-#include "materials/ggx_albedo.h"
+#include "materials/ggx.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #include "materials/layered.h"
 
-#include "materials/delta_pairs.h"
+#include "materials/bent_normal.h"
+#include "materials/direction_pairs.h"
 #include "materials/gloss.h"
-#include "materials/part_bsdf.h"
 #include "math/vec.h"
 
 #include <algorithm>

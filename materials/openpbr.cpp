@@ -1,18 +1,67 @@
 #include "materials/openpbr.h"
 
-#include "materials/attenuation_curve.h"
+#include "materials/bent_normal.h"
+#include "materials/interior_curves.h"
 #include "materials/openpbr_bsdf.h"
-#include "materials/openpbr_coat_frame.h"
-#include "materials/openpbr_inside.h"
-#include "materials/openpbr_tangent.h"
-#include "materials/openpbr_veil.h"
+#include "materials/sheen.h"
+#include "math/frame.h"
+#include "render/material.h"
+#include "render/surface_hit.h"
 #include "render/surface_input.h"
+#include "schema/type.h"
 #include "spectrum/curve.h"
 #include "spectrum/dispersion.h"
 
 #include <optional>
 
 namespace abbe {
+
+// The direction that an OpenPBR highlight is stretched along.
+
+// `tangent`: turns from the texture's u, or a texture of directions along u and v, 0 … 1 for -1 … 1. In render space,
+// of any length; across the unit normal n only about. Requires the parametrisation of the hit, without which shading.x
+// stands for u.
+Vec3 openPbrTangent(const schema::TexturedNumber& tangent, const SurfaceHit& hit, Vec3 n);
+
+// The axes of an OpenPBR coat, where it has a normal or a tangent of its own.
+
+// Immutable. Refers to the textures of the parameters.
+class OpenPbrCoatFrame {
+  public:
+    explicit OpenPbrCoatFrame(const OpenPbrParams&);
+
+    // Whether at() looks at the parametrisation of the hit.
+    bool usesTextures() const { return ownNormal() || tangent_.texture || tangent_.value != 0 || baseTurned_; }
+    // In hit.shading's axes; nothing where they are the same. Requires the parametrisation if usesTextures().
+    std::optional<Frame> at(const SurfaceHit& hit) const;
+
+  private:
+    bool ownNormal() const { return normal_.texture || normal_.value < 1; }
+    Vec3 normal(const SurfaceHit& hit) const;
+
+    schema::TexturedNumber normal_, tangent_;
+    bool baseTurned_; // the axes of the hit are those of the base, which has a tangent of its own
+};
+
+// What covers the light of an OpenPBR surface that shines: its coat and its fuzz [Andersson2024].
+
+// The coat absorbs along the refracted way; fuzz lets through what it does not throw back. Refers to the coat's colour.
+// Requires coats and fuzz without textures.
+class OpenPbrVeil final : public EmissionVeil {
+  public:
+    explicit OpenPbrVeil(const OpenPbrParams&);
+    // Whether there is anything to pass.
+    static bool needed(const OpenPbrParams&);
+
+    Spectrum passing(float cosine, const Wavelengths&) const noexcept override;
+
+  private:
+    float coat_, fuzz_; // shares covered
+    const Curve* color_;
+    float coatIor_;
+    SheenLobe sheen_;
+};
+
 namespace {
 
 // Cauchy's curve through n_d with the Abbe number V = (n_d - 1)/(n_F - n_C): lines of Fraunhofer, µm.
@@ -216,5 +265,60 @@ const Bsdf* OpenPbr::bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Aren
 } // namespace
 
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams& params) { return std::make_unique<OpenPbr>(params); }
+
+Vec3 openPbrTangent(const schema::TexturedNumber& tangent, const SurfaceHit& hit, Vec3 n) {
+    const bool known = lengthSquared(hit.dpdu) > 0;
+    const Frame along = Frame::fromNormalTangent(n, known ? hit.dpdu : hit.shading.x);
+    const float side = known && dot(along.y, hit.dpdv) < 0 ? -1.f : 1.f; // mirrored texture coordinates
+    if (!tangent.texture) {
+        const float angle = 2 * kPi * static_cast<float>(tangent.value);
+        return along.x * std::cos(angle) + along.y * (side * std::sin(angle));
+    }
+    const TextureWork work;
+    const Vec3 stored = tangent.texture->value(TextureQuery(hit));
+    return along.x * (2 * stored.x - 1) + along.y * (side * (2 * stored.y - 1));
+}
+
+OpenPbrCoatFrame::OpenPbrCoatFrame(const OpenPbrParams& p)
+    : normal_(p.geometryCoatNormal), tangent_(p.geometryCoatTangent), baseTurned_(turnsTangent(p)) {}
+
+// What the material wears has bent the hit's normal; the shape's own is known in its space.
+Vec3 OpenPbrCoatFrame::normal(const SurfaceHit& hit) const {
+    if (!ownNormal()) return hit.shading.z;
+    const Vec3 l = hit.localNormal, own = hit.localX * l.x + hit.localY * l.y + hit.localZ * l.z;
+    const float l2 = lengthSquared(own);
+    if (!(l2 > 0)) return hit.shading.z;
+    SurfaceHit plain = hit;
+    plain.shading.z = own * ((dot(own, hit.ng) < 0 ? -1 : 1) / std::sqrt(l2));
+    const auto follow = static_cast<float>(normal_.value);
+    const Vec3 n = normal_.texture ? mappedNormal({normal_.texture, 1}, plain)
+                                   : normalize(plain.shading.z * (1 - follow) + hit.shading.z * follow);
+    return consistentNormal(hit.ng, n, -hit.arrival);
+}
+
+std::optional<Frame> OpenPbrCoatFrame::at(const SurfaceHit& hit) const {
+    if (!usesTextures()) return std::nullopt;
+    const Vec3 n = normal(hit);
+    const Frame own = Frame::fromNormalTangent(n, openPbrTangent(tangent_, hit, n)), &base = hit.shading;
+    return Frame{base.toLocal(own.x), base.toLocal(own.y), base.toLocal(own.z)};
+}
+
+OpenPbrVeil::OpenPbrVeil(const OpenPbrParams& p)
+    : coat_(tints(p.coatColor) ? static_cast<float>(p.coatWeight.value) : 0),
+      fuzz_(static_cast<float>(p.fuzzWeight.value)), color_(p.coatColor.curve),
+      coatIor_(static_cast<float>(p.coatIor.value)), sheen_(static_cast<float>(p.fuzzRoughness.value)) {}
+
+bool OpenPbrVeil::needed(const OpenPbrParams& p) {
+    return p.emissionLuminance > 0 && ((p.coatWeight.value > 0 && tints(p.coatColor)) || p.fuzzWeight.value > 0);
+}
+
+Spectrum OpenPbrVeil::passing(float cosine, const Wavelengths& lambda) const noexcept {
+    Spectrum share(1 - fuzz_ * sheen_.albedo(cosine));
+    if (!(coat_ > 0)) return share;
+    const float sine2 = (1 - cosine) * (1 + cosine) / square(coatIor_);
+    const float inside = std::sqrt(std::max(1 - sine2, 1e-6f)); // as OpenPbrCover::cosineInCoat
+    const Spectrum way = log(max(color_->at(lambda), Spectrum(1e-6f))) * (0.5f / inside);
+    return share * fma(exp(way) - Spectrum(1.f), Spectrum(coat_), Spectrum(1.f));
+}
 
 } // namespace abbe

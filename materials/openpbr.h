@@ -2,10 +2,12 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "materials/interior_curves.h"
 #include "render/material.h"
 #include "schema/type.h"
 
 #include <memory>
+#include <optional>
 
 namespace abbe {
 
@@ -82,7 +84,20 @@ inline bool turnsTangent(const OpenPbrParams& p) {
 schema::TypeInfo openPbrType();
 // Reports what no single property can say wrong; false if it did.
 bool checkParams(const OpenPbrParams&, const schema::PlaceOf&, Diagnostics&);
-// The surface alone; what fills solids is insideOf() in openpbr_inside.h. The curves and textures must outlive it.
+// The surface alone; what fills solids is insideOf(). The curves and textures must outlive it.
 std::unique_ptr<const Material> makeOpenPbr(const OpenPbrParams&);
+
+// What fills solids with an OpenPBR surface: the medium of their subsurface part, or of scattering glass.
+
+// Whether light goes in and out through the matte part of the surface of a solid.
+bool hasSubsurfaceInside(const OpenPbrParams&);
+// Whether light refracts into the solid.
+bool mayRefract(const OpenPbrParams&);
+// Whether its clear part leads into a medium that scatters, which then absorbs, too.
+bool hasScatteringGlass(const OpenPbrParams&);
+
+// The medium of either; nothing if there is none. The curves of the parameters must outlive it. Requires parameters
+// that checkParams() has found right: there are never both.
+std::optional<SubsurfaceInside> insideOf(const OpenPbrParams&);
 
 } // namespace abbe

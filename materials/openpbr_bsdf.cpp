@@ -1,8 +1,7 @@
 #include "materials/openpbr_bsdf.h"
 
-#include "materials/delta_pairs.h"
-#include "materials/dielectric_bsdf.h"
-#include "materials/refracting_halves.h"
+#include "materials/dielectric.h"
+#include "materials/direction_pairs.h"
 #include "math/warp.h"
 
 namespace abbe {
@@ -18,7 +17,7 @@ OpenPbrBsdf::OpenPbrBsdf(const OpenPbrPoint& point) : point_(point) {
     const Spectrum& eta = point.dielectric.eta();
     const float weakest = -maxLane(-abs(eta - kOne));
     const Ggx& ggx = point.specular.ggx();
-    // A refracted lobe narrower than directions can tell is none, as in materials/dielectric_bsdf.h.
+    // A refracted lobe narrower than directions can tell is none, as in materials/dielectric.h.
     smooth_ = ggx.smooth() || (refracts() && std::max(ggx.alphaX(), ggx.alphaY()) * weakest < 5e-5f);
     if (smooth_) point_.specular = GgxLobe(Ggx::fromRoughness(0, 0));
     disperses_ = abbe::disperses(eta);
@@ -91,7 +90,7 @@ BsdfEval OpenPbrBsdf::evalFrom(const View& v, Vec3 wi, Transport transport) cons
                      : point_.filled     ? entering(v, flipped(wi))
                                          : refraction(v, wi, transport);
     if (!(wi.z < 0 && disperses_ && refracts())) return {lanes.fcos, lanes.pdf[0]};
-    // The hero alone may be unable to refract this way; see materials/dielectric_bsdf.cpp.
+    // The hero alone may be unable to refract this way; see materials/dielectric.cpp.
     const float pdf = std::max(lanes.pdf[0], 1e-7f * maxLane(lanes.pdf));
     if (!(pdf > 0)) return {};
     return {lanes.fcos, pdf, lanes.pdf / pdf};

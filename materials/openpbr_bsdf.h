@@ -9,7 +9,7 @@
 #include "materials/eon_diffuse.h"
 #include "materials/ggx_lobe.h"
 #include "materials/openpbr_interface.h"
-#include "materials/sheen_lobe.h"
+#include "materials/sheen.h"
 #include "math/frame.h"
 #include "render/bsdf.h"
 

@@ -1,6 +1,5 @@
 // What the parameters of an OpenPBR surface cannot be together.
 #include "materials/openpbr.h"
-#include "materials/openpbr_inside.h"
 #include "render/texture.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "materials/openpbr_inside.h"
-
-#include "materials/attenuation_curve.h"
+#include "materials/interior_curves.h"
+#include "materials/openpbr.h"
 #include "spectrum/curve.h"
 
 #include <algorithm>

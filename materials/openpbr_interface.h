@@ -6,7 +6,7 @@
 #pragma once
 
 #include "materials/fresnel.h"
-#include "materials/met_cosines.h"
+#include "materials/microfacet_cosines.h"
 #include "materials/thin_film.h"
 
 namespace abbe {

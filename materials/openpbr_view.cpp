@@ -1,5 +1,5 @@
 // What of an OpenPBR surface depends on the direction of view alone: the albedos by which its layers share the light.
-#include "materials/dielectric_bsdf.h"
+#include "materials/dielectric.h"
 #include "materials/openpbr_bsdf.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "materials/subsurface.h"
 
-#include "materials/delta_pairs.h"
 #include "materials/dielectric.h"
+#include "materials/direction_pairs.h"
 #include "materials/gloss.h"
 #include "math/warp.h"
 

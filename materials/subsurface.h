@@ -1,7 +1,7 @@
 // Skin, marble, wax, milk: light that wanders under the surface and comes out elsewhere.
 #pragma once
 
-#include "materials/subsurface_albedo.h"
+#include "materials/interior_curves.h"
 #include "render/material.h"
 #include "schema/type.h"
 

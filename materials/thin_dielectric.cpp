@@ -1,6 +1,6 @@
 #include "materials/thin_dielectric.h"
 
-#include "materials/delta_pairs.h"
+#include "materials/direction_pairs.h"
 #include "materials/fresnel.h"
 #include "render/surface_input.h"
 

@@ -1,6 +1,6 @@
 #include "materials/two_sided.h"
 
-#include "materials/part_bsdf.h"
+#include "materials/bent_normal.h"
 
 namespace abbe {
 namespace {

@@ -3,8 +3,8 @@
 //     g++ -std=c++20 -O3 -march=x86-64-v3 -Isrc -I. -Itests tools/make_ggx_albedo.cpp -o make_ggx_albedo -pthread
 //     ./make_ggx_albedo > materials/data/ggx_albedo.inl
 //
-// tests/unit/materials/ggx_albedo_test.cpp recomputes part of it.
-#include "materials/ggx_albedo.h"
+// tests/unit/materials/ggx_test.cpp recomputes part of it.
+#include "materials/ggx.h"
 #include "support/microfacet_walk.h"
 
 #include <cstdio>

@@ -5,7 +5,7 @@
 //     ./make_microfacet_cosines > materials/data/microfacet_cosines.inl
 //
 // tests/unit/materials/microfacet_cosines_test.cpp recomputes part of it.
-#include "materials/ggx_albedo.h"
+#include "materials/ggx.h"
 #include "materials/microfacet_cosines.h"
 #include "support/microfacet_reference.h"
 

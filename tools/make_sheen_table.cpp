@@ -3,7 +3,7 @@
 //
 //     g++ -std=c++20 -O3 -ffast-math -Isrc -I. -Itests tools/make_sheen_table.cpp -o make_sheen_table
 //     ./make_sheen_table > materials/data/sheen_table.inl
-#include "materials/sheen_lobe.h"
+#include "materials/sheen.h"
 #include "support/sheen_layer.h"
 
 #include <array>

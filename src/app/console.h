@@ -1,4 +1,5 @@
-// The terminal, or what stands in its place.
+// The terminal, or what stands in its place; what every command is told, whatever it does; and words as a shell takes
+// them.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace abbe {
 
@@ -43,5 +45,20 @@ class Console {
     bool interactive_ = false, color_ = false;
     MessageFormat format_ = MessageFormat::human;
 };
+
+struct CommonOptions {
+    std::string commandLine;        // as it would be typed in a shell
+    std::vector<std::string> words; // of it, after the program's name
+    ColorMode color = ColorMode::automatic;
+    MessageFormat format = MessageFormat::human;
+    Console console; // of the two
+    bool json = false;
+    int threads = 0; // 0: one per core
+};
+
+// The argument as a shell would need it.
+std::string shellQuoted(std::string_view argument);
+// The arguments of a line of them.
+std::vector<std::string> shellWords(std::string_view line);
 
 } // namespace abbe

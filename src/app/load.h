@@ -1,7 +1,7 @@
 // Parse and check: from the words of the command line to the meaning of a scene file.
 #pragma once
 
-#include "app/exit_code.h"
+#include "app/program_end.h"
 #include "base/diagnostic.h"
 #include "base/source.h"
 #include "schema/scene_tree.h"

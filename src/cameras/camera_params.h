@@ -2,9 +2,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
-#include "cameras/aperture.h"
 #include "cameras/exposure.h"
-#include "cameras/shutter.h"
 #include "math/frame.h"
 #include "math/motion.h"
 #include "render/camera.h"

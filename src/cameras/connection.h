@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/frame.h"
-#include "render/lens_connection.h"
+#include "render/camera.h"
 
 #include <optional>
 

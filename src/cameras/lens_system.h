@@ -2,8 +2,7 @@
 #pragma once
 
 #include "cameras/camera_params.h"
-#include "cameras/entrance_pupil.h"
-#include "cameras/exit_pupil.h"
+#include "cameras/pupils.h"
 
 #include <mutex>
 

@@ -1,7 +1,7 @@
 // The surfaces of a lens in their places: exact rays through them, and the paraxial quantities that describe the whole.
 #pragma once
 
-#include "cameras/aperture.h"
+#include "cameras/exposure.h"
 #include "cameras/lens_prescription.h"
 
 namespace abbe {

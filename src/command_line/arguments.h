@@ -1,18 +1,43 @@
-// What a command takes, as plain data: flags and arguments, and where each puts what it was given. The parser's library
-// is slow to compile and known to parser.cpp alone.
+// What a command takes, as plain data: flags and arguments, where each puts what it was given, and readers of values
+// that are more than a number or a word. The parser's library is slow to compile and known to parser.cpp alone.
 #pragma once
 
-#include "app/common_options.h"
+#include "app/console.h"
+#include "math/vec.h"
+#include "render/integrator.h"
+#include "schema/unit.h"
 
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 namespace abbe {
+
+// Each of these reads the whole text or returns nothing.
+
+// "640x480", "640×480"; both positive.
+std::optional<Vec2i> readSize(std::string_view text);
+// "12,34"; not negative.
+std::optional<Vec2i> readPixel(std::string_view text);
+// The same, but perhaps in the overscan: "-3,34".
+std::optional<Vec2i> readAnyPixel(std::string_view text);
+// "0,0,640,360": left, top, right, bottom, the last two exclusive; not empty.
+std::optional<PixelBounds> readCrop(std::string_view text);
+// "2/4": the second of four.
+std::optional<Vec2i> readPart(std::string_view text);
+// "45min", "0.5 %", "90": in SI units; a bare number is already in them.
+std::optional<double> readQuantity(std::string_view text, schema::Dimension dimension);
+
+// "512MiB", "4 GiB", "512": in MiB; at least 16.
+std::optional<double> readMebibytes(std::string_view text);
+
+// "1:12": a replicate, and the index of a sample of it.
+std::optional<SampleId> readSample(std::string_view text);
 
 // One flag, or one argument that is known by its place.
 struct Argument {

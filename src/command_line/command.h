@@ -1,8 +1,8 @@
 // A command as the program knows it: one row of a table, and the object that holds what it was asked to do.
 #pragma once
 
-#include "app/common_options.h"
-#include "app/exit_code.h"
+#include "app/console.h"
+#include "app/program_end.h"
 #include "command_line/arguments.h"
 
 #include <memory>

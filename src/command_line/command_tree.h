@@ -1,5 +1,6 @@
 // The commands and flags as plain data, read from the library's parser: what help, the man page and completions are
-// made of. Nothing else lists them.
+// made of. Nothing else lists them. And what is made of them: abbe(1) for `man`, and completion of commands, flags and
+// words of the language in shells.
 #pragma once
 
 #include <string>
@@ -38,5 +39,24 @@ std::string commandListText(const CommandInfo& root);
 
 // "abbe render": the command, or action of one, that these words name; null if there is none.
 const CommandInfo* findCommand(const CommandInfo& root, const std::vector<std::string>& words);
+
+// In the man macros of troff, UTF-8. `version` is that of the program: "0.1.0".
+std::string manPage(const CommandInfo& root, const std::string& version);
+
+// Scripts for the shell to read; `topics` are what `abbe explain` knows, sorted.
+std::string bashCompletion(const CommandInfo& root, const std::vector<std::string>& topics);
+std::string zshCompletion(const CommandInfo& root, const std::vector<std::string>& topics);
+std::string fishCompletion(const CommandInfo& root, const std::vector<std::string>& topics);
+
+// What stands where the command line has an argument or a value.
+enum class Expected : unsigned char { nothing, anything, file, word, topic };
+Expected expectedAt(const ArgumentInfo&); // `word`: one of its choices
+Expected expectedOf(const FlagInfo&);
+
+// How names of the files end that an argument means: ".scene"; empty: any file.
+std::string fileEnding(const ArgumentInfo&);
+
+// In single quotes, as bash and zsh read them.
+std::string singleQuoted(const std::string&);
 
 } // namespace abbe

@@ -1,8 +1,8 @@
 // The only file that knows CLI11, which is slow to compile.
 #include "command_line/parser.h"
 
-#include "app/shell_words.h"
-#include "app/version.h"
+#include "app/console.h"
+#include "app/identity.h"
 #include "schema/scene_tree.h"
 
 #include <CLI/CLI.hpp>

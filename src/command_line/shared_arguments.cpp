@@ -1,6 +1,6 @@
 #include "command_line/shared_arguments.h"
 
-#include "command_line/argument_values.h"
+#include "command_line/arguments.h"
 #include "render/integrator.h"
 
 namespace abbe {

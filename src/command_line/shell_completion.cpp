@@ -1,4 +1,4 @@
-#include "command_line/shell_completion.h"
+#include "command_line/command_tree.h"
 
 #include <algorithm>
 #include <fmt/format.h>

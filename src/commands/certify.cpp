@@ -1,6 +1,5 @@
-#include "commands/certify.h"
-
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "film/error_certificate.h"
 #include "film/measured_error.h"
 #include "io/exr_reader.h"
@@ -8,7 +7,7 @@
 #include "io/image.h"
 #include "io/image_compare.h"
 #include "pictures/display_view.h"
-#include "reports/certificate_file.h"
+#include "reports/image_header.h"
 
 #include <algorithm>
 #include <cmath>

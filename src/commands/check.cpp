@@ -1,8 +1,7 @@
-#include "commands/check.h"
-
 #include "app/load.h"
 #include "base/diagnostic.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "io/file.h"
 #include "scene/build.h"
 

@@ -1,22 +1,5 @@
 #include "commands/command_table.h"
 
-#include "commands/certify.h"
-#include "commands/check.h"
-#include "commands/compare.h"
-#include "commands/convert.h"
-#include "commands/denoise.h"
-#include "commands/doctor.h"
-#include "commands/explain.h"
-#include "commands/help.h"
-#include "commands/info.h"
-#include "commands/merge.h"
-#include "commands/reference.h"
-#include "commands/render.h"
-#include "commands/replay.h"
-#include "commands/study.h"
-#include "commands/verify.h"
-#include "commands/volume.h"
-
 namespace abbe {
 
 namespace {

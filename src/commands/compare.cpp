@@ -1,7 +1,6 @@
-#include "commands/compare.h"
-
 #include "command_line/shared_arguments.h"
-#include "pages/compare_page.h"
+#include "commands/command_table.h"
+#include "pages/pages.h"
 #include "pictures/compare_figures.h"
 #include "schema/scene_tree.h"
 

@@ -1,7 +1,6 @@
-#include "commands/convert.h"
-
-#include "app/version.h"
+#include "app/identity.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "io/exr_deep.h"
 #include "io/image.h"
 #include "io/png_writer.h"

@@ -1,9 +1,9 @@
-#include "commands/denoise.h"
+#include "denoise/denoise.h"
 
 #include "app/json.h"
 #include "base/stopwatch.h"
 #include "command_line/shared_arguments.h"
-#include "denoise/denoise.h"
+#include "commands/command_table.h"
 #include "io/exr_reader.h"
 #include "io/exr_writer.h"
 

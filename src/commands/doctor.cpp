@@ -1,10 +1,9 @@
-#include "commands/doctor.h"
-
+#include "app/identity.h"
 #include "app/json.h"
-#include "app/version.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "doctor/numeric_check.h"
 #include "io/file.h"
 #include "io/ocio_view.h"

@@ -1,5 +1,3 @@
-#include "commands/explain.h"
-
 #include "app/json.h"
 #include "app/load.h"
 #include "base/diagnostic.h"
@@ -11,7 +9,7 @@
 #include "parser/presets.h"
 #include "rendering/path_tracer.h"
 #include "rendering/render_params.h"
-#include "reports/light_path_text.h"
+#include "reports/render_text.h"
 #include "scene/build.h"
 #include "scene/registry.h"
 #include "schema/describe.h"

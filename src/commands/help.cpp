@@ -1,8 +1,5 @@
-#include "commands/help.h"
-
 #include "command_line/parser.h"
 #include "commands/command_table.h"
-#include "commands/explain.h"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,13 @@
-#include "commands/info.h"
-
-#include "app/hash128.h"
+#include "app/identity.h"
 #include "app/json.h"
 #include "app/load.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "io/aces_container.h"
 #include "io/exr_deep.h"
 #include "io/file.h"
-#include "reports/certificate_file.h"
-#include "reports/cost_text.h"
-#include "reports/provenance.h"
+#include "reports/image_header.h"
+#include "reports/render_text.h"
 #include "scene/build.h"
 
 #include <algorithm>

@@ -1,10 +1,7 @@
-#include "commands/merge.h"
-
 #include "checkpoints/checkpoint_file.h"
 #include "command_line/parser.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
-#include "commands/render.h"
 
 #include <algorithm>
 #include <filesystem>

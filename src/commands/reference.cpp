@@ -1,11 +1,7 @@
-#include "commands/reference.h"
-
-#include "app/version.h"
+#include "app/identity.h"
 #include "base/source.h"
 #include "command_line/command_tree.h"
-#include "command_line/man_page.h"
 #include "command_line/parser.h"
-#include "command_line/shell_completion.h"
 #include "commands/command_table.h"
 #include "io/file.h"
 #include "parser/presets.h"

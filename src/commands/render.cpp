@@ -1,8 +1,7 @@
-#include "commands/render.h"
-
 #include "base/memory_limit.h"
-#include "command_line/argument_values.h"
+#include "command_line/arguments.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "render_run/render_run.h"
 
 namespace abbe {

@@ -1,13 +1,10 @@
-#include "commands/replay.h"
-
-#include "app/shell_words.h"
-#include "command_line/argument_values.h"
+#include "app/console.h"
+#include "command_line/arguments.h"
 #include "command_line/parser.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
-#include "commands/render.h"
 #include "io/exr_reader.h"
-#include "reports/provenance.h"
+#include "reports/image_header.h"
 
 #include <algorithm>
 #include <filesystem>

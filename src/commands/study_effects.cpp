@@ -1,16 +1,14 @@
 #include "commands/study_effects.h"
 
-#include "app/interrupt.h"
-#include "app/machine.h"
-#include "app/version.h"
+#include "app/identity.h"
+#include "app/program_end.h"
 #include "base/parallel.h"
 #include "io/file.h"
 #include "io/png_writer.h"
-#include "pages/page_text.h"
-#include "pages/study_page.h"
-#include "reports/cost_text.h"
-#include "reports/provenance.h"
-#include "reports/study_progress.h"
+#include "pages/pages.h"
+#include "reports/image_header.h"
+#include "reports/progress.h"
+#include "reports/render_text.h"
 #include "spectrum/color_space.h"
 
 #include <chrono>

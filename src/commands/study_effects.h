@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/load.h"
-#include "commands/study.h"
+#include "commands/command_table.h"
 #include "study/effect_study.h"
 
 #include <string>

@@ -1,13 +1,12 @@
-#include "commands/verify.h"
-
-#include "app/interrupt.h"
+#include "app/program_end.h"
 #include "base/stopwatch.h"
-#include "command_line/argument_values.h"
+#include "command_line/arguments.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "commands/measured_scene.h"
+#include "reports/findings.h"
+#include "reports/progress.h"
 #include "reports/render_report.h"
-#include "reports/study_progress.h"
-#include "reports/verify_text.h"
 #include "verify/verify_run.h"
 
 #include <charconv>

@@ -1,8 +1,7 @@
-#include "commands/volume.h"
-
-#include "app/interrupt.h"
 #include "app/json.h"
+#include "app/program_end.h"
 #include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
 #include "io/file.h"
 #include "volumes/vdb_file.h"
 

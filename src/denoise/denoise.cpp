@@ -1,8 +1,7 @@
 #include "denoise/denoise.h"
 
 #include "base/check.h"
-#include "denoise/nfor.h"
-#include "denoise/wavelets.h"
+#include "denoise/methods.h"
 
 #include <algorithm>
 #include <cmath>

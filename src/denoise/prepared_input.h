@@ -1,4 +1,5 @@
-// A picture made ready for denoising: finite, of one brightness, in bordered planes.
+// Removes the noise of features (albedo, normal, depth) before they explain colours. A picture made ready for
+// denoising: finite, of one brightness, in bordered planes.
 #pragma once
 
 #include "denoise/denoise.h"
@@ -6,6 +7,10 @@
 #include "denoise/regression.h"
 
 namespace abbe {
+
+// NL-means over 11 × 11 pixels, each half with the weights of the other, and the mean of both [Bitterli2016, §5.1].
+// The planes of one feature share their weights.
+std::vector<Plane> filterFeature(const HalfBuffers& feature, float epsilon);
 
 struct PreparedInput {
     HalfBuffers colour; // linear, scaled

@@ -1,7 +1,7 @@
 // First-order regression of colours on features, the core of the denoiser.
 #pragma once
 
-#include "denoise/patch_weights.h"
+#include "denoise/half_buffers.h"
 
 #include <array>
 #include <vector>

@@ -1,5 +1,4 @@
-#include "doctor/geometry_checks.h"
-
+#include "doctor/numeric_check.h"
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
 #include "math/hash.h"

@@ -1,7 +1,6 @@
-#include "doctor/render_checks.h"
-
 #include "base/parallel.h"
 #include "base/source.h"
+#include "doctor/numeric_check.h"
 #include "film/film_params.h"
 #include "film/pixel_film.h"
 #include "math/hash.h"

@@ -1,7 +1,6 @@
-#include "doctor/sampling_checks.h"
-
-#include "geometry/sphere.h"
-#include "geometry/spherical_triangle.h"
+#include "doctor/numeric_check.h"
+#include "geometry/round_shapes.h"
+#include "geometry/spherical_sampling.h"
 #include "math/distribution.h"
 #include "math/hash.h"
 #include "math/warp.h"

@@ -1,5 +1,4 @@
-#include "doctor/scattering_checks.h"
-
+#include "doctor/numeric_check.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
 #include "materials/thin_film.h"

@@ -1,5 +1,4 @@
-#include "doctor/spectral_checks.h"
-
+#include "doctor/numeric_check.h"
 #include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/rgb_upsampling.h"

@@ -3,8 +3,8 @@
 
 #include "film/film_layers.h"
 #include "film/layer_plan.h"
-#include "render/path_component.h"
-#include "render/sample_recorder.h"
+#include "render/film.h"
+#include "render/path_observer.h"
 #include "spectrum/spectrum.h"
 
 #include <cstddef>

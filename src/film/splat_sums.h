@@ -3,7 +3,7 @@
 
 #include "film/film_planes.h"
 #include "math/exact_sum.h"
-#include "render/splat.h"
+#include "render/film.h"
 #include "spectrum/xyz.h"
 
 #include <cstdint>

@@ -1,11 +1,54 @@
-// Hair, fur, wires, grass: thin curves with a width.
+// Hair, fur, wires, grass: thin curves with a width; one segment of them as a polynomial, in double, and where exactly
+// a ray meets it.
 #pragma once
 
 #include "render/shape.h"
 
+#include <array>
 #include <vector>
 
 namespace abbe {
+
+// Position and radius over u in [0, 1]: Σ c[k] u^k.
+class CurveSegment {
+  public:
+    // `points`: the segment's first control point; two are read for linear, else four.
+    CurveSegment(CurveBasis, const SizedPoint* points);
+
+    Vec3d position(double u) const { return c_[0] + u * (c_[1] + u * (c_[2] + u * c_[3])); }
+    Vec3d derivative(double u) const { return c_[1] + u * (2.0 * c_[2] + (3 * u) * c_[3]); }
+    Vec3d secondDerivative(double u) const { return 2.0 * c_[2] + (6 * u) * c_[3]; }
+    // Not negative, though a spline through positive radii may be.
+    double radius(double u) const { return std::max(0.0, r_[0] + u * (r_[1] + u * (r_[2] + u * r_[3]))); }
+    double radiusDerivative(double u) const { return r_[1] + u * (2 * r_[2] + 3 * u * r_[3]); }
+
+    // Unit direction of travel. Where the derivative vanishes (cusps, equal control points) it comes from differences
+    // over a growing interval (docs/hard_cases.md, case 22); nothing if the whole segment is one point.
+    std::optional<Vec3d> tangent(double u) const;
+    // The control points of the same segment as a Bézier curve: it lies in their hull, its radius between theirs.
+    void bezier(std::array<Vec3d, 4>& points, std::array<double, 4>& radii) const;
+
+  private:
+    std::array<Vec3d, 4> c_;
+    std::array<double, 4> r_;
+};
+
+struct CurvePoint {
+    Vec3d p;       // on the surface
+    Vec3d normal;  // unit: out of a tube, to the ray from a ribbon
+    Vec3d tangent; // unit
+    double u;
+    double across; // −1 … 1, as the ray sees it
+};
+
+// `u` and `t` as Embree found them, with float precision and, far from the ray's origin, less. `d` is of unit length.
+// All results are finite, for degenerate segments too.
+CurvePoint tubePoint(const CurveSegment&, double u, Vec3d o, Vec3d d, double t);
+// Of two spheres and the cone that touches both.
+CurvePoint conePoint(const SizedPoint& a, const SizedPoint& b, Vec3d o, Vec3d d, double t);
+// Distances at which a ray enters and leaves that body, which may lie behind it.
+std::optional<Vec2d> meetCone(const SizedPoint& a, const SizedPoint& b, Vec3d o, Vec3d d);
+CurvePoint ribbonPoint(const CurveSegment&, double u, Vec3d o, Vec3d d);
 
 // Strands one after the other: strand i has the next `strandSizes[i]` control points.
 struct CurveData {

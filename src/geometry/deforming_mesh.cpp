@@ -3,7 +3,6 @@
 #include "base/check.h"
 #include "geometry/mesh_corners.h"
 #include "geometry/surface_math.h"
-#include "geometry/time_steps.h"
 
 namespace abbe {
 

@@ -1,6 +1,6 @@
 #include "geometry/frustum.h"
 
-#include "geometry/place_shape.h"
+#include "geometry/shape_params.h"
 #include "math/warp.h"
 
 #include <array>

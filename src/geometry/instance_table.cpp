@@ -2,7 +2,7 @@
 
 #include "base/check.h"
 #include "base/work.h"
-#include "geometry/embree_sink.h"
+#include "geometry/embree_scene.h"
 
 #include <cstddef>
 

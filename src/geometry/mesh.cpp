@@ -2,11 +2,116 @@
 
 #include "base/check.h"
 #include "geometry/mesh_corners.h"
-#include "geometry/near_polygon.h"
+#include "geometry/spherical_sampling.h"
 #include "geometry/surface_math.h"
+#include "math/bounds.h"
 #include "math/warp.h"
+#include "render/material.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
+
+namespace {
+
+template <typename Faces>
+std::optional<std::string> indexError(const Faces& faces, std::size_t vertices, const char* what) {
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        for (std::uint32_t v : faces[i])
+            if (v >= vertices)
+                return fmt::format("{} {} refers to vertex {}, but there are {} vertices", what, i, v, vertices);
+    return std::nullopt;
+}
+
+std::optional<std::string> findError(const MeshData& m) {
+    const std::size_t n = m.positions.size();
+    if (n > 0xfffffffeu || m.triangles.size() + 2 * m.quads.size() >= 0xffffffffu)
+        return "the mesh has more vertices or faces than 32 bits can count";
+    if (!m.normals.empty() && m.normals.size() != n)
+        return fmt::format("{} normals for {} vertices", m.normals.size(), n);
+    if (!m.uvs.empty() && m.uvs.size() != n) return fmt::format("{} uvs for {} vertices", m.uvs.size(), n);
+    for (std::size_t i = 0; i < n; ++i)
+        if (!isFinite(m.positions[i])) return fmt::format("the position of vertex {} is not finite", i);
+    for (std::size_t i = 0; i < m.normals.size(); ++i)
+        if (!isFinite(m.normals[i])) return fmt::format("the normal of vertex {} is not finite", i);
+    for (std::size_t i = 0; i < m.uvs.size(); ++i)
+        if (!isFinite(m.uvs[i].x) || !isFinite(m.uvs[i].y)) return fmt::format("the uv of vertex {} is not finite", i);
+    if (auto e = indexError(m.triangles, n, "triangle")) return e;
+    return indexError(m.quads, n, "quad");
+}
+
+// Erases faces together with their entries in `groups`. Returns how many.
+template <typename Face, typename Predicate>
+std::size_t eraseFaces(std::vector<Face>& faces, std::vector<std::uint32_t>* groups, const Predicate& unwanted) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (unwanted(i)) continue;
+        faces[kept] = faces[i];
+        if (groups) (*groups)[kept] = (*groups)[i];
+        ++kept;
+    }
+    const std::size_t erased = faces.size() - kept;
+    faces.resize(kept);
+    if (groups) groups->resize(kept);
+    return erased;
+}
+
+// Quads that name one corner twice in a row become triangles; faces with fewer than three corners go.
+void removeRepeated(MeshData& m, FaceGroups* groups, MeshCleanup& report) {
+    const auto repeated = [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+    report.repeatedIndices += eraseFaces(m.triangles, groups ? &groups->triangles : nullptr,
+                                         [&](std::size_t i) { return repeated(m.triangles[i]); });
+    eraseFaces(m.quads, groups ? &groups->quads : nullptr, [&](std::size_t face) {
+        const auto& q = m.quads[face];
+        if (q[0] == q[2] || q[1] == q[3]) {
+            ++report.repeatedIndices;
+            return true;
+        }
+        for (int i = 0; i < 4; ++i) {
+            if (q[i] != q[(i + 1) % 4]) continue;
+            const std::array<std::uint32_t, 3> t{q[i], q[(i + 2) % 4], q[(i + 3) % 4]};
+            if (repeated(t)) {
+                ++report.repeatedIndices;
+            } else {
+                m.triangles.push_back(t);
+                if (groups) groups->triangles.push_back(groups->quads[face]);
+                ++report.quadsToTriangles;
+            }
+            return true;
+        }
+        return false;
+    });
+}
+
+} // namespace
+
+MeshCleanup cleanMesh(MeshData& m, FaceGroups* groups) {
+    MeshCleanup report;
+    report.error = findError(m);
+    if (report.error) return report;
+    removeRepeated(m, groups, report);
+
+    Bounds3d box;
+    for (Vec3 p : m.positions) box.add(Vec3d(p));
+    const double diagonal2 = box.empty() ? 0 : lengthSquared(box.diagonal());
+    const auto sliver = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        const Vec3d p0(m.positions[a]), p1(m.positions[b]), p2(m.positions[c]);
+        const double longest2 = std::max({lengthSquared(p1 - p0), lengthSquared(p2 - p1), lengthSquared(p0 - p2)});
+        const double twice = length(triangleCross(p0, p1, p2));
+        return !(twice > 1e-6 * longest2) && !(0.5 * twice > 1e-12 * diagonal2);
+    };
+    report.zeroArea += eraseFaces(m.triangles, groups ? &groups->triangles : nullptr, [&](std::size_t i) {
+        const auto& t = m.triangles[i];
+        return sliver(t[0], t[1], t[2]);
+    });
+    report.zeroArea += eraseFaces(m.quads, groups ? &groups->quads : nullptr, [&](std::size_t i) {
+        const auto& q = m.quads[i];
+        return sliver(q[0], q[1], q[3]) && sliver(q[2], q[3], q[1]);
+    });
+    return report;
+}
 
 namespace {
 
@@ -268,6 +373,72 @@ std::optional<RawHit> Mesh::locate(Vec3 p, std::uint32_t part, const Ray& ray) c
     raw.u = std::clamp(q.x, 0.f, 1.f);
     raw.v = std::clamp(q.y, 0.f, 1.f);
     return raw;
+}
+
+namespace {
+
+// Where a line meets the plane of a triangle with the edges e1 and e2 from `corner`, and by how much that is outside.
+struct PlanePoint {
+    double s = 0, t = 0, outside = std::numeric_limits<double>::infinity();
+    Vec3d p;
+};
+
+PlanePoint meet(Vec3d corner, Vec3d e1, Vec3d e2, Vec3d origin, Vec3d direction) {
+    const Vec3d across = cross(e1, e2);
+    const double area2 = lengthSquared(across), distance = dot(corner - origin, across) / dot(direction, across);
+    if (!(area2 > 0) || !std::isfinite(distance)) return {};
+    PlanePoint q;
+    q.p = origin + direction * distance;
+    const Vec3d d = q.p - corner;
+    q.s = dot(d, cross(e2, across)) / area2;
+    q.t = dot(d, cross(across, e1)) / area2;
+    q.outside = std::max(std::max(-q.s, -q.t), std::max(q.s + q.t - 1, 0.0));
+    return q;
+}
+
+} // namespace
+
+std::optional<SurfacePatch> Mesh::patch(const SurfaceHit& hit, Vec3d origin, Vec3d direction) const noexcept {
+    const auto& p = data_.positions;
+    const auto [first, count] = trianglesOf(hit.primitive);
+    std::uint64_t chosen = first;
+    PlanePoint at;
+    for (std::uint64_t i = first; i < first + static_cast<std::uint64_t>(count); ++i) {
+        const auto [a, b, c] = triangle(i);
+        const PlanePoint q = meet(Vec3d(p[a]), Vec3d(p[b]) - Vec3d(p[a]), Vec3d(p[c]) - Vec3d(p[a]), origin, direction);
+        if (q.outside < at.outside) at = q, chosen = i;
+    }
+    if (!std::isfinite(at.outside)) return std::nullopt;
+    const auto [a, b, c] = triangle(chosen);
+    const Vec3d e1 = Vec3d(p[b]) - Vec3d(p[a]), e2 = Vec3d(p[c]) - Vec3d(p[a]), across = cross(e1, e2);
+    const Vec3d ng = normalize(across);
+    SurfacePatch patch{at.p, ng, ng, {}, {}};
+    if (data_.normals.empty()) return patch;
+    // As shade(): linear over the triangle, then made unit.
+    const Vec3d n0(data_.normals[a]), d1 = Vec3d(data_.normals[b]) - n0, d2 = Vec3d(data_.normals[c]) - n0;
+    const Vec3d n = n0 + d1 * at.s + d2 * at.t;
+    if (!isUsableNormal(Vec3(n))) return patch;
+    const double area2 = lengthSquared(across), scale = (dot(n, ng) < 0 ? -1 : 1) / length(n);
+    patch.n = n * scale;
+    patch.along = {cross(e2, across) / area2, cross(across, e1) / area2};
+    patch.change = {(d1 - patch.n * dot(d1, patch.n)) * scale, (d2 - patch.n * dot(d2, patch.n)) * scale};
+    return patch;
+}
+
+FaceMaterials::FaceMaterials(std::unique_ptr<const Shape> shape, std::vector<const Material*> materials,
+                             std::vector<std::uint16_t> choice)
+    : shape_(std::move(shape)), materials_(std::move(materials)), choice_(std::move(choice)) {
+    for (const std::uint16_t c : choice_) ABBE_CHECK(c < materials_.size());
+}
+
+void FaceMaterials::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
+    shape_->surface(raw, ray, hit);
+    ABBE_DCHECK(hit.primitive < choice_.size());
+    if (const Material* own = materials_[choice_[hit.primitive]]) hit.material = own;
+}
+
+bool FaceMaterials::usesTextures() const {
+    return std::ranges::any_of(materials_, [](const Material* m) { return m && m->usesTextures(); });
 }
 
 } // namespace abbe

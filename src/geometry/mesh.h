@@ -1,14 +1,35 @@
-// Polygon meshes: triangles and quads as they are, no subdivision.
+// Polygon meshes: triangles and quads as they are, no subdivision. Checks a mesh and removes what cannot be rendered,
+// and gives faces materials of their own.
 #pragma once
 
-#include "geometry/quad.h"
+#include "geometry/flat_shapes.h"
 #include "math/mesh_data.h"
 #include "render/shape.h"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace abbe {
+
+struct MeshCleanup {
+    std::uint64_t zeroArea = 0;         // faces removed: slivers of no measurable area
+    std::uint64_t repeatedIndices = 0;  // faces removed: fewer than three different corners
+    std::uint64_t quadsToTriangles = 0; // quads with one repeated corner
+    // What makes the mesh unusable, naming the face or the vertex (from 0); the mesh is then unchanged.
+    std::optional<std::string> error;
+
+    std::uint64_t removed() const { return zeroArea + repeatedIndices; }
+};
+
+// Errors: indices beyond the vertices, positions, normals or uvs that are not finite, normals or uvs that are not one
+// per vertex, more faces than 32 bits count. A face has no area if twice its area is below 1e-6 of the square of its
+// longest edge and its area below 1e-12 of the square of the mesh's diagonal: small but well-shaped faces stay.
+// Groups stay with their faces. Requires groups, where given, of as many faces as the mesh has.
+MeshCleanup cleanMesh(MeshData&, FaceGroups* = nullptr);
 
 struct MeshCorners;
 
@@ -73,6 +94,38 @@ class Mesh final : public Shape, public SurfaceSampling, public VertexAttributes
     double area_ = 0;
     bool mirrored_;
     std::unique_ptr<const Quad> lone_; // the mesh itself if it is a single quad
+};
+
+// One geometry, so that there are no seams between materials: what is hit is the inner shape; only the material of the
+// hit is another. `choice[SurfaceHit::primitive]` is a position in `materials`; where that is null, the hit keeps the
+// material that the shape was bound to. Materials are referred to and must outlive this.
+class FaceMaterials final : public Shape {
+  public:
+    // Requires a choice for every primitive of the shape, within `materials`.
+    FaceMaterials(std::unique_ptr<const Shape> shape, std::vector<const Material*> materials,
+                  std::vector<std::uint16_t> choice);
+
+    const Shape& inner() const { return *shape_; }
+
+    Bounds3 bounds() const override { return shape_->bounds(); }
+    void commit(GeometrySink& sink) const override { shape_->commit(sink); }
+    std::optional<RawHit> intersect(const Ray& ray) const override { return shape_->intersect(ray); }
+    bool confirms(const RawHit& raw, const Ray& ray) const override { return shape_->confirms(raw, ray); }
+    void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
+    void parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const override {
+        shape_->parametrize(raw, ray, hit);
+    }
+    bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
+    const SurfaceSampling* sampling() const override { return shape_->sampling(); }
+    const VertexAttributes* attributes() const override { return shape_->attributes(); }
+    float meanCurvature(const SurfaceHit& hit) const override { return shape_->meanCurvature(hit); }
+    bool usesTextures() const override;
+    double area() const override { return shape_->area(); }
+
+  private:
+    std::unique_ptr<const Shape> shape_;
+    std::vector<const Material*> materials_;
+    std::vector<std::uint16_t> choice_;
 };
 
 } // namespace abbe

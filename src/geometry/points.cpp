@@ -1,10 +1,8 @@
 #include "geometry/points.h"
 
 #include "base/check.h"
-#include "geometry/disk.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "geometry/surface_math.h"
-#include "geometry/time_steps.h"
 
 namespace abbe {
 

@@ -1,4 +1,5 @@
-// What every shape of the language has, and what a type of shapes is made with (docs/adding_a_shape.md).
+// What every shape of the language has, and what a type of shapes is made with (docs/adding_a_shape.md): its
+// parameters, and shapes in the space that a map leads to, with what keeps them out of it.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -140,5 +141,23 @@ template <typename P> schema::FieldInfo axisField() {
         .doc("Direction of the axis, of any length; up when absent.")
         .example("axis 0 1 0");
 }
+
+bool inReach(Vec3d p);
+// E0605 and E0604.
+void reportOutOfReach(Span, Diagnostics&);
+void reportNoArea(Span, Diagnostics&, const std::string& what);
+
+// Turns the y axis to `axis`, moves the origin to `center`. Requires axis != 0.
+Transform uprightAt(Vec3d center, Vec3d axis);
+// Whether an axis, if there is one, has a direction; false after an error.
+bool checkAxis(const std::optional<Vec3d>&, const ShapeContext&);
+
+// A mesh whose outer side stays outside under mirrors. Null after an error located at `span`.
+std::unique_ptr<const Shape> placeMesh(MeshData, const Transform& place, Span, Diagnostics&);
+
+// Calls make(map) for a shape that any map but a flat one can place; null after an error: the map flattens the shape or
+// moves it too far away.
+std::unique_ptr<const Shape> placeParametric(const Transform& map, const ShapeContext&,
+                                             const std::function<std::unique_ptr<const Shape>(const Transform&)>& make);
 
 } // namespace abbe

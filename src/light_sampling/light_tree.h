@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "light_sampling/glossy_receiver.h"
-#include "render/light_bounds.h"
+#include "render/light.h"
 #include "render/ray.h"
 #include "render/receiver.h"
 #include "spectrum/spectrum.h"

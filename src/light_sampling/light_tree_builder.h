@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "render/light_bounds.h"
+#include "render/light.h"
 
 #include <cstdint>
 #include <span>

@@ -4,8 +4,8 @@
 
 #include "lights/amount.h"
 #include "lights/light_texture.h"
-#include "render/emission_veil.h"
 #include "render/light.h"
+#include "render/material.h"
 #include "render/shape.h"
 
 #include <memory>

@@ -1,6 +1,6 @@
 #include "lights/area_light_types.h"
 
-#include "lights/amount_fields.h"
+#include "lights/amount.h"
 
 namespace abbe {
 

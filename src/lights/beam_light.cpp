@@ -1,6 +1,6 @@
 #include "lights/beam_light.h"
 
-#include "lights/amount_fields.h"
+#include "lights/amount.h"
 #include "math/warp.h"
 
 namespace abbe {

@@ -1,8 +1,8 @@
 #include "lights/daylight_light.h"
 
 #include "lights/amount.h"
-#include "lights/scene_disk.h"
-#include "lights/solar_spectrum.h"
+#include "lights/clear_sky.h"
+#include "lights/light_context.h"
 #include "lights/sun_light.h"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "lights/amount.h"
 #include "lights/clear_sky.h"
 #include "lights/light_context.h"
-#include "lights/sun_direction.h"
+#include "lights/sun_light.h"
 #include "math/distribution.h"
 #include "render/light.h"
 #include "render/visible_field.h"

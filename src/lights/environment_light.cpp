@@ -1,7 +1,7 @@
 #include "lights/environment_light.h"
 
 #include "base/check.h"
-#include "lights/scene_disk.h"
+#include "lights/light_context.h"
 #include "math/warp.h"
 #include "spectrum/curve.h"
 #include "spectrum/sensor.h"

@@ -1,7 +1,7 @@
 #include "lights/ies_light.h"
 
 #include "base/check.h"
-#include "lights/amount_fields.h"
+#include "lights/amount.h"
 #include "spectrum/sensor.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "lights/light_texture.h"
 
 #include "math/warp.h"
-#include "render/texture_query.h"
+#include "render/surface_input.h"
 #include "spectrum/sensor.h"
 
 #include <array>

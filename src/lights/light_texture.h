@@ -3,10 +3,10 @@
 #pragma once
 
 #include "math/distribution.h"
-#include "render/own_space.h"
 #include "render/shape.h"
+#include "render/surface_hit.h"
+#include "render/surface_input.h"
 #include "render/texture.h"
-#include "render/texture_work.h"
 #include "spectrum/curve.h"
 
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lights/area_light.h"
-#include "lights/light_motion.h"
+#include "lights/light_context.h"
 
 namespace abbe {
 

@@ -1,6 +1,6 @@
 #include "lights/point_light.h"
 
-#include "lights/amount_fields.h"
+#include "lights/amount.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 #include "lights/sky_light.h"
 
-#include "lights/amount_fields.h"
-#include "lights/scene_disk.h"
+#include "lights/amount.h"
+#include "lights/light_context.h"
 #include "math/frame.h"
 #include "math/warp.h"
 

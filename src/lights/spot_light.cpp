@@ -1,6 +1,6 @@
 #include "lights/spot_light.h"
 
-#include "lights/amount_fields.h"
+#include "lights/amount.h"
 #include "math/frame.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Air and fog: everywhere, thinner with height.
 #pragma once
 
-#include "media/optical_medium.h"
+#include "media/medium_optics.h"
 
 namespace abbe {
 

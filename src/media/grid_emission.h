@@ -1,8 +1,10 @@
 // Flames: what a volume gives off, found along rays and sampled as a light.
+// A volume that shines, as one of the scene's lights.
 #pragma once
 
 #include "media/emission_bricks.h"
-#include "render/medium_emission.h"
+#include "render/light.h"
+#include "render/medium.h"
 #include "volumes/brick_walk.h"
 
 namespace abbe {
@@ -35,6 +37,29 @@ class GridEmission final : public MediumEmission {
     float edge_ = 0;
     double power_ = 0;
     Vec3 centre_;
+};
+
+class VolumeLight final : public Light {
+  public:
+    // Must outlive it. Requires that it is not dark.
+    explicit VolumeLight(const GridEmission& emission) : emission_(emission) {}
+
+    // The visible power is a flame's: most of what it gives off is red.
+    LightOutput output() const override {
+        return {.power = emission_.power(), .visiblePower = 0.15 * emission_.power()};
+    }
+    std::optional<LightBounds> bounds(std::uint32_t) const override {
+        return LightBounds{.box = emission_.bounds(), .power = static_cast<float>(visiblePower())};
+    }
+    std::optional<LightReach> reach(const Ray&, float tMax) const noexcept override {
+        return LightReach{emission_.centre(), 0, tMax};
+    }
+    const MediumEmission* emission() const override { return &emission_; }
+    std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
+                                      float time) const noexcept override;
+
+  private:
+    const GridEmission& emission_;
 };
 
 } // namespace abbe

@@ -1,8 +1,14 @@
 // A voxel grid that has its place in a scene.
+// Colour of what scatters, from RGB voxels.
+// Fields that drift while the shutter is open.
 #pragma once
 
 #include "base/check.h"
+#include "spectrum/upsampling_table.h"
 #include "volumes/voxel_grid.h"
+
+#include <memory>
+#include <optional>
 
 namespace abbe {
 
@@ -47,6 +53,75 @@ template <typename Value> class FieldAlong {
     typename BasicVoxelGrid<Value>::Sampler sampler_;
     const Transform* toIndex_;
     Vec3d origin_, direction_;
+};
+
+// A share of the albedo, from scene-linear RGB in [0, 1]; components outside count as the nearest within. The table is
+// for the RGB space of the voxels.
+struct GridColor {
+    GridField<Vec3> field;
+    std::unique_ptr<const UpsamplingTable> table;
+};
+
+// Along a line of render space, for one thread. Requires a color for anything but construction.
+class ColorAlong {
+  public:
+    ColorAlong(const GridColor* color, Vec3d origin, Vec3d direction) : color_(color) {
+        if (color) field_.emplace(color->field, origin, direction);
+    }
+    Spectrum at(float t, const Wavelengths& w) noexcept { return color_->table->lookup(field_->at(t)).at(w); }
+    Spectrum at(float t, Vec3d shift, const Wavelengths& w) noexcept {
+        return color_->table->lookup(field_->at(t, shift)).at(w);
+    }
+
+  private:
+    const GridColor* color_;
+    std::optional<FieldAlong<Vec3>> field_;
+};
+
+// As a file states it.
+struct GridVelocity {
+    VectorGrid grid;     // in the file's own world, per second
+    double scale = 1;    // factor of it
+    double first = 0;    // s from the moment of the file's fields to the opening of the shutter
+    double duration = 0; // s that it is open, >= 0
+};
+
+// What is at x now was at x - v(x) s when the file's fields were taken, s seconds ago. Immutable, thread-safe.
+class GridMotion {
+  public:
+    GridMotion(GridVelocity, const Transform& worldToRender);
+
+    bool moves() const { return longestWay_ > 0; }
+
+  private:
+    friend class MotionAlong;
+    friend double driftInVoxels(const GridMotion&, const GridField<float>&);
+    GridField<Vec3> velocity_;
+    Transform toRender_; // of vectors, with the factor
+    double first_, duration_;
+    double longestWay_; // that anything goes, in the file's world over the factor
+};
+
+// How far the things of a grid drift at most, along any axis, in its voxels.
+double driftInVoxels(const GridMotion&, const GridField<float>&);
+double driftInVoxels(const GridVelocity&, const VoxelGrid&, const Transform& worldToRender);
+
+// The motion along a line of render space at one time, for one thread. Null motions are none and cost a comparison.
+class MotionAlong {
+  public:
+    MotionAlong(const GridMotion* motion, Vec3d origin, Vec3d direction, float time) : motion_(motion) {
+        if (!motion) return;
+        velocity_.emplace(motion->velocity_, origin, direction);
+        seconds_ = motion->first_ + motion->duration_ * static_cast<double>(time);
+    }
+    bool moves() const { return motion_ != nullptr; }
+    // From a point to where what is there came from, render space. Requires moves().
+    Vec3d shift(float t) noexcept { return motion_->toRender_.vector(Vec3d(velocity_->at(t)) * -seconds_); }
+
+  private:
+    const GridMotion* motion_;
+    std::optional<FieldAlong<Vec3>> velocity_;
+    double seconds_ = 0;
 };
 
 } // namespace abbe

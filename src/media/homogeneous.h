@@ -1,9 +1,9 @@
 // A medium that is the same everywhere inside its boundary.
 #pragma once
 
-#include "media/glow_type.h"
-#include "media/optical_medium.h"
-#include "render/medium_emission.h"
+#include "media/glow.h"
+#include "media/medium_optics.h"
+#include "render/medium.h"
 
 namespace abbe {
 

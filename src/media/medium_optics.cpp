@@ -1,6 +1,6 @@
 #include "media/medium_optics.h"
 
-#include "media/henyey_greenstein.h"
+#include "media/phase_functions.h"
 
 namespace abbe {
 

@@ -1,7 +1,8 @@
 // What collisions do in any medium, whatever its density, and how the language says it.
+// What all media of the language share: the optics of their collisions.
 #pragma once
 
-#include "render/phase_function.h"
+#include "render/medium.h"
 #include "schema/type.h"
 
 #include <memory>
@@ -66,5 +67,23 @@ template <typename P> void addOpticsFields(std::vector<schema::FieldInfo>& field
                          .doc("Where scattered light goes; evenly when absent.")
                          .example("phase henyey-greenstein 0.85"));
 }
+
+// Leaves to its heirs where the medium is and how dense.
+class OpticalMedium : public Medium {
+  public:
+    const Curve& extinction() const final { return *optics_.extinction; }
+    const Curve& albedo() const final { return *optics_.albedo; }
+    const PhaseFunction& phase() const final { return *optics_.phase; }
+
+  protected:
+    explicit OpticalMedium(MediumOptics optics) : optics_(std::move(optics)) {}
+    void replaceExtinction(std::shared_ptr<const Curve> curve) {
+        optics_.extinction = curve.get();
+        optics_.own.push_back(std::move(curve));
+    }
+
+  private:
+    MediumOptics optics_;
+};
 
 } // namespace abbe

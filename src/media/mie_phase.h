@@ -3,7 +3,7 @@
 
 #include "media/angular_table.h"
 #include "media/mie_spheres.h"
-#include "render/phase_function.h"
+#include "render/medium.h"
 #include "spectrum/curve.h"
 
 #include <memory>

@@ -1,8 +1,7 @@
 #include "media/phase_types.h"
 
-#include "media/draine.h"
-#include "media/henyey_greenstein.h"
 #include "media/mie_phase.h"
+#include "media/phase_functions.h"
 
 namespace abbe {
 

@@ -1,7 +1,7 @@
 // Phase functions as the language writes them.
 #pragma once
 
-#include "render/phase_function.h"
+#include "render/medium.h"
 #include "schema/type.h"
 
 #include <memory>

@@ -2,8 +2,8 @@
 // to merging and to probes of glints.
 #pragma once
 
-#include "caustics/glints/forced_lobe.h"
 #include "caustics/glints/glint_plan.h"
+#include "caustics/glints/glint_search.h"
 #include "caustics/light_tracing/light_path_weights.h"
 #include "caustics/manifold/manifold_nee.h"
 #include "caustics/merging/merge_plan.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "render/receiver.h"
-#include "render/scatter_outline.h"
 #include "transport/walk.h"
 
 namespace abbe {

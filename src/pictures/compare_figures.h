@@ -1,10 +1,11 @@
-// What `abbe compare` says about an image and a reference.
+// The images of `abbe compare`, with variances where the file has them, and what it says about an image and a
+// reference.
 #pragma once
 
 #include "app/json.h"
 #include "io/flip.h"
+#include "io/image.h"
 #include "io/image_compare.h"
-#include "pictures/compare_images.h"
 
 #include <optional>
 #include <span>
@@ -13,6 +14,24 @@
 #include <vector>
 
 namespace abbe {
+
+struct CompareImage {
+    std::string path;
+    RgbImage picture;
+    std::vector<float> variance; // of the luminance of each pixel; empty if unknown
+    int replicates = 2;          // behind each variance
+    double rounding = 0;         // relative, of stored values
+
+    // OpenEXR or Radiance. Throws IoError.
+    static CompareImage read(const std::string& path);
+    // The mean of images of one size; their variances shrink accordingly.
+    static CompareImage mean(std::span<const CompareImage>);
+
+    std::vector<float> luminance() const; // as the chromaticities define it
+};
+
+// Nothing if either image has no variances. Requires equal sizes.
+std::optional<TileTest> tileTest(const CompareImage& image, const CompareImage& reference);
 
 struct CompareFigures {
     // `references` are one or two images of the same thing; `reference` is their mean. Two from different seeds make

@@ -1,6 +1,6 @@
 #include "pictures/image_output.h"
 
-#include "app/version.h"
+#include "app/identity.h"
 #include "io/exr_deep.h"
 #include "io/file.h"
 #include "io/png_writer.h"

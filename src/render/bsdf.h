@@ -1,12 +1,12 @@
 // Scattering at one point. Directions are local: +z is the shading normal, wo points towards the eye, wi is the new
 // direction. Both are unit vectors.
+// The ratio of densities in a build in which none depends on wavelength.
 #pragma once
 
 #include "base/flags.h"
 #include "math/vec.h"
 #include "render/effects.h"
-#include "render/scatter_outline.h"
-#include "render/unit_ratio.h"
+#include "render/receiver.h"
 #include "spectrum/spectrum.h"
 
 #include <cstdint>
@@ -14,6 +14,14 @@
 #include <type_traits>
 
 namespace abbe {
+
+// Stands for a Spectrum that is 1 and takes no room and no time.
+struct UnitRatio {
+    UnitRatio() = default;
+    UnitRatio(Spectrum) {}
+    operator Spectrum() const { return Spectrum(1.f); }
+    UnitRatio operator*(float) const { return {}; }
+};
 
 enum class Lobe : std::uint8_t {
     diffuse = 1,

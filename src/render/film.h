@@ -1,15 +1,46 @@
 // The image while it is being made: exact XYZ sums for every pixel and replicate.
+// Which part of a picture a path belongs to.
+// Light that paths from the lights bring to a pixel.
+// For films that stand in the place of another.
 #pragma once
 
 #include "math/vec.h"
-#include "render/sample_recorder.h"
-#include "render/splat.h"
+#include "render/path_observer.h"
+#include "spectrum/spectrum.h"
 #include "spectrum/xyz.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
 namespace abbe {
+
+// By what it meets between the light and the eye; D scatters diffusely or in a medium, S does not.
+enum class PathComponent : std::uint8_t {
+    direct,   // E S* D? L: at most one D, and no S between it and the light
+    indirect, // more than one D
+    caustic,  // E … D S+ L
+};
+inline constexpr std::size_t kPathComponents = 3;
+
+// Who brings it: a light path that the lens sees, or a round of merging, in which light paths are gathered where camera
+// paths end (caustics/merging/merge_kernel.h). Each kind is counted, and averaged, by itself.
+enum class SplatKind : std::uint8_t { lightPath, merged };
+inline constexpr std::size_t kSplatKinds = 2;
+
+// What is added to one pixel, for the time of the call. The sum of a pixel's splats over the number of light paths, or
+// of rounds, tends to the pixel's radiance: the number of pixels of the frame and the filter are in it.
+struct Splat {
+    Xyz value; // finite, each component below ExactSum::kLargest
+    // The same before the sensor, for spectral layers: value = sensor(radiance, lambda) · factor.
+    const Spectrum& radiance;
+    const Wavelengths& lambda;
+    double factor;
+    const void* light; // where the path began, for light groups
+    PathComponent component;
+    SplatKind kind = SplatKind::lightPath;
+    double closer = 0; // of merged light: its Y if it had been gathered over half of the area, which tells its bias
+};
 
 // A place drawn from the pixel filter: offset from the pixel's centre in pixels, weight ±1 times a constant for filters
 // with negative lobes.
@@ -60,6 +91,27 @@ class Film {
 
     // What else is to be kept of samples, for one thread; null: nothing. The film outlives it.
     virtual std::unique_ptr<SampleRecorder> makeRecorder() { return nullptr; }
+};
+
+// Answers whatever it is asked as the other film does, so that everybody plans and draws alike with either; what is
+// added is left to the derived class. The other film outlives it.
+class StandInFilm : public Film {
+  public:
+    PixelBounds bounds() const override { return like_.bounds(); }
+    int replicates() const override { return like_.replicates(); }
+    FilterSample filter(Vec2 u) const noexcept override { return like_.filter(u); }
+    float filterRadius() const noexcept override { return like_.filterRadius(); }
+    float filterWeight(float offset) const noexcept override { return like_.filterWeight(offset); }
+    Xyz mean(int x, int y) const noexcept override { return like_.mean(x, y); }
+    double relativeNoise() const override { return like_.relativeNoise(); }
+    bool takesSplats() const override { return like_.takesSplats(); }
+    bool takesMerged() const override { return like_.takesMerged(); }
+
+  protected:
+    explicit StandInFilm(const Film& like) : like_(like) {}
+
+  private:
+    const Film& like_;
 };
 
 } // namespace abbe

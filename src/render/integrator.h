@@ -1,23 +1,77 @@
 // An algorithm that turns a scene into an image.
+// What was found out before a render about light that camera paths find seldom or never, for people to read.
+// A rough picture of the frame before the first sample.
 #pragma once
 
-#include "render/caustic_findings.h"
 #include "render/film.h"
-#include "render/first_look.h"
 #include "render/path_tally.h"
 #include "render/technique.h"
 
 #include <algorithm>
+#include <any>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace abbe {
+
+// One record for each technique, of a type of the technique's own (LightPathFindings, …). All of it depends on the
+// scene, the frame, the pixel filter, the seed and the size of the pilots alone.
+class CausticFindings {
+  public:
+    int pilot = 0; // the size of the pilots: RenderSettings::pilot; 0: none
+
+    // As it is by default where that technique has told nothing.
+    template <typename Record> const Record& of() const {
+        for (const std::any& record : records_)
+            if (const auto* found = std::any_cast<Record>(&record)) return *found;
+        static const Record kNothing;
+        return kNothing;
+    }
+    template <typename Record> Record& of() {
+        for (std::any& record : records_)
+            if (auto* found = std::any_cast<Record>(&record)) return *found;
+        return std::any_cast<Record&>(records_.emplace_back(Record()));
+    }
+
+  private:
+    std::list<std::any> records_; // which stay where they are, for who holds a reference
+};
+
+class Shape;
+
+// Paths that surfaces take no light from, so that chance alone ends them (PathWalk::longPathSurvival).
+struct EndlessPaths {
+    double share = 0; // of the paths where they are the longest
+    std::vector<const Shape*>
+        shapes; // between which they go, those that are met most often first; empty: there are none
+};
+
+// The frame in square cells, row by row, of a few samples each. For people to see while plans are made: no sample of it
+// is in the image.
+struct FirstLook {
+    PixelBounds frame;
+    int cellSize = 1; // pixels; cells at the right and lower borders may be cut
+    int columns = 0, rows = 0;
+    std::vector<Xyz> cells;
+    double secondsForSample = 0; // of the clock, that a sample of every pixel of the frame takes, as far as this tells
+    double raysOfPath = 0;       // in the mean over the frame
+    EndlessPaths endless = {};
+
+    // Of a pixel; beyond the frame, of the cell next to it. Requires a cell.
+    const Xyz& at(int x, int y) const {
+        const int column = std::clamp((x - frame.x0) / cellSize, 0, columns - 1);
+        const int row = std::clamp((y - frame.y0) / cellSize, 0, rows - 1);
+        return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(column)];
+    }
+};
 
 struct Scene;
 class RenderState;

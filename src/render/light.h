@@ -1,17 +1,62 @@
 // Sources of light, as next-event estimation and BSDF sampling see them.
+// A point of a light from which a path of light starts.
+// Where a light is and where it shines, for choosing among many lights.
 #pragma once
 
-#include "render/light_bounds.h"
-#include "render/light_origin.h"
+#include "math/bounds.h"
+#include "math/vec.h"
 #include "render/ray.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
 #include "spectrum/curve.h"
+#include "spectrum/spectrum.h"
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
 namespace abbe {
+
+// Drawn with no regard to any receiver. Render space.
+struct LightOrigin {
+    // Where light leaves to: everywhere, from a point without a surface; or from the outer side, or both, of a surface.
+    enum class Sides : std::uint8_t { all, front, both };
+
+    // On a light that is a point: its density is a delta.
+    static LightOrigin at(Vec3 point, float time, float largest) {
+        LightOrigin origin;
+        origin.p = point;
+        origin.time = time;
+        origin.pdf = 1;
+        origin.largest = largest;
+        return origin;
+    }
+
+    Vec3 p;
+    Vec3 pError;       // bound on the absolute error of p, per axis
+    Vec3 n;            // unit, outside; 0 without a surface
+    float pdf = 0;     // 1/m², of the point among those of its part; 1 without a surface
+    float largest = 0; // 1/sr: the largest density of the light's own directions there
+    Sides sides = Sides::all;
+    float time = 0;       // Ray::time
+    Spectrum factor{1.f}; // what dims the light there: a texture
+
+    bool point() const { return sides == Sides::all; }
+    // What turns radiance into exitance: |cos θ| in the unit direction w, 1 without a surface.
+    float cosine(Vec3 w) const { return point() ? 1.f : std::abs(dot(n, w)); }
+};
+
+// Holds whatever the light, or one part of it, gives off while the shutter is open: light leaves points of the box, in
+// directions within acos(cosEmission) of a normal that is within acos(cosNormals) of the axis. Wider is never wrong,
+// only slower to converge; what is narrower than the light loses light.
+struct LightBounds {
+    Bounds3 box;           // render space
+    Vec3 axis{0, 0, 1};    // unit, of the cone of normals
+    float cosNormals = -1; // of its half angle; -1: all directions
+    float cosEmission = 0; // of the angle to a normal up to which light leaves; -1: everywhere
+    bool twoSided = false; // the same along -axis
+    float power = 0;       // as Light::visiblePower(); 0: dark
+};
 
 class MediumEmission;
 

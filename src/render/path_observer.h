@@ -1,9 +1,12 @@
 // Who wants to know more of a path than the light that it found: the layers of a film.
+// What a film keeps of samples beyond their XYZ.
 #pragma once
 
 #include "render/bsdf.h"
 #include "render/light.h"
+#include "render/ray.h"
 #include "render/surface_hit.h"
+#include "spectrum/sensor.h"
 #include "spectrum/spectrum.h"
 
 namespace abbe {
@@ -39,6 +42,21 @@ class PathObserver {
     virtual void findsFault(const void* /*who*/, const char* /*what*/, float /*number*/) noexcept {}
     // The path leaves the scene.
     virtual void leaves(Vec3 /*direction*/) noexcept {}
+};
+
+// Of one thread at a time. For every sample: start(), the events of its path, and then keep() or drop().
+class SampleRecorder : public PathObserver {
+  public:
+    // A pixel within the film's bounds; all samples up to the next pixel belong to it and to one replicate.
+    virtual void pixel(int x, int y, int replicate) noexcept = 0;
+    // `lambda`: as the path starts with them.
+    virtual void start(const Ray& fromEye, const Wavelengths& lambda) noexcept = 0;
+    // The sample counts, with this radiance, as the sensor sees it, and this factor of the camera and the pixel filter.
+    virtual void keep(const Spectrum& radiance, const Sensor&, double factor) noexcept = 0;
+    // It was not sound.
+    virtual void drop() noexcept = 0;
+    // All samples of the pixel and replicate are done, after `seconds` of one core.
+    virtual void pixelDone(double seconds) noexcept = 0;
 };
 
 } // namespace abbe

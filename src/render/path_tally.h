@@ -1,7 +1,6 @@
 // What samples came to, in numbers: one record for a tile, a block of light paths, a part and a whole render.
 #pragma once
 
-#include "render/counter.h"
 #include "render/effect_counts.h"
 
 #include <algorithm>

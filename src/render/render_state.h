@@ -1,21 +1,59 @@
 // How far a render has come, tile by tile: with the film's sums all that is needed to go on with it.
+// Where a portion of samples was cut short.
+// The way into a film for light paths, which whoever wants to see their sums at rest can close.
 #pragma once
 
 #include "base/check.h"
 #include "base/work_clock.h"
 #include "render/integrator.h"
-#include "render/light_gate.h"
 #include "render/path_tally.h"
-#include "render/portion.h"
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <vector>
 
 namespace abbe {
+
+// Samples of a tile are taken unit by unit: of pixels, row by row, and of each its replicates. Of light paths a unit is
+// a sample of a replicate, and of merging a round.
+struct PortionPlace {
+    std::uint32_t unit = 0; // all units before it are done,
+    std::uint32_t done = 0; // and so many samples, or light paths, of this one
+};
+
+// A portion that was to take a tile to sample `end`.
+struct CutPortion {
+    std::uint32_t end = 0;
+    PortionPlace at;
+};
+
+// Many are inside at once; to close it is to wait for those inside and to let nobody else in meanwhile, so that threads
+// which come and go without end cannot keep it open. A lock for each block of light paths would do as well, if threads
+// could hold thousands of them.
+class LightGate {
+  public:
+    using Pass = std::shared_lock<std::shared_mutex>;
+    using Closure = std::unique_lock<std::shared_mutex>;
+
+    // Both wait. A thread that is inside must not call either.
+    [[nodiscard]] Pass enter() {
+        const std::lock_guard turn(turnstile_);
+        return Pass(inside_);
+    }
+    [[nodiscard]] Closure close() {
+        const std::lock_guard turn(turnstile_);
+        return Closure(inside_);
+    }
+
+  private:
+    std::mutex turnstile_; // of those who wait for the other
+    std::shared_mutex inside_;
+};
 
 // The samples [RenderState::first(), reached) of each replicate of each pixel of the tile are in the film, and of a
 // portion that was cut short those before the place where it was; no others. Of a block of light paths, its paths of

@@ -4,7 +4,6 @@
 #include "render/camera.h"
 #include "render/effects.h"
 #include "render/film.h"
-#include "render/focusing_shape.h"
 #include "render/intersector.h"
 #include "render/light.h"
 #include "render/material.h"

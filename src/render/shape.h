@@ -1,20 +1,27 @@
 // Geometry that can be met by rays and, if it emits, be sampled.
+// What light paths are sent to.
 #pragma once
 
 #include "math/bounds.h"
 #include "render/ray.h"
 #include "render/receiver.h"
 #include "render/surface_hit.h"
-#include "render/surface_patch.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace abbe {
+
+// A shape whose material focuses light (Material::focuses()).
+struct FocusingShape {
+    Bounds3 box;      // for all the time that the shutter is open, m, render space; infinite where it is not known
+    std::string name; // as in Scene::names
+};
 
 // What the acceleration structure knows of a hit. `part` counts the sink calls of the shape's commit.
 struct RawHit {

@@ -1,11 +1,37 @@
 // Where a ray met a surface, with all that shading needs.
+// A surface next to one of its points, in double.
+// The space of a shape before its transform, in which patterns stick to it.
 #pragma once
 
 #include "math/frame.h"
+#include "math/transform.h"
+#include "math/vec.h"
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace abbe {
+
+// Two unit vectors that are orthogonal to the unit vector n and to each other [Duff2017, listing 3].
+inline std::pair<Vec3d, Vec3d> tangentsOf(Vec3d n) {
+    const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+// Where a line meets a surface, and how the shading normal turns there: what it takes to follow a narrow beam beyond
+// mirrors and lenses. In double, since a lens magnifies the rounding of its own points. Of a flat surface it is the
+// plane; of a triangle with vertex normals the interpolated normal, which is the one that refracts.
+struct SurfacePatch {
+    Vec3d p;
+    Vec3d ng;                    // unit, outside
+    Vec3d n;                     // unit, in ng's hemisphere: the shading normal
+    std::array<Vec3d, 2> along;  // 1/m: as p moves by dp within the surface, n changes by
+    std::array<Vec3d, 2> change; //      change[0] (along[0] · dp) + change[1] (along[1] · dp)
+
+    Vec3d normalChange(Vec3d dp) const { return change[0] * dot(along[0], dp) + change[1] * dot(along[1], dp); }
+};
 
 class Curve;
 class Material;
@@ -53,5 +79,27 @@ inline Vec3 spawnOrigin(Vec3 p, Vec3 pError, Vec3 ng, Vec3 w) {
 }
 
 inline Vec3 spawnOrigin(const SurfaceHit& hit, Vec3 w) { return spawnOrigin(hit.p, hit.pError, hit.ng, w); }
+
+class OwnSpace {
+  public:
+    // `map`: from the coordinates of the shape.
+    explicit OwnSpace(const Transform& map)
+        : map_(map), scale_(static_cast<float>(std::cbrt(std::abs(map.determinant())))) {}
+
+    // Turns `local`, a point in the coordinates of the shape, and completes what goes with it in SurfaceHit.
+    void complete(SurfaceHit& hit) const {
+        hit.local = Vec3(map_.point(Vec3d(hit.local)));
+        hit.localNormal = Vec3(normalize(map_.normal(Vec3d(hit.shading.z))));
+        hit.localScale = scale_;
+        const auto& a = map_.a;
+        hit.localX = Vec3(Vec3d(a[0][0], a[0][1], a[0][2]));
+        hit.localY = Vec3(Vec3d(a[1][0], a[1][1], a[1][2]));
+        hit.localZ = Vec3(Vec3d(a[2][0], a[2][1], a[2][2]));
+    }
+
+  private:
+    Transform map_;
+    float scale_; // of lengths
+};
 
 } // namespace abbe

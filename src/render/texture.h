@@ -24,7 +24,7 @@ enum class TextureUse : std::uint8_t {
 
 // Where a surface asks for a value, and over how large an area it wants the mean of it.
 struct TextureQuery {
-    explicit TextureQuery(const SurfaceHit&); // render/texture_query.h
+    explicit TextureQuery(const SurfaceHit&); // render/surface_input.h
     TextureQuery(Vec2 place, Vec3 point) : uv(place), position(point) {}
 
     Vec2 uv;

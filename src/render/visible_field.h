@@ -1,7 +1,7 @@
 // The property `visible-to`, of whatever rays can see.
 #pragma once
 
-#include "render/visibility.h"
+#include "render/ray.h"
 #include "schema/type.h"
 
 namespace abbe {

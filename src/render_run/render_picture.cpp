@@ -1,6 +1,6 @@
 // What a render shows to people: how bright its picture is, its key figures, and the PNG beside the image.
 #include "pictures/display_view.h"
-#include "pictures/exposure_meter.h"
+#include "pictures/picture_figures.h"
 #include "render_run/render_run.h"
 #include "reports/render_warnings.h"
 

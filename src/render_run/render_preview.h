@@ -3,7 +3,7 @@
 
 #include "base/stopwatch.h"
 #include "pictures/image_output.h"
-#include "render/first_look.h"
+#include "render/integrator.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 // Samples that are taken again: what a render says of those that it dropped, and the story of single ones.
-#include "app/shell_words.h"
+#include "app/console.h"
 #include "render_run/render_run.h"
 #include "rendering/path_record.h"
-#include "reports/replay_story.h"
+#include "reports/sample_story.h"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 #include "render_run/render_run.h"
 
-#include "app/machine.h"
+#include "app/identity.h"
 #include "base/memory_limit.h"
 #include "base/parallel.h"
-#include "checkpoints/render_parts.h"
+#include "checkpoints/render_identity.h"
 #include "pictures/display_view.h"
 #include "rendering/path_tracer.h"
-#include "reports/certificate_file.h"
-#include "reports/cost_text.h"
+#include "reports/image_header.h"
+#include "reports/render_text.h"
 #include "reports/render_warnings.h"
 
 #include <algorithm>

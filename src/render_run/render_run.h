@@ -1,8 +1,8 @@
 // One run of `abbe render` or `abbe merge`.
 #pragma once
 
-#include "app/common_options.h"
-#include "app/interrupt.h"
+#include "app/console.h"
+#include "app/program_end.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "base/work_clock.h"

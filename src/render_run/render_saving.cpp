@@ -3,9 +3,8 @@
 #include "checkpoints/render_identity.h"
 #include "pictures/display_view.h"
 #include "render_run/render_run.h"
-#include "reports/certificate_file.h"
-#include "reports/cost_text.h"
-#include "reports/provenance.h"
+#include "reports/image_header.h"
+#include "reports/render_text.h"
 #include "reports/render_warnings.h"
 
 #include <algorithm>

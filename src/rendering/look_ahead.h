@@ -1,8 +1,9 @@
 // What is found out about a frame before the first sample of its image.
+// Paths that go round and round and lose nothing.
 #pragma once
 
 #include "caustics/shared/kernel_jobs.h"
-#include "render/first_look.h"
+#include "render/integrator.h"
 #include "rendering/sampling_plan.h"
 #include "transport/roulette.h"
 
@@ -10,6 +11,14 @@
 #include <vector>
 
 namespace abbe {
+
+// So many rays of a path, in the mean over the frame, are worth a look at why.
+inline constexpr double kManyRays = 100;
+
+// Takes the samples of the cells with the most rays again and looks where their paths go after kLongPath
+// vertices: nothing if that is hardly ever where surfaces take no light away. Whose rays are counted is the context of
+// the pilot, with its roulette.
+EndlessPaths findEndlessPaths(const PathContext&, TileFunction, const PilotFilm&, const RouletteReference&);
 
 class RenderState;
 

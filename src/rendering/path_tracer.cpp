@@ -2,14 +2,12 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/light_tracing/light_path_plan.h"
 #include "light_sampling/light_sampler.h"
 #include "path_tracing/path_kernels.h"
+#include "render/film.h"
 #include "render/render_state.h"
 #include "render/scene.h"
-#include "render/stand_in_film.h"
-#include "rendering/end_watch.h"
-#include "rendering/pass_schedule.h"
 #include "rendering/render_plans.h"
 #include "rendering/time_left.h"
 

@@ -1,7 +1,7 @@
 #include "rendering/render_plans.h"
 
 #include "base/stopwatch.h"
-#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/light_tracing/light_path_plan.h"
 #include "render/render_state.h"
 #include "render/scene.h"
 

@@ -1,8 +1,8 @@
 // All that is decided before the first sample of a render.
 #pragma once
 
+#include "rendering/caustic_plans.h"
 #include "rendering/look_ahead.h"
-#include "rendering/pilot_ladder.h"
 
 #include <functional>
 

@@ -1,13 +1,89 @@
 // How many samples each pixel takes, decided before the first one.
+// A look at the whole frame that measures noise and cost: what a sampling plan goes by.
 #pragma once
 
+#include "render/film.h"
 #include "render/integrator.h"
-#include "rendering/plan_pilot.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace abbe {
+
+// A part of the frame. Looks at it are in two halves that share no sample, so that one can tell what the other is
+// worth.
+struct PlanCell {
+    std::array<double, 2> variance{};  // of one sample's Y within a pixel, by half
+    std::array<double, 2> luminance{}; // mean Y, likewise
+    double rays = 0;                   // of one sample
+    double pixels = 0;                 // how many it has
+};
+
+// The frame in square cells of at least 8 × 8 pixels, at most 8192 of them, each seen through four of its pixels that
+// hashing chooses. Depends on frame and seed alone, like PilotFilm.
+class PlanPilot {
+  public:
+    static constexpr int kLooks = 4;             // pixels of a cell, two for each half
+    static constexpr std::uint32_t kSamples = 4; // of each replicate of such a pixel
+    static constexpr int kReplicates = 2;
+
+    // One pixel as a film of its own, filtered as the image is. `film` outlives it.
+    class Probe;
+
+    PlanPilot(PixelBounds frame, std::uint64_t seed);
+
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    int cellSize() const { return cellSize_; } // pixels
+    PixelBounds frame() const { return frame_; }
+    // The pixel of a look, and nothing else.
+    PixelBounds pixelOf(int column, int row, int look) const;
+    // Different cells may be added to from different threads at once.
+    void add(int column, int row, int look, const Probe&, std::uint64_t rays);
+    const PlanCell& cell(int column, int row) const { return cells_[index(column, row)]; }
+
+  private:
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    PixelBounds boundsOf(int column, int row) const;
+
+    PixelBounds frame_;
+    std::uint64_t seed_;
+    int cellSize_ = 8, columns_ = 0, rows_ = 0;
+    std::vector<PlanCell> cells_;
+};
+
+class PlanPilot::Probe final : public Film {
+  public:
+    Probe(PixelBounds pixel, const Film& film) : pixel_(pixel), film_(film) {}
+    PixelBounds bounds() const override { return pixel_; }
+    int replicates() const override { return kReplicates; }
+    FilterSample filter(Vec2 u) const noexcept override { return film_.filter(u); }
+    void add(int, int, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
+        sums_[static_cast<std::size_t>(replicate)] += sum.y.value();
+        samples_[static_cast<std::size_t>(replicate)] += samples;
+    }
+    Xyz mean(int, int) const noexcept override { return {}; }
+    double relativeNoise() const override { return 0; }
+
+    double luminance() const { return 0.5 * (meanOf(0) + meanOf(1)); }
+    // Of one sample, without bias if samples were independent; those of a net have less, as in the image.
+    double variance() const {
+        const double difference = meanOf(0) - meanOf(1);
+        return 0.5 * difference * difference * kSamples;
+    }
+
+  private:
+    double meanOf(std::size_t replicate) const {
+        return samples_[replicate] == 0 ? 0 : sums_[replicate] / samples_[replicate];
+    }
+    PixelBounds pixel_;
+    const Film& film_;
+    std::array<double, 2> sums_{};
+    std::array<std::uint32_t, 2> samples_{};
+};
 
 // Pixels take 2^k times the samples that are asked for, k = −2 … 3, so that a render of the same cost has the least
 // mean of variance/(Y² + ε), which is what PixelFilm::relativeNoise() is about: n ∝ √(variance/((Y² + ε)·cost)). What

@@ -1,12 +1,63 @@
 // When a render will have met the first of its goals, from how it went so far.
+// In what portions the samples of a pixel are taken.
+// When a render is to end, for those who are in the middle of a pixel, a path or a pilot.
 #pragma once
 
+#include "base/parallel.h"
 #include "render/integrator.h"
 
+#include <algorithm>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 namespace abbe {
+
+// The end of the pass that begins at sample `first` of a replicate. Passes end at powers of two and, from 16 samples
+// on, at quarters in between: every aligned block is a net of its own, and a goal is overshot by a quarter at most. The
+// schedule does not depend on the goal, so a render continued with more samples takes the same passes.
+inline std::uint32_t passEnd(std::uint32_t first) {
+    if (first < 2) return 2;
+    std::uint32_t power = 1;
+    while (power <= first / 2) power *= 2;
+    return first + (power >= 16 ? power / 4 : power);
+}
+
+// The end of the pass of the whole render that sample `first` belongs to, wherever in it that is.
+inline std::uint32_t endOfPassWith(std::uint32_t first) {
+    std::uint32_t end = 0;
+    while (end <= first) {
+        const std::uint32_t next = passEnd(end);
+        if (next < end) return 0xffffffff; // beyond 32 bits
+        end = next;
+    }
+    return end;
+}
+
+// Looks at the clock and at whoever may end the render from a thread of its own, so that everyone else looks at one
+// flag. If the system has no thread for it the flag stays down, and a render ends between portions alone.
+class EndWatch {
+  public:
+    // `asked`: set by whoever wants the render to end; null: nobody will. `seconds`: from now on; 0: without an end.
+    EndWatch(const StopFlag* asked, double seconds);
+    ~EndWatch();
+    EndWatch(const EndWatch&) = delete;
+    EndWatch& operator=(const EndWatch&) = delete;
+
+    // Set a few milliseconds after the time is over, or after `asked` was.
+    const StopFlag& over() const { return over_; }
+
+  private:
+    void run(const StopFlag* asked, double seconds);
+
+    StopFlag over_{false};
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool gone_ = false;
+    std::thread thread_;
+};
 
 // Knows no clock and no film: it is told what happened when, in seconds since the render began. A sample of a tile is
 // expected to cost what earlier ones of the tile did; before there are any, in proportion to what a pilot saw. Error is

@@ -1,8 +1,7 @@
-#include "reports/certificate_file.h"
-#include "reports/light_path_text.h"
-#include "reports/picture_text.h"
-#include "reports/progress_text.h"
+#include "reports/image_header.h"
+#include "reports/progress.h"
 #include "reports/render_report.h"
+#include "reports/render_text.h"
 
 #include <fmt/format.h>
 #include <utility>

@@ -1,10 +1,8 @@
-#include "reports/certificate_file.h"
-#include "reports/cost_text.h"
-#include "reports/found_fault.h"
-#include "reports/light_path_text.h"
-#include "reports/picture_text.h"
-#include "reports/progress_text.h"
+#include "reports/image_header.h"
+#include "reports/progress.h"
 #include "reports/render_report.h"
+#include "reports/render_text.h"
+#include "reports/sample_story.h"
 
 namespace abbe {
 

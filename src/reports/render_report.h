@@ -2,12 +2,12 @@
 #pragma once
 
 #include "app/console.h"
-#include "app/exit_code.h"
+#include "app/program_end.h"
 #include "cameras/exposure.h"
 #include "film/error_certificate.h"
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
-#include "reports/found_fault.h"
+#include "reports/sample_story.h"
 #include "study/cost.h"
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "reports/render_warnings.h"
 
-#include "app/shell_words.h"
+#include "app/console.h"
 #include "film/error_figure.h"
-#include "reports/progress_text.h"
+#include "reports/progress.h"
 
 #include <algorithm>
 #include <cmath>

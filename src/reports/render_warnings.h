@@ -7,7 +7,7 @@
 #include "film/pixel_film.h"
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
-#include "reports/found_fault.h"
+#include "reports/sample_story.h"
 #include "scene/build.h"
 
 namespace abbe {

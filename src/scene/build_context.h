@@ -1,15 +1,46 @@
-// What building any part of a scene needs: the definitions, and where it is noted what they ask for.
+// What building any part of a scene needs: the definitions, their spectra as curves, and where it is noted what they
+// ask for.
 #pragma once
 
+#include "base/diagnostic.h"
 #include "scene/build.h"
-#include "scene/curve_library.h"
+#include "schema/scene_tree.h"
+#include "spectrum/color_space.h"
+#include "spectrum/curve.h"
 
 #include <map>
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace abbe {
+
+// Reports what cannot be: unknown names with suggestions, light used as reflectance, colours without a spectrum.
+class CurveLibrary {
+  public:
+    // Null after a diagnostic.
+    const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    schema::ComplexIndex metal(std::string_view name, Span, Diagnostics&);
+    const Curve* constant(double value);
+    // Illuminant D65, scaled to Y = 1.
+    const Curve* daylight();
+    // What `rgb 1 1 1` of a space is as light: its illuminant, Y = 1.
+    const Curve* white(const RgbSpace&);
+
+    std::vector<std::unique_ptr<const Curve>> release() { return std::move(curves_); }
+
+  private:
+    const Curve* keep(std::unique_ptr<const Curve>);
+    const Curve* named(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    const Curve* rgb(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&);
+    const Curve* table(const schema::SpectrumValue&, schema::SpectrumRole);
+    const Curve* tint(const schema::SpectrumValue&, Diagnostics&);
+
+    std::vector<std::unique_ptr<const Curve>> curves_;
+    const Curve* daylight_ = nullptr;
+};
 
 // The box around anything.
 inline constexpr Bounds3 kEverything{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
@@ -51,7 +82,7 @@ class BuildContext {
     // What reading a file is noted by, for who asks which files a scene consists of.
     void noteFile(const std::string& path) { built.facts.files.push_back(path); }
 
-    // build_effects.cpp: what a scene needs simulated, and who asked for it.
+    // What a scene needs simulated, and who asked for it.
     void noteEffect(Effect, Span asker, std::string_view why);
     // True if it is to be left out; notes who asked for it.
     bool leavesOut(EffectSwitch, Span asker);

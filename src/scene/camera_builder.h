@@ -1,8 +1,11 @@
-// The camera, what its focus may be measured to, and how large its pixels are where surfaces are diced.
+// The camera, also one out of a glTF file; what its focus may be measured to, and how large its pixels are where
+// surfaces are diced.
 #pragma once
 
 #include "cameras/camera_params.h"
+#include "cameras/perspective.h"
 #include "geometry/subdivision_surface.h"
+#include "render/scene.h"
 #include "scene/build_context.h"
 #include "scene/shape_builder.h"
 
@@ -13,6 +16,19 @@
 #include <vector>
 
 namespace abbe {
+
+// Cameras out of glTF files: the file says where they stand and what they see, the scene how they focus and expose.
+
+struct GltfCameraParams : PerspectiveParams { // its place, `lens`, `fov` and `squeeze` are the file's
+    schema::Text file;
+    schema::Text name; // of a node with a camera; the only camera if empty
+};
+
+schema::TypeInfo gltfCameraType();
+
+// The scale of the node has no effect. The vertical angle or height of the file is kept whatever the shape of the film.
+// Nothing after an error.
+std::optional<PlacedCamera> makeGltfCamera(const GltfCameraParams&, const CameraContext&, Diagnostics&);
 
 // Makes a camera of its registered type from bound parameters; nothing after an error.
 using MakeCamera = std::optional<PlacedCamera> (*)(const BindParams&, const CameraContext&, Diagnostics&);
@@ -25,7 +41,7 @@ class CameraBuilder {
 
     void build(); // into the scene, whose exposure is known then
 
-    // shape_subdivision_camera.cpp. Whether a camera of that name exists; false after an error.
+    // shape_subdivision_dicing.cpp. Whether a camera of that name exists; false after an error.
     bool checkDicingCamera(const schema::Quantity& dicing);
     // With the size of pixels filled in, if that is how the surface is diced. `inObject`: it is seen from many places.
     Dicing dicingFor(Dicing, const schema::Quantity& asked, double offscreen, const SubdivisionCage&,
@@ -47,5 +63,12 @@ class CameraBuilder {
     ShapeBuilder& shapes_;
     std::map<const Definition*, std::unique_ptr<const PlacedCamera>> dicingCameras_; // null: being made, or faulty
 };
+
+// Whether the camera stands inside of a body that no light enters: its picture would be black.
+
+// The material of the body around the camera, or null. It surrounds the camera if every one of 256 directions, spread
+// evenly, meets the inner side of one opaque material; and it is dark if neither the camera nor any of the points that
+// were met sees a light. A room with a lamp in it is therefore none. Requires: scene.intersector.
+const Material* darkBodyAroundCamera(const Scene&);
 
 } // namespace abbe

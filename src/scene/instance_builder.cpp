@@ -1,7 +1,7 @@
 #include "scene/instance_builder.h"
 
-#include "geometry/disk.h"
 #include "geometry/instance_table.h"
+#include "geometry/round_shapes.h"
 #include "schema/suggest.h"
 
 #include <fmt/format.h>

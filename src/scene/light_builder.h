@@ -84,7 +84,7 @@ class LightBuilder {
 
 struct EnvironmentLightParams;
 struct IesLightParams;
-// light_files.cpp: lights that files describe. Null after an error.
+// Lights that files describe. Null after an error.
 std::unique_ptr<PlacedLight> loadIesLight(const IesLightParams&, const LightContext&, BuildContext&);
 std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams&, const LightContext&, BuildContext&);
 // The surfaces of area lights; null after an error.

@@ -1,13 +1,17 @@
-// Materials with what modifies them, and what shapes are made of.
+// Materials with what modifies them, those that consist of others, and what shapes are made of.
 #pragma once
 
 #include "geometry/shape_params.h"
-#include "materials/subsurface_albedo.h"
+#include "materials/interior_curves.h"
+#include "materials/layered.h"
+#include "materials/mix.h"
+#include "materials/openpbr.h"
+#include "materials/two_sided.h"
 #include "render/material.h"
 #include "scene/build_context.h"
-#include "scene/material_modifiers.h"
 #include "scene/medium_builder.h"
 #include "scene/texture_builder.h"
+#include "schema/type.h"
 
 #include <map>
 #include <memory>
@@ -16,6 +20,38 @@
 #include <vector>
 
 namespace abbe {
+
+// What any material may have, whatever its type: the common properties of the language.
+
+struct MaterialModifiers {
+    schema::TexturedNumber opacity{1, nullptr, {}};
+    std::optional<schema::WeightedReference> normal; // texture and strength
+    std::optional<schema::Quantity> bump;            // m where the map is 1
+    schema::Reference bumpMap;
+    std::int64_t priority = 0; // of nested dielectrics
+};
+
+// The parameters of a material of a type, and its modifiers.
+template <typename P> struct WithModifiers : P { MaterialModifiers modifiers; };
+
+// A field of P as one of WithModifiers<P>.
+template <typename P> void moveField(schema::FieldInfo& field) {
+    field.store = [inner = std::move(field.store)](void* params, const schema::BoundValue& value) {
+        inner(static_cast<P*>(static_cast<WithModifiers<P>*>(params)), value);
+    };
+    for (schema::FieldInfo& part : field.block) moveField<P>(part);
+}
+
+// The fields of MaterialModifiers, for `of`, which finds it in the parameters of a type.
+std::vector<schema::FieldInfo> modifierFields(MaterialModifiers& (*of)(void* params));
+
+// Turns the fields of P's type into those of WithModifiers<P>, and adds the common ones.
+template <typename P> void addModifiers(schema::TypeInfo& type) {
+    for (schema::FieldInfo& field : type.fields) moveField<P>(field);
+    for (schema::FieldInfo& field : modifierFields(
+             [](void* params) -> MaterialModifiers& { return static_cast<WithModifiers<P>*>(params)->modifiers; }))
+        type.fields.push_back(std::move(field));
+}
 
 struct BumpMap;
 struct NormalMap;
@@ -88,5 +124,18 @@ class MaterialBuilder {
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::set<std::uint32_t> used_; // of shapes that were placed
 };
+
+// Materials that consist of others.
+
+// From bound parameters, whose references are valid; null after an error.
+std::unique_ptr<const Material> makeMixOf(const MixParams&, const MaterialContext&);
+std::unique_ptr<const Material> makeLayeredOf(const LayeredParams&, const MaterialContext&);
+std::unique_ptr<const Material> makeTwoSidedOf(const TwoSidedParams&, const MaterialContext&);
+
+// Takes out of a material what the command leaves out.
+void leaveOutEffects(OpenPbrParams&, const MaterialContext&);
+
+// Where a definition states a property, or the definition itself.
+Span placeOf(const schema::Definition&, std::string_view property);
 
 } // namespace abbe

@@ -1,4 +1,4 @@
-// Media that fill shapes, and volumes that stand by themselves.
+// Media that fill shapes, volumes that stand by themselves, and where both scatter light.
 #pragma once
 
 #include "math/transform.h"
@@ -6,7 +6,6 @@
 #include "render/light.h"
 #include "render/medium.h"
 #include "scene/build_context.h"
-#include "scene/phase_builder.h"
 
 #include <memory>
 #include <optional>
@@ -14,6 +13,37 @@
 #include <vector>
 
 namespace abbe {
+
+// Phase functions: where media scatter light.
+
+// What a phase function is made from besides its own parameters.
+struct PhaseContext {
+    BuildContext& scene;
+    const schema::Definition& definition;
+    const std::vector<std::shared_ptr<const PhaseFunction>>& made; // by the index of a reference
+};
+
+// Makes a phase function of its registered type from bound parameters; null after an error.
+using MakePhase = std::shared_ptr<const PhaseFunction> (*)(const BindParams&, const PhaseContext&);
+
+class PhaseBuilder {
+  public:
+    explicit PhaseBuilder(BuildContext& context) : context_(context) {}
+
+    schema::Reference reference(const schema::Definition&);
+    const std::shared_ptr<const PhaseFunction>& operator[](schema::Reference r) const { return phases_[r.index]; }
+
+  private:
+    BuildContext& context_;
+    std::vector<std::shared_ptr<const PhaseFunction>> phases_;
+    std::vector<const schema::Definition*> open_; // being made
+};
+
+struct MixPhaseParams;
+struct TablePhaseParams;
+// Those that need more than their parameters. Null after an error.
+std::shared_ptr<const PhaseFunction> makeTablePhase(const TablePhaseParams&, const PhaseContext&);
+std::shared_ptr<const PhaseFunction> makeMixPhase(const MixPhaseParams&, const PhaseContext&);
 
 class HomogeneousMedium;
 class MediumBuilder;

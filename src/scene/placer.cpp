@@ -1,9 +1,11 @@
 #include "scene/placer.h"
 
+#include "geometry/instance_table.h"
 #include "scene/instance_builder.h"
 #include "scene/registry.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <utility>
 
 namespace abbe {
@@ -189,6 +191,149 @@ void Placer::placeAll(const std::vector<Definition>& definitions, const Place& p
             break;
         }
     }
+}
+
+// What moves while the shutter is open is built where it is when the shutter opens, and carried on from there as one
+// instance.
+
+void Placer::carry(const KeyedTransform& own, const Place& outer, Span asker,
+                   const std::function<void(const Place&)>& build) {
+    Place place = outer;
+    place.motion = motion_.within(outer.motion, own);
+    if (!place.motion.moves() || (outer.into != outer.base && !motion_.moves(own))) return build(place);
+    if (!motion_.check(place.motion, asker)) return;
+    context_.noteEffect(Effect::motion, asker, "it moves while the shutter is open");
+    const Motion onwards = motion_.fromOpening(place.motion);
+    if (!motion_.check(onwards, asker)) return;
+    Assembly carried;
+    place.into = &carried;
+    build(place);
+    if (carried.shapes.empty() && carried.placed.empty()) return;
+    const Bounds3 bounds = carried.bounds;
+    const std::vector<FocusingShape> focusing = std::move(carried.focusing);
+    const int levels = carried.levels;
+    addMoving(addAssembly(std::move(carried)), levels, bounds, focusing, onwards, outer.base, asker);
+}
+
+std::uint32_t Placer::addAssembly(Assembly parts) {
+    const std::uint32_t number = embree.addObject(std::move(parts.shapes));
+    for (auto& [object, places, visible] : parts.placed)
+        embree.addInstances(object, std::move(places), number, visible);
+    for (const auto& [object, motion, visible] : parts.moving) embree.addMoving(object, motion, number, visible);
+    return number;
+}
+
+void Placer::addMoving(std::uint32_t object, int levels, const Bounds3& bounds,
+                       const std::vector<FocusingShape>& focusing, const Motion& motion, Assembly* into, Span asker,
+                       Visibility visible) {
+    const Bounds3 box = motion_.swept(motion, bounds);
+    for (const FocusingShape& shape : focusing)
+        focusingIn(into).push_back({motion_.swept(motion, shape.box), shape.name});
+    if (!into) {
+        if (!box.empty()) extend(box);
+        embree.addMoving(object, motion, EmbreeSceneBuilder::kScene, visible);
+    } else if (nest(*into, levels, asker)) {
+        into->bounds.add(box);
+        into->moving.push_back({object, motion, visible});
+    }
+}
+
+bool Placer::nest(Assembly& into, int levels, Span asker) {
+    if (levels + 2 > kMaxInstanceLevels) return tooDeep(asker), false; // the scene itself is one more
+    into.levels = std::max(into.levels, levels + 1);
+    return true;
+}
+
+void Placer::tooDeep(Span asker) {
+    context_.diagnostics.error("E0633", asker, fmt::format("objects nest more than {} levels deep", kMaxInstanceLevels),
+                               "this one is too deep");
+}
+
+// Shapes that some kinds of rays do not see.
+
+namespace {
+
+const schema::FieldInfo& visibleOfPlacement() {
+    static const schema::FieldInfo field = visibleField<VisibleParams>();
+    return field;
+}
+
+// Light goes into it, or through its surface without being scattered.
+bool isEntered(const Material& material) {
+    return material.ior() || material.isBoundary() || material.interior() || material.absorption();
+}
+
+Span visibleSpan(const schema::Definition& d) {
+    for (const schema::Node& property : d.properties)
+        if (property.name() == "visible-to") return property.headSpan();
+    return d.span;
+}
+
+} // namespace
+
+// Of groups, objects and instances, which have no type.
+Placing Placer::ownPlacing(const Definition& d) {
+    Placing result;
+    for (const schema::Node& property : d.properties) {
+        if (property.name() == "transform") {
+            result.transform = schema::bindMotion(property, context_.tree.header, context_.diagnostics);
+        } else if (property.name() == "visible-to") {
+            if (const auto words =
+                    schema::bindWords(visibleOfPlacement(), property, context_.tree, context_.diagnostics))
+                result.visible = visibilityOf(*words);
+        } else {
+            context_.diagnostics.error(
+                "E0201", property.nameSpan(),
+                fmt::format("`{}` has no property `{}`", schema::keyword(d.kind), property.name()),
+                "only `transform` and `visible-to` are possible here");
+        }
+    }
+    return result;
+}
+
+Passing Placer::passingOf(const ShapeParams& params) {
+    Passing passing;
+    const auto add = [&](const Material* material) {
+        if (!material) return;
+        passing.add({isEntered(*material), material->mayBeOpen()});
+    };
+    add(materials_.ofShape(params));
+    for (const schema::GroupReference& group : params.groupMaterials) add(&materials_[group.reference]);
+    passing.entered = passing.entered || materials_.holdsMedium(params);
+    return passing;
+}
+
+void Placer::noteVisible(Visibility visible, Passing passing, const Definition& asker) {
+    if (visible == kVisibleToAll) return;
+    if (passing.entered) {
+        context_.diagnostics
+            .error("E0635", visibleSpan(asker), "light goes through this shape, so all rays have to see it",
+                   "hides glass, a boundary or an interior")
+            .help = "only opaque shapes can be hidden, and thin sheets, which have no inside";
+        return;
+    }
+    if (passing.open && !seenAlike(visible)) {
+        context_.diagnostics
+            .error("E0635", visibleSpan(asker), "shadows and reflections have to see the same openings",
+                   "hides a shape whose `opacity` is below 1 from one of them")
+            .help = "name both `shadows` and `reflections`, or neither of them";
+        return;
+    }
+    HiddenShapes& hidden = context_.built.scene.hidden;
+    hidden.fromCamera = hidden.fromCamera || !visible.has(RayKind::camera);
+    hidden.splits =
+        hidden.splits || !seenAlike(visible) || (visible.has(RayKind::camera) && !visible.has(RayKind::scattered));
+}
+
+// Light paths follow one kind of rays from lights to what they light.
+void Placer::checkLightPathsSeeAll() {
+    const auto& choice = context_.built.render.lightPaths.word;
+    if (!context_.built.scene.hidden.splits || (choice != "always" && choice != "alone")) return;
+    context_.diagnostics
+        .error("E0636", context_.tree.header.span,
+               fmt::format("`light-paths {}` does not go with shapes that only some rays see", choice),
+               "`visible-to` of a shape names `shadows` without `reflections`, the other way round, or `camera` alone")
+        .help = "leave `light-paths` to `automatic`: camera paths do the work then";
 }
 
 } // namespace abbe

@@ -4,8 +4,8 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/instance.h"
 #include "math/motion.h"
-#include "render/focusing_shape.h"
-#include "render/visibility.h"
+#include "render/ray.h"
+#include "render/shape.h"
 #include "scene/build_context.h"
 #include "scene/light_builder.h"
 #include "scene/material_builder.h"
@@ -83,8 +83,8 @@ class Placer {
     // Adds a shape that stands as `place` says.
     void add(const Shape&, EmbreeSceneBuilder::Binding, const Place&);
 
-    // placer_motion.cpp. Builds what has a transform of its own in the place around it, or, if that moves, in an
-    // assembly that is then set going. What moves in something that moves is set going by itself, with both motions.
+    // Builds what has a transform of its own in the place around it, or, if that moves, in an assembly that is then set
+    // going. What moves in something that moves is set going by itself, with both motions.
     void carry(const KeyedTransform& own, const Place& outer, Span asker, const std::function<void(const Place&)>&);
     std::uint32_t addAssembly(Assembly);
     void addMoving(std::uint32_t object, int levels, const Bounds3&, const std::vector<FocusingShape>&, const Motion&,
@@ -95,7 +95,7 @@ class Placer {
         return into ? into->focusing : context_.built.scene.focusing;
     }
 
-    // visible.cpp. What groups, objects and instances state of their own.
+    // What groups, objects and instances state of their own.
     Placing ownPlacing(const Definition&);
     Passing passingOf(const ShapeParams&);
     // Notes what the scene asks of those who trace rays. What light goes through it meets on its way in and out,

@@ -2,7 +2,7 @@
 // one instance.
 #pragma once
 
-#include "lights/light_motion.h"
+#include "lights/light_context.h"
 #include "math/bounds.h"
 #include "math/motion.h"
 #include "scene/build_context.h"

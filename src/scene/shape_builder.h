@@ -3,12 +3,14 @@
 
 #include "geometry/shape_params.h"
 #include "lights/amount.h"
+#include "math/mesh_data.h"
 #include "scene/build_context.h"
-#include "scene/closed_surface.h"
 #include "scene/material_builder.h"
 #include "scene/scene_motion.h"
 #include "scene/texture_builder.h"
+#include "schema/type.h"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,6 +18,49 @@
 #include <vector>
 
 namespace abbe {
+
+// `at TIME { … }` blocks of shapes that deform: where their points are at that time.
+
+// One block. Either a file or points; what else may stand in it depends on the type of the shape.
+struct ShapeKey {
+    double time = 0; // s
+    Span span;
+    schema::Text file;
+    std::vector<Vec3d> points;
+    std::optional<double> radius; // curves and points
+    std::vector<double> radii;
+    std::vector<Vec3d> normals; // points
+};
+
+// Fields of a block, by the type of the shape.
+std::vector<schema::FieldInfo> meshKeyFields();
+std::vector<schema::FieldInfo> curvesKeyFields();
+std::vector<schema::FieldInfo> pointsKeyFields();
+
+// The property `at` of a type. Requires a member P::keys.
+template <typename P> schema::FieldInfo keysField(std::vector<schema::FieldInfo> block) {
+    return schema::field<P, std::vector<ShapeKey>>(schema::FieldType::moments, "at", &P::keys)
+        .doc("Where the points are at a time, instead of `file` and `points`: the shape deforms. The same points at "
+             "every time, in straight lines from one to the next.")
+        .example("at \"1/48\" s { points { - 0 0 0; - 1 0 0; - 1 1 0.2 } }")
+        .block(std::move(block));
+}
+
+// Whether a surface made of faces is closed, as it must be to hold a medium.
+
+struct OpenEdges {
+    std::uint64_t open = 0; // edges of a single face
+    std::uint64_t turned =
+        0; // edges of several faces that do not lie on its two sides in turn: one faces the other way
+
+    bool closed() const { return open + turned == 0; }
+};
+
+// Vertices in the same place count as one, whatever their normals and texture coordinates. Faces without an area, which
+// collapse to an edge or a point, have no part in it.
+OpenEdges openEdges(const MeshData&);
+// Holes are left out.
+OpenEdges openEdges(const SubdivisionCage&);
 
 class CameraBuilder;
 
@@ -82,7 +127,7 @@ class ShapeBuilder {
     CameraBuilder& cameras;
 
   private:
-    void checkInterior(LoadedShape&); // closed_surface.cpp
+    void checkInterior(LoadedShape&);
     std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
 
     std::map<const Definition*, LoadedShape> loaded_;
@@ -98,7 +143,7 @@ void loadMeshShape(const MeshParams&, ShapeBuilder&, LoadedShape&);
 void loadCurves(const CurvesParams&, ShapeBuilder&, LoadedShape&);
 void loadPoints(const PointsParams&, ShapeBuilder&, LoadedShape&);
 void loadSubdivision(const SubdivisionParams&, ShapeBuilder&, LoadedShape&);
-// The same for shapes with keys: shape_deform_mesh.cpp, shape_deform_points.cpp.
+// The same for shapes with keys: shape_deform.cpp.
 void deformMesh(const MeshParams&, ShapeBuilder&, LoadedShape&);
 void deformCurves(const CurvesParams&, ShapeBuilder&, LoadedShape&);
 void deformPoints(const PointsParams&, ShapeBuilder&, LoadedShape&);

@@ -7,9 +7,9 @@
 #include "math/mesh_data.h"
 #include "math/motion.h"
 #include "math/transform.h"
-#include "scene/shape_curves.h"
-#include "scene/shape_key.h"
+#include "scene/shape_builder.h"
 #include "scene/shape_mesh.h"
+#include "scene/shape_points.h"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 #include "scene/shape_mesh.h"
 
-#include "geometry/mesh_cleanup.h"
-#include "geometry/place_shape.h"
+#include "geometry/mesh.h"
+#include "geometry/shape_params.h"
 #include "io/gltf.h"
 #include "scene/file_faults.h"
 #include "scene/shape_builder.h"

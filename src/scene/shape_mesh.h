@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/shape_params.h"
-#include "scene/shape_key.h"
+#include "scene/shape_builder.h"
 
 #include <optional>
 #include <vector>

@@ -1,11 +1,232 @@
+#include "scene/shape_points.h"
+
+#include "scene/file_faults.h"
 #include "scene/shape_builder.h"
-#include "scene/shape_curves.h"
-#include "scene/shape_sized_points.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe {
+
+namespace {
+
+std::optional<PointFile> readFile(const schema::Text& file, Span span, Diagnostics& diagnostics) {
+    std::optional<PointFile> points;
+    readsFile(file.value, file.span.valid() ? file.span : span, diagnostics,
+              [&] { points = readPlyPoints(file.value); });
+    return points;
+}
+
+// The radius of every point, or nothing after an error.
+std::optional<std::vector<float>> radiiOf(const SizedPointsParams& p, const PointFile& file, double unit,
+                                          std::size_t count, Span span, Diagnostics& diagnostics) {
+    if (p.radius) return std::vector<float>(count, static_cast<float>(*p.radius));
+    if (!p.radii.empty()) {
+        if (p.radii.size() == count) return std::vector<float>(p.radii.begin(), p.radii.end());
+        diagnostics.error("E0621", span, fmt::format("{} radii for {} points", p.radii.size(), count), "do not match");
+        return std::nullopt;
+    }
+    if (file.radii.empty()) {
+        diagnostics.error("E0621", span, "nothing says how thick it is", "no radius").help =
+            "add `radius`, `radii` with one value per point, or a property `radius` to the file";
+        return std::nullopt;
+    }
+    std::vector<float> radii = file.radii;
+    for (float& r : radii) r = static_cast<float>(static_cast<double>(r) * unit);
+    return radii;
+}
+
+} // namespace
+
+std::optional<std::pair<std::vector<SizedPoint>, PointFile>> loadSizedPoints(const SizedPointsParams& p, double unit,
+                                                                             Span span, Diagnostics& diagnostics) {
+    PointFile file;
+    if (p.file.value.empty()) {
+        for (const Vec3d point : p.points) file.positions.push_back(Vec3(point));
+    } else {
+        auto read = readFile(p.file, span, diagnostics);
+        if (!read) return std::nullopt;
+        file = std::move(*read);
+        for (Vec3& point : file.positions) point = Vec3(Vec3d(point) * unit);
+    }
+    if (file.positions.empty()) {
+        diagnostics.error("E0604", span, "there are no points", "nothing to see here").help =
+            "write `points { … }`, or name a PLY file";
+        return std::nullopt;
+    }
+    const auto radii = radiiOf(p, file, unit, file.positions.size(), span, diagnostics);
+    if (!radii) return std::nullopt;
+    std::vector<SizedPoint> points(file.positions.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = {file.positions[i], (*radii)[i]};
+    return std::pair(std::move(points), std::move(file));
+}
+
+bool placeSizedPoints(std::vector<SizedPoint>& points, const Transform& place, Span span, Diagnostics& diagnostics) {
+    const auto scale = place.uniformScale();
+    if (!scale) {
+        diagnostics.error("E0622", span, "curves and points cannot be stretched unevenly in place", "scaled unevenly")
+            .help = "put the shape into an `object` and the transform into an `instance` of it";
+        return false;
+    }
+    for (SizedPoint& p : points) {
+        const Vec3d moved = place.point(Vec3d(p.position));
+        const double radius = *scale * static_cast<double>(p.radius);
+        if (!isFinite(moved) || !(maxComponent(abs(moved)) + radius < kLargestCoordinate)) {
+            diagnostics.error("E0605", span, "a shape reaches farther than 1e15 m from the camera", "too far away");
+            return false;
+        }
+        p = {Vec3(moved), static_cast<float>(radius)};
+    }
+    return true;
+}
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, CurveBasis>, 4> kBases{{{"linear", CurveBasis::linear},
+                                                                         {"bspline", CurveBasis::bspline},
+                                                                         {"catmull-rom", CurveBasis::catmullRom},
+                                                                         {"bezier", CurveBasis::bezier}}};
+
+// Points of each strand as whole numbers; nothing after an error.
+std::optional<std::vector<std::uint32_t>> sizesOf(const std::vector<double>& counts, std::size_t points, Span span,
+                                                  Diagnostics& diagnostics) {
+    std::vector<std::uint32_t> sizes;
+    double sum = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] != std::floor(counts[i]) || counts[i] > static_cast<double>(points)) {
+            diagnostics.error("E0621", span, fmt::format("strand {} of {} points", i, counts[i]),
+                              counts[i] != std::floor(counts[i]) ? "not a whole number" : "more than there are");
+            return std::nullopt;
+        }
+        sizes.push_back(static_cast<std::uint32_t>(counts[i]));
+        sum += counts[i];
+    }
+    if (sum != static_cast<double>(points)) {
+        diagnostics.error("E0621", span, fmt::format("the strands have {} points, but there are {}", sum, points),
+                          "`counts` do not match");
+        return std::nullopt;
+    }
+    return sizes;
+}
+
+bool checkSizes(const CurveData& data, std::string_view basis, Span span, Diagnostics& diagnostics) {
+    const std::uint32_t least = leastPoints(data.basis), step = pointStep(data.basis);
+    for (std::size_t i = 0; i < data.strandSizes.size(); ++i) {
+        const std::uint32_t size = data.strandSizes[i];
+        if (size >= least && (size - least) % step == 0) continue;
+        const std::string rule =
+            step == 1 ? fmt::format("{} needs at least {}", basis, least) : fmt::format("{} needs 4, 7, 10, …", basis);
+        diagnostics.error("E0621", span, fmt::format("strand {} has {} points; {}", i, size, rule), "wrong number");
+        return false;
+    }
+    return true;
+}
+
+} // namespace
+
+schema::TypeInfo curvesType() {
+    using namespace schema;
+    using P = CurvesParams;
+    std::vector<FieldInfo> fields = {
+        field<P, Choice>(FieldType::choice, "basis", &P::basis)
+            .choices({"linear", "bspline", "catmull-rom", "bezier"})
+            .byDefault("bspline")
+            .synonyms({"type", "curve"})
+            .doc("How the points make a curve. Each B-spline and Catmull-Rom segment takes four points in a row.")
+            .example("basis catmull-rom"),
+        field<P, Choice>(FieldType::choice, "form", &P::form)
+            .choices({"round", "flat"})
+            .byDefault("round")
+            .synonyms({"mode", "style"})
+            .doc("Round tubes, or flat ribbons that face each ray: cheaper, for hair thinner than a pixel.")
+            .example("form flat"),
+        field<P, std::vector<double>>(FieldType::numbers, "counts", &P::counts)
+            .range(1, 4294967294.0)
+            .synonyms({"strands", "vertex-counts", "nvertices"})
+            .doc("How many of the points belong to each strand, in order; one strand of all points when absent.")
+            .example("counts 4 4 6"),
+    };
+    addSizedPointFields<P>(fields);
+    fields.push_back(keysField<P>(curvesKeyFields()));
+    addShapeFields<P>(fields);
+    return {Kind::shape,
+            "curves",
+            "Hair, fur, grass, wire: thin curves with a width.",
+            "shape curves { radius 0.1; points { - 0 0 0; - 0 1 0; - 0 2 1; - 0 2 2 } }",
+            false,
+            std::move(fields)};
+}
+
+std::optional<CurveData> loadCurveData(const CurvesParams& p, double unit, Span span, Diagnostics& diagnostics) {
+    auto loaded = loadSizedPoints(p, unit, span, diagnostics);
+    if (!loaded) return std::nullopt;
+    auto& [points, file] = *loaded;
+    CurveData data;
+    for (const auto& [word, basis] : kBases)
+        if (word == p.basis.word) data.basis = basis;
+    data.form = p.form.word == "flat" ? CurveForm::flat : CurveForm::round;
+    if (!p.counts.empty()) {
+        auto sizes = sizesOf(p.counts, points.size(), span, diagnostics);
+        if (!sizes) return std::nullopt;
+        data.strandSizes = std::move(*sizes);
+    } else if (!file.strandSizes.empty()) {
+        data.strandSizes = std::move(file.strandSizes);
+    } else {
+        data.strandSizes = {static_cast<std::uint32_t>(points.size())};
+    }
+    if (file.strandPoints.empty() || !p.counts.empty()) {
+        data.points = std::move(points);
+    } else {
+        data.points.reserve(file.strandPoints.size());
+        for (const std::uint32_t i : file.strandPoints) data.points.push_back(points[i]);
+    }
+    if (!checkSizes(data, p.basis.word, span, diagnostics)) return std::nullopt;
+    return data;
+}
+
+std::unique_ptr<const Shape> placeCurves(CurveData data, const Transform& place, Span span, Diagnostics& diagnostics) {
+    if (!placeSizedPoints(data.points, place, span, diagnostics)) return nullptr;
+    for (auto& step : data.later)
+        if (!placeSizedPoints(step, place, span, diagnostics)) return nullptr;
+    auto curves = std::make_unique<const Curves>(std::move(data));
+    if (curves->segmentCount() == 0) {
+        diagnostics.error("E0604", span, "these curves have no width or no length", "nothing to see here");
+        return nullptr;
+    }
+    if (curves->omittedSegments() > 0)
+        diagnostics.warning("W0621", span,
+                            fmt::format("{} of {} segments have no width or no length and are left out",
+                                        curves->omittedSegments(), curves->segmentCount() + curves->omittedSegments()));
+    return curves;
+}
+
+bool refuseEmission(const schema::Definition& d, const ShapeParams& params, Diagnostics& diagnostics) {
+    if (!params.emits()) return false;
+    Span span = d.span;
+    for (const schema::Node& property : d.properties)
+        if (property.name() == "emission") span = property.nameSpan();
+    diagnostics.error("E0623", span, "curves and points cannot emit light in this version", "not supported").help =
+        "this is planned; small `sphere` shapes can emit";
+    return true;
+}
+
+void loadCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape& shape) {
+    const ShapeContext context = builder.contextOf(*shape.definition);
+    shape.openBecause = "curves are open at their ends";
+    if (refuseEmission(*shape.definition, params, context.diagnostics)) return;
+    if (!params.keys.empty()) return deformCurves(params, builder, shape);
+    auto data = loadCurveData(params, context.unit, context.span, context.diagnostics);
+    if (!data) return;
+    if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
+    for (const std::uint32_t size : data->strandSizes)
+        shape.segments += (size - leastPoints(data->basis)) / pointStep(data->basis) + 1;
+    shape.strands = data->strandSizes.size();
+    shape.sound = true;
+    shape.place = [kept = std::make_shared<const CurveData>(std::move(*data)), context](const Transform& place) {
+        return placeCurves(*kept, place, context.span, context.diagnostics);
+    };
+}
 
 schema::TypeInfo pointsType() {
     using namespace schema;

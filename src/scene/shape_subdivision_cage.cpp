@@ -1,4 +1,4 @@
-#include "geometry/subdivision_check.h"
+#include "geometry/subdivision_surface.h"
 #include "io/mesh_file.h"
 #include "scene/file_faults.h"
 #include "scene/shape_subdivision.h"

@@ -1,7 +1,6 @@
 // Volumes from OpenVDB files: their grids, what they shine with, how they drift.
+#include "media/grid_emission.h"
 #include "media/grid_medium.h"
-#include "media/vdb_type.h"
-#include "media/volume_light.h"
 #include "scene/medium_builder.h"
 #include "volumes/vdb_file.h"
 

@@ -1,7 +1,7 @@
 // Materials that are another one but for what they change: with holes and bent normals, filled with a medium, or clear.
 #pragma once
 
-#include "materials/normal_map.h"
+#include "materials/bent_normal.h"
 #include "render/material.h"
 #include "render/medium.h"
 #include "render/surface_input.h"

@@ -1,7 +1,7 @@
 #include "study/curve_statistics.h"
 
 #include "base/check.h"
-#include "study/power_law.h"
+#include "study/curve_fits.h"
 
 #include <algorithm>
 #include <cmath>

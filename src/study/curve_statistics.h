@@ -1,9 +1,8 @@
 // What can be said about the errors of a ladder of samples: means, slope, floor, the time to an error.
 #pragma once
 
-#include "study/seed_bootstrap.h"
-#include "study/seed_run.h"
-#include "study/time_model.h"
+#include "study/curve_fits.h"
+#include "study/seed_runs.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,11 @@
-// What each effect of a scene costs and shows: renders with and without it, in pairs of one seed.
+// What each effect of a scene costs and shows: renders with and without it, in pairs of one seed; and what a render
+// would take without an effect, told from its cost report.
 #pragma once
 
 #include "base/diagnostic.h"
 #include "io/image.h"
 #include "scene/build.h"
+#include "scene/effect_switches.h"
 #include "study/cost.h"
 
 #include <atomic>
@@ -14,6 +16,15 @@
 
 namespace abbe {
 
+// Seconds of rendering without it, as CostReport::rendering; nothing where the cost report has nothing to tell it by.
+//
+// Of a medium: as long as no medium has scattered a path, each of its rays is the path's last one with a probability
+// that does not depend on the medium. Paths that the medium would have scattered go on with it, so that there are
+// N (U - C) / (N - C) such rays in place of U, for N paths of which it scattered C first. Each takes along what it did;
+// following the medium, and all that came after its scattering, is no more. Where it scattered most paths nothing is
+// told.
+std::optional<double> renderingWithout(const CostReport&, const EffectSwitch&);
+
 // Of one effect.
 struct EffectFinding {
     EffectSwitch effect;
@@ -23,7 +34,7 @@ struct EffectFinding {
     double secondsOn = 0, secondsOff = 0;
     // Share of secondsOn that goes with it (negative: it saves time), with its 95 % interval over pairs.
     double deltaTime = 0, low = 0, high = 0;
-    std::optional<double> predicted; // the same share as the cost report tells it, see effect_prediction.h
+    std::optional<double> predicted; // the same share as the cost report tells it, see renderingWithout()
     double flip = 0;                 // mean HDR-FLIP between the two images
     double relMse = 0;               // of the image without it, its noise and that of the reference cancelled
     RgbImage image;                  // without it; linear Rec.709

@@ -4,8 +4,8 @@
 #include "film/pixel_film.h"
 #include "render/render_state.h"
 #include "study/reference_pair.h"
-#include "study/seed_run.h"
-#include "study/study_variant.h"
+#include "study/seed_runs.h"
+#include "study/study_plan.h"
 
 #include <atomic>
 #include <functional>

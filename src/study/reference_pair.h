@@ -1,7 +1,7 @@
 // A reference in two halves from different seeds, and errors against it.
 #pragma once
 
-#include "study/estimate.h"
+#include "study/seed_runs.h"
 
 #include <span>
 #include <vector>

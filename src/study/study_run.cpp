@@ -1,7 +1,7 @@
 #include "study/study_run.h"
 
 #include "base/check.h"
-#include "study/equal_time.h"
+#include "study/seed_runs.h"
 
 #include <algorithm>
 #include <cmath>

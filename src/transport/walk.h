@@ -5,12 +5,12 @@
 #include "base/arena.h"
 #include "base/work.h"
 #include "render/scene.h"
-#include "transport/hidden_face.h"
 #include "transport/medium_tracker.h"
 #include "transport/path_context.h"
 #include "transport/path_state.h"
 #include "transport/radiance_estimate.h"
 #include "transport/sampler.h"
+#include "transport/surroundings.h"
 
 namespace abbe {
 
@@ -117,7 +117,7 @@ template <EffectBits E> class PathWalk {
     }
 
     // Goes on to the next collision or to the next surface that does anything to the path, through boundaries of media,
-    // open surfaces, and faces of dielectrics that lie hidden inside others (hidden_face.h). After a collision the ray
+    // open surfaces, and faces of dielectrics that lie hidden inside others (surroundings.h). After a collision the ray
     // starts there. onTheWay(ray, tMax, crossings, follow), for each straight way through media, up to a surface, a
     // boundary or the end of everything: returns follow(EmissionListener*), which follows it to where it collides.
     template <typename OnTheWay>

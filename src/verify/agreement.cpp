@@ -2,7 +2,7 @@
 
 #include "math/student.h"
 #include "math/vec.h"
-#include "verify/replicate_mean.h"
+#include "verify/tile_sums.h"
 
 #include <algorithm>
 #include <cmath>

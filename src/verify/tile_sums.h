@@ -1,9 +1,12 @@
-// What one estimator came to, in tiles.
+// What one estimator came to, in tiles: its mean over a block, and how well its replicates know it.
 #pragma once
 
 #include "film/pixel_film.h"
+#include "math/vec.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace abbe {
@@ -39,6 +42,27 @@ class TileSums {
 
     int width_ = 0, height_ = 0, tile_ = kTile, columns_ = 0, rows_ = 0;
     std::vector<BlockSums> blocks_;
+};
+
+// Requires at least two replicates.
+struct ReplicateMean {
+    double value = 0, variance = 0; // of the sum over the block; `variance` is that of the mean
+    double freedom = 1;             // degrees of it
+    double largestPart = 0;         // of a single replicate, in the variance
+
+    ReplicateMean(const BlockSums& sums, std::size_t channel) {
+        const auto n = static_cast<double>(sums.replicates.size());
+        for (const auto& r : sums.replicates) value += r[channel] / n;
+        double squares = 0, largest = 0;
+        for (const auto& r : sums.replicates) {
+            const double d = square(r[channel] - value);
+            squares += d;
+            largest = std::max(largest, d);
+        }
+        freedom = n - 1;
+        variance = squares / (n * freedom);
+        if (squares > 0) largestPart = largest / squares;
+    }
 };
 
 } // namespace abbe

@@ -1,17 +1,33 @@
-// Renders a scene by two estimators until their difference is known well enough, and compares them once.
+// Renders a scene by the two estimators that `abbe verify` plays off against each other, until their difference is
+// known well enough, and compares them once.
 #pragma once
 
+#include "render/technique.h"
 #include "scene/build.h"
 #include "verify/agreement.h"
-#include "verify/estimators.h"
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 
 namespace abbe {
+
+struct Estimator {
+    const char* name;
+    const char* how; // in a few words
+    Technique technique;
+};
+
+// They have in common what both would get wrong alike: the scene, polished glass and mirrors, dispersive lobes, lights
+// that cannot be met, and where light is absorbed. All else they do by different means: the first trusts the weights
+// that samples of surfaces carry and finds light by scattering where it can, the second trusts values and densities
+// alone and asks lights where it can. Numbers, choice of lights and roulette differ, too. No weight is more than 17
+// times that of the best, nor more than the length of the path in the second: tails stay bounded. `lights`: of the
+// scene.
+std::array<Estimator, 2> verifyEstimators(std::size_t lights);
 
 struct VerifyPlan {
     double resolution = 0.001;            // standard error of the difference, relative to the mean of the picture

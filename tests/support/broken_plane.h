@@ -3,7 +3,7 @@
 
 #include "film/pixel_film.h"
 #include "geometry/embree_scene_builder.h"
-#include "geometry/plane.h"
+#include "geometry/flat_shapes.h"
 #include "lights/sky_light.h"
 #include "materials/diffuse.h"
 #include "rendering/path_tracer.h"

@@ -1,10 +1,10 @@
 // What the program decides on light paths, manifold sampling, merging and glints before it renders a scene.
 #pragma once
 
-#include "caustics/glints/glint_findings.h"
-#include "caustics/light_tracing/light_path_findings.h"
-#include "caustics/manifold/manifold_findings.h"
-#include "caustics/merging/merge_findings.h"
+#include "caustics/glints/glint_plan.h"
+#include "caustics/light_tracing/light_path_plan.h"
+#include "caustics/manifold/manifold_plan.h"
+#include "caustics/merging/merge_plan.h"
 #include "support/scene_test.h"
 
 namespace abbe::test {

@@ -1,7 +1,7 @@
 // For films of tests that look on while another is filled.
 #pragma once
 
-#include "render/stand_in_film.h"
+#include "render/film.h"
 
 namespace abbe::test {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "caustics/manifold/caster_candidates.h"
-#include "caustics/manifold/manifold_pilot.h"
+#include "caustics/manifold/manifold_sampling.h"
 #include "support/scene_test.h"
 #include "support/statistics.h"
 

@@ -1,8 +1,8 @@
 // What tests of media are made of.
 #pragma once
 
-#include "media/henyey_greenstein.h"
 #include "media/medium_optics.h"
+#include "media/phase_functions.h"
 #include "spectrum/curve.h"
 #include "volumes/voxel_grid.h"
 

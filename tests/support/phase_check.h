@@ -1,7 +1,7 @@
 // Phase functions against their own claims: integrals over the sphere, and what is sampled is what is evaluated.
 #pragma once
 
-#include "render/phase_function.h"
+#include "render/medium.h"
 #include "support/chi_square.h"
 
 #include <doctest/doctest.h>

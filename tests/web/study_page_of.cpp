@@ -1,5 +1,5 @@
 // The page of a study (JSON) without a study:  study_page_of STUDY.json PAGE.html
-#include "pages/study_page.h"
+#include "pages/pages.h"
 
 #include <fstream>
 #include <iterator>

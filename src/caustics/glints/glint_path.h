@@ -1,7 +1,6 @@
 // Camera paths over delta interfaces alone, whose events are chosen and not drawn.
 #pragma once
 
-#include "caustics/glints/forced_lobe.h"
 #include "caustics/glints/glint_search.h"
 #include "caustics/shared/kernel_jobs.h"
 #include "math/hash.h"

@@ -1,9 +1,12 @@
 // Where on the film mirrors and clear glass show small images of lamps: glints.
+// What was found out about small images of lamps in mirrors and glass before a render, for people to read.
+// Lights that are small enough to be seen as glints.
 #pragma once
 
 #include "caustics/shared/chain_signature.h"
 #include "math/vec.h"
 #include "render/film.h"
+#include "render/scene.h"
 
 #include <cstdint>
 #include <span>
@@ -11,6 +14,30 @@
 #include <vector>
 
 namespace abbe {
+
+// It depends on the scene, the frame, the pixel filter and the seed alone.
+struct GlintFindings {
+    bool measured = false;   // a pilot has run
+    std::uint32_t found = 0; // glints that are probed
+    double error = 0; // of the worst tile of 8×8 pixels, as 1024 samples by camera paths alone would leave it, relative
+    double rays = 0;  // of probes for a sample of every pixel, in the mean over pixels
+    std::uint64_t pilotRays = 0; // that it took to find out
+};
+
+// Render space.
+struct GlintLight {
+    const Light* source = nullptr;
+    bool distant = false;
+    Vec3 place;     // unit direction to its middle, or the middle
+    float size = 0; // radius, rad or m
+
+    // Unit direction to its middle, and the sine of half the angle that it fills.
+    Vec3 from(Vec3 p) const { return distant ? place : normalize(place - p); }
+    float sine(Vec3 p) const { return distant ? size : size / length(place - p); }
+};
+
+// The brightest of those that rays can meet, at most so many.
+std::vector<GlintLight> glintLights(const Scene&, std::size_t most);
 
 class Light;
 

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/work.h"
-#include "caustics/glints/glint_lights.h"
+#include "caustics/glints/glint_plan.h"
 #include "caustics/glints/glint_search.h"
 #include "caustics/shared/light_path_verdict.h"
 #include "caustics/shared/pilot.h"

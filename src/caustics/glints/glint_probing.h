@@ -1,7 +1,6 @@
 // Glint probing: which glints, small images of lights in mirrors and clear glass, are probed.
 #pragma once
 
-#include "caustics/glints/glint_findings.h"
 #include "caustics/glints/glint_plan.h"
 #include "caustics/shared/caustic_technique.h"
 

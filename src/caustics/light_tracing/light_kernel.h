@@ -5,7 +5,7 @@
 #include "caustics/light_tracing/light_path.h"
 #include "caustics/shared/kernel_jobs.h"
 #include "caustics/shared/light_start.h"
-#include "render/splat.h"
+#include "render/film.h"
 
 #include <array>
 #include <vector>

@@ -5,7 +5,7 @@
 #include "caustics/light_tracing/light_path_weights.h"
 #include "caustics/shared/chain_signature.h"
 #include "caustics/shared/kernel_jobs.h"
-#include "light_sampling/emitted_ray.h"
+#include "light_sampling/light_target.h"
 #include "transport/roulette.h"
 #include "transport/walk.h"
 

@@ -1,4 +1,5 @@
 // How noisy a picture will be with light paths, foretold from a few of them and a look at some pixels.
+// Where light paths go, for people to read.
 #pragma once
 
 #include "caustics/light_tracing/light_path_plan.h"
@@ -11,6 +12,10 @@
 #include <vector>
 
 namespace abbe {
+
+// Those of the same light and target by name added up, the largest shares first, LightPathFindings::kShares at most:
+// the last one stands for all that are left. Pairs that nothing is sent to are left out.
+std::vector<LightPathShare> largestShares(const std::vector<LightPathShare>&);
 
 // What camera paths bring, relative and in the mean over the frame as NoiseMeasure has it.
 struct CameraVariance {

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/work.h"
 #include "caustics/light_tracing/light_path_forecast.h"
-#include "caustics/light_tracing/light_path_shares.h"
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"
 #include "caustics/shared/pilot.h"

@@ -1,7 +1,6 @@
 // Light tracing: whether paths of light are worth their time in a scene, how many, and where they go.
 #pragma once
 
-#include "caustics/light_tracing/light_path_findings.h"
 #include "caustics/light_tracing/light_path_plan.h"
 #include "caustics/shared/caustic_technique.h"
 

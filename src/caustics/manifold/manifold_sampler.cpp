@@ -1,7 +1,7 @@
 #include "caustics/manifold/manifold_sampler.h"
 
 #include "caustics/manifold/caster_candidates.h"
-#include "caustics/manifold/chain_solver.h"
+#include "caustics/manifold/chain_tracer.h"
 #include "caustics/shared/aim_cone.h"
 #include "math/warp.h"
 

@@ -6,7 +6,7 @@
 #include "caustics/merging/photon_path.h"
 #include "caustics/shared/kernel_jobs.h"
 #include "caustics/shared/light_start.h"
-#include "render/splat.h"
+#include "render/film.h"
 #include "transport/camera_start.h"
 
 namespace abbe {

@@ -5,7 +5,7 @@
 #include "caustics/merging/photon_map.h"
 #include "caustics/shared/aim_cone.h"
 #include "caustics/shared/pilot.h"
-#include "light_sampling/emitted_ray.h"
+#include "light_sampling/light_target.h"
 #include "math/hash.h"
 #include "render/scene.h"
 

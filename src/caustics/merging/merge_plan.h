@@ -1,11 +1,14 @@
 // How light paths are merged with camera paths in a render.
+// What was found out about merging of light paths before a render, for people to read.
 #pragma once
 
 #include "caustics/shared/aimed_emission.h"
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <unordered_set>
+#include <vector>
 
 namespace abbe {
 
@@ -29,6 +32,22 @@ struct MergePlan {
     // Radii of single rounds, such that the noise of their mean and its bias both go to 0 [Knaus2011, sec. 4, with
     // α = 2/3]: the bias as rounds^(-1/3).
     static float radius(std::uint32_t round) { return kRadius * std::pow(static_cast<float>(round) + 1, -1.f / 6); }
+};
+
+// It depends on the scene, the frame and the seed alone.
+struct MergeFindings {
+    bool measured = false; // a pilot has run: whether the numbers below mean anything
+    bool used = false;
+    bool found = false; // whether there is any such light
+    // Of a sample of every pixel, in the mean over pixels: relative second moment of that light as camera paths find it
+    // (infinite where they never do) and as merging does with `every`; relative variance of everything else; and what
+    // all of that comes to in efficiency.
+    double before = 0, after = 0, rest = 0, gain = 1;
+    std::uint32_t every = 1;         // samples of a replicate there are to a round
+    std::uint32_t photons = 0;       // light paths of a round
+    std::uint64_t rays = 0;          // that it took to find out
+    std::vector<std::string> lights; // whose light is merged
+    std::vector<std::string> unseen; // whose light camera paths never find, whether it is merged or not
 };
 
 } // namespace abbe

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/work.h"
-#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/light_tracing/light_path_plan.h"
 #include "caustics/merging/merge_pilot.h"
 #include "caustics/shared/aim_targets.h"
 #include "caustics/shared/emission_learning.h"

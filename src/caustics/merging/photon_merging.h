@@ -1,7 +1,6 @@
 // Photon merging: whether it is worth its time, and its bias, in a scene.
 #pragma once
 
-#include "caustics/merging/merge_findings.h"
 #include "caustics/merging/merge_plan.h"
 #include "caustics/shared/caustic_technique.h"
 

@@ -3,8 +3,8 @@
 
 #include "caustics/shared/aim_cone.h"
 #include "math/bounds.h"
-#include "render/focusing_shape.h"
 #include "render/scene.h"
+#include "render/shape.h"
 
 #include <span>
 #include <string>

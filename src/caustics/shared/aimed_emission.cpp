@@ -47,7 +47,7 @@ AimedEmission::AimedEmission(const std::vector<std::unique_ptr<const Light>>& li
     ABBE_CHECK(plan_.uniformShare > 0 && plan_.uniformShare <= 1);
     ABBE_CHECK(plan_.usefulness.empty() || plan_.usefulness.size() == lights.size());
     const float radius = scene.empty() ? 0 : scene.radius();
-    const bool finite = radius > 0 && std::isfinite(radius); // as lights far away have it (lights/scene_disk.h)
+    const bool finite = radius > 0 && std::isfinite(radius); // as lights far away have it (lights/light_context.h)
     scene_ = {finite ? scene.centre() : Vec3{}, finite ? radius : 1};
     // Places are rounded, too: as AimCone, the disks are a few steps wider than what they aim at.
     const float steps = 0x1p-21f * (length(scene_.centre) + scene_.radius);

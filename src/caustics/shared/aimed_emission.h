@@ -2,7 +2,7 @@
 #pragma once
 
 #include "caustics/shared/aim_cone.h"
-#include "light_sampling/emitted_ray.h"
+#include "light_sampling/light_target.h"
 #include "math/bounds.h"
 #include "math/distribution.h"
 #include "math/vec.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "caustics/shared/kernel_jobs.h"
-#include "render/caustic_findings.h"
+#include "render/integrator.h"
 
 #include <cstdint>
 #include <functional>

@@ -3,8 +3,6 @@
 
 #include "math/vec.h"
 #include "render/film.h"
-#include "render/path_component.h"
-#include "render/portion.h"
 #include "render/render_state.h"
 #include "transport/path_context.h"
 

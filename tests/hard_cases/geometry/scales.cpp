@@ -1,7 +1,7 @@
 // Places, sizes and closed surfaces: cases 6 to 8 of docs/hard_cases.md.
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "hard_cases/hard_case.h"
 #include "math/warp.h"
 #include "support/ray_estimate.h"

@@ -1,5 +1,5 @@
 // Newton's method over polished interfaces, where it is worst: caustics themselves, grazing light, rings.
-#include "caustics/manifold/chain_solver.h"
+#include "caustics/manifold/chain_tracer.h"
 #include "hard_cases/hard_case.h"
 #include "support/manifold_cases.h"
 

@@ -2,10 +2,9 @@
 #include "support/media.h"
 
 #include "hard_cases/hard_case.h"
-#include "media/draine.h"
-#include "media/henyey_greenstein.h"
 #include "media/homogeneous.h"
-#include "media/noise_medium.h"
+#include "media/noise_media.h"
+#include "media/phase_functions.h"
 #include "support/phase_check.h"
 #include "support/scene_test.h"
 #include "transport/medium_tracker.h"

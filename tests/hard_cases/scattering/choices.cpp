@@ -1,5 +1,5 @@
 // Which light, which lobe, which weight: cases 35 to 39 of docs/hard_cases.md.
-#include "doctor/sampling_checks.h"
+#include "doctor/numeric_check.h"
 #include "hard_cases/hard_case.h"
 #include "light_sampling/light_tree.h"
 #include "math/distribution.h"

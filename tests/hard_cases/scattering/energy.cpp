@@ -1,7 +1,7 @@
 // Energy, bent normals, hair and textures: cases 40 to 43 and 45 of docs/hard_cases.md.
 #include "hard_cases/hard_case.h"
 #include "materials/fresnel.h"
-#include "materials/hair_bsdf.h"
+#include "materials/hair.h"
 #include "math/frame.h"
 #include "spectrum/rgb_upsampling.h"
 #include "statistical/materials/openpbr_suite.h"

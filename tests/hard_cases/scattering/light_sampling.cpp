@@ -1,7 +1,7 @@
 // Where lights are sampled: cases 30 to 34 of docs/hard_cases.md.
+#include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
-#include "geometry/quad.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "hard_cases/hard_case.h"
 #include "lights/environment_light.h"
 #include "math/distribution.h"

@@ -1,7 +1,6 @@
 // Microfacets at the ends of their ranges: cases 24 to 27 of docs/hard_cases.md.
 #include "hard_cases/hard_case.h"
 #include "materials/ggx.h"
-#include "materials/ggx_albedo.h"
 #include "statistical/materials/extremes.h"
 
 using namespace abbe;

@@ -1,10 +1,8 @@
 // Area lights over real shapes: irradiance against closed forms, and every sample against a traced ray.
-#include "geometry/disk.h"
 #include "geometry/embree_scene_builder.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
-#include "geometry/plane.h"
-#include "geometry/quad.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "lights/area_light.h"
 #include "spectrum/curve.h"
 #include "support/statistics.h"

@@ -1,9 +1,7 @@
 // Points of emitters by their texture coordinates, and hits by their points: what lamps with textures need.
-#include "geometry/disk.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
-#include "geometry/quad.h"
-#include "geometry/sphere.h"
-#include "geometry/transformed.h"
+#include "geometry/round_shapes.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>

@@ -1,8 +1,8 @@
 // Rectangles, spheres and polygons of meshes sampled for receivers, most of them lit from one side: densities over the
 // directions, and what they are good for.
+#include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
-#include "geometry/quad.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "support/chi_square.h"
 #include "support/statistics.h"
 

@@ -1,7 +1,6 @@
 // Energy: white furnaces, albedos that never exceed one, and reciprocity.
 #include "materials/ggx.h"
-#include "materials/ggx_albedo.h"
-#include "materials/stretched_albedo.h"
+#include "materials/stretched_ggx.h"
 #include "suite.h"
 
 #include <doctest/doctest.h>

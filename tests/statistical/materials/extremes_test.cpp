@@ -1,6 +1,6 @@
 // Directions and numbers at the edge of their ranges (docs/hard_cases.md, cases 25 to 27).
 #include "extremes.h"
-#include "materials/ggx_albedo.h"
+#include "materials/ggx.h"
 
 #include <doctest/doctest.h>
 

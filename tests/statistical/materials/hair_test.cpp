@@ -1,6 +1,5 @@
 // Hair (docs/hard_cases.md, case 43): furnace, samplers, directions against rays through a cylinder, pigment.
 #include "materials/hair.h"
-#include "materials/hair_bsdf.h"
 #include "sphere_checks.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,6 @@
 // Materials of materials: mixtures, sheets with two sides. Their parts are proved elsewhere; here it is that nothing of
 // them is lost, doubled or made up.
 #include "materials/mix.h"
-#include "materials/mixed_bsdf.h"
 #include "materials/two_sided.h"
 #include "sphere_checks.h"
 #include "suite.h"

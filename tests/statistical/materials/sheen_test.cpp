@@ -1,6 +1,5 @@
 // The sheen lobe against the layer of fibres that it stands for, and the cloth that it lies on.
 #include "materials/sheen.h"
-#include "materials/sheen_lobe.h"
 #include "sphere_checks.h"
 #include "support/sheen_layer.h"
 

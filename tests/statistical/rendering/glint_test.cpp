@@ -1,6 +1,6 @@
 // Probed glints against closed forms, sharp enough to see a fault of one per cent: the image of a sun in one level face
 // of glass, and in two.
-#include "caustics/glints/glint_findings.h"
+#include "caustics/glints/glint_plan.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/sensor.h"
 #include "support/scene_test.h"

@@ -2,8 +2,8 @@
 // merged, but for one: their glass stands in instances, over which chains are not followed, and the eye sees all
 // through it. It is even where it is gathered, so that disks of any size blur nothing; and a sphere within a chord r of
 // a point has the area π r² of a flat disk.
-#include "caustics/manifold/manifold_findings.h"
-#include "caustics/merging/merge_findings.h"
+#include "caustics/manifold/manifold_plan.h"
+#include "caustics/merging/merge_plan.h"
 #include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
 #include "spectrum/sensor.h"

@@ -1,5 +1,5 @@
 // The spectrum behind a prism, scenes/check/prism-spectrum.scene: where it lies and which colours it has.
-#include "caustics/light_tracing/light_path_findings.h"
+#include "caustics/light_tracing/light_path_plan.h"
 #include "support/prism_spectrum.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"

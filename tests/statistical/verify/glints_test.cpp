@@ -1,5 +1,5 @@
 // Small images of lamps in mirrors and glass, probed and by camera paths alone, of lamps that these do find.
-#include "caustics/glints/glint_findings.h"
+#include "caustics/glints/glint_plan.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
 

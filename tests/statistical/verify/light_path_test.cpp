@@ -1,6 +1,6 @@
 // Paths from the lights give the picture that paths from the camera give.
 #include "caustics/light_tracing/light_path.h"
-#include "caustics/manifold/manifold_findings.h"
+#include "caustics/manifold/manifold_plan.h"
 #include "caustics/shared/aimed_emission.h"
 #include "path_tracing/path_kernels.h"
 #include "support/scene_test.h"

@@ -1,6 +1,6 @@
 // Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
 // lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
-#include "caustics/manifold/manifold_findings.h"
+#include "caustics/manifold/manifold_plan.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
 

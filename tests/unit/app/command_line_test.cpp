@@ -1,10 +1,6 @@
-#include "command_line/man_page.h"
+#include "command_line/command_tree.h"
 #include "command_line/parser.h"
-#include "command_line/shell_completion.h"
-#include "commands/check.h"
 #include "commands/command_table.h"
-#include "commands/explain.h"
-#include "commands/render.h"
 #include "schema/type.h"
 
 #include <algorithm>

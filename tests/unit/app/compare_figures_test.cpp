@@ -1,4 +1,4 @@
-#include "commands/compare.h"
+#include "commands/command_table.h"
 #include "pictures/compare_figures.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "commands/denoise.h"
+#include "commands/command_table.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
 #include "unit/denoise/synthetic_picture.h"

@@ -1,7 +1,7 @@
 // Checkpoints of renders whose light paths add to pixels all over the picture.
 #include "checkpoints/checkpoint_file.h"
 #include "checkpoints/render_checkpoint.h"
-#include "checkpoints/render_parts.h"
+#include "checkpoints/render_identity.h"
 #include "film/pixel_film.h"
 #include "math/hash.h"
 

@@ -1,7 +1,7 @@
-#include "app/hash128.h"
+#include "app/identity.h"
 #include "app/json.h"
-#include "reports/progress_text.h"
-#include "reports/provenance.h"
+#include "reports/image_header.h"
+#include "reports/progress.h"
 
 #include <doctest/doctest.h>
 #include <limits>

@@ -1,5 +1,5 @@
 // The opening of a lens: uniform, of the right area and the right form.
-#include "cameras/aperture.h"
+#include "cameras/exposure.h"
 #include "support/chi_square.h"
 
 #include <doctest/doctest.h>

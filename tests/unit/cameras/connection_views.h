@@ -2,12 +2,10 @@
 #pragma once
 
 #include "camera_fixture.h"
-#include "cameras/held_camera.h"
+#include "cameras/altered_camera.h"
 #include "cameras/lens_system.h"
-#include "cameras/orthographic.h"
 #include "cameras/perspective.h"
-#include "cameras/shutter_camera.h"
-#include "cameras/spherical.h"
+#include "cameras/projections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // Parallel projection and panoramas.
 #include "camera_fixture.h"
-#include "cameras/orthographic.h"
-#include "cameras/spherical.h"
+#include "cameras/projections.h"
 
 namespace abbe {
 namespace {

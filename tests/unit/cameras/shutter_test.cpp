@@ -1,6 +1,6 @@
 // Shutters and moving cameras.
+#include "cameras/altered_camera.h"
 #include "cameras/perspective.h"
-#include "cameras/shutter_camera.h"
 #include "support/chi_square.h"
 #include "support/statistics.h"
 

@@ -1,4 +1,4 @@
-#include "denoise/error_estimate.h"
+#include "denoise/half_buffers.h"
 #include "denoise/regression.h"
 
 #include <cmath>

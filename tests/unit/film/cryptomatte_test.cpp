@@ -1,5 +1,5 @@
 #include "film/layer_planes.h"
-#include "render/sample_recorder.h"
+#include "render/path_observer.h"
 
 #include <bit>
 #include <doctest/doctest.h>

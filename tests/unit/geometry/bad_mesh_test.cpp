@@ -1,7 +1,6 @@
 // Random meshes, most of them damaged: an error that says what is wrong, or a surface that rays and samples can meet.
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
-#include "geometry/mesh_cleanup.h"
 #include "support/statistics.h"
 
 #include <cstdlib>

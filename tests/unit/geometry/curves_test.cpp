@@ -1,6 +1,5 @@
 // Curves against their definitions, solved in double without Embree.
 #include "geometry/curves.h"
-#include "geometry/curves_segment.h"
 #include "geometry/embree_scene_builder.h"
 #include "support/statistics.h"
 

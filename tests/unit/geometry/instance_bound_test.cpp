@@ -1,6 +1,6 @@
 // The error bounds of instances hold, and are not far above what rounding does.
 #include "geometry/embree_scene_builder.h"
-#include "geometry/quad.h"
+#include "geometry/flat_shapes.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/instance_table.h"
 #include "geometry/mesh.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "support/numbered_materials.h"
 #include "support/statistics.h"
 #include "test_meshes.h"

@@ -1,6 +1,5 @@
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
-#include "geometry/mesh_cleanup.h"
 #include "shape_test_support.h"
 #include "support/whole_emitter.h"
 #include "test_meshes.h"

@@ -1,5 +1,5 @@
 // Cylinders, cones and tori as lamps: densities of samples, and the light that they give.
-#include "geometry/box.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"
 #include "geometry/torus.h"

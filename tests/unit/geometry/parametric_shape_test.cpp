@@ -1,5 +1,5 @@
 // Cylinders, cones and tori against brute force in double, and what every shape promises.
-#include "geometry/box.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"
 #include "geometry/torus.h"

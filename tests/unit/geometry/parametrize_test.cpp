@@ -1,19 +1,15 @@
 // What textures see of a hit: dp/du and dp/dv by finite differences of uv, the point in the shape's own space.
-#include "geometry/box.h"
 #include "geometry/curves.h"
 #include "geometry/deforming_mesh.h"
-#include "geometry/disk.h"
 #include "geometry/embree_scene_builder.h"
-#include "geometry/face_materials.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"
-#include "geometry/plane.h"
 #include "geometry/points.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "geometry/torus.h"
-#include "geometry/transformed.h"
 #include "render/material.h"
-#include "render/texture_query.h"
+#include "render/surface_input.h"
 #include "support/statistics.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,7 @@
-// The limit surface against uniform refinement, and what must hold of its normals and of cages.
-#include "geometry/subdivision_check.h"
+// The limit surface against uniform refinement, and what must hold of its normals and of cages; no ray leaves a closed
+// diced surface from inside.
+#include "geometry/subdivision_surface.h"
+#include "support/escapes.h"
 #include "support/statistics.h"
 #include "support/subdivision_cages.h"
 #include "support/subdivision_reference.h"
@@ -289,4 +291,17 @@ TEST_CASE("subdivision: random cages, sound or not, do no harm") {
         checkSound(surface.dice(surface.plan({Dicing::Mode::length, 0.1, {}}, 1 << 20)).mesh);
     }
     CHECK(sound > count / 10);
+}
+
+TEST_CASE("subdivision: no ray leaves a closed surface") {
+    const std::size_t rays = std::getenv("ABBE_NIGHTLY") ? 1'000'000 : 20'000;
+    for (const auto& [name, cage, closed] : namedCages()) {
+        if (!closed) continue;
+        CAPTURE(name);
+        const SubdivisionSurface surface(cage);
+        for (const double length : {0.3, 0.1, 0.03}) {
+            const DicingPlan plan = surface.plan({Dicing::Mode::length, length, {}}, 1ull << 32);
+            CHECK(escapes(surface.dice(plan).mesh, rays, 5) == 0);
+        }
+    }
 }

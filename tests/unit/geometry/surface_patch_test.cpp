@@ -1,11 +1,9 @@
 // Patches of surfaces: where a line meets them, to double, and how their normals turn there, against differences.
-#include "geometry/box.h"
-#include "geometry/disk.h"
+#include "geometry/flat_shapes.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"
-#include "geometry/plane.h"
+#include "geometry/round_shapes.h"
 #include "geometry/torus.h"
-#include "geometry/transformed.h"
 #include "shape_test_support.h"
 #include "test_meshes.h"
 

@@ -1,6 +1,5 @@
 // Amounts of light against values worked out by hand.
 #include "lights/amount.h"
-#include "lights/amount_fields.h"
 #include "lights/area_light_types.h"
 #include "lights/point_light.h"
 #include "lights/spot_light.h"

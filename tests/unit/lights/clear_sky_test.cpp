@@ -1,7 +1,6 @@
 // The computed sky against published measurements of clear skies.
 #include "lights/amount.h"
 #include "lights/clear_sky.h"
-#include "lights/solar_spectrum.h"
 #include "spectrum/color_space.h"
 #include "spectrum/sensor.h"
 

@@ -1,6 +1,6 @@
 #include "lights/amount.h"
+#include "lights/clear_sky.h"
 #include "lights/daylight_light.h"
-#include "lights/solar_spectrum.h"
 #include "lights/sun_light.h"
 #include "spectrum/color_space.h"
 #include "spectrum/sensor.h"

@@ -1,6 +1,6 @@
 // Masking and shadowing of transmission, and the light that rough glass turns after any number of events
 // (docs/decisions/031-masking-of-transmission.md).
-#include "materials/ggx_albedo.h"
+#include "materials/ggx.h"
 #include "support/microfacet_walk.h"
 
 #include <doctest/doctest.h>

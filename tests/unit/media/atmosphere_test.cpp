@@ -1,7 +1,7 @@
 // Bounds of an atmosphere hold at every distance that a tracker asks for, far from its origin too, where distances are
 // coarse.
 #include "media/atmosphere.h"
-#include "media/henyey_greenstein.h"
+#include "media/phase_functions.h"
 #include "spectrum/curve.h"
 #include "support/statistics.h"
 

@@ -1,5 +1,5 @@
 // Light that media give off, collected along a ray through what absorbs and scatters it.
-#include "media/optical_medium.h"
+#include "media/medium_optics.h"
 #include "support/media.h"
 #include "support/statistics.h"
 #include "transport/medium_tracker.h"

@@ -1,6 +1,6 @@
 // Optical lengths that leave the range of float, and distances that few random numbers reach.
 #include "media/homogeneous.h"
-#include "media/optical_medium.h"
+#include "media/medium_optics.h"
 #include "support/media.h"
 #include "support/statistics.h"
 #include "transport/medium_tracker.h"

@@ -1,6 +1,6 @@
 // What volumes of voxels give off: along rays, as a light, and that both mean the same.
+#include "media/grid_emission.h"
 #include "media/grid_medium.h"
-#include "media/volume_light.h"
 #include "spectrum/emission_curves.h"
 #include "support/chi_square.h"
 #include "support/media.h"

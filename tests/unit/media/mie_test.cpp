@@ -1,8 +1,7 @@
 // Lorenz-Mie theory: published values, limits, and the phase function made of it.
-#include "media/draine.h"
 #include "media/mie_phase.h"
-#include "media/mie_series.h"
-#include "media/mixed_phase.h"
+#include "media/mie_spheres.h"
+#include "media/phase_functions.h"
 #include "spectrum/curve.h"
 #include "spectrum/named_spectra.h"
 #include "support/phase_check.h"

@@ -1,7 +1,6 @@
 // Noise volumes: transmittance against integrals, bounds that hold nearly everywhere, and nothing lost where they do
 // not.
-#include "media/noise_medium.h"
-#include "media/noise_volume.h"
+#include "media/noise_media.h"
 #include "support/media.h"
 #include "support/statistics.h"
 #include "transport/medium_tracker.h"

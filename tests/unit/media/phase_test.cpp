@@ -1,8 +1,5 @@
 // Phase functions: what is sampled is what is evaluated.
-#include "media/draine.h"
-#include "media/henyey_greenstein.h"
-#include "media/mixed_phase.h"
-#include "media/tabulated_phase.h"
+#include "media/phase_functions.h"
 #include "support/phase_check.h"
 
 namespace abbe::test {

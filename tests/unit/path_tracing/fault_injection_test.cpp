@@ -1,6 +1,6 @@
 // Faults of every material, light, phase function and camera that a scene can name: whatever one of their functions
 // answers that is no number, infinite or negative, none of it gets into the image unseen, and it is found where it was.
-#include "rendering/sample_fault.h"
+#include "rendering/path_record.h"
 #include "support/environment_file.h"
 #include "support/faults.h"
 #include "support/picture_file.h"

@@ -1,7 +1,7 @@
 // Renders in pieces: stopped and continued, snapshots on the way, parts of the samples. The bits are those of the
 // whole.
 #include "render/render_state.h"
-#include "rendering/pass_schedule.h"
+#include "rendering/time_left.h"
 #include "support/forwarding_film.h"
 #include "support/same_bits.h"
 #include "support/scene_test.h"

@@ -1,8 +1,8 @@
 // Plans of samples: their ranges, what they make of a pilot, and that the bits of a render do not depend on how it is
 // cut.
 #include "render/render_state.h"
-#include "rendering/pass_schedule.h"
 #include "rendering/sampling_plan.h"
+#include "rendering/time_left.h"
 #include "support/same_bits.h"
 #include "support/scene_test.h"
 

@@ -1,5 +1,5 @@
 // Passes, the pilot, and Russian roulette's reference.
-#include "rendering/pass_schedule.h"
+#include "rendering/time_left.h"
 #include "support/chi_square.h"
 #include "transport/roulette.h"
 

@@ -1,6 +1,5 @@
 // The estimate of the time left, against simulated renders whose end is known: tiles of very different cost, an error
 // that falls by any power, threads, a clock of the test's own.
-#include "rendering/pass_schedule.h"
 #include "rendering/time_left.h"
 #include "support/statistics.h"
 

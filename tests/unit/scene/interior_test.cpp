@@ -1,5 +1,5 @@
 // Shapes that media fill must be closed.
-#include "scene/closed_surface.h"
+#include "scene/shape_builder.h"
 #include "scene_test_fixture.h"
 
 #include <doctest/doctest.h>

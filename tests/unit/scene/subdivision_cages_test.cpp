@@ -1,6 +1,6 @@
 // The reference cages that come with OpenSubdiv, where they are at hand: through the OBJ reader, diced, against a
 // refinement to level 10 (positions) and 40 (normals), face by face.
-#include "geometry/subdivision_check.h"
+#include "geometry/subdivision_surface.h"
 #include "io/mesh_file.h"
 #include "support/subdivision_local.h"
 

@@ -2,7 +2,7 @@
 // million rays each at night (docs/testing.md).
 #include "geometry/embree_scene_builder.h"
 #include "geometry/mesh.h"
-#include "geometry/subdivision_check.h"
+#include "geometry/subdivision_surface.h"
 #include "io/mesh_file.h"
 #include "support/statistics.h"
 #include "support/subdivision_reference.h"

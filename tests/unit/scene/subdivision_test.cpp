@@ -63,3 +63,82 @@ TEST_CASE("subdivision scene: mistakes have a code and a place") {
     CHECK(codes(build(shape("dicing 0 px\n"))) == "E0303");
     CHECK(build(shape("crease 0 7 sharpness=2\n")).report().find("no edge of a face") != std::string::npos);
 }
+
+// Displacement out of scene text.
+
+using namespace abbe;
+using namespace abbe::test;
+
+namespace {
+
+// A square of four faces about the origin, 2 wide, in the xy-plane; flat, so that its limit is itself.
+const std::string kSquare = "points { - -1 -1 0; - 1 -1 0; - 1 1 0; - -1 1 0 }\nfaces { - 0 1 2 3 }\n";
+const std::string kFolder = std::string(ABBE_SOURCE_DIR) + "/scenes/displaced-stones/";
+
+std::string square(const std::string& more) { return "shape subdivision {\n" + kSquare + more + "dicing 3\n}\n"; }
+
+// A cube 20 wide with texture coordinates.
+std::string block(const std::string& more) {
+    return "shape subdivision \"" + kFolder + "block.obj\" {\n" + more + "dicing 3\n}\n";
+}
+
+std::string vector(const std::string& more) {
+    return "displacement 0.5 { map noise { scale 1000; octaves 1 }; kind vector; midpoint 0.1; " + more + " }\n";
+}
+
+} // namespace
+
+TEST_CASE("displacement scene: a length in the shape's own space, before its transform") {
+    // Noise with a scale beyond everything is nearly constant.
+    const std::string up = "displacement 0.5 { map noise { scale 1e6; octaves 1 }; midpoint -0.5 }\n";
+    const auto plain = build(square(up));
+    REQUIRE(codes(plain) == "");
+    const double z = trace(plain, {0.1, 0.2, 4}, {0, 0, -1}).p.z;
+    CHECK(z > 0.3);
+    CHECK(z < 0.7);
+    const auto scaled = build(square(up + "transform { scale 1 1 3; translate 0 0 -0.5 }\n"));
+    REQUIRE(codes(scaled) == "");
+    CHECK(trace(scaled, {0.1, 0.2, 4}, {0, 0, -1}).p.z == doctest::Approx(3 * z - 0.5).epsilon(1e-4));
+    const auto mirrored = build(square(up + "transform { scale 1 1 -1 }\n"));
+    const WorldHit hit = trace(mirrored, {0.1, 0.2, -4}, {0, 0, 1});
+    REQUIRE(hit.met);
+    CHECK(hit.p.z == doctest::Approx(-z).epsilon(1e-4));
+    CHECK(hit.hit.ng.z < -0.9f); // the outer side is still outside
+    CHECK(hit.hit.shading.z.z < -0.9f);
+    CHECK(codes(build("texture t noise\n" + square("displacement 0.1 { map t }\n"))) == "");
+    CHECK(codes(build(square("displacement 0 { map noise }\n"))) == "");
+}
+
+TEST_CASE("displacement scene: vectors in both spaces") {
+    for (const std::string space : {"space object", "space tangent", ""}) {
+        const auto scene = build(block(vector(space)));
+        REQUIRE(codes(scene) == "W0696"); // the camera is in the block
+        CHECK(trace(scene, {0, 0, 40}, {0, 0, -1}).met);
+    }
+}
+
+TEST_CASE("displacement scene: mistakes have a code and a place") {
+    CHECK(codes(build(square("displacement 0.1\n"))) == "E0207");
+    CHECK(codes(build(square("displacement 0.1 { midpoint 0 }\n"))) == "E0207");
+    CHECK(codes(build(square("displacement 0.1 { map nothing }\n"))) == "E0202");
+    CHECK(codes(build(square("displacement 0.1 { map noise; space object }\n"))) == "E0310");
+    CHECK(codes(build(square("displacement 0.1 { map noise; kind vektor }\n"))) == "E0307");
+    CHECK(codes(build(square("displacement 0.1 { map noise; kind vector }\n"))) == "E0670");
+    CHECK(codes(build(square("displacement 0.1 px { map noise }\n"))) == "E0302");
+    CHECK(codes(build(square("displacement 0.1 { map image \"nowhere.exr\" }\n"))) == "E0401");
+    CHECK(codes(build(square("displacement 0.1 { map noise { scale 0 } }\n"))) == "E0303");
+    CHECK(codes(build("texture t image\n")) == "W0201 E0207"); // and nothing uses it
+    CHECK(codes(build("texture t\n")) == "E0211");
+    const auto mesh = build("shape mesh { " + kSquare + "displacement 0.1 { map noise }\n}\n");
+    CHECK(codes(mesh) == "E0201");
+    CHECK(mesh.advice().find("scheme bilinear") != std::string::npos);
+}
+
+TEST_CASE("displacement scene: images are looked up, checked and told apart") {
+    const std::string image = "displacement 0.1 { map image \"" + kFolder + "weave.pgm\"";
+    CHECK(codes(build(block(image + " space=data }\n"))) == "W0696");
+    CHECK(codes(build(block(image + " }\n"))) == "W0450 W0696");
+    CHECK(codes(build(square(image + " space=data }\n"))) == "E0670");
+    CHECK(codes(build(block(image + " space=data; kind vector }\n"))) == "E0671");
+    CHECK(codes(build(block("displacement 0.1 { map image \"" + kFolder + "README.md\" }\n"))) == "E0402");
+}

@@ -1,6 +1,5 @@
 // Subdivision surfaces out of scene text: which camera they are diced for, texture coordinates in place, and materials
 // of groups of faces.
-#include "geometry/face_materials.h"
 #include "geometry/mesh.h"
 #include "scene_test_fixture.h"
 #include "support/subdivision_reference.h"

@@ -1,6 +1,6 @@
 // Textures of a scene: cycles and excess, texture coordinates, attributes, what sticks to a shape, what is kept.
 #include "render/material.h"
-#include "render/texture_query.h"
+#include "render/surface_input.h"
 #include "scene_test_fixture.h"
 
 #include <doctest/doctest.h>

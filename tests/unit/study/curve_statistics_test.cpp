@@ -1,5 +1,5 @@
+#include "study/curve_fits.h"
 #include "study/curve_statistics.h"
-#include "study/power_law.h"
 #include "support/statistics.h"
 
 #include <cmath>

@@ -1,5 +1,4 @@
 // What effects cost and show: found where they are, cancelled where they change nothing, foretold by the cost report.
-#include "study/effect_prediction.h"
 #include "study/effect_study.h"
 #include "support/scene_test.h"
 

@@ -1,5 +1,5 @@
-#include "study/curve_record.h"
 #include "study/reference_pair.h"
+#include "study/study_store.h"
 #include "support/statistics.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // The width of paths beyond curved mirrors and lenses, against neighbouring rays traced in double precision.
 #include "geometry/mesh.h"
-#include "geometry/sphere.h"
+#include "geometry/round_shapes.h"
 #include "support/scene_test.h"
 #include "transport/path_state.h"
 

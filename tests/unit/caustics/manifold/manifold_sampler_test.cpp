@@ -1,6 +1,6 @@
 // Light over delta interfaces to a point: against closed forms, and derivatives against differences.
 #include "caustics/manifold/caster_candidates.h"
-#include "caustics/manifold/chain_solver.h"
+#include "caustics/manifold/chain_tracer.h"
 #include "caustics/manifold/manifold_sampler.h"
 #include "support/manifold_cases.h"
 

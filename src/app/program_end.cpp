@@ -1,0 +1,59 @@
+#include "app/program_end.h"
+
+#include <csignal>
+#include <unistd.h>
+
+namespace abbe {
+
+namespace {
+
+// A signal handler can reach nothing but globals; they are lock-free.
+std::atomic<bool> stopRequested{false};
+std::atomic<bool> snapshotRequested{false};
+std::atomic<int> receivedSignal{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+void onSignal(int signal) {
+    if (receivedSignal.exchange(signal) != 0) _exit(128 + signal);
+    stopRequested = true;
+}
+
+void onSnapshot(int) { snapshotRequested = true; }
+
+// Also where the signal was ignored on entry, as shells do for jobs in the background: who sends one means it.
+void handle(void (*handler)(int), void (*snapshot)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    action.sa_handler = snapshot;
+    sigaction(SIGUSR1, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);
+}
+
+} // namespace
+
+void endOnSignals() {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+}
+
+InterruptGuard::InterruptGuard() {
+    stopRequested = false;
+    snapshotRequested = false;
+    receivedSignal = 0;
+    handle(onSignal, onSnapshot);
+}
+
+InterruptGuard::~InterruptGuard() { handle(SIG_DFL, SIG_DFL); }
+
+const std::atomic<bool>& InterruptGuard::stop() const { return stopRequested; }
+
+std::atomic<bool>& InterruptGuard::snapshot() const { return snapshotRequested; }
+
+void InterruptGuard::requestStop() { stopRequested = true; }
+
+int InterruptGuard::signal() const { return receivedSignal; }
+
+} // namespace abbe

@@ -1,0 +1,85 @@
+// Cameras that change what another one does: one whose shutter and movement matter, because something moves while it is
+// open, and one without the effects that it has.
+#pragma once
+
+#include "cameras/exposure.h"
+#include "math/motion.h"
+#include "render/camera.h"
+
+#include <memory>
+
+namespace abbe {
+
+// Gives the rays of another camera their time (Ray::time is the position in the shutter interval), and moves them with
+// the camera as a rigid body.
+class ShutterCamera final : public Camera {
+  public:
+    // `inner` makes rays in render space for the moment at which the shutter opens. `toRender`: camera space to render
+    // space over scene time; only turns and moves.
+    ShutterCamera(std::unique_ptr<const Camera> inner, const Motion& toRender, const Shutter& shutter);
+
+    CameraRay ray(const CameraSample&) const noexcept override;
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override;
+    float rayTime(float u) const noexcept override;
+    std::optional<LensConnection> connect(const LensQuery&) const noexcept override;
+    float pdfFacingArea(const LensQuery&, const CameraRay&) const noexcept override;
+    bool sharesLens() const override { return inner_->sharesLens(); }
+    bool usesLens() const override { return inner_->usesLens(); }
+    bool disperses() const override { return inner_->disperses(); }
+
+  private:
+    // From render space at the opening to there at a position of the shutter interval.
+    Transform moved(double position) const { return fromOpening_.then(toRender_.at(shutter_.timeAt(position))); }
+
+    std::unique_ptr<const Camera> inner_;
+    Motion toRender_;
+    Transform fromOpening_; // render space to camera space at the opening
+    Shutter shutter_;
+};
+
+// A camera whose rays go through the middle of the lens, or all belong to the middle of the exposure. `still` requires
+// a scene in which nothing else moves.
+class HeldCamera final : public Camera {
+  public:
+    HeldCamera(std::unique_ptr<const Camera> inner, bool centred, bool still)
+        : inner_(std::move(inner)), centred_(centred), still_(still) {}
+
+    CameraRay ray(const CameraSample& sample) const noexcept override {
+        CameraSample held = sample;
+        if (centred_) held.lens = {0.5f, 0.5f};
+        if (still_) held.time = 0.5f;
+        CameraRay result = inner_->ray(held);
+        if (still_) result.ray.time = 0;
+        return result;
+    }
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override {
+        return inner_->project(p, still_ ? 0.5 : time, near);
+    }
+    float rayTime(float u) const noexcept override { return still_ ? 0 : inner_->rayTime(u); }
+    // The middle of a lens whose points ray() finds otherwise than connect() is met by no connection.
+    std::optional<LensConnection> connect(const LensQuery& query) const noexcept override {
+        return reachable() ? inner_->connect(held(query)) : std::nullopt;
+    }
+    float pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept override {
+        if (!reachable()) return 0;
+        CameraRay inner = ray;
+        if (still_) inner.ray.time = inner_->rayTime(0.5f);
+        return inner_->pdfFacingArea(held(query), inner);
+    }
+    bool sharesLens() const override { return inner_->sharesLens(); }
+    bool usesLens() const override { return !centred_ && inner_->usesLens(); }
+    bool disperses() const override { return inner_->disperses(); }
+
+  private:
+    bool reachable() const { return !centred_ || !inner_->usesLens() || inner_->sharesLens(); }
+    LensQuery held(LensQuery query) const {
+        if (centred_) query.lens = {0.5f, 0.5f};
+        if (still_) query.time = inner_->rayTime(0.5f);
+        return query;
+    }
+
+    std::unique_ptr<const Camera> inner_;
+    bool centred_, still_;
+};
+
+} // namespace abbe
