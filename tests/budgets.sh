@@ -10,9 +10,9 @@ set -euo pipefail
 cd "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.."
 
 # What holds today, with a little room; beyond it is a fault. The aims: a median near 100 lines, fewer than 20 % below 50.
-least_median=60       # lines of a file
-most_short=42         # % of the files with fewer than 50 lines
-most_single_user=230  # headers
+least_median=85       # lines of a file
+most_short=20         # % of the files with fewer than 50 lines
+most_single_user=120  # headers
 most_in_folder=40     # files; more is a warning
 large_folders="materials" # two files a material, whatever their number
 

@@ -66,12 +66,12 @@ constexpr Row kFastGauss[] = {
     {-63.0250, 0, {}, 0, 0, 15.75},
 };
 
-struct Entry {
+struct CatalogueEntry {
     PublishedLens lens;
     std::span<const Row> rows;
 };
 
-constexpr Entry kLenses[] = {
+constexpr CatalogueEntry kLenses[] = {
     {{"singlet", "Plano-convex lens of N-BK7, f = 100 mm, R = 51.5 mm, 3.6 mm thick: Thorlabs LA1509; the stop in "
                  "front of it is ours."},
      kSinglet},
@@ -87,7 +87,7 @@ constexpr Entry kLenses[] = {
 const std::vector<PublishedLens>& publishedLenses() {
     static const std::vector<PublishedLens> list = [] {
         std::vector<PublishedLens> lenses;
-        for (const Entry& entry : kLenses) lenses.push_back(entry.lens);
+        for (const CatalogueEntry& entry : kLenses) lenses.push_back(entry.lens);
         return lenses;
     }();
     return list;
@@ -95,7 +95,7 @@ const std::vector<PublishedLens>& publishedLenses() {
 
 LensPrescription publishedLens(std::string_view name) {
     LensPrescription result;
-    for (const Entry& entry : kLenses) {
+    for (const CatalogueEntry& entry : kLenses) {
         if (entry.lens.name != name) continue;
         for (const Row& row : entry.rows) {
             LensSurface& s = result.surfaces.emplace_back();

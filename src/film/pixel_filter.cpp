@@ -10,16 +10,16 @@ namespace abbe {
 
 namespace {
 
-struct Entry {
+struct FilterEntry {
     FilterShape shape;
     std::string_view name;
     double radius;
 };
-constexpr std::array<Entry, 5> kFilters{{{FilterShape::box, "box", 0.5},
-                                         {FilterShape::triangle, "triangle", 1},
-                                         {FilterShape::gaussian, "gaussian", 1.5},
-                                         {FilterShape::blackmanHarris, "blackman-harris", 1.5},
-                                         {FilterShape::mitchell, "mitchell", 2}}};
+constexpr std::array<FilterEntry, 5> kFilters{{{FilterShape::box, "box", 0.5},
+                                               {FilterShape::triangle, "triangle", 1},
+                                               {FilterShape::gaussian, "gaussian", 1.5},
+                                               {FilterShape::blackmanHarris, "blackman-harris", 1.5},
+                                               {FilterShape::mitchell, "mitchell", 2}}};
 
 // Share of the samples that go to mitchell's negative part. Near its natural share of the mass (0.066), so that both
 // weights are of about equal size, and a power of two, so that a net of 16 points or more has exactly this share.
@@ -53,17 +53,18 @@ float stretch(float u, float begin, float share) { return std::min((u - begin) /
 } // namespace
 
 std::string_view name(FilterShape shape) {
-    return std::find_if(kFilters.begin(), kFilters.end(), [&](const Entry& e) { return e.shape == shape; })->name;
+    return std::find_if(kFilters.begin(), kFilters.end(), [&](const FilterEntry& e) { return e.shape == shape; })->name;
 }
 
 std::optional<FilterShape> findFilter(std::string_view name) {
-    for (const Entry& e : kFilters)
+    for (const FilterEntry& e : kFilters)
         if (e.name == name) return e.shape;
     return std::nullopt;
 }
 
 double defaultRadius(FilterShape shape) {
-    return std::find_if(kFilters.begin(), kFilters.end(), [&](const Entry& e) { return e.shape == shape; })->radius;
+    return std::find_if(kFilters.begin(), kFilters.end(), [&](const FilterEntry& e) { return e.shape == shape; })
+        ->radius;
 }
 
 double PixelFilter::evaluate(FilterShape shape, double radius, double x) {

@@ -113,7 +113,7 @@ UpsamplingTable UpsamplingTable::build(const RgbSpace& space, int resolution) {
 namespace {
 
 // A position between two nodes of an increasing grid.
-struct Place {
+struct GridPlace {
     int cell = 0;
     float fraction = 0;
 
@@ -121,7 +121,7 @@ struct Place {
 };
 
 // Requires x within the grid.
-Place locate(const std::vector<float>& grid, float x) {
+GridPlace locate(const std::vector<float>& grid, float x) {
     const auto above = std::upper_bound(grid.begin() + 1, grid.end() - 1, x);
     const float low = *(above - 1), high = *above;
     return {static_cast<int>(above - grid.begin()) - 1, (x - low) / (high - low)};
@@ -134,9 +134,9 @@ SigmoidCoefficients UpsamplingTable::lookup(Vec3 rgb) const {
     if (c[0] == c[1] && c[1] == c[2]) return SigmoidCurve::flat(c[0]).coefficients();
     const int largest = c[0] >= c[1] ? (c[0] >= c[2] ? 0 : 2) : (c[1] >= c[2] ? 1 : 2);
     const float brightness = c[largest], s = std::clamp(brightness, scale_.front(), scale_.back());
-    const Place column = locate(ratio_, c[(largest + 1) % 3] / brightness);
-    const Place row = locate(ratio_, c[(largest + 2) % 3] / brightness);
-    const Place z = locate(scale_, s);
+    const GridPlace column = locate(ratio_, c[(largest + 1) % 3] / brightness);
+    const GridPlace row = locate(ratio_, c[(largest + 2) % 3] / brightness);
+    const GridPlace z = locate(scale_, s);
     // Far below 1/2 a curve is proportional to 1/x²: the darkest node serves all that is darker.
     const float darker = brightness < s ? std::sqrt(s / brightness) : 1.f;
 

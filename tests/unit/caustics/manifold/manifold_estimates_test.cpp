@@ -19,7 +19,7 @@ class Sum final : public ManifoldListener {
   public:
     explicit Sum(const Scene& scene) : scene_(scene) {}
     void sampled(const ChainStart&, const Spectrum&, const Wavelengths& lambda, const Spectrum& light,
-               const Spectrum&) override {
+                 const Spectrum&) override {
         const double y = scene_.sensor(light, lambda).y;
         sum += y;
         ++calls;
