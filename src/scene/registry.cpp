@@ -223,88 +223,102 @@ template <typename Params, auto load> RegistryEntry loadedShape(schema::TypeInfo
 
 // ---- the list: a type is one line here (docs/adding_a_material.md, adding_a_light.md, adding_a_shape.md)
 
-std::vector<RegistryEntry> makeEntries() {
-    std::vector<RegistryEntry> entries;
-    const auto add = [&](RegistryEntry entry) { entries.push_back(std::move(entry)); };
+struct EntryList {
+    std::vector<RegistryEntry> entries = {};
+    void add(RegistryEntry entry) { entries.push_back(std::move(entry)); }
+};
 
-    add(material<DiffuseParams, makeDiffuse>(diffuseType()));
-    add(material<ConductorParams, makeConductor>(conductorType()));
-    add(material<DielectricParams, makeDielectric>(dielectricType()));
-    add(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
-    add(material<MixParams, makeMixOf>(mixMaterialType()));
-    add(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
-    add(material<LayeredParams, makeLayeredOf>(layeredType()));
-    add(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
-    add(material<SheenParams, makeSheen>(sheenType()));
-    add(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));
-    add(material<DiffuseTransmissionParams, makeDiffuseTransmission>(diffuseTransmissionType()));
-    add(material<HairParams, makeHair>(hairType()));
-    add(material<OpenPbrParams, makeOpenPbr>(openPbrType()));
+void addMaterials(EntryList& list) {
+    list.add(material<DiffuseParams, makeDiffuse>(diffuseType()));
+    list.add(material<ConductorParams, makeConductor>(conductorType()));
+    list.add(material<DielectricParams, makeDielectric>(dielectricType()));
+    list.add(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
+    list.add(material<MixParams, makeMixOf>(mixMaterialType()));
+    list.add(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
+    list.add(material<LayeredParams, makeLayeredOf>(layeredType()));
+    list.add(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
+    list.add(material<SheenParams, makeSheen>(sheenType()));
+    list.add(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));
+    list.add(material<DiffuseTransmissionParams, makeDiffuseTransmission>(diffuseTransmissionType()));
+    list.add(material<HairParams, makeHair>(hairType()));
+    list.add(material<OpenPbrParams, makeOpenPbr>(openPbrType()));
 
-    add(texture<ImageTextureParams, makeImageTexture>(imageTextureType()));
-    add(texture<NoiseTextureParams, pattern<NoiseTexture, NoiseTextureParams>>(noiseTextureType()));
-    add(texture<CheckerTextureParams, pattern<CheckerTexture, CheckerTextureParams>>(checkerTextureType()));
-    add(texture<RampTextureParams, makeRampTexture>(rampTextureType()));
-    add(texture<TriplanarTextureParams, pattern<TriplanarTexture, TriplanarTextureParams>>(triplanarTextureType()));
-    add(texture<AttributeTextureParams, pattern<AttributeTexture, AttributeTextureParams>>(attributeTextureType()));
-    add(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
+    list.add(texture<ImageTextureParams, makeImageTexture>(imageTextureType()));
+    list.add(texture<NoiseTextureParams, pattern<NoiseTexture, NoiseTextureParams>>(noiseTextureType()));
+    list.add(texture<CheckerTextureParams, pattern<CheckerTexture, CheckerTextureParams>>(checkerTextureType()));
+    list.add(texture<RampTextureParams, makeRampTexture>(rampTextureType()));
+    list.add(
+        texture<TriplanarTextureParams, pattern<TriplanarTexture, TriplanarTextureParams>>(triplanarTextureType()));
+    list.add(
+        texture<AttributeTextureParams, pattern<AttributeTexture, AttributeTextureParams>>(attributeTextureType()));
+    list.add(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
+}
 
-    add(camera<PerspectiveParams, makePerspective>(perspectiveType()));
-    add(camera<OrthographicParams, makeOrthographic>(orthographicType()));
-    add(camera<SphericalParams, makeSpherical>(sphericalType()));
-    add(camera<LensSystemParams, makeLensSystem>(lensSystemType()));
-    add(camera<GltfCameraParams, makeGltfCamera>(gltfCameraType()));
+void addCamerasShapesAndLights(EntryList& list) {
+    list.add(camera<PerspectiveParams, makePerspective>(perspectiveType()));
+    list.add(camera<OrthographicParams, makeOrthographic>(orthographicType()));
+    list.add(camera<SphericalParams, makeSpherical>(sphericalType()));
+    list.add(camera<LensSystemParams, makeLensSystem>(lensSystemType()));
+    list.add(camera<GltfCameraParams, makeGltfCamera>(gltfCameraType()));
 
-    add(shape<QuadParams, makeQuad>(quadType()));
-    add(shape<SphereParams, makeSphere>(sphereType()));
-    add(shape<DiskParams, makeDisk>(diskType()));
-    add(shape<PlaneParams, makePlane>(planeType()));
-    add(loadedShape<MeshParams, loadMeshShape>(meshType()));
+    list.add(shape<QuadParams, makeQuad>(quadType()));
+    list.add(shape<SphereParams, makeSphere>(sphereType()));
+    list.add(shape<DiskParams, makeDisk>(diskType()));
+    list.add(shape<PlaneParams, makePlane>(planeType()));
+    list.add(loadedShape<MeshParams, loadMeshShape>(meshType()));
 
-    add(areaLight<LightQuadParams, placeLightQuad>(lightQuadType()));
-    add(areaLight<LightDiskParams, placeLightDisk>(lightDiskType()));
-    add(areaLight<LightSphereParams, placeLightSphere>(lightSphereType()));
-    add(areaLight<LightMeshParams, placeLightMesh>(lightMeshType()));
-    add(light<PointLightParams, makePointLight>(pointLightType()));
-    add(light<SpotLightParams, makeSpotLight>(spotLightType()));
-    add(light<BeamLightParams, makeBeamLight>(beamLightType()));
-    add(light<SunLightParams, makeSunLight>(sunLightType()));
-    add(light<SkyLightParams, makeSkyLight>(skyLightType()));
-    add(light<EnvironmentLightParams, loadEnvironmentLight>(environmentLightType()));
+    list.add(areaLight<LightQuadParams, placeLightQuad>(lightQuadType()));
+    list.add(areaLight<LightDiskParams, placeLightDisk>(lightDiskType()));
+    list.add(areaLight<LightSphereParams, placeLightSphere>(lightSphereType()));
+    list.add(areaLight<LightMeshParams, placeLightMesh>(lightMeshType()));
+    list.add(light<PointLightParams, makePointLight>(pointLightType()));
+    list.add(light<SpotLightParams, makeSpotLight>(spotLightType()));
+    list.add(light<BeamLightParams, makeBeamLight>(beamLightType()));
+    list.add(light<SunLightParams, makeSunLight>(sunLightType()));
+    list.add(light<SkyLightParams, makeSkyLight>(skyLightType()));
+    list.add(light<EnvironmentLightParams, loadEnvironmentLight>(environmentLightType()));
 
-    add({instancesType()});
-    add({filmType()});
-    add({renderType()});
+    list.add({instancesType()});
+    list.add({filmType()});
+    list.add({renderType()});
 
-    add(light<DaylightParams, makeDaylight>(daylightType()));
-    add(light<IesLightParams, loadIesLight>(iesLightType()));
+    list.add(light<DaylightParams, makeDaylight>(daylightType()));
+    list.add(light<IesLightParams, loadIesLight>(iesLightType()));
 
-    add(loadedShape<SubdivisionParams, loadSubdivision>(subdivisionType()));
-    add(loadedShape<CurvesParams, loadCurves>(curvesType()));
-    add(loadedShape<PointsParams, loadPoints>(pointsType()));
-    add(shape<BoxParams, makeBox>(boxType()));
-    add(shape<CylinderParams, makeCylinder>(cylinderType()));
-    add(shape<ConeParams, makeCone>(coneType()));
-    add(shape<TorusParams, makeTorus>(torusType()));
+    list.add(loadedShape<SubdivisionParams, loadSubdivision>(subdivisionType()));
+    list.add(loadedShape<CurvesParams, loadCurves>(curvesType()));
+    list.add(loadedShape<PointsParams, loadPoints>(pointsType()));
+    list.add(shape<BoxParams, makeBox>(boxType()));
+    list.add(shape<CylinderParams, makeCylinder>(cylinderType()));
+    list.add(shape<ConeParams, makeCone>(coneType()));
+    list.add(shape<TorusParams, makeTorus>(torusType()));
+}
 
-    add(phase<IsotropicPhaseParams, makeIsotropicPhase>(isotropicPhaseType()));
-    add(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
-    add(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
-    add(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
-    add(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
-    add(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
-    add(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
+void addMedia(EntryList& list) {
+    list.add(phase<IsotropicPhaseParams, makeIsotropicPhase>(isotropicPhaseType()));
+    list.add(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
+    list.add(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
+    list.add(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
+    list.add(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
+    list.add(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
+    list.add(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
 
-    add(medium<HomogeneousParams, makeHomogeneous>(homogeneousType()));
-    add(medium<AtmosphereParams, makeAtmosphere>(atmosphereType()));
-    add(medium<VdbParams, makeVdbVolume>(vdbType()));
-    add(medium<NoiseMediumParams, makeNoiseMedium>(noiseMediumType()));
-    add(medium<NoiseVolumeParams, makeNoiseVolume>(noiseVolumeType()));
-    return entries;
+    list.add(medium<HomogeneousParams, makeHomogeneous>(homogeneousType()));
+    list.add(medium<AtmosphereParams, makeAtmosphere>(atmosphereType()));
+    list.add(medium<VdbParams, makeVdbVolume>(vdbType()));
+    list.add(medium<NoiseMediumParams, makeNoiseMedium>(noiseMediumType()));
+    list.add(medium<NoiseVolumeParams, makeNoiseVolume>(noiseVolumeType()));
 }
 
 const std::vector<RegistryEntry>& entries() {
-    static const std::vector<RegistryEntry> made = makeEntries();
+    // In the order in which `abbe explain` and the reference list them.
+    static const std::vector<RegistryEntry> made = [] {
+        EntryList list;
+        addMaterials(list);
+        addCamerasShapesAndLights(list);
+        addMedia(list);
+        return std::move(list.entries);
+    }();
     return made;
 }
 
