@@ -379,14 +379,13 @@ class Rounding {
 
     bool reachBy(float& part, float whole) {
         const float before = part;
-        constexpr float kInfinite = std::numeric_limits<float>::infinity();
         for (int attempt = 0; attempt < 8; ++attempt) {
             const float left = whole - sum();
             if (left == 0) return true;
             // Every other time by the last bit of the part: a sum that lies halfway between two floats goes to the even
             // one, whatever is added in whole bits of the sum.
             const float moved = part + left;
-            part = attempt % 2 == 0 && moved != part ? moved : std::nextafter(part, left > 0 ? kInfinite : -kInfinite);
+            part = attempt % 2 == 0 && moved != part ? moved : std::nextafter(part, left > 0 ? kInfinity : -kInfinity);
         }
         part = before;
         return false;
