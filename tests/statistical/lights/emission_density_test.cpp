@@ -212,7 +212,8 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
             if (t > 0 && row >= 0 && row < cells && column >= 0 && column < cells)
                 observed[static_cast<std::size_t>(row * cells + column)] += 1;
         }
-        const auto origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
+        std::optional<LightOrigin> origin;
+        if (!lamp.distant) origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
         const int fine = pointsPerCell();
         for (int i = 0; i < cells * fine; ++i)
             for (int j = 0; j < cells * fine; ++j) {
