@@ -1,5 +1,4 @@
-// What serves caustics in a render, planned by pilots of one size.
-// How large the pilots of a render are.
+// What serves caustics in a render, planned by pilots of one size; and how large the pilots of a render are.
 #pragma once
 
 #include "caustics/shared/caustic_technique.h"
