@@ -60,7 +60,8 @@ template <EffectBits E> class TileKernel {
     std::uint32_t takenBefore() const { return unit_ == job_.from.unit ? job_.from.done : 0; }
 
     void replicate(int x, int y, int r) {
-        SampleRange range = plannedRange(job_.plan, x, y, {job_.first, job_.last});
+        const SampleRange nominal{job_.first, job_.last};
+        SampleRange range = job_.plan ? job_.plan->of(x, y, nominal) : nominal;
         range.first = std::min(range.first + takenBefore(), range.last);
         if (range.first == range.last) return;
         const std::uint64_t place =

@@ -295,8 +295,6 @@ SampleRange SamplingPlan::scaled(SampleRange nominal, int exponent) {
     return {place(nominal.first), place(nominal.last)};
 }
 
-SampleRange plannedRange(const SamplingPlan* plan, int x, int y, SampleRange nominal) {
-    return plan ? SamplingPlan::scaled(nominal, plan->exponent(x, y)) : nominal;
-}
+SampleRange SamplingPlan::of(int x, int y, SampleRange nominal) const { return scaled(nominal, exponent(x, y)); }
 
 } // namespace abbe

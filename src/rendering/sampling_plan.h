@@ -2,6 +2,7 @@
 // A look at the whole frame that measures noise and cost: what a sampling plan goes by.
 #pragma once
 
+#include "caustics/shared/kernel_jobs.h"
 #include "render/film.h"
 #include "render/integrator.h"
 
@@ -91,7 +92,7 @@ class PlanPilot::Probe final : public Film {
 // frame that is not at all. The plan never changes and no sample of the pilot is in the image, so that each pixel is
 // the mean of a number of samples that does not depend on them: unbiased [Kirk1991]. It depends on frame, scene and
 // seed alone.
-class SamplingPlan {
+class SamplingPlan final : public PixelSamples {
   public:
     static constexpr int kLeast = -2, kMost = 3;
 
@@ -108,6 +109,7 @@ class SamplingPlan {
     // The samples that stand for `nominal` ones. Ranges that follow each other make ranges that do, from 0 on, and an
     // aligned power of two stays one as long as it has a sample: a net. None is beyond 2^32 − 1.
     static SampleRange scaled(SampleRange nominal, int exponent);
+    SampleRange of(int x, int y, SampleRange nominal) const override;
 
   private:
     float factorAt(float u, float v) const;

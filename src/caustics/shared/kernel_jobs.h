@@ -19,9 +19,15 @@ struct GlintQuery;
 struct GlintView;
 struct Photon;
 class RouletteReference;
-class SamplingPlan;
-// What samples a pixel takes when `nominal` ones are asked for: those, without a plan.
-SampleRange plannedRange(const SamplingPlan*, int x, int y, SampleRange nominal);
+
+// Which samples a pixel takes when `nominal` ones are asked for. From many threads at once.
+class PixelSamples {
+  public:
+    virtual SampleRange of(int x, int y, SampleRange nominal) const = 0;
+
+  protected:
+    ~PixelSamples() = default;
+};
 
 // Samples [first, last) of every replicate of every pixel of `pixels`, or what the plan makes of them; but for those
 // before `from`.
@@ -29,7 +35,7 @@ struct TileJob {
     PixelBounds pixels;
     std::uint32_t first = 0, last = 0;
     const RouletteReference* roulette = nullptr;
-    const SamplingPlan* plan = nullptr;
+    const PixelSamples* plan = nullptr; // null: every pixel takes the nominal ones
     PortionPlace from = {};
 };
 
