@@ -223,101 +223,96 @@ template <typename Params, auto load> RegistryEntry loadedShape(schema::TypeInfo
 
 // ---- the list: a type is one line here (docs/adding_a_material.md, adding_a_light.md, adding_a_shape.md)
 
-struct EntryList {
-    std::vector<RegistryEntry> entries = {};
-    void add(RegistryEntry entry) { entries.push_back(std::move(entry)); }
-};
+void addMaterials(std::vector<RegistryEntry>& list) {
+    list.push_back(material<DiffuseParams, makeDiffuse>(diffuseType()));
+    list.push_back(material<ConductorParams, makeConductor>(conductorType()));
+    list.push_back(material<DielectricParams, makeDielectric>(dielectricType()));
+    list.push_back(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
+    list.push_back(material<MixParams, makeMixOf>(mixMaterialType()));
+    list.push_back(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
+    list.push_back(material<LayeredParams, makeLayeredOf>(layeredType()));
+    list.push_back(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
+    list.push_back(material<SheenParams, makeSheen>(sheenType()));
+    list.push_back(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));
+    list.push_back(material<DiffuseTransmissionParams, makeDiffuseTransmission>(diffuseTransmissionType()));
+    list.push_back(material<HairParams, makeHair>(hairType()));
+    list.push_back(material<OpenPbrParams, makeOpenPbr>(openPbrType()));
 
-void addMaterials(EntryList& list) {
-    list.add(material<DiffuseParams, makeDiffuse>(diffuseType()));
-    list.add(material<ConductorParams, makeConductor>(conductorType()));
-    list.add(material<DielectricParams, makeDielectric>(dielectricType()));
-    list.add(material<SubsurfaceParams, makeSubsurfaceSurface>(subsurfaceType()));
-    list.add(material<MixParams, makeMixOf>(mixMaterialType()));
-    list.add(material<TwoSidedParams, makeTwoSidedOf>(twoSidedType()));
-    list.add(material<LayeredParams, makeLayeredOf>(layeredType()));
-    list.add(bareMaterial<BoundaryParams, makeBoundary>(boundaryType()));
-    list.add(material<SheenParams, makeSheen>(sheenType()));
-    list.add(material<ThinDielectricParams, makeThinDielectric>(thinDielectricType()));
-    list.add(material<DiffuseTransmissionParams, makeDiffuseTransmission>(diffuseTransmissionType()));
-    list.add(material<HairParams, makeHair>(hairType()));
-    list.add(material<OpenPbrParams, makeOpenPbr>(openPbrType()));
-
-    list.add(texture<ImageTextureParams, makeImageTexture>(imageTextureType()));
-    list.add(texture<NoiseTextureParams, pattern<NoiseTexture, NoiseTextureParams>>(noiseTextureType()));
-    list.add(texture<CheckerTextureParams, pattern<CheckerTexture, CheckerTextureParams>>(checkerTextureType()));
-    list.add(texture<RampTextureParams, makeRampTexture>(rampTextureType()));
-    list.add(
+    list.push_back(texture<ImageTextureParams, makeImageTexture>(imageTextureType()));
+    list.push_back(texture<NoiseTextureParams, pattern<NoiseTexture, NoiseTextureParams>>(noiseTextureType()));
+    list.push_back(texture<CheckerTextureParams, pattern<CheckerTexture, CheckerTextureParams>>(checkerTextureType()));
+    list.push_back(texture<RampTextureParams, makeRampTexture>(rampTextureType()));
+    list.push_back(
         texture<TriplanarTextureParams, pattern<TriplanarTexture, TriplanarTextureParams>>(triplanarTextureType()));
-    list.add(
+    list.push_back(
         texture<AttributeTextureParams, pattern<AttributeTexture, AttributeTextureParams>>(attributeTextureType()));
-    list.add(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
+    list.push_back(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
 }
 
-void addCamerasShapesAndLights(EntryList& list) {
-    list.add(camera<PerspectiveParams, makePerspective>(perspectiveType()));
-    list.add(camera<OrthographicParams, makeOrthographic>(orthographicType()));
-    list.add(camera<SphericalParams, makeSpherical>(sphericalType()));
-    list.add(camera<LensSystemParams, makeLensSystem>(lensSystemType()));
-    list.add(camera<GltfCameraParams, makeGltfCamera>(gltfCameraType()));
+void addCamerasShapesAndLights(std::vector<RegistryEntry>& list) {
+    list.push_back(camera<PerspectiveParams, makePerspective>(perspectiveType()));
+    list.push_back(camera<OrthographicParams, makeOrthographic>(orthographicType()));
+    list.push_back(camera<SphericalParams, makeSpherical>(sphericalType()));
+    list.push_back(camera<LensSystemParams, makeLensSystem>(lensSystemType()));
+    list.push_back(camera<GltfCameraParams, makeGltfCamera>(gltfCameraType()));
 
-    list.add(shape<QuadParams, makeQuad>(quadType()));
-    list.add(shape<SphereParams, makeSphere>(sphereType()));
-    list.add(shape<DiskParams, makeDisk>(diskType()));
-    list.add(shape<PlaneParams, makePlane>(planeType()));
-    list.add(loadedShape<MeshParams, loadMeshShape>(meshType()));
+    list.push_back(shape<QuadParams, makeQuad>(quadType()));
+    list.push_back(shape<SphereParams, makeSphere>(sphereType()));
+    list.push_back(shape<DiskParams, makeDisk>(diskType()));
+    list.push_back(shape<PlaneParams, makePlane>(planeType()));
+    list.push_back(loadedShape<MeshParams, loadMeshShape>(meshType()));
 
-    list.add(areaLight<LightQuadParams, placeLightQuad>(lightQuadType()));
-    list.add(areaLight<LightDiskParams, placeLightDisk>(lightDiskType()));
-    list.add(areaLight<LightSphereParams, placeLightSphere>(lightSphereType()));
-    list.add(areaLight<LightMeshParams, placeLightMesh>(lightMeshType()));
-    list.add(light<PointLightParams, makePointLight>(pointLightType()));
-    list.add(light<SpotLightParams, makeSpotLight>(spotLightType()));
-    list.add(light<BeamLightParams, makeBeamLight>(beamLightType()));
-    list.add(light<SunLightParams, makeSunLight>(sunLightType()));
-    list.add(light<SkyLightParams, makeSkyLight>(skyLightType()));
-    list.add(light<EnvironmentLightParams, loadEnvironmentLight>(environmentLightType()));
+    list.push_back(areaLight<LightQuadParams, placeLightQuad>(lightQuadType()));
+    list.push_back(areaLight<LightDiskParams, placeLightDisk>(lightDiskType()));
+    list.push_back(areaLight<LightSphereParams, placeLightSphere>(lightSphereType()));
+    list.push_back(areaLight<LightMeshParams, placeLightMesh>(lightMeshType()));
+    list.push_back(light<PointLightParams, makePointLight>(pointLightType()));
+    list.push_back(light<SpotLightParams, makeSpotLight>(spotLightType()));
+    list.push_back(light<BeamLightParams, makeBeamLight>(beamLightType()));
+    list.push_back(light<SunLightParams, makeSunLight>(sunLightType()));
+    list.push_back(light<SkyLightParams, makeSkyLight>(skyLightType()));
+    list.push_back(light<EnvironmentLightParams, loadEnvironmentLight>(environmentLightType()));
 
-    list.add({instancesType()});
-    list.add({filmType()});
-    list.add({renderType()});
+    list.push_back({instancesType()});
+    list.push_back({filmType()});
+    list.push_back({renderType()});
 
-    list.add(light<DaylightParams, makeDaylight>(daylightType()));
-    list.add(light<IesLightParams, loadIesLight>(iesLightType()));
+    list.push_back(light<DaylightParams, makeDaylight>(daylightType()));
+    list.push_back(light<IesLightParams, loadIesLight>(iesLightType()));
 
-    list.add(loadedShape<SubdivisionParams, loadSubdivision>(subdivisionType()));
-    list.add(loadedShape<CurvesParams, loadCurves>(curvesType()));
-    list.add(loadedShape<PointsParams, loadPoints>(pointsType()));
-    list.add(shape<BoxParams, makeBox>(boxType()));
-    list.add(shape<CylinderParams, makeCylinder>(cylinderType()));
-    list.add(shape<ConeParams, makeCone>(coneType()));
-    list.add(shape<TorusParams, makeTorus>(torusType()));
+    list.push_back(loadedShape<SubdivisionParams, loadSubdivision>(subdivisionType()));
+    list.push_back(loadedShape<CurvesParams, loadCurves>(curvesType()));
+    list.push_back(loadedShape<PointsParams, loadPoints>(pointsType()));
+    list.push_back(shape<BoxParams, makeBox>(boxType()));
+    list.push_back(shape<CylinderParams, makeCylinder>(cylinderType()));
+    list.push_back(shape<ConeParams, makeCone>(coneType()));
+    list.push_back(shape<TorusParams, makeTorus>(torusType()));
 }
 
-void addMedia(EntryList& list) {
-    list.add(phase<IsotropicPhaseParams, makeIsotropicPhase>(isotropicPhaseType()));
-    list.add(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
-    list.add(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
-    list.add(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
-    list.add(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
-    list.add(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
-    list.add(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
+void addMedia(std::vector<RegistryEntry>& list) {
+    list.push_back(phase<IsotropicPhaseParams, makeIsotropicPhase>(isotropicPhaseType()));
+    list.push_back(phase<HenyeyGreensteinPhaseParams, makeHenyeyGreensteinPhase>(henyeyGreensteinPhaseType()));
+    list.push_back(phase<RayleighPhaseParams, makeRayleighPhase>(rayleighPhaseType()));
+    list.push_back(phase<DrainePhaseParams, makeDrainePhase>(drainePhaseType()));
+    list.push_back(phase<MiePhaseParams, makeMiePhase>(miePhaseType()));
+    list.push_back(phase<TablePhaseParams, makeTablePhase>(tablePhaseType()));
+    list.push_back(phase<MixPhaseParams, makeMixPhase>(mixPhaseType()));
 
-    list.add(medium<HomogeneousParams, makeHomogeneous>(homogeneousType()));
-    list.add(medium<AtmosphereParams, makeAtmosphere>(atmosphereType()));
-    list.add(medium<VdbParams, makeVdbVolume>(vdbType()));
-    list.add(medium<NoiseMediumParams, makeNoiseMedium>(noiseMediumType()));
-    list.add(medium<NoiseVolumeParams, makeNoiseVolume>(noiseVolumeType()));
+    list.push_back(medium<HomogeneousParams, makeHomogeneous>(homogeneousType()));
+    list.push_back(medium<AtmosphereParams, makeAtmosphere>(atmosphereType()));
+    list.push_back(medium<VdbParams, makeVdbVolume>(vdbType()));
+    list.push_back(medium<NoiseMediumParams, makeNoiseMedium>(noiseMediumType()));
+    list.push_back(medium<NoiseVolumeParams, makeNoiseVolume>(noiseVolumeType()));
 }
 
 const std::vector<RegistryEntry>& entries() {
     // In the order in which `abbe explain` and the reference list them.
     static const std::vector<RegistryEntry> made = [] {
-        EntryList list;
+        std::vector<RegistryEntry> list;
         addMaterials(list);
         addCamerasShapesAndLights(list);
         addMedia(list);
-        return std::move(list.entries);
+        return list;
     }();
     return made;
 }
