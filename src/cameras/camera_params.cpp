@@ -15,8 +15,7 @@ using schema::FieldType;
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kLuminanceOfOne = kLuminousEfficacy * kYIntegral; // cd/m² of Y = 1
-constexpr double kSaturation = 78;                                 // lx s at ISO 1 [ISO12232]
+constexpr double kSaturation = 78; // lx s at ISO 1 [ISO12232]
 
 std::optional<Vec3d> firstOf(const std::optional<Vec3d>& a, const std::optional<Vec3d>& b) { return a ? a : b; }
 
@@ -283,7 +282,7 @@ std::optional<Exposure> exposureOf(const LensCameraParams& params, std::optional
             .help = "give all three, or leave out `iso` and use `exposure 2 stops` or `exposure auto`";
         return std::nullopt;
     }
-    const double illuminance = kLuminanceOfOne * kPiD / (4 * *fNumber * *fNumber); // lx of Y = 1
+    const double illuminance = kUnitLuminance * kPiD / (4 * *fNumber * *fNumber); // lx of Y = 1
     exposure.sensitivity = illuminance * *params.shutter * *params.iso / kSaturation;
     return exposure;
 }

@@ -14,8 +14,6 @@ using schema::Dimension;
 using schema::field;
 using schema::FieldInfo;
 using schema::FieldType;
-
-constexpr double kDegreeOfView = kPiD / 180;
 constexpr double kDefaultLens = 0.05; // m
 
 std::vector<FieldInfo> viewFields() {
@@ -31,7 +29,7 @@ std::vector<FieldInfo> viewFields() {
             field(FieldType::quantity, "fov", &P::fov)
                 .unit({Dimension::angle})
                 .group("field of view")
-                .range(0.001 * kDegreeOfView, 179.9 * kDegreeOfView)
+                .range(0.001 * kDegree, 179.9 * kDegree)
                 .doc("Full horizontal angle of view, instead of `lens`.")
                 .example("fov 40 deg")
                 .synonyms({"fovx", "angle", "field-of-view"})
@@ -67,7 +65,7 @@ std::vector<FieldInfo> specialFields() {
             field(FieldType::vector2, "tilt", &P::tilt)
                 .unit({Dimension::angle})
                 .byDefault("0 0 deg")
-                .range(-80 * kDegreeOfView, 80 * kDegreeOfView)
+                .range(-80 * kDegree, 80 * kDegree)
                 .doc("Turns the lens down and to the right, and with it the plane that is sharp; the field of view "
                      "stays. `focus` is where that plane meets the axis.")
                 .example("tilt 8 0 deg")

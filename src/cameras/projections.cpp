@@ -91,7 +91,6 @@ std::optional<PlacedCamera> makeOrthographic(const OrthographicParams& params, c
 
 schema::TypeInfo sphericalType() {
     using P = SphericalParams;
-    constexpr double kDegree = kPiD / 180;
     schema::TypeInfo type{.kind = schema::Kind::camera,
                           .name = "spherical",
                           .doc = "A panorama: longitude across, latitude upwards, over the whole sphere or a part.",

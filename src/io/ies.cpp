@@ -2,17 +2,16 @@
 
 #include "io/file.h"
 #include "io/number_scan.h"
+#include "math/vec.h"
 
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 namespace abbe {
 
 namespace {
 
 constexpr double kMaxAngles = 4096;
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Lines, then numbers out of the lines; knows where it is.
 class IesReader {

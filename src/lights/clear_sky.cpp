@@ -24,7 +24,7 @@ class ScatteredLight {
     // Spherical harmonics up to the second degree, so scaled that Σ_i b_i(v) b_i(w) of one degree is P_l(v·w). x of the
     // unit direction points to the sun's side, z to the zenith; nothing depends on the sign of y.
     static std::array<float, kMoments> basis(float x, float z);
-    static constexpr std::size_t kDegree[kMoments] = {0, 1, 1, 2, 2, 2};
+    static constexpr std::size_t kMomentDegree[kMoments] = {0, 1, 1, 2, 2, 2};
 
     // `sunZenith`: rad, at the place. Per unit of the sun's irradiance outside of the air. The air is only read here.
     ScatteredLight(const ClearAir&, double sunZenith, const SkyBands& groundAlbedo);
@@ -184,7 +184,7 @@ ScatteredLight::ScatteredLight(const ClearAir& air, double sunZenith, const SkyB
 void ScatteredLight::findSource(const ClearAir& air, int shell) {
     for (int i = 0; i < angles_; ++i)
         for (std::size_t k = 0; k < kMoments; ++k) {
-            const std::size_t l = kDegree[k];
+            const std::size_t l = kMomentDegree[k];
             const SkyBands light =
                 direct_[index(shell, i)][k] + (field_[index(shell, i)][k] + field_[index(shell + 1, i)][k]) * 0.5f;
             sources_[index(shell, i)][k] = air.at(shell).scatterings[l] * light *

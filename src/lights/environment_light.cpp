@@ -16,8 +16,6 @@ namespace {
 using schema::Dimension;
 using schema::FieldType;
 
-constexpr double kUnitLuminance = kLuminousEfficacy * kYIntegral; // cd/m² of Y = 1
-
 // What a triple emits as a curve, for the integrals of setup.
 SampledCurve emittedCurve(const RgbRadiance& upsampling, Vec3 rgb) {
     return SampledCurve([&](double nm) { return upsampling.at(rgb, Wavelengths::single(static_cast<float>(nm)))[0]; });

@@ -18,7 +18,6 @@ constexpr AmountFields kSpotAmounts = AmountFields(AmountField::power) | AmountF
 double oneMinusCosine(double x) { return 2 * square(std::sin(x / 2)); }
 
 std::vector<schema::FieldInfo> coneFields() {
-    constexpr double kDegree = kPiD / 180;
     return {schema::field(FieldType::quantity, "angle", &SpotLightParams::angle)
                 .unit({Dimension::angle})
                 .byDefault("45 deg")

@@ -30,8 +30,6 @@ namespace {
 
 using schema::Dimension;
 using schema::FieldType;
-
-constexpr double kDegree = kPiD / 180;
 constexpr AmountFields kSunAmounts =
     AmountFields(AmountField::irradiance) | AmountField::luminance | AmountField::radiance;
 constexpr double kDefaultIrradiance = 100000; // lx: the sun in a clear sky

@@ -29,7 +29,6 @@ std::optional<Vec3d> sunDirection(const SunPlace&, bool zUp, Span, Diagnostics&)
 
 // The fields of SunPlace, for the table of a type derived from it.
 template <typename Params> std::vector<schema::FieldInfo> sunPlaceFields() {
-    constexpr double kDegree = kPiD / 180;
     using schema::FieldType;
     using Angle = std::optional<double>;
     return {schema::field<Params, std::optional<Vec3d>>(FieldType::vector3, "toward", &Params::toward)

@@ -9,6 +9,7 @@ namespace abbe {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr double kPiD = 3.14159265358979323846;
+inline constexpr double kDegree = kPiD / 180; // rad
 inline constexpr float kPi = static_cast<float>(kPiD);
 inline constexpr float kInvPi = static_cast<float>(1 / kPiD);
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f; // largest float below 1

@@ -7,8 +7,6 @@
 namespace abbe::schema {
 
 namespace {
-
-constexpr double kDegree = kPiD / 180;
 constexpr double kFoot = 0.3048; // exact by the international yard of 1959
 constexpr double kInch = 0.0254;
 

@@ -20,6 +20,8 @@ namespace abbe {
 inline constexpr double kYIntegral = 106.856914916767;
 // Luminous efficacy of monochromatic radiation of 540 THz, lm/W [BIPM2019].
 inline constexpr double kLuminousEfficacy = 683;
+// Luminance of Y = 1, cd/m²; likewise illuminance, lx.
+inline constexpr double kUnitLuminance = kLuminousEfficacy * kYIntegral;
 
 namespace detail {
 // A cell of 1 nm: x̄ ȳ z̄ 0 at its start, then at its end, so that one load fetches all that a lane needs.

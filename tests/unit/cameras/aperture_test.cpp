@@ -7,8 +7,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = kPiD / 180;
-
 // Samples against the share of every cell of a grid that contains() claims.
 double pValue(const Aperture& aperture, std::uint64_t seed) {
     constexpr int kGrid = 24, kFine = 24, kSamples = 200'000;

@@ -16,8 +16,6 @@
 
 namespace abbe::test {
 
-inline constexpr double kDegree = kPiD / 180;
-
 // A surface that sends out light, with coordinates in the unit square.
 class LitSurface {
   public:

@@ -9,8 +9,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = 3.14159265358979 / 180;
-
 // A lamp with three vertical angles and the given planes; intensities 1, 2, 3, …
 std::string lamp(const std::string& first, const std::string& planes, int count, const std::string& factors = "1 1 10",
                  const std::string& multiplier = "2") {

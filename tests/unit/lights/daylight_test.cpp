@@ -12,8 +12,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = kPiD / 180;
-
 // Correlated colour temperature [McCamy1992].
 double temperature(const Curve& curve) {
     const Chromaticity c = chromaticity(integrate(curve));
