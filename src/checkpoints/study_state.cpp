@@ -70,7 +70,7 @@ void writeImage(ByteWriter& out, const StudyImage& image) {
     writeNumbers(out, image.rgb);
 }
 
-StudyImage readImage(ByteReader& in) {
+StudyImage readStudyImage(ByteReader& in) {
     StudyImage image;
     image.width = in.number<int>();
     image.height = in.number<int>();
@@ -112,8 +112,8 @@ CurveRecord curveOf(std::span<const std::byte> bytes, const std::string& path) {
     for (auto n = in.number<std::uint32_t>(); n > 0 && in.sound(); --n) {
         CurveRung& rung = record.rungs.emplace_back();
         rung.samples = in.number<std::uint32_t>();
-        rung.first = readImage(in);
-        rung.sum = readImage(in);
+        rung.first = readStudyImage(in);
+        rung.sum = readStudyImage(in);
         rung.tiles = readNumbers<double>(in);
     }
     const auto runs = in.number<std::uint32_t>();
@@ -145,8 +145,8 @@ std::vector<std::byte> bytesOf(const StoredReference& reference) {
 StoredReference referenceOf(std::span<const std::byte> bytes, const std::string& path) {
     ByteReader in(bytes);
     StoredReference reference;
-    reference.a = readImage(in);
-    reference.b = readImage(in);
+    reference.a = readStudyImage(in);
+    reference.b = readStudyImage(in);
     reference.samples = in.number<std::uint32_t>();
     reference.seconds = in.number<double>();
     if (!in.sound() || !in.atEnd()) damaged(path);

@@ -16,7 +16,7 @@ namespace abbe {
 namespace {
 
 constexpr std::uint32_t kExrMagic = 20000630, kTiledFlag = 0x200, kPartsFlag = 0x1000;
-constexpr std::size_t kLongestName = 255, kMostChannels = 4096, kMostHeaders = 4096;
+constexpr std::size_t kLongestPartName = 255, kMostChannels = 4096, kMostHeaders = 4096;
 constexpr double kLargeTile = 64 << 20; // bytes; larger ones may not be larger than the picture
 
 struct BoundsFault : std::runtime_error {
@@ -98,7 +98,7 @@ std::string HeadReader::text(std::size_t longest) {
 
 void HeadReader::channels(std::uint64_t end, PartHead& part) {
     while (at_ < end) {
-        if (text(kLongestName).empty()) return;
+        if (text(kLongestPartName).empty()) return;
         const auto type = number<std::int32_t>();
         number<std::uint32_t>(); // how it is seen
         const auto x = number<std::int32_t>(), y = number<std::int32_t>();
@@ -110,9 +110,9 @@ void HeadReader::channels(std::uint64_t end, PartHead& part) {
 
 // False at the end of a header.
 bool HeadReader::attribute(PartHead& part) {
-    const std::string name = text(kLongestName);
+    const std::string name = text(kLongestPartName);
     if (name.empty()) return false;
-    const std::string type = text(kLongestName);
+    const std::string type = text(kLongestPartName);
     const auto size = number<std::int32_t>();
     if (size < 0 || static_cast<std::uint64_t>(size) > left())
         damaged(fmt::format("an attribute of {} bytes where {} are left", size, left()));

@@ -45,7 +45,7 @@ constexpr std::array<std::pair<std::string_view, Imf::Compression>, 8> kCompress
 Imf::Compression toImf(ExrCompression c) { return kCompressions[static_cast<std::size_t>(c)].second; }
 
 // Channels that are one part of a file, from R G B on or [first, last) of those beside them.
-struct Part {
+struct ExrPartChannels {
     std::string name; // none where there is no other
     bool colours = false;
     std::size_t first = 0, last = 0;
@@ -58,10 +58,10 @@ std::string_view layerOf(std::string_view channel) {
     return layer.starts_with("Crypto") && layer.size() - end == 3 ? layer.substr(0, end + 1) : layer;
 }
 
-std::vector<Part> partsOf(const ExrPicture& p) {
+std::vector<ExrPartChannels> partsOf(const ExrPicture& p) {
     if (p.acesContainer) return {{"", true, 0, 0}};
     if (!p.parts) return {{"", true, 0, p.more.size()}};
-    std::vector<Part> parts{{"beauty", true, 0, 0}};
+    std::vector<ExrPartChannels> parts{{"beauty", true, 0, 0}};
     for (std::size_t i = 0; i < p.more.size(); ++i) {
         const std::string_view layer = layerOf(p.more[i].name);
         if (i == 0 || layer != parts.back().name) parts.push_back({std::string(layer), false, i, i});
@@ -71,13 +71,13 @@ std::vector<Part> partsOf(const ExrPicture& p) {
 }
 
 // Attributes of a Cryptomatte or a spectrum stand beside their channels, too.
-bool belongs(const ImageAttribute& a, const Part& part) {
+bool belongs(const ImageAttribute& a, const ExrPartChannels& part) {
     if (part.colours) return true;
     if (part.name.starts_with("Crypto")) return a.name.starts_with("cryptomatte/");
     return part.name == "S0" && (a.name == "spectralLayoutVersion" || a.name == "emissiveUnits");
 }
 
-Imf::Header makeHeader(const ExrPicture& p, const Part& part) {
+Imf::Header makeHeader(const ExrPicture& p, const ExrPartChannels& part) {
     Imf::Header header(toImf(p.display), toImf(p.window));
     header.compression() = toImf(p.compression);
     if (!part.name.empty()) {
@@ -121,7 +121,7 @@ template <typename T> Imf::Slice slice(const PixelWindow& w, const T* values) {
 // `halves`: of R G B, in 16 bits.
 using Halves = std::array<std::vector<Imath::half>, 3>;
 
-Imf::FrameBuffer bufferOf(const ExrPicture& p, const Part& part, const Halves& halves) {
+Imf::FrameBuffer bufferOf(const ExrPicture& p, const ExrPartChannels& part, const Halves& halves) {
     Imf::FrameBuffer buffer;
     const std::array<std::span<const float>, 3> planes{p.r, p.g, p.b};
     constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
@@ -137,7 +137,7 @@ void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
     if (p.half) halves = {toHalf(p.r, report), toHalf(p.g, report), toHalf(p.b, report)};
     if (p.acesContainer)
         for (const ExrChannel& c : p.more) report.leftOut.push_back(c.name);
-    const std::vector<Part> parts = partsOf(p);
+    const std::vector<ExrPartChannels> parts = partsOf(p);
     if (!p.parts || p.acesContainer) {
         Imf::OutputFile file(stream, makeHeader(p, parts[0]), 0);
         file.setFrameBuffer(bufferOf(p, parts[0], halves));
@@ -145,7 +145,7 @@ void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
         return;
     }
     std::vector<Imf::Header> headers;
-    for (const Part& part : parts) headers.push_back(makeHeader(p, part));
+    for (const ExrPartChannels& part : parts) headers.push_back(makeHeader(p, part));
     Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         Imf::OutputPart part(file, static_cast<int>(i));
