@@ -87,7 +87,7 @@ struct ArgumentFault {
 };
 
 template <typename Value> struct Choice {
-    const char* word;
+    std::string_view word;
     Value value;
 };
 

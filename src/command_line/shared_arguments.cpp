@@ -44,13 +44,20 @@ void addFrame(Arguments& a, BuildOptions& b) {
         .between(0, RenderSettings::kFullPilot);
 }
 
+namespace {
+
+template <typename E> std::vector<Choice<E>> wordChoices() {
+    std::vector<Choice<E>> choices;
+    for (const std::string_view w : words<E>()) choices.push_back({w, static_cast<E>(choices.size())});
+    return choices;
+}
+
+} // namespace
+
 void addTechniques(Arguments& a, BuildOptions& b, const char* strategyHelp, const char* samplerHelp,
                    const char* heading) {
-    using Word = Choice<const char*>;
-    const std::vector<Word> strategies{{"mis", "mis"}, {"lights", "lights"}, {"bsdf", "bsdf"}};
-    const std::vector<Word> samplers{{"sobol", "sobol"}, {"stratified", "stratified"}, {"random", "random"}};
-    a.choice("--strategy", b.strategy, strategies, strategyHelp).under(heading);
-    a.choice("--sampler", b.sampler, samplers, samplerHelp).under(heading);
+    a.choice("--strategy", b.strategy, wordChoices<Technique::Strategy>(), strategyHelp).under(heading);
+    a.choice("--sampler", b.sampler, wordChoices<Technique::Numbers>(), samplerHelp).under(heading);
 }
 
 void addOwnSize(Arguments& a, std::optional<Vec2i>& size, std::string help) {

@@ -43,7 +43,7 @@ void addArguments(Arguments& a, ReferenceOptions& o) {
     a.argument("folder", &o.folder, "Where pages and share are written");
     a.afterwards([&o]() -> std::optional<ArgumentFault> {
         const bool needsFolder = o.what == What::pages || o.what == What::share;
-        const char* const name = std::ranges::find(kWhats, o.what, &Choice<What>::value)->word;
+        const std::string_view name = std::ranges::find(kWhats, o.what, &Choice<What>::value)->word;
         if (needsFolder && o.folder.empty())
             return ArgumentFault{"folder", fmt::format("`{}` needs a folder to write to", name)};
         if (!needsFolder && !o.folder.empty())

@@ -12,7 +12,7 @@ namespace abbe {
 std::string RenderRun::replayCommand() const {
     std::string command = "abbe replay " + shellQuoted(options_.input.path);
     const BuildOptions& b = options_.build;
-    const auto add = [&](const char* flag, const std::string& value) {
+    const auto add = [&](const char* flag, std::string_view value) {
         command += fmt::format(" {} {}", flag, shellQuoted(value));
     };
     for (const std::string& define : options_.input.defines) add("-D", define);
@@ -21,8 +21,8 @@ std::string RenderRun::replayCommand() const {
     if (b.seed) add("--seed", std::to_string(*b.seed));
     if (settings_.pilot >= 0 && integrator_->lightBlocks(built_.scene, settings_) > 0)
         add("--pilot", std::to_string(settings_.pilot));
-    if (!b.strategy.empty()) add("--strategy", b.strategy);
-    if (!b.sampler.empty()) add("--sampler", b.sampler);
+    if (b.strategy) add("--strategy", word(*b.strategy));
+    if (b.sampler) add("--sampler", word(*b.sampler));
     return command;
 }
 

@@ -1,53 +1,28 @@
 #include "rendering/render_params.h"
 
-#include <array>
-
 namespace abbe {
 
 namespace {
 
-// In the order of the enumerators; the first is the default.
-template <typename E> constexpr std::array<std::string_view, 5> kWords{};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::Numbers>{"sobol", "stratified", "random"};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::Strategy>{"mis", "lights", "bsdf"};
-template <>
-constexpr std::array<std::string_view, 5> kWords<Technique::Weights>{"balance", "power", "equal", "lights",
-                                                                     "scattering"};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::Directions>{"importance", "uniform", "mixed"};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::LightChoice>{"tree", "power", "uniform"};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::Roulette>{"pilot", "throughput", "off"};
-
-template <>
-constexpr std::array<std::string_view, 5> kWords<Technique::LightPaths>{"automatic", "off", "always", "alone"};
-template <> constexpr std::array<std::string_view, 5> kWords<Technique::Merging>{"automatic", "off", "always"};
-
-template <typename E> E find(std::string_view word) {
-    for (std::size_t i = 1; i < kWords<E>.size(); ++i)
-        if (!word.empty() && kWords<E>[i] == word) return static_cast<E>(i);
-    return static_cast<E>(0);
-}
-template <typename E> std::string_view wordOf(E e) { return kWords<E>[static_cast<std::size_t>(e)]; }
+constexpr std::string_view kNumbers[] = {"sobol", "stratified", "random"};
+constexpr std::string_view kStrategies[] = {"mis", "lights", "bsdf"};
+constexpr std::string_view kWeights[] = {"balance", "power", "equal", "lights", "scattering"};
+constexpr std::string_view kDirections[] = {"importance", "uniform", "mixed"};
+constexpr std::string_view kLightChoices[] = {"tree", "power", "uniform"};
+constexpr std::string_view kRoulettes[] = {"pilot", "throughput", "off"};
+constexpr std::string_view kLightPaths[] = {"automatic", "off", "always", "alone"};
+constexpr std::string_view kMergings[] = {"automatic", "off", "always"};
 
 } // namespace
 
-Technique::Numbers numbersOf(std::string_view word) { return find<Technique::Numbers>(word); }
-Technique::Strategy strategyOf(std::string_view word) { return find<Technique::Strategy>(word); }
-Technique::Weights weightsOf(std::string_view word) { return find<Technique::Weights>(word); }
-Technique::Directions directionsOf(std::string_view word) { return find<Technique::Directions>(word); }
-Technique::LightChoice lightChoiceOf(std::string_view word) { return find<Technique::LightChoice>(word); }
-Technique::Roulette rouletteOf(std::string_view word) { return find<Technique::Roulette>(word); }
-
-Technique::LightPaths lightPathsOf(std::string_view word) { return find<Technique::LightPaths>(word); }
-Technique::Merging mergingOf(std::string_view word) { return find<Technique::Merging>(word); }
-
-std::string_view word(Technique::Numbers e) { return wordOf(e); }
-std::string_view word(Technique::Strategy e) { return wordOf(e); }
-std::string_view word(Technique::Weights e) { return wordOf(e); }
-std::string_view word(Technique::Directions e) { return wordOf(e); }
-std::string_view word(Technique::LightChoice e) { return wordOf(e); }
-std::string_view word(Technique::Roulette e) { return wordOf(e); }
-std::string_view word(Technique::LightPaths e) { return wordOf(e); }
-std::string_view word(Technique::Merging e) { return wordOf(e); }
+template <> std::span<const std::string_view> words<Technique::Numbers>() { return kNumbers; }
+template <> std::span<const std::string_view> words<Technique::Strategy>() { return kStrategies; }
+template <> std::span<const std::string_view> words<Technique::Weights>() { return kWeights; }
+template <> std::span<const std::string_view> words<Technique::Directions>() { return kDirections; }
+template <> std::span<const std::string_view> words<Technique::LightChoice>() { return kLightChoices; }
+template <> std::span<const std::string_view> words<Technique::Roulette>() { return kRoulettes; }
+template <> std::span<const std::string_view> words<Technique::LightPaths>() { return kLightPaths; }
+template <> std::span<const std::string_view> words<Technique::Merging>() { return kMergings; }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
@@ -129,41 +104,34 @@ std::vector<FieldInfo> goalFields() {
 // How light is estimated: the same image by other means, to compare.
 std::vector<FieldInfo> techniqueFields() {
     return {field(FieldType::choice, "sampler", &P::sampler)
-                .choices({"sobol", "stratified", "random"})
-                .byDefault("sobol")
+                .words(words<Technique::Numbers>())
                 .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
                 .example("sampler sobol"),
             field(FieldType::choice, "strategy", &P::strategy)
-                .choices({"mis", "lights", "bsdf"})
-                .byDefault("mis")
+                .words(words<Technique::Strategy>())
                 .doc("How light is found: by next-event estimation and BSDF sampling, or by one alone, to compare.")
                 .example("strategy mis"),
             field(FieldType::choice, "mis-weights", &P::weights)
-                .choices({"balance", "power", "equal", "lights", "scattering"})
-                .byDefault("balance")
+                .words(words<Technique::Weights>())
                 .synonyms({"mis-heuristic", "heuristic"})
                 .doc("How `strategy mis` weights its two techniques; all but `balance` are to compare.")
                 .example("mis-weights power"),
             field(FieldType::choice, "directions", &P::directions)
-                .choices({"importance", "uniform", "mixed"})
-                .byDefault("importance")
+                .words(words<Technique::Directions>())
                 .doc("How directions are sampled: as the surface scatters; evenly, or by a mixture, to compare.")
                 .example("directions uniform"),
             field(FieldType::choice, "roulette", &P::roulette)
-                .choices({"pilot", "throughput", "off"})
-                .byDefault("pilot")
+                .words(words<Technique::Roulette>())
                 .synonyms({"rr", "russian-roulette"})
                 .doc("Russian roulette: by what the pixel shows; by throughput or none, to compare.")
                 .example("roulette throughput"),
             field(FieldType::choice, "light-paths", &P::lightPaths)
-                .choices({"automatic", "off", "always", "alone"})
-                .byDefault("automatic")
+                .words(words<Technique::LightPaths>())
                 .synonyms({"caustics", "light-tracing", "photons"})
                 .doc("Light tracing, for caustics: where it pays; never, always or alone, to compare.")
                 .example("light-paths off"),
             field(FieldType::choice, "merging", &P::merging)
-                .choices({"automatic", "off", "always"})
-                .byDefault("automatic")
+                .words(words<Technique::Merging>())
                 .synonyms({"photon-map", "sppm", "vertex-merging"})
                 .doc("Photon merging, for caustics behind glass and in mirrors that nothing else finds: biased.")
                 .example("merging off"),
@@ -173,8 +141,7 @@ std::vector<FieldInfo> techniqueFields() {
                 .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer to compare.")
                 .example("wavelengths 4"),
             field(FieldType::choice, "light-choice", &P::lightChoice)
-                .choices({"tree", "power", "uniform"})
-                .byDefault("tree")
+                .words(words<Technique::LightChoice>())
                 .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
                 .doc("How a light is chosen: by what each may give to a point; by power or evenly, to compare.")
                 .example("light-choice tree")};
@@ -196,14 +163,14 @@ namespace {
 
 Technique technique(const RenderParams& p) {
     Technique t;
-    t.numbers = numbersOf(p.sampler.word);
-    t.strategy = strategyOf(p.strategy.word);
-    t.weights = weightsOf(p.weights.word);
-    t.directions = directionsOf(p.directions.word);
-    t.lightChoice = lightChoiceOf(p.lightChoice.word);
-    t.roulette = rouletteOf(p.roulette.word);
-    t.lightPaths = lightPathsOf(p.lightPaths.word);
-    t.merging = mergingOf(p.merging.word);
+    t.numbers = p.sampler;
+    t.strategy = p.strategy;
+    t.weights = p.weights;
+    t.directions = p.directions;
+    t.lightChoice = p.lightChoice;
+    t.roulette = p.roulette;
+    t.lightPaths = p.lightPaths;
+    t.merging = p.merging;
     t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
     return t;
 }

@@ -1,35 +1,32 @@
-// What `render { … }` says, and the words of the scene language for each choice of a Technique.
+// What `render { … }` says: parameters, and the words for each choice of a Technique.
 #pragma once
 
 #include "render/integrator.h"
 #include "render/technique.h"
 #include "schema/type.h"
 
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace abbe {
 
-// The words of the scene language for each choice of a Technique. Any other word gives the default.
-Technique::Numbers numbersOf(std::string_view word);
-Technique::Strategy strategyOf(std::string_view word);
-Technique::Weights weightsOf(std::string_view word);
-Technique::Directions directionsOf(std::string_view word);
-Technique::LightChoice lightChoiceOf(std::string_view word);
-Technique::Roulette rouletteOf(std::string_view word);
-Technique::LightPaths lightPathsOf(std::string_view word);
-Technique::Merging mergingOf(std::string_view word);
+// The words of the scene language for the enumerators of each choice, in their order; the first is the default.
+template <typename E> std::span<const std::string_view> words();
+template <> std::span<const std::string_view> words<Technique::Numbers>();
+template <> std::span<const std::string_view> words<Technique::Strategy>();
+template <> std::span<const std::string_view> words<Technique::Weights>();
+template <> std::span<const std::string_view> words<Technique::Directions>();
+template <> std::span<const std::string_view> words<Technique::LightChoice>();
+template <> std::span<const std::string_view> words<Technique::Roulette>();
+template <> std::span<const std::string_view> words<Technique::LightPaths>();
+template <> std::span<const std::string_view> words<Technique::Merging>();
 
-std::string_view word(Technique::Numbers);
-std::string_view word(Technique::Strategy);
-std::string_view word(Technique::Weights);
-std::string_view word(Technique::Directions);
-std::string_view word(Technique::LightChoice);
-std::string_view word(Technique::Roulette);
-std::string_view word(Technique::LightPaths);
-std::string_view word(Technique::Merging);
+template <typename E>
+requires std::is_enum_v<E> std::string_view word(E e) { return words<E>()[static_cast<std::size_t>(e)]; }
 
 // All of it, as properties of `render` with their values.
 std::vector<std::pair<std::string, std::string>> properties(const Technique&);
@@ -46,15 +43,16 @@ struct RenderParams {
     double textureCache = 2048; // MiB
     bool adaptive = false;
     schema::TableRows forbid; // rows of one word: effects that the scene must not need
-    schema::Choice sampler{"sobol", {}};
-    schema::Choice strategy{"mis", {}};
-    schema::Choice weights{"balance", {}};
-    schema::Choice directions{"importance", {}};
-    schema::Choice roulette{"pilot", {}};
-    schema::Choice lightPaths{"automatic", {}};
-    schema::Choice merging{"automatic", {}};
+    // The choices of a Technique.
+    Technique::Numbers sampler{};
+    Technique::Strategy strategy{};
+    Technique::Weights weights{};
+    Technique::Directions directions{};
+    Technique::Roulette roulette{};
+    Technique::LightPaths lightPaths{};
+    Technique::Merging merging{};
     std::int64_t wavelengths = 8; // 1, 2, 4 or 8
-    schema::Choice lightChoice{"tree", {}};
+    Technique::LightChoice lightChoice{};
 };
 
 schema::TypeInfo renderType();

@@ -137,8 +137,8 @@ void SceneBuilder::buildSettings() {
     if (context_.options.timeLimit) built.render.timeLimit = *context_.options.timeLimit;
     if (context_.options.textureCache) built.render.textureCache = *context_.options.textureCache;
     if (context_.options.adaptive) built.render.adaptive = *context_.options.adaptive;
-    if (!context_.options.strategy.empty()) built.render.strategy.word = context_.options.strategy;
-    if (!context_.options.sampler.empty()) built.render.sampler.word = context_.options.sampler;
+    if (context_.options.strategy) built.render.strategy = *context_.options.strategy;
+    if (context_.options.sampler) built.render.sampler = *context_.options.sampler;
 }
 
 // Identifiers are the bits of floats, which lossy compression changes.

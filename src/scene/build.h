@@ -28,11 +28,12 @@ struct BuildOptions {
     std::optional<double> timeLimit;    // s
     std::optional<double> textureCache; // MiB
     std::optional<bool> adaptive;
-    std::optional<int> pilot;      // RenderSettings::pilot; else by work
-    std::string strategy, sampler; // words of `render`; empty: the scene's
-    bool geometry = true;          // false: check only; no acceleration structure is built
-    EffectSwitches without;        // what is left out of the scene
-    bool textures = false;         // then read images to their ends all the same
+    std::optional<int> pilot; // RenderSettings::pilot; else by work
+    std::optional<Technique::Strategy> strategy;
+    std::optional<Technique::Numbers> sampler;
+    bool geometry = true;   // false: check only; no acceleration structure is built
+    EffectSwitches without; // what is left out of the scene
+    bool textures = false;  // then read images to their ends all the same
 };
 
 // Facts for `abbe info` and the summary of a render.

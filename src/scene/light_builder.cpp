@@ -273,7 +273,8 @@ std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams&
         scene.diagnostics.error("E0403", params.image.span, reason);
         return nullptr;
     }
-    const bool compensated = scene.built.render.strategy.word == "mis"; // else its samples must cover everything
+    // Else its samples must cover everything.
+    const bool compensated = scene.built.render.strategy == Technique::Strategy::mis;
     auto light = makeEnvironmentLight(params, {file.width(), file.height(), std::move(file.rgb)}, std::move(upsampling),
                                       compensated, context, scene.diagnostics);
     if (light && !(light->power() > 0)) {

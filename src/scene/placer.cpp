@@ -327,11 +327,12 @@ void Placer::noteVisible(Visibility visible, Passing passing, const Definition& 
 
 // Light paths follow one kind of rays from lights to what they light.
 void Placer::checkLightPathsSeeAll() {
-    const auto& choice = context_.built.render.lightPaths.word;
-    if (!context_.built.scene.hidden.splits || (choice != "always" && choice != "alone")) return;
+    using LightPaths = Technique::LightPaths;
+    const LightPaths choice = context_.built.render.lightPaths;
+    if (!context_.built.scene.hidden.splits || (choice != LightPaths::always && choice != LightPaths::alone)) return;
     context_.diagnostics
         .error("E0636", context_.tree.header.span,
-               fmt::format("`light-paths {}` does not go with shapes that only some rays see", choice),
+               fmt::format("`light-paths {}` does not go with shapes that only some rays see", word(choice)),
                "`visible-to` of a shape names `shadows` without `reflections`, the other way round, or `camera` alone")
         .help = "leave `light-paths` to `automatic`: camera paths do the work then";
 }

@@ -7,13 +7,16 @@
 #include "schema/unit.h"
 #include "spectrum/curve.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -281,7 +284,7 @@ struct TypeInfo {
 // stay empty when unset. Float, double and integer members accept the alternatives of their field type.
 template <typename Params, typename Member> class Field {
   public:
-    Field(FieldType type, std::string_view name, Member Params::*member) {
+    Field(FieldType type, std::string_view name, Member Params::*member) : member_(member) {
         info_.type = type;
         info_.name = name;
         info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
@@ -296,7 +299,7 @@ template <typename Params, typename Member> class Field {
                 moment.span = span;
                 return &moment;
             };
-        else
+        else if constexpr (!std::is_enum_v<Member>) // see words()
             info_.store = [member](void* params, const BoundValue& value) {
                 assign(static_cast<Params*>(params)->*member, value);
             };
@@ -309,6 +312,17 @@ template <typename Params, typename Member> class Field {
     Field& role(SpectrumRole r) { return info_.role = r, *this; }
     Field& to(Kind k) { return info_.referenceKind = k, *this; }
     Field& choices(std::vector<std::string_view> c) { return info_.choices = std::move(c), *this; }
+    // The choices of a member that is an enumeration, in the order of its enumerators; the first is the default.
+    Field& words(std::span<const std::string_view> list) requires std::is_enum_v<Member> {
+        info_.choices.assign(list.begin(), list.end());
+        info_.defaultText = list.front();
+        info_.store = [member = member_, list](void* params, const BoundValue& value) {
+            const auto* choice = std::get_if<Choice>(&value);
+            const auto found = choice ? std::ranges::find(list, choice->word) : list.end();
+            if (found != list.end()) static_cast<Params*>(params)->*member = static_cast<Member>(found - list.begin());
+        };
+        return *this;
+    }
     Field& key(FieldKey k) { return info_.keys.push_back(std::move(k)), *this; }
     Field& synonyms(std::vector<std::string_view> s) { return info_.synonyms = std::move(s), *this; }
     // A number without a unit that comes to more than `most`, in SI units, was probably meant in `unit`.
@@ -367,6 +381,7 @@ template <typename Params, typename Member> class Field {
     template <typename M> static void assign(std::optional<M>& member, const BoundValue& value) {
         assign(member.emplace(), value);
     }
+    Member Params::*member_;
     FieldInfo info_;
 };
 

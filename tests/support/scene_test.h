@@ -20,6 +20,8 @@
 
 namespace abbe::test {
 
+using Strategy = Technique::Strategy;
+
 // True in the long runs (./test nightly).
 inline bool nightly() {
     const char* value = std::getenv("ABBE_NIGHTLY");
@@ -121,7 +123,6 @@ inline TestImage renderAsProgram(const TestScene& scene, const RenderSettings& s
 
 // By both strategies, by light samples alone and by scattering alone, in this order; each with a seed of its own.
 inline std::vector<TestImage> renderByEachStrategy(const TestScene& scene, std::uint32_t samples) {
-    using Strategy = Technique::Strategy;
     RenderSettings settings = scene.settings();
     settings.samples = samples;
     std::vector<TestImage> images;

@@ -133,7 +133,7 @@ TEST_CASE("sky and sun over a plane: ρ L and ρ E cos θ / π") {
     const std::string floor = "camera { from 0 3 0.5; look-at 0 0 0; fov 60 deg }\n"
                               "shape plane { material diffuse { reflectance 0.4 } }\n";
     SUBCASE("sky") {
-        for (const char* strategy : {"mis", "lights", "bsdf"}) {
+        for (const auto strategy : {Strategy::mis, Strategy::lightsOnly, Strategy::bsdfOnly}) {
             BuildOptions options;
             options.strategy = strategy;
             const auto scene = TestScene::parse(kAnalyticHeader + floor + "light sky { radiance 2.5 }", options);

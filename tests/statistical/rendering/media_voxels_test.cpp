@@ -9,8 +9,6 @@
 namespace abbe::test {
 namespace {
 
-using Strategy = Technique::Strategy;
-
 // A smoke of some height, its foot at the origin, with a lamp that scattering finds too.
 struct SmokeScene {
     std::string file;                  // in quotes

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kMotionHeader = "scene 1\nfilm { size 16 16; filter box 0.5 }\n";
 
-TestImage renderWith(const std::string& text, const char* strategy, std::uint32_t samples, std::uint64_t seed) {
+TestImage renderWith(const std::string& text, Technique::Strategy strategy, std::uint32_t samples, std::uint64_t seed) {
     BuildOptions options;
     options.strategy = strategy;
     const auto scene = TestScene::parse(kMotionHeader + text, options);
@@ -26,10 +26,10 @@ TestImage renderWith(const std::string& text, const char* strategy, std::uint32_
 ImageComparison againstStills(const std::string& body, std::uint32_t samples) {
     constexpr int count = 192; // shadows move by less than a pixel between two
     const std::string eye = "camera { from 0 0.5 4; look-at 0 0 0; fov 40 deg; ";
-    const TestImage moving = renderWith(eye + "shutter 1 s }\n" + body, "mis", samples, 1);
+    const TestImage moving = renderWith(eye + "shutter 1 s }\n" + body, Strategy::mis, samples, 1);
     std::vector<TestImage> stills;
     for (int i = 0; i < count; ++i)
-        stills.push_back(renderWith(eye + fmt::format("time {} s }}\n", (i + 0.5) / count) + body, "mis",
+        stills.push_back(renderWith(eye + fmt::format("time {} s }}\n", (i + 0.5) / count) + body, Strategy::mis,
                                     std::max(16u, samples / count), static_cast<std::uint64_t>(i) + 2));
     return compareTiles(
         moving.film.bounds(), 4, [&](PixelBounds t) { return moving.film.tile(t); },
@@ -101,8 +101,9 @@ TEST_CASE("motion: strategies agree on lights that move") {
          }) {
         INFO(lamp);
         const std::string text = eye + kFloor + lamp;
-        const TestImage mis = renderWith(text, "mis", 2048, 1), lights = renderWith(text, "lights", 2048, 2),
-                        bsdf = renderWith(text, "bsdf", 8192, 3);
+        const TestImage mis = renderWith(text, Strategy::mis, 2048, 1),
+                        lights = renderWith(text, Strategy::lightsOnly, 2048, 2),
+                        bsdf = renderWith(text, Strategy::bsdfOnly, 8192, 3);
         for (const ImageComparison& c :
              {compareImages(lights.film, mis.film, Channel::y, 4), compareImages(bsdf.film, mis.film, Channel::y, 4)}) {
             INFO(c.text());
@@ -120,7 +121,7 @@ TEST_CASE("motion: a camera that turns is a world that turns the other way") {
                         "shape box {{ size 1 1 1; transform {{ translate 0.5 -0.5 0 }} }}\n"
                         "light quad {{ points -1 1.5 -1  1 1.5 -1  1 1.5 1  -1 1.5 1; radiance 2 }} }}\n",
                         camera, world),
-            "mis", 2048, camera[0] == 'a' ? 1 : 2);
+            Strategy::mis, 2048, camera[0] == 'a' ? 1 : 2);
     };
     // Like steps on both sides, so that one is the inverse of the other at all times.
     const TestImage camera = with("at 0 s { translate 0 0 5; rotate y 0 deg; translate 0 0 0 }\n"
@@ -144,7 +145,7 @@ TEST_CASE("motion: a moving edge shows the transmission of the shutter") {
             "0 0 0 }}\n"
             "at {} s {{ translate 1.5 0 0 }} }} }}\n",
             opening, closing, length);
-        const TestImage image = renderWith(text, "bsdf", 8192, 5);
+        const TestImage image = renderWith(text, Strategy::bsdfOnly, 8192, 5);
         const double full = image.film.tile({0, 0, 1, 16}).mean;
         const auto later = [&](double t) { // the part of the light that comes after t
             const auto transmission = [&](double s) {

@@ -20,7 +20,7 @@ std::vector<fs::path> shippedScenes() {
     return found;
 }
 
-TestImage renderScene(const fs::path& path, const char* strategy, std::uint64_t seed) {
+TestImage renderScene(const fs::path& path, Technique::Strategy strategy, std::uint64_t seed) {
     BuildOptions options;
     options.strategy = strategy;
     options.size = Vec2i{32, 32};
@@ -67,9 +67,9 @@ TEST_CASE("scenes: strategies agree") {
         INFO(path.string());
         ++scenes;
         const int before = compared;
-        const TestImage mis = renderScene(path, "mis", 1);
-        if (!mirrorsLamps(path)) compared += agree(renderScene(path, "lights", 2), mis);
-        if (!smallLights(path)) compared += agree(renderScene(path, "bsdf", 3), mis);
+        const TestImage mis = renderScene(path, Strategy::mis, 1);
+        if (!mirrorsLamps(path)) compared += agree(renderScene(path, Strategy::lightsOnly, 2), mis);
+        if (!smallLights(path)) compared += agree(renderScene(path, Strategy::bsdfOnly, 3), mis);
         if (compared == before) uncounted += " " + path.stem().string();
         CHECK(mis.statistics.dropped == std::array<std::uint64_t, 3>{});
         CHECK(mis.statistics.cappedPaths == 0);

@@ -22,7 +22,7 @@ struct StrategyScene {
 
 constexpr const char* kStrategyHeader = "scene 1\nfilm { size 32 32; filter box 0.5 }\n";
 
-TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t seed) {
+TestImage renderWith(const StrategyScene& s, Technique::Strategy strategy, std::uint64_t seed) {
     BuildOptions options;
     options.strategy = strategy;
     const auto scene = TestScene::parse(kStrategyHeader + s.text, options);
@@ -35,8 +35,9 @@ TestImage renderWith(const StrategyScene& s, const char* strategy, std::uint64_t
 
 void checkStrategies(const StrategyScene& s) {
     INFO(std::string(s.name));
-    const TestImage mis = renderWith(s, "mis", s.seed), lights = renderWith(s, "lights", s.seed + 1),
-                    bsdf = renderWith(s, "bsdf", s.seed + 2);
+    const TestImage mis = renderWith(s, Strategy::mis, s.seed),
+                    lights = renderWith(s, Strategy::lightsOnly, s.seed + 1),
+                    bsdf = renderWith(s, Strategy::bsdfOnly, s.seed + 2);
     for (const Channel channel : {Channel::y, Channel::x, Channel::z}) {
         INFO("lights alone against both");
         checkSame(compareImages(lights.film, mis.film, channel), s.resolution);

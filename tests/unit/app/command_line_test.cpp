@@ -57,7 +57,7 @@ TEST_CASE("options of render") {
     CHECK(o.build.seed == 7);
     CHECK(o.build.camera == "top");
     CHECK(o.largestKernel);
-    CHECK(o.build.strategy == "bsdf");
+    CHECK(o.build.strategy == Technique::Strategy::bsdfOnly);
     CHECK_FALSE(o.png.off);
     CHECK_FALSE(o.png.asked);
 }

@@ -52,8 +52,8 @@ TEST_CASE("settings: the command line overrides, and a new size takes the crop a
     o.seed = 6;
     o.noise = 0.25;
     o.timeLimit = 3;
-    o.strategy = "bsdf";
-    o.sampler = "random";
+    o.strategy = Technique::Strategy::bsdfOnly;
+    o.sampler = Technique::Numbers::random;
     const auto scene = build("film { size 64 48; crop 8 4 32 40 }\nrender { samples 123; seed 1; strategy lights }", o);
     const RenderSettings s = scene.settings();
     CHECK(s.samples == 5);

@@ -70,17 +70,17 @@ TEST_CASE("emission keeps its energy, wherever the lines are") {
     CHECK(integral(SampledCurve::fromEmissionPoints(wide, one)) == doctest::Approx(470).epsilon(1e-9));
 }
 
-TEST_CASE("a lamp with lines keeps its colour when resampled") {
+TEST_CASE("a light with lines keeps its colour when resampled") {
     // FL11, integrated once in the table and once as a fine sum over the linearly interpolated data.
-    const auto lamp = findIlluminant("FL11");
-    REQUIRE(lamp);
-    const auto curve = illuminantCurve(*lamp);
+    const auto light = findIlluminant("FL11");
+    REQUIRE(light);
+    const auto curve = illuminantCurve(*light);
     Xyz direct;
     constexpr int parts = 20;
-    for (std::size_t i = 0; i + 1 < lamp->values.size(); ++i)
+    for (std::size_t i = 0; i + 1 < light->values.size(); ++i)
         for (int p = 0; p < 5 * parts; ++p) {
-            const double f = (p + 0.5) / (5 * parts), nm = lamp->firstNm + 5 * (static_cast<double>(i) + f);
-            const double power = lamp->values[i] + (lamp->values[i + 1] - lamp->values[i]) * f;
+            const double f = (p + 0.5) / (5 * parts), nm = light->firstNm + 5 * (static_cast<double>(i) + f);
+            const double power = light->values[i] + (light->values[i + 1] - light->values[i]) * f;
             const Wavelengths w = Wavelengths::single(static_cast<float>(nm));
             direct += Xyz{xbar(w)[0], ybar(w)[0], zbar(w)[0]} * (power / parts);
         }
@@ -88,17 +88,7 @@ TEST_CASE("a lamp with lines keeps its colour when resampled") {
     CHECK(table.y == doctest::Approx(1).epsilon(1e-6));
     CHECK(table.x == doctest::Approx(direct.x / direct.y).epsilon(1e-3));
     CHECK(table.z == doctest::Approx(direct.z / direct.y).epsilon(1e-3));
-    // And as the sum at every nanometre of the interpolated data.
-    std::vector<double> nm;
-    for (std::size_t i = 0; i < lamp->values.size(); ++i) nm.push_back(lamp->firstNm + 5 * static_cast<double>(i));
-    const SampledCurve points = SampledCurve::fromPoints(nm, lamp->values);
-    Xyz sum;
-    for (int i = 380; i <= 780; ++i) {
-        const Wavelengths w = Wavelengths::single(static_cast<float>(i));
-        sum += Xyz{xbar(w)[0], ybar(w)[0], zbar(w)[0]} * points.at(static_cast<double>(i));
-    }
-    CHECK(table.x == doctest::Approx(sum.x / sum.y).epsilon(1e-3));
-    CHECK(table.z == doctest::Approx(sum.z / sum.y).epsilon(1e-3));
+    // The sum at every nanometre of the interpolated data is case 50 of tests/hard_cases.
 }
 
 TEST_CASE("constants know that they are constant") {

@@ -87,15 +87,15 @@ TEST_CASE("technique: strata of a whole replicate in places, directions and choi
 TEST_CASE("technique: every word says what it says") {
     for (const auto& [name, value] : properties({})) CHECK_FALSE(value.empty());
     CHECK(properties({}).size() == 9);
-    CHECK(numbersOf("stratified") == Technique::Numbers::stratified);
-    CHECK(weightsOf("power") == Technique::Weights::power);
-    CHECK(directionsOf("uniform") == Technique::Directions::uniform);
-    CHECK(rouletteOf("off") == Technique::Roulette::off);
-    CHECK(lightChoiceOf("none") == Technique::LightChoice::tree);
-    for (const char* w : {"balance", "power", "equal", "lights", "scattering"}) CHECK(word(weightsOf(w)) == w);
-    for (const char* w : {"pilot", "throughput", "off"}) CHECK(word(rouletteOf(w)) == w);
-    for (const char* w : {"automatic", "off", "always", "alone"}) CHECK(word(lightPathsOf(w)) == w);
-    for (const char* w : {"mis", "lights", "bsdf"}) CHECK(word(strategyOf(w)) == w);
+    CHECK(word(Technique::Numbers::random) == "random");
+    CHECK(word(Technique::Strategy::lightsOnly) == "lights");
+    CHECK(word(Technique::Strategy::bsdfOnly) == "bsdf");
+    CHECK(word(Technique::Weights::scattering) == "scattering");
+    CHECK(word(Technique::Directions::mixed) == "mixed");
+    CHECK(word(Technique::LightChoice::uniform) == "uniform");
+    CHECK(word(Technique::Roulette::off) == "off");
+    CHECK(word(Technique::LightPaths::alone) == "alone");
+    CHECK(word(Technique::Merging::always) == "always");
 }
 
 } // namespace abbe::test
