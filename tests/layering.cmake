@@ -1,5 +1,5 @@
 # Fails when an include points the wrong way:  cmake [-DROOT=…] -P tests/layering.cmake
-# The table is docs/architecture.md, "Folders": a folder may include itself and what its line names.
+# docs/architecture.md, "Folders", has the picture. A folder may include itself and what its line names.
 cmake_minimum_required(VERSION 3.22)
 if(NOT ROOT)
     get_filename_component(ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)

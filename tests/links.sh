@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What pages of Markdown link to or show is there, the gallery's index among them; all files of the gallery are in its index,
-# and all pages of docs/ are in the navigation of the site.
+# all pages of docs/ are in the navigation of the site, and the picture of the folders is that of CMakeLists.txt.
 #   links.sh [ROOT [LEAST NUMBER OF LINKS]]
 set -euo pipefail
 cd "${1:-$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/..}"
@@ -36,5 +36,9 @@ if [[ -e docs/site/mkdocs.yml ]]; then
         echo "$page is not in docs/site/mkdocs.yml"
         faults=$((faults + 1))
     done
+fi
+# Whether the picture is there at all is seen above: a page shows it.
+if [[ -e tools/make_folder_graph.mjs ]] && command -v node >/dev/null; then
+    tools/make_folder_graph.mjs --check || faults=$((faults + 1))
 fi
 exit $((faults > 0))
