@@ -3,6 +3,7 @@
 // --check compares instead of writing. Texts must agree; figures within a factor of ten, because the instructions that
 // Embree and the C library choose differ from machine to machine. A case without a measurement and without a reason is
 // a fault either way.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -22,22 +23,22 @@
 
 namespace {
 
-struct Cells {
-    std::string measured, naive;
+struct Measurements {
+    std::vector<std::string> measured, naive;
 };
 
 constexpr const char* kIntroduction =
     R"(<!-- Made from tests/hard_cases by `hard_case_page`; edit cases.md there. -->
 # Numerically hard cases
 
-Places where the obvious formula fails in floating point, or where a special input breaks a general method. Each row says what
+Places where the obvious formula fails in floating point, or where a special input breaks a general method. Each case says what
 goes wrong, what is done about it, and what a test measured.
 
     abbe doctor --numerics     # measures some of them on this machine
 
-* **here** is what the test of that number under `tests/hard_cases` measures, with its tolerance.
-* **naive** is what the obvious formula gives in its place, where that is cheap to measure. It must miss the tolerance.
-* **code; other tests** names code below `src/` or the root, and other tests of the same case below `tests/`.
+* **Measured** is what the test of that number under `tests/hard_cases` measures, with its tolerance.
+* **Naive** is what the obvious formula gives in its place, where that is cheap to measure. It must miss the tolerance.
+* **Code and tests** names code below `src/` or the root, and other tests of the same case below `tests/`.
 
 Comments and tests refer to cases by number.
 
@@ -67,27 +68,25 @@ std::string figure(double x) {
     return text;
 }
 
-void addTo(std::string& cell, const std::string& text) {
-    if (cell.find(text) != std::string::npos) return;
-    if (!cell.empty()) cell += "<br>";
-    cell += text;
+void addTo(std::vector<std::string>& list, const std::string& text) {
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
 }
 
 // By number of the case.
-std::map<int, Cells> readResults(const std::vector<std::string>& paths) {
-    std::map<int, Cells> results;
+std::map<int, Measurements> readResults(const std::vector<std::string>& paths) {
+    std::map<int, Measurements> results;
     for (const std::string& path : paths) {
         std::ifstream file(path);
         if (!file) throw std::runtime_error("cannot read " + path + "; run the tests hard_* first");
         for (std::string line; std::getline(file, line);) {
             const auto j = nlohmann::json::parse(line);
-            Cells& cells = results[j.at("case").get<int>()];
+            Measurements& found = results[j.at("case").get<int>()];
             const auto number = [&](const char* key) { return std::stod(j.at(key).get<std::string>()); };
             const std::string kind = j.at("kind"), text = j.at("text"), value = figure(number("value"));
             if (kind == "naive")
-                addTo(cells.naive, fmt::format("{}: **{}**", text, value));
+                addTo(found.naive, fmt::format("{}: **{}**", text, value));
             else
-                addTo(cells.measured,
+                addTo(found.measured,
                       fmt::format("{}: **{}** ({} {})", text, value, kind == "most" ? "at most" : "at least",
                                   figure(number("tolerance"))));
         }
@@ -103,33 +102,67 @@ std::optional<int> numberOf(const std::string& line, std::string_view lead) {
     return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-std::string makePage(std::map<int, Cells> results) {
+// "| 1 | a | b |": its cells.
+std::vector<std::string> cellsOf(const std::string& row) {
+    std::vector<std::string> cells;
+    for (std::size_t from = 2, to = 0; (to = row.find(" |", from)) != std::string::npos; from = to + 3) {
+        std::string cell = row.substr(from, to - from);
+        for (std::size_t at = 0; (at = cell.find("\\|", at)) != std::string::npos; ++at) cell.erase(at, 1);
+        cells.push_back(std::move(cell));
+    }
+    return cells;
+}
+
+// What cases.md says beside its tables, by case.
+struct Remarks {
+    std::map<int, std::string> texts;
+    std::set<int> skipped;
+};
+
+Remarks remarksOf(const std::vector<std::string>& lines) {
+    Remarks remarks;
+    for (const std::string& line : lines)
+        if (const auto n = numberOf(line, "[")) {
+            remarks.texts[*n] = line.substr(line.find(']') + 2);
+            if (line.find(" skipped]") < 5) remarks.skipped.insert(*n);
+        }
+    return remarks;
+}
+
+// The section of one case.
+std::string sectionOf(const std::vector<std::string>& cells, const Measurements& found, const Remarks& remarks,
+                      int number) {
+    std::string text = fmt::format("### Case {}: {}\n\n", number, cells.at(1));
+    const auto add = [&](const char* label, const std::string& what) {
+        if (!what.empty()) text += fmt::format("* **{}:** {}\n", label, what);
+    };
+    add("Wrong", cells.at(2));
+    add("Remedy", cells.at(3));
+    add("Code and tests", cells.at(4));
+    for (const std::string& measured : found.measured) add("Measured", measured);
+    for (const std::string& naive : found.naive) add("Naive", naive);
+    if (const auto remark = remarks.texts.find(number); remark != remarks.texts.end())
+        add(remarks.skipped.contains(number) ? "Not measured" : "Note", remark->second);
+    return text;
+}
+
+std::string makePage(std::map<int, Measurements> results) {
     std::ifstream source(ABBE_CASES);
     std::vector<std::string> lines;
-    std::set<int> skipped, rows;
-    for (std::string line; std::getline(source, line);) {
-        lines.push_back(line);
-        if (const auto n = numberOf(line, "["); n && line.find(" skipped]") < 5) skipped.insert(*n);
-    }
+    for (std::string line; std::getline(source, line);) lines.push_back(line);
+    const Remarks remarks = remarksOf(lines);
+    std::set<int> rows;
     std::string page = kIntroduction, faults;
     for (const std::string& line : lines) {
-        if (line.starts_with("| # |")) {
-            page += line + " here | naive |\n";
-        } else if (line.starts_with("|---")) {
-            page += line + "---|---|\n";
+        if (line.starts_with("## ")) {
+            page += (rows.empty() ? "" : "\n") + line + "\n";
         } else if (const auto row = numberOf(line, "| ")) {
             rows.insert(*row);
-            const Cells& cells = results[*row];
-            if (cells.measured.empty() != skipped.contains(*row))
+            const Measurements& found = results[*row];
+            if (found.measured.empty() != remarks.skipped.contains(*row))
                 faults += fmt::format("case {} {}\n", *row,
-                                      cells.measured.empty() ? "has no measurement" : "is skipped, but measured");
-            page +=
-                fmt::format("{} {} | {} |\n", line, cells.measured.empty() ? "skipped" : cells.measured, cells.naive);
-        } else if (const auto remark = numberOf(line, "[")) {
-            page += fmt::format("* {}{}:{}\n", *remark, skipped.contains(*remark) ? ", skipped" : "",
-                                line.substr(line.find(']') + 1));
-        } else {
-            page += line + "\n";
+                                      found.measured.empty() ? "has no measurement" : "is skipped, but measured");
+            page += "\n" + sectionOf(cellsOf(line), found, remarks, *row);
         }
     }
     for (int n = 1; n <= 80; ++n)
