@@ -155,11 +155,6 @@ const char* id(FieldType type) { return kFieldTypes[static_cast<std::size_t>(typ
 const char* id(SpectrumRole role) { return kRoles[static_cast<std::size_t>(role)]; }
 const char* id(Dimension d) { return kDimensionIds[static_cast<std::size_t>(d)]; }
 
-std::string cell(std::string text) {
-    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-    return text;
-}
-
 std::string jsonString(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -225,14 +220,19 @@ std::string jsonUnits() {
 } // namespace
 
 std::string diagnosticsMarkdown() {
-    std::string text =
-        "# Diagnostics\n\nEvery message has a stable code. `abbe explain E0310` prints the entry of one code; this "
-        "page is what\n"
-        "`abbe explain codes` prints. E01 and W01: syntax, 02: names, 03: values and units, 04: files, 05: layers,\n"
-        "06: the scene as a whole. E: errors, W: warnings.\n\n| code | | |\n|---|---|---|\n";
-    for (const CodeInfo& code : allCodes())
-        text += fmt::format("| {} | {} | {} |\n", code.code, cell(std::string(code.title)),
-                            cell(std::string(code.explanation)));
+    std::string text = "# Diagnostics\n\nEvery message has a stable code. `abbe explain E0310` explains one of them, "
+                       "`abbe explain codes` prints this page.\n"
+                       "Codes with an E are errors: nothing is rendered. Codes with a W are warnings.\n";
+    constexpr std::pair<std::string_view, std::string_view> kAreas[] = {
+        {"01", "Syntax"},           {"02", "Names"},  {"03", "Values and units"},     {"04", "Files"},
+        {"05", "The `scene` line"}, {"06", "Scenes"}, {"07", "Materials and lights"},
+    };
+    for (const auto& [area, heading] : kAreas) {
+        text += fmt::format("\n## {}\n", heading);
+        for (const CodeInfo& code : allCodes())
+            if (code.code.substr(1, 2) == area)
+                text += fmt::format("\n### {}: {}\n\n{}\n", code.code, code.title, code.explanation);
+    }
     return text;
 }
 
