@@ -14,7 +14,7 @@
 
 namespace abbe {
 
-// For a round lamp of radiance 1.
+// For a round light of radiance 1.
 class BallSpot {
   public:
     struct View {
@@ -23,10 +23,10 @@ class BallSpot {
         double least = 0.1; // the spot is made of the pixels with so much and more of the greatest irradiance
     };
 
-    BallSpot(double lampRadius, View view) : lampRadius_(lampRadius), view_(view) {
+    BallSpot(double lightRadius, View view) : lightRadius_(lightRadius), view_(view) {
         const int size = view.size;
         test::BallCausticScene scene;
-        scene.lampRadius = lampRadius;
+        scene.lightRadius = lightRadius;
         const double half = view.width / 2, pixel = view.width / size;
         const test::BallCausticProfile profile(test::BallCaustic(scene), 1.5 * half, pixel, 1e-3);
         for (int y = 0; y < size; ++y)
@@ -49,7 +49,7 @@ shape sphere {{ center 0 1.3 0; radius 1; material dielectric {{ ior 1.5 }} }}
 shape quad {{ size {4} {4}; material diffuse {{ reflectance {2} }}; transform {{ rotate x -90 deg }} }}
 light disk {{ center 0 5.8 0; normal 0 -1 0; radius {3}; radiance 1 }}
 )",
-                                               view_.size, properties, kReflectance, lampRadius_, view_.width));
+                                               view_.size, properties, kReflectance, lightRadius_, view_.width));
         if (scene.diagnostics().hasErrors()) throw std::runtime_error(scene.report());
         return scene;
     }
@@ -86,7 +86,7 @@ light disk {{ center 0 5.8 0; normal 0 -1 0; radius {3}; radiance 1 }}
   private:
     static constexpr double kReflectance = 0.5;
 
-    double lampRadius_;
+    double lightRadius_;
     View view_;
     std::vector<double> exact_; // radiance of each pixel, Y; light falls alike on all sides of the axis
     double least_ = 0;

@@ -20,7 +20,7 @@ struct BallSpotOptions {
     BallSpot::View view;
     double seconds = 20; // of a render
     std::vector<Way> ways;
-    std::vector<double> radii; // of the lamp
+    std::vector<double> radii; // of the light
 
     //   [--size N] [--width METRES] [--least SHARE] [--seconds N] [--way 'NAME=PROPERTIES OF RENDER']… [RADIUS…]
     // Throws std::runtime_error. `defaults` has at least one way and one radius.

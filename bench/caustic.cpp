@@ -1,4 +1,4 @@
-// What finding a caustic from the lamp's side is worth: the ball of scenes/check/ball-caustic.scene, at equal time for
+// What finding a caustic from the light's side is worth: the ball of scenes/check/ball-caustic.scene, at equal time for
 // each way of rendering.
 //   bench_caustic [--size N] [--width METRES] [--least SHARE] [--seconds N] [--way 'NAME=PROPERTIES OF RENDER']…
 //                 [RADIUS…]

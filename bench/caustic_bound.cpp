@@ -95,7 +95,7 @@ class CountingFilm final : public test::ForwardingFilm {
     std::uint64_t inSpot_ = 0, lightPaths_ = 0;
 };
 
-// Of a path that starts at the lamp.
+// Of a path that starts at the light.
 struct LightPathCost {
     double rays = 0, share = 0;         // share: splats in the spot
     double seconds = 0, anySeconds = 0; // of a ray by itself; any: whether there is anything
@@ -179,7 +179,7 @@ void run(const BallSpotOptions& o) {
     for (const double radius : o.radii) {
         const BallSpot spot(radius, o.view);
         const double camera = measured(spot, "light-paths off", o.seconds).value;
-        std::printf("lamp of radius %g, spot of %zu pixels; camera paths: efficiency %.3g\n", radius, spot.area(),
+        std::printf("light of radius %g, spot of %zu pixels; camera paths: efficiency %.3g\n", radius, spot.area(),
                     camera);
         for (const BallSpotOptions::Way& way : o.ways) report(spot, way, camera, o.seconds);
     }

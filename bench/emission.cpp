@@ -57,13 +57,13 @@ Cost measure(const Scene& scene, int targets, int count) {
 int main(int argc, char** argv) {
     const int count = 1000000 * (argc > 1 ? std::atoi(argv[1]) : 1);
     std::printf("             ns to start a path, and for its density, with 0, 1, 8 and 64 targets\n");
-    for (const test::EmissionCase& lamp : test::emissionCases()) {
-        const test::TestScene scene = test::emissionScene(lamp);
+    for (const test::EmissionCase& emitter : test::emissionCases()) {
+        const test::TestScene scene = test::emissionScene(emitter);
         for (const int targets : {0, 1, 8, 64}) {
             const Cost cost = measure(scene.scene(), targets, count);
             std::printf("%6.0f %6.0f   ", cost.sample, cost.density);
         }
-        std::printf("%.60s\n", lamp.text.c_str());
+        std::printf("%.60s\n", emitter.text.c_str());
         std::fflush(stdout);
     }
 }

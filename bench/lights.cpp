@@ -1,4 +1,4 @@
-// What choosing among many lights is worth: a hall with so many lamps, whose power is 20 klm together, at equal time
+// What choosing among many lights is worth: a hall with so many lights, whose power is 20 klm together, at equal time
 // for each choice.
 //   bench_lights [--size N] [--seconds N] [--reference SAMPLES] [COUNT…]     default: 128, 20, 1024, 1 100 1000 100000
 //   relMSE after so many core-seconds, relMSE × samples and efficiency, each of all pixels and without the worst 0.1 %.
@@ -36,7 +36,7 @@ shape sphere {{ center 0.3 0.9 3; radius 0.9; material conductor {{ index metal 
 )";
 
 // Balls and little squares, of powers over two decades, everywhere under the ceiling. None is in the picture but in the
-// copper: what a pixel half of a lamp costs has nothing to do with the choice.
+// copper: what a pixel half of a light costs has nothing to do with the choice.
 std::string hall(int count, int size) {
     test::Random random(4);
     const auto u = [&random](double a, double b) { return a + (b - a) * static_cast<double>(random.uniform()); };

@@ -1,4 +1,4 @@
-// What one estimate by specular manifold sampling costs and is worth, beside paths that find the lamp by chance.
+// What one estimate by specular manifold sampling costs and is worth, beside paths that find the light by chance.
 //   bench_manifold [ESTIMATES]     default: 20000
 //   for each scene and point: µs, rays, trials and Newton steps of an estimate; relative variances of the estimate and
 //   of the path beside it, which has what the estimate leaves out; the efficiency 1 / (relative variance × s) of both
@@ -20,7 +20,7 @@ struct Row {
     Vec3 p;
 };
 
-std::string ballUnderLamp(double radius) {
+std::string ballUnderLight(double radius) {
     return fmt::format("shape sphere {{ center 0 1.6 0; radius 1; material dielectric {{ ior 1.5 }} }}\n"
                        "light sphere {{ center 1.5 7 0; radius {}; radiance 1 }}\n",
                        radius);
@@ -64,17 +64,17 @@ int main(int argc, char** argv) {
         "shape torus { major-radius 1; minor-radius 0.3; transform { translate 0 0.6 0 }; material "
         "dielectric { ior 1.5 } }\nlight sphere { center 1 6 0; radius 0.05; radiance 1 }\n";
     const Row rows[] = {
-        {"ball, lamp 0.5, focus", ballUnderLamp(0.5), {-0.45f, 0, 0}},
-        {"ball, lamp 0.1, focus", ballUnderLamp(0.1), {-0.45f, 0, 0}},
-        {"ball, lamp 0.02, focus", ballUnderLamp(0.02), {-0.45f, 0, 0}},
-        {"ball, lamp 0.5, beside", ballUnderLamp(0.5), {-0.3f, 0, 0.2f}},
-        {"ball, lamp 0.1, beside", ballUnderLamp(0.1), {-0.3f, 0, 0.2f}},
-        {"ball, lamp 0.02, beside", ballUnderLamp(0.02), {-0.3f, 0, 0.2f}},
-        {"ring of glass, lamp 0.05", ring, {-0.6f, 0, 0.2f}},
+        {"ball, light 0.5, focus", ballUnderLight(0.5), {-0.45f, 0, 0}},
+        {"ball, light 0.1, focus", ballUnderLight(0.1), {-0.45f, 0, 0}},
+        {"ball, light 0.02, focus", ballUnderLight(0.02), {-0.45f, 0, 0}},
+        {"ball, light 0.5, beside", ballUnderLight(0.5), {-0.3f, 0, 0.2f}},
+        {"ball, light 0.1, beside", ballUnderLight(0.1), {-0.3f, 0, 0.2f}},
+        {"ball, light 0.02, beside", ballUnderLight(0.02), {-0.3f, 0, 0.2f}},
+        {"ring of glass, light 0.05", ring, {-0.6f, 0, 0.2f}},
         {"pool, sun of 0.53 deg",
          "shape plane { material dielectric { ior 1.33 } }\nlight sun { elevation 40 deg; radiance 1 }\n",
          {0, -1, 0}},
-        {"mirror, lamp 0.05",
+        {"mirror, light 0.05",
          "shape quad { size 2 2; transform { rotate y 180 deg; translate 0 0 2 }; material conductor { index metal Ag "
          "} "
          "}\nlight sphere { center 1 0.5 0; radius 0.05; radiance 1 }\n",

@@ -2,7 +2,7 @@
 //   bench_tile_errors [--size WxH] [--samples N] [--ways on|off|both] [--threads N] SCENE…
 //     default: the scene's size and samples; --ways both: with its light paths and without
 //   bench_tile_errors [--of N] [--worst K] PICTURE.exr…
-//     --of N: foretold for N samples, errors by 1/√samples; without it those of the picture
+//     --of N: predicted for N samples, errors by 1/√samples; without it those of the picture
 //     --worst K: also the K tiles with the largest errors, and how much of their variance is that of one pixel
 // A tile's error is the standard error of its mean luminance over that mean; tiles darker than a thousandth of the mean
 // tile are left out. Scenes are rendered with 32 replicates, which tell it. Pictures tell the variance of each pixel;
@@ -27,7 +27,7 @@ namespace {
 struct Options {
     std::optional<Vec2i> size;
     std::uint32_t samples = 0; // 0: the scene's
-    double foretold = 0;       // of pictures; 0: their own
+    double predicted = 0;      // of pictures; 0: their own
     std::size_t worst = 0;     // tiles of pictures to be listed
     bool with = true, without = true;
     std::vector<std::string> scenes;
@@ -86,8 +86,8 @@ double samplesOf(const std::string& picture) {
     throw std::runtime_error(picture + " does not tell its samples");
 }
 
-std::vector<Tile> tilesOf(const std::string& picture, double foretold) {
-    const double factor = foretold > 0 ? samplesOf(picture) / foretold : 1;
+std::vector<Tile> tilesOf(const std::string& picture, double predicted) {
+    const double factor = predicted > 0 ? samplesOf(picture) / predicted : 1;
     const RgbImage image = readImage(picture);
     const std::vector<float> variance = readExrChannel(picture, "variance.Y");
     const RgbSpace space = image.chromaticities ? image.chromaticities->space() : rgb::rec709;
@@ -150,7 +150,7 @@ Options read(int argc, char** argv) {
         } else if (!std::strcmp(argv[i], "--samples"))
             o.samples = static_cast<std::uint32_t>(std::max(1, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--of"))
-            o.foretold = std::atof(next());
+            o.predicted = std::atof(next());
         else if (!std::strcmp(argv[i], "--worst"))
             o.worst = static_cast<std::size_t>(std::max(0, std::atoi(next())));
         else if (!std::strcmp(argv[i], "--threads"))
@@ -178,7 +178,7 @@ int main(int argc, char** argv) {
         for (const std::string& scene : o.scenes) {
             if (scene.ends_with(".exr")) {
                 std::printf("%-91s", scene.c_str());
-                const std::vector<Tile> tiles = tilesOf(scene, o.foretold);
+                const std::vector<Tile> tiles = tilesOf(scene, o.predicted);
                 print(errorsOf(tiles));
                 printWorst(tiles, o.worst);
                 continue;

@@ -21,7 +21,7 @@ constexpr auto kPicture = "write a scene that uses it: `texture picture image \"
                           "`light environment \"{0}\"` all around"sv;
 constexpr auto kVolume =
     "write a scene that shows it: `volume cloud vdb \"{}\" {{ extinction 1 per-m; albedo 0.9 }}`"sv;
-constexpr auto kLamp = "write a scene that uses it: `light ies \"{}\"`"sv;
+constexpr auto kPhotometry = "write a scene that uses it: `light ies \"{}\"`"sv;
 constexpr auto kSpectrum = "write a scene that uses it: `table \"{}\"` in the place of a spectrum"sv;
 constexpr auto kGltf = "meshes and cameras of it can be used: `shape mesh \"{0}\"`, `camera gltf \"{0}\"`"sv;
 constexpr auto kExport = "export its meshes as PLY, OBJ or glTF and write a scene: `shape mesh \"model.ply\" "
@@ -64,7 +64,7 @@ constexpr auto kBeginnings = std::to_array<Beginning>({
     {"PXR-USDC", "a USD file", kExport},
     {"#usda", "a USD file", kExport},
     {" BDV", "an OpenVDB file", kVolume},
-    {"IESNA", "a photometric file", kLamp},
+    {"IESNA", "a photometric file", kPhotometry},
     {"PK\x03\x04", "a ZIP archive or a packed USD file", kUnpack},
     {"\x1f\x8b", "a file compressed by gzip", kUnpack},
     {"##RenderMan", "a RenderMan RIB file", kRewrite},
@@ -223,18 +223,18 @@ std::optional<ForeignFile> byText(std::string_view text) {
     return std::nullopt;
 }
 
-enum class Likeness { none, misspelt, word };
+enum class Match { none, misspelt, word };
 
 // Of a line's first word to those that begin one in a scene.
-Likeness likenessOf(std::string_view line, bool mayBeMisspelt) {
+Match likenessOf(std::string_view line, bool mayBeMisspelt) {
     const std::string_view word = line.substr(0, std::min(line.find_first_of(" \t{;("), line.size()));
     if (word == "scene" || word == "param" || word.starts_with("x-") || schema::findKind(word) ||
         line.starts_with("/-"))
-        return Likeness::word;
-    if (!mayBeMisspelt) return Likeness::none;
+        return Match::word;
+    if (!mayBeMisspelt) return Match::none;
     const bool cut = !word.empty() && "scene"sv.starts_with(word);
     const bool near = schema::suggestKind(word) || !schema::nearest(word, {"scene", "param"}).empty();
-    return cut || near ? Likeness::misspelt : Likeness::none;
+    return cut || near ? Match::misspelt : Match::none;
 }
 
 // No text at all, or one none of whose lines begins like one of a scene; in a short one the words may be misspelt. What
@@ -250,9 +250,9 @@ std::optional<ForeignFile> byWhatIsMissing(std::string_view text) {
         const std::string_view line = trimmed(text.substr(0, end));
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.empty()) continue;
-        const Likeness likeness = likenessOf(line, lines < kEnough);
-        if (likeness == Likeness::word) return std::nullopt;
-        misspelt = misspelt || likeness == Likeness::misspelt;
+        const Match likeness = likenessOf(line, lines < kEnough);
+        if (likeness == Match::word) return std::nullopt;
+        misspelt = misspelt || likeness == Match::misspelt;
         ++lines;
     }
     if (lines == 0 || (misspelt && lines < kEnough)) return std::nullopt;

@@ -144,7 +144,7 @@ std::optional<FileId> readSceneFile(SourceMap& sources, const std::filesystem::p
         std::string text = file.readAll();
         if (!file.good()) return refuseUnread(sources, path, diagnostics, file.why());
         return addText(sources, path, std::move(text), diagnostics);
-    } catch (const BeyondMemory& e) {
+    } catch (const MemoryLimitExceeded& e) {
         return refuseUnread(sources, path, diagnostics, e.what());
     }
 }
@@ -155,7 +155,7 @@ std::optional<FileId> readSceneText(SourceMap& sources, const std::string& name,
         std::string text = readStream(stream);
         if (stream.bad()) return refuseUnread(sources, name, diagnostics, "input error");
         return addText(sources, name, std::move(text), diagnostics);
-    } catch (const BeyondMemory& e) {
+    } catch (const MemoryLimitExceeded& e) {
         return refuseUnread(sources, name, diagnostics, e.what());
     }
 }

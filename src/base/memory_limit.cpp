@@ -74,13 +74,13 @@ void setMemoryLimit(double bytes) { limitSet = bytes; }
 
 double memoryLeft() { return std::max(0.0, memoryLimit() - static_cast<double>(residentMemory())); }
 
-BeyondMemory::BeyondMemory(double bytes)
+MemoryLimitExceeded::MemoryLimitExceeded(double bytes)
     : text_(fmt::format("it takes {} of memory; {} are left of {}", memoryText(bytes), memoryText(memoryLeft()),
                         memoryText(memoryLimit()))) {}
 
 void requireMemory(double bytes) {
     constexpr double kNever = 1 << 20; // not worth a look
-    if (bytes > kNever && bytes > memoryLeft()) throw BeyondMemory(bytes);
+    if (bytes > kNever && bytes > memoryLeft()) throw MemoryLimitExceeded(bytes);
 }
 
 std::string memoryText(double bytes) {
@@ -90,7 +90,7 @@ std::string memoryText(double bytes) {
 }
 
 std::string memoryReason(const std::bad_alloc& e) {
-    return dynamic_cast<const BeyondMemory*>(&e) ? e.what() : "it needs more memory than there is";
+    return dynamic_cast<const MemoryLimitExceeded*>(&e) ? e.what() : "it needs more memory than there is";
 }
 
 } // namespace abbe

@@ -19,23 +19,23 @@ void setMemoryLimit(double bytes);
 double memoryLeft();
 
 // More was asked for than is left.
-class BeyondMemory : public std::bad_alloc {
+class MemoryLimitExceeded : public std::bad_alloc {
   public:
     // what(): "it takes 3.00 GiB of memory; 1.20 GiB are left of 2.00 GiB".
-    explicit BeyondMemory(double bytes);
-    explicit BeyondMemory(std::string text) : text_(std::move(text)) {}
+    explicit MemoryLimitExceeded(double bytes);
+    explicit MemoryLimitExceeded(std::string text) : text_(std::move(text)) {}
     const char* what() const noexcept override { return text_.c_str(); }
 
   private:
     std::string text_;
 };
 
-// Throws BeyondMemory if that many bytes more are not left.
+// Throws MemoryLimitExceeded if that many bytes more are not left.
 void requireMemory(double bytes);
 
 // "1.5 GiB", "300 MiB".
 std::string memoryText(double bytes);
-// Why there was too little: what() of BeyondMemory, or that the system gave no more.
+// Why there was too little: what() of MemoryLimitExceeded, or that the system gave no more.
 std::string memoryReason(const std::bad_alloc&);
 
 } // namespace abbe

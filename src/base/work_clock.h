@@ -1,5 +1,5 @@
 // Where the time goes: looks at what every thread is at, several hundred times a second, and charges the time since
-// the last look to it (docs/decisions/023-bill.md).
+// the last look to it (docs/decisions/023-cost-report.md).
 #pragma once
 
 #include "base/work.h"

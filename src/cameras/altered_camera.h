@@ -39,9 +39,9 @@ class ShutterCamera final : public Camera {
 
 // A camera whose rays go through the middle of the lens, or all belong to the middle of the exposure. `still` requires
 // a scene in which nothing else moves.
-class HeldCamera final : public Camera {
+class ReducedCamera final : public Camera {
   public:
-    HeldCamera(std::unique_ptr<const Camera> inner, bool centred, bool still)
+    ReducedCamera(std::unique_ptr<const Camera> inner, bool centred, bool still)
         : inner_(std::move(inner)), centred_(centred), still_(still) {}
 
     CameraRay ray(const CameraSample& sample) const noexcept override {

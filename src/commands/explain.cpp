@@ -74,11 +74,11 @@ std::string place(const LoadedScene& loaded, Span span) {
 
 Json reasonJson(const LoadedScene& loaded, const EffectReason& reason) {
     Json json = Json::object({{"why", reason.why}});
-    if (!reason.asker.valid()) return json;
-    const LineColumn at = loaded.sources.lineColumn(reason.asker.file, reason.asker.begin);
-    json.set("file", std::string(loaded.sources.path(reason.asker.file)));
+    if (!reason.place.valid()) return json;
+    const LineColumn at = loaded.sources.lineColumn(reason.place.file, reason.place.begin);
+    json.set("file", std::string(loaded.sources.path(reason.place.file)));
     json.set("line", static_cast<std::int64_t>(at.line)).set("column", static_cast<std::int64_t>(at.column));
-    json.set("text", std::string(firstLine(loaded, reason.asker)));
+    json.set("text", std::string(firstLine(loaded, reason.place)));
     return json;
 }
 
@@ -99,7 +99,7 @@ std::string effectsText(const LoadedScene& loaded, const BuiltScene& built) {
         if (!built.scene.effects.has(e.effect)) continue;
         text += fmt::format("  {}: on\n", e.title);
         for (const EffectReason& reason : built.scene.reasons)
-            if (reason.effect == e.effect) text += fmt::format("    {}: {}\n", place(loaded, reason.asker), reason.why);
+            if (reason.effect == e.effect) text += fmt::format("    {}: {}\n", place(loaded, reason.place), reason.why);
     }
     if (built.scene.effects.empty()) text += "  none beyond reflection and refraction at surfaces\n";
     text += fmt::format("Wavelengths of paths: {}\n",

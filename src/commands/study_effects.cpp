@@ -43,10 +43,10 @@ std::string placeOf(Span span, const SourceMap& sources) {
 }
 
 Json findingJson(const EffectFinding& f, const SourceMap& sources) {
-    Json json = Json::object({{"name", f.name}, {"asker", placeOf(f.asker, sources)}});
+    Json json = Json::object({{"name", f.name}, {"place", placeOf(f.place, sources)}});
     if (!f.reason.empty()) return json.set("reason", f.reason);
     std::string note;
-    if (f.predicted) note = fmt::format("the cost report foretells {:.1f} %", 100 * *f.predicted);
+    if (f.predicted) note = fmt::format("the cost report predicts {:.1f} %", 100 * *f.predicted);
     return json.set("secondsOn", f.secondsOn)
         .set("secondsOff", f.secondsOff)
         .set("deltaTime", f.deltaTime)
@@ -98,7 +98,7 @@ std::string effectsCsv(const EffectStudy& study) {
 
 std::string effectsTable(const EffectStudy& study) {
     if (study.findings.empty()) return "nothing in this scene can be left out\n";
-    std::string text = fmt::format("{:<24}{:>26}{:>11}{:>9}{:>10}\n", "effect", "share of the time (95 %)", "foretold",
+    std::string text = fmt::format("{:<24}{:>26}{:>11}{:>9}{:>10}\n", "effect", "share of the time (95 %)", "predicted",
                                    "FLIP", "error");
     for (const EffectFinding& f : study.findings) {
         if (!f.reason.empty()) {
@@ -107,9 +107,9 @@ std::string effectsTable(const EffectStudy& study) {
         }
         const std::string share =
             fmt::format("{:.1f} % ({:.1f} to {:.1f})", 100 * f.deltaTime, 100 * f.low, 100 * f.high);
-        const std::string foretold = f.predicted ? fmt::format("{:.1f} %", 100 * *f.predicted) : "-";
+        const std::string predicted = f.predicted ? fmt::format("{:.1f} %", 100 * *f.predicted) : "-";
         const std::string error = f.relMse > 0 ? fmt::format("{:.2g} %", 100 * std::sqrt(f.relMse)) : "-";
-        text += fmt::format("{:<24}{:>26}{:>11}{:>9.4f}{:>10}\n", f.name, share, foretold, f.flip, error);
+        text += fmt::format("{:<24}{:>26}{:>11}{:>9.4f}{:>10}\n", f.name, share, predicted, f.flip, error);
     }
     return text;
 }

@@ -51,7 +51,7 @@ namespace {
 constexpr int kColourRadius = 2, kFeatureRadius = 1;
 constexpr float kLeastAlbedo = 0.003f; // is added, so that black surfaces can be divided by it
 constexpr float kNoSurface = 0.02f;    // an albedo below this is none
-constexpr float kBrightShading = 30;   // brighter is a lamp or its image; what most surfaces get is 0.5, say
+constexpr float kBrightShading = 30;   // brighter is a light or its image; what most surfaces get is 0.5, say
 constexpr float kFading = 100;         // one such pixel of 100, and none is divided any more
 
 // Three planes of the means and three of the halves.
@@ -132,7 +132,7 @@ float scaleTo(double wanted, const Pairs& pairs) {
 }
 
 // What makes the median brightness of the pixels that are not black kTypical: a mean would follow the few pixels that
-// show a lamp.
+// show a light.
 float scaleToTypical(const Pairs& colour) {
     std::vector<float> values;
     for (int y = 0; y < colour.mean[0].height(); ++y)
@@ -195,7 +195,7 @@ template <typename F> void forEachPair(ColourPlanes& colours, const ColourPlanes
     }
 }
 
-// How much of what is around a pixel is light that no albedo explains: lamps, skies, mirror images of lamps.
+// How much of what is around a pixel is light that no albedo explains: lights, skies, mirror images of lights.
 Plane unexplained(const HalfBuffers& colour, const std::vector<Plane>& albedo) {
     constexpr int kRadius = 10;
     Plane found(albedo[0].width(), albedo[0].height());
@@ -213,8 +213,8 @@ Plane unexplained(const HalfBuffers& colour, const std::vector<Plane>& albedo) {
     return boxFilter(boxFilter(found, kRadius), kRadius);
 }
 
-// Near unexplained light the albedo fades: at the rim of a lamp that of a pixel says nothing about its light. The first
-// three features are the albedo, if it is there.
+// Near unexplained light the albedo fades: at the rim of a light that of a pixel says nothing about its light. The
+// first three features are the albedo, if it is there.
 Modulation modulationOf(const HalfBuffers& colour, const std::vector<Plane>& features) {
     const int width = colour.variances[0].width(), height = colour.variances[0].height();
     Modulation modulation;

@@ -74,7 +74,7 @@ constexpr NumericCheck kChecks[] = {
     {44, "thin films of no thickness", "largest difference from no film", 1e-6, emptyFilmError},
     {46, "wavelengths of a path", "largest error of X, Y or Z of white", 1e-4, equalEnergyError},
     {49, "saturated colours", "largest error of the 27 corners and middles of sRGB", 1e-3, rgbRoundTripError},
-    {50, "lamps with lines", "largest relative error of X or Z of FL11", 1e-3, lampColourError},
+    {50, "lights with lines", "largest relative error of X or Z of FL11", 1e-3, lineLightColourError},
     {52, "sums of 1e8 samples", "relative error of the mean", 1e-7, filmMeanError},
     {59, "denormals", "denormal numbers left in a worker", 0, denormalsLeft},
     {60, "order of additions", "of 20 orders of the same terms, those with another sum", 0, orderDependentSums},

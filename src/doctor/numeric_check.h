@@ -54,13 +54,13 @@ double emptyFilmError();
 // Largest |b1·b2| and |b·n| of frames about normals of all signs and sizes of components (case 12).
 double frameError();
 
-// Colours that go to spectra and come back, and lamps with lines.
+// Colours that go to spectra and come back, and lights with lines.
 
 // Largest error of a component of sRGB over the 27 corners and middles of its cube, of the spectra fitted to them
 // (docs/hard_cases.md, case 49).
 double rgbRoundTripError();
 // Largest relative error of X or Z of FL11, at equal Y, against the sum over single nanometres (case 50).
-double lampColourError();
+double lineLightColourError();
 // Largest error of X, Y or Z of light that is 1 everywhere, through the estimator of paths, against (1, 1, 1) of the
 // observer's own integrals (case 46).
 double equalEnergyError();

@@ -19,18 +19,19 @@ double rgbRoundTripError() {
     return worst;
 }
 
-double lampColourError() {
-    const auto lamp = findIlluminant("FL11");
+double lineLightColourError() {
+    const auto illuminant = findIlluminant("FL11");
     std::vector<double> nm;
-    for (std::size_t i = 0; i < lamp->values.size(); ++i) nm.push_back(lamp->firstNm + 5 * static_cast<double>(i));
-    const SampledCurve points = SampledCurve::fromPoints(nm, lamp->values);
+    for (std::size_t i = 0; i < illuminant->values.size(); ++i)
+        nm.push_back(illuminant->firstNm + 5 * static_cast<double>(i));
+    const SampledCurve points = SampledCurve::fromPoints(nm, illuminant->values);
     Xyz sum;
     for (int i = 380; i <= 780; ++i) {
         const Wavelengths w = Wavelengths::single(static_cast<float>(i));
         sum += Xyz{static_cast<double>(xbar(w)[0]), static_cast<double>(ybar(w)[0]), static_cast<double>(zbar(w)[0])} *
                points.at(static_cast<double>(i));
     }
-    const Xyz table = integrate(*illuminantCurve(*lamp));
+    const Xyz table = integrate(*illuminantCurve(*illuminant));
     return std::max(std::abs(table.x / table.y * sum.y / sum.x - 1), std::abs(table.z / table.y * sum.y / sum.z - 1));
 }
 

@@ -66,7 +66,7 @@ class ErrorSum {
 // The measure of relative errors.
 // (x − t)²/((x² + t²)/2 + ε) of an image's x and the truth's t, ε = 0.01 (mean of the image)²: where both are near each
 // other that is relMSE, and a pixel where they are not counts twice at most, whichever of them is too large. So a few
-// pixels at the edges of lamps are not all that the error of an image says.
+// pixels at the edges of lights are not all that the error of an image says.
 class RelativeError {
   public:
     explicit RelativeError(double mean) : epsilon_(0.01 * square(mean)) {}
@@ -94,7 +94,7 @@ inline RelativeError::RelativeError(std::span<const float> plane)
 // Whether few values carry a sum of squares, and how much of it may not have been met yet.
 
 // Errors are estimated from samples, and know nothing of bright ones that are too rare to have been met: a glossy
-// surface that gathers a small lamp sends some of its light along paths that one sample in a million finds. The sizes
+// surface that gathers a small light sends some of its light along paths that one sample in a million finds. The sizes
 // of those that were met tell of the others. The largest values are fitted by a generalised Pareto distribution
 // [Zhang2009], whose shape k is that of Pareto smoothed importance sampling [Vehtari2024]: beyond k = 1/4 their fourth
 // moment has no bound, so that an interval made of it is too narrow; beyond 1/2 neither has their variance.

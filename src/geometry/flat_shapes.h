@@ -1,5 +1,5 @@
-// Flat shapes: infinite planes, four-cornered patches (the usual wall, floor or lamp), and boxes, as meshes of six
-// quads.
+// Flat shapes: infinite planes, four-cornered patches (the usual wall, floor or area light), and boxes, as meshes of
+// six quads.
 #pragma once
 
 #include "geometry/shape_params.h"

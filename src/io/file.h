@@ -18,7 +18,7 @@ class IoError : public std::runtime_error {
 };
 
 // A whole file in memory.
-// Of a regular file. Throws IoError, and BeyondMemory before it reads more than may be taken.
+// Of a regular file. Throws IoError, and MemoryLimitExceeded before it reads more than may be taken.
 std::string readFileBytes(const std::string& path);
 
 // A file that appears under its name only when it is complete.

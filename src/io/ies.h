@@ -9,7 +9,7 @@
 namespace abbe {
 
 // With the file's multiplier and ballast factors. Photometric type C only; the curve of a TILT is read past: it says
-// how the lamp dims in other positions than that of the measurement. Throws IoError, with the line.
+// how the light dims in other positions than that of the measurement. Throws IoError, with the line.
 IntensityTable readIes(const std::string& path);
 IntensityTable parseIes(std::string_view text, const std::string& name);
 

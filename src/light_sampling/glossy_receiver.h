@@ -1,4 +1,4 @@
-// A surface with glossy lobes, as a LightTree asks for it: eight cones of directions at once.
+// A surface with glossy lobes, as a LightTree weighs it: eight cones of directions at once.
 #pragma once
 
 #include "render/receiver.h"

@@ -62,7 +62,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
     number(lights);
 }
 
-// Half by amount and half evenly: amounts alone would starve a dim lamp near the camera when a bright sky is outside
+// Half by amount and half evenly: amounts alone would starve a dim light near the camera when a bright sky is outside
 // the room.
 void LightSampler::weighFar(const std::vector<double>& amounts) {
     double total = 0, sum = 0;

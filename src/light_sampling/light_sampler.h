@@ -1,4 +1,4 @@
-// Which light to ask, for light that arrives at a place.
+// Which light next-event estimation samples at a place.
 #pragma once
 
 #include "light_sampling/light_tree.h"

@@ -1,5 +1,5 @@
-// A point of a light, or a direction to one far away, that chains of delta interfaces are to lead to.
-// Where a path of light starts, and how likely a path starts with it.
+// Where light paths start: the first segment of one with its densities, and points of lights that chains are to lead
+// to.
 #pragma once
 
 #include "render/light.h"
@@ -45,10 +45,10 @@ struct EmittedRay {
     Spectrum beta; // W·nm⁻¹: radiance cos θ / density. Its mean over rays is the power of all lights
     EmissionDensity density;
     bool deltaPosition = false, deltaDirection = false;
-    bool unmet = false; // a camera path cannot meet the light, as it is one of these or has no body
+    bool neverHit = false; // a camera path cannot meet the light, as it is one of these or has no body
 };
 
-// Render space.
+// A point of a light, or a direction to one far away, that chains of delta interfaces are to lead to. Render space.
 struct LightTarget {
     const Light* light = nullptr;
     const PlacedLight* placed = nullptr; // the same, unless it is distant
@@ -72,7 +72,7 @@ struct LightTarget {
             const auto s = far->sampleDistant(u, lambda, time);
             if (!s) return std::nullopt;
             target.distant = true;
-            target.delta = s->delta || light.unmet();
+            target.delta = s->delta || light.neverHit();
             target.direction = s->wi;
             target.radiance = s->radiance;
             target.pdf = s->pdfSolidAngle;
@@ -122,7 +122,7 @@ struct LightTarget {
   private:
     void takeOrigin(const LightOrigin& o) {
         origin = o;
-        delta = o.point() || light->unmet();
+        delta = o.point() || light->neverHit();
         pdf = o.pdf / static_cast<float>(light->parts());
     }
 };

@@ -99,7 +99,7 @@ Spectrum LightTree::importance(const Node& node, const Along& along) noexcept {
 template <typename Place> Spectrum LightTree::shares(const Node& node, const Place& at) noexcept {
     Eight parts = importance(node, at);
     const float most = maxLane(parts);
-    // A lamp that the receiver all but touches must not round away another one, which may be the one that is seen.
+    // A light that the receiver all but touches must not round away another one, which may be the one that is seen.
     // Where none can give anything it does not matter.
     if (most > 0)
         parts = select(parts.v > Eight(0.f).v, max(parts, Eight(most * 0x1p-20f)), parts);
@@ -161,7 +161,7 @@ float LightTree::probability(std::uint32_t light, const Ray& ray, RayExtent exte
     return probabilityAt(light, Along{ray, extent});
 }
 
-// Between a lamp that shines all around, 1/4π, and one that faces the receiver, 1/π.
+// Between a light that shines all around, 1/4π, and one that faces the receiver, 1/π.
 float LightTree::irradiance(const Receiver& at) const noexcept {
     return std::min(sum(importance(nodes_[0], at)), kMostImportance) * (0.5f * kInvPi);
 }

@@ -1,7 +1,5 @@
 // How much a light emits: one stated quantity and the shape of its spectrum, turned into absolute spectral radiance.
 // Luminous quantities use 683 lm/W and the CIE 1931 observer, radiant ones the integral over [360, 830] nm.
-// The fields of AmountParams, for the table of a type derived from it.
-// What all lights of a scene emit together.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -17,7 +15,7 @@
 
 namespace abbe {
 
-// At most one of the first five is set (the schema's group "amount").
+// The amount as a scene states it. At most one of the first five is set (the schema's group "amount").
 struct AmountParams {
     std::optional<schema::Quantity> power;      // W or lm
     schema::TexturedSpectrum radiance = {};     // W·m⁻²·sr⁻¹·nm⁻¹; textures for area lights alone
@@ -94,6 +92,7 @@ std::optional<ScaledCurve> absoluteSpectrum(const AmountParams&, const Curve& de
 // The error of a light that states no amount.
 void reportMissingAmount(AmountFields, Span, Diagnostics&);
 
+// The fields of AmountParams, for the table of a type derived from it.
 template <typename Params> void addAmountFields(std::vector<schema::FieldInfo>& fields, AmountFields allowed) {
     using schema::Dimension;
     using schema::FieldType;
@@ -145,8 +144,8 @@ template <typename Params> void addAmountFields(std::vector<schema::FieldInfo>& 
                          .synonyms({"colour", "spectrum", "temperature"}));
 }
 
-// Spectral power in W/nm at each whole nanometre from 360 to 830. Lights that do not tell their spectrum count as even.
-// Requires: committed lights.
+// What all lights of a scene emit together. Spectral power in W/nm at each whole nanometre from 360 to 830. Lights that
+// do not tell their spectrum count as even. Requires: committed lights.
 std::vector<double> emittedSpectrum(std::span<const std::unique_ptr<Light>>);
 
 } // namespace abbe

@@ -1,5 +1,5 @@
-// The area lights of the language: the amount, and the geometry of which the scene builder makes a Shape.
-// Lengths in m, in the space of the light's parent after `transform`. The outer side emits: where the normal points.
+// The area lights of the language: the amount, and the geometry of which the scene builder makes a Shape. Lengths in m,
+// in the space of the light's parent after `transform`. The outer side emits: where the normal points.
 #pragma once
 
 #include "lights/amount.h"

@@ -37,7 +37,7 @@ class BeamLight final : public PlacedLight {
         return {.power = power_, .visiblePower = visiblePower_, .spectrum = radiance_.curve};
     }
     std::optional<LightBounds> bounds(std::uint32_t) const override;
-    bool bodiless() const override { return true; }
+    bool hasNoSurface() const override { return true; }
     // Light arrives from where the opening and the cone about the receiver overlap: points are drawn from the smaller
     // of these two disks.
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,

@@ -1,5 +1,4 @@
 // The air of a cloudless day: what it is made of at each height, and what that does to light.
-// The wavelengths at which the light of the sky is computed, and values at all of them.
 #pragma once
 
 #include "math/vec.h"
@@ -10,7 +9,8 @@
 
 namespace abbe {
 
-// Sixteen wavelengths, evenly from 360 to 830 nm; arithmetic is per band.
+// Values at the sixteen wavelengths at which the light of the sky is computed, evenly from 360 to 830 nm; arithmetic is
+// per band.
 struct SkyBands {
     static constexpr int kCount = 2 * kLanes;
     static constexpr double kStep = double(kMaxWavelength - kMinWavelength) / (kCount - 1); // nm

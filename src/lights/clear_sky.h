@@ -1,5 +1,4 @@
-// The radiance of a cloudless sky seen from the ground, by day and in twilight.
-// The sun's spectrum, outside of the air and after its way through it.
+// The light of a cloudless day on the ground: the sky's and the sun's.
 #pragma once
 
 #include "lights/clear_air.h"
@@ -10,8 +9,9 @@
 
 namespace abbe {
 
-// Spectra of all that the sky gives are a source times values at the bands, linear between them: source() holds the
-// lines of the sun, and a power of the wavelength that leaves little to bend.
+// The radiance of a cloudless sky seen from the ground, by day and in twilight. Spectra of all that the sky gives are a
+// source times values at the bands, linear between them: source() holds the lines of the sun, and a power of the
+// wavelength that leaves little to bend.
 class ClearSky {
   public:
     // `sunElevation`: rad. The albedo, at the bands, is that of the ground all around.

@@ -239,11 +239,11 @@ std::unique_ptr<PlacedLight> makeIesLight(const IesLightParams& params, Intensit
     IesProfile profile(std::move(table));
     if (!(profile.lumens() > 0)) {
         if (params.power) {
-            diagnostics.error("E0751", params.power->span, "no factor makes a power of this lamp",
+            diagnostics.error("E0751", params.power->span, "no factor gives this light a power: its file is dark",
                               "its intensities are all 0");
             return nullptr;
         }
-        diagnostics.warning("W0750", params.file.span, "this lamp is dark; the light is left out",
+        diagnostics.warning("W0750", params.file.span, "this photometric file is dark; the light is left out",
                             "its intensities are all 0");
         return nullptr;
     }
@@ -253,13 +253,13 @@ std::unique_ptr<PlacedLight> makeIesLight(const IesLightParams& params, Intensit
         absoluteSpectrum(amount, *context.defaultColor, {.power = profile.lumens(), .range = kIntensityRange},
                          context.span, diagnostics);
     if (!perCandela) return nullptr;
-    // The frame turns about the axis with the lamp's own x, as far as the axis allows.
+    // The frame turns about the axis with the light's own x, as far as the axis allows.
     const Vec3d axis = local * (1 / norm);
     const Frame upright = Frame::fromNormalTangent(Vec3(axis), {1, 0, 0});
     const Vec3d x = Vec3d(upright.x) * std::cos(params.turn) - Vec3d(upright.y) * std::sin(params.turn);
     const Vec3d z = normalize(toRender.vector(axis));
     Frame axes = Frame::fromNormalTangent(Vec3(z), Vec3(toRender.vector(x)));
-    if (toRender.determinant() < 0) axes.y = -axes.y; // a mirrored lamp
+    if (toRender.determinant() < 0) axes.y = -axes.y; // a mirrored light
     return std::make_unique<IesLight>(Vec3(toRender.point(params.position)), axes, std::move(profile), *perCandela);
 }
 

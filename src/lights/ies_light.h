@@ -1,4 +1,4 @@
-// A lamp as its maker measured it: light from one point, by direction.
+// A light as its maker measured it: one point, with an intensity for each direction.
 #pragma once
 
 #include "lights/amount.h"
@@ -42,7 +42,7 @@ class IesProfile {
 
 class IesLight final : public PlacedLight {
   public:
-    // `axes`: z is the axis (down for most lamps), x the plane of 0°; right-handed angles are seen from above, looking
+    // `axes`: z is the axis (down for most lights), x the plane of 0°; right-handed angles are seen from above, looking
     // along z. Spectral intensity is that of the profile in cd times `perCandela`, W·sr⁻¹·nm⁻¹; the curve outlives the
     // light.
     IesLight(Vec3 position, const Frame& axes, IesProfile, ScaledCurve perCandela);

@@ -1,6 +1,4 @@
-// What making a light needs besides its own parameters.
-// How a light moves while the shutter is open.
-// The cross-section that the finite geometry offers to light from far away.
+// What making a light needs besides its own parameters: the scene around it, and how it moves.
 #pragma once
 
 #include "base/source.h"
@@ -25,7 +23,8 @@ struct LightPose {
     SurfaceHit rest(const SurfaceHit&) const; // point and geometric normal
 };
 
-// Rigid, or with one scale for all directions: solid angles are then those at rest, and so are densities over them.
+// How a light moves while the shutter is open. Rigid, or with one scale for all directions: solid angles are then those
+// at rest, and so are densities over them.
 class LightMotion {
   public:
     // `fromRest` is the identity when the interval begins. Requires keepsShape().
@@ -47,6 +46,7 @@ class LightMotion {
 
 class Texture;
 
+// What the maker of a light is given.
 struct LightContext {
     Transform toRender;                  // from the space of the light's parent; its own `transform` comes first
     const Curve* defaultColor = nullptr; // illuminant D65, any scale; lives as long as the light
@@ -61,8 +61,8 @@ struct LightContext {
     bool texturesOpen = true;            // false: the scene is only checked, and nothing can be looked up
 };
 
-// m². Scenes without finite geometry (planes alone) get that of a sphere of 1 m, so that no distant light counts for
-// nothing.
+// The cross-section that the finite geometry offers to light from far away. m². Scenes without finite geometry (planes
+// alone) get that of a sphere of 1 m, so that no distant light counts for nothing.
 inline double sceneDiskArea(const Bounds3& bounds) {
     const double radius = bounds.empty() ? 0 : bounds.radius();
     return kPiD * (radius > 0 && std::isfinite(radius) ? square(radius) : 1);

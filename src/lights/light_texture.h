@@ -1,5 +1,5 @@
-// A picture or pattern on the surface of a lamp: a factor of its radiance, and where samples of the lamp go because of
-// it.
+// A picture or pattern on the surface of a light: a factor of its radiance, and where samples of the light go because
+// of it.
 #pragma once
 
 #include "math/distribution.h"

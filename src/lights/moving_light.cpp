@@ -61,7 +61,7 @@ std::optional<LightSample> MovingPlacedLight::sample(const Receiver& from, std::
     const float scale = static_cast<float>(pose->scale);
     s->p = Vec3(pose->toRender.point(Vec3d(s->p)));
     s->distance *= scale;
-    if (atRest_->bodiless())
+    if (atRest_->hasNoSurface())
         s->n = turned(pose->toRender, s->n);
     else
         s->radiance *= 1 / (scale * scale); // intensity / d²

@@ -16,7 +16,7 @@ class MovingPlacedLight final : public PlacedLight {
     LightOutput output() const override { return atRest_->output(); }
     std::uint32_t parts() const override { return atRest_->parts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override;
-    bool bodiless() const override { return atRest_->bodiless(); }
+    bool hasNoSurface() const override { return atRest_->hasNoSurface(); }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float time) const noexcept override;
     float pdfAtPoint(const Receiver&, std::uint32_t part, Vec3 p, Vec3 n, float time) const noexcept override;

@@ -1,5 +1,4 @@
-// A distant disk of even radiance, or a single direction when its diameter is zero.
-// Where the sun stands, as `light sun` and `light daylight` state it.
+// `light sun`: its place in the sky and its light.
 #pragma once
 
 #include "base/diagnostic.h"
@@ -16,7 +15,7 @@
 
 namespace abbe {
 
-// Without anything: 45° high in the south-east.
+// Where the sun stands, as `light sun` and `light daylight` state it; by default 45° high in the south-east.
 struct SunPlace {
     std::optional<Vec3d> toward;     // direction in which the light travels
     std::optional<double> elevation; // rad above the horizon
@@ -58,6 +57,7 @@ struct SunLightParams : AmountParams, SunPlace, VisibleParams {
 
 schema::TypeInfo sunLightType();
 
+// A distant disk of uniform radiance, or a single direction when its diameter is zero.
 class SunLight final : public DistantLight {
   public:
     // Disks of a smaller half angle (rad) are single directions: float directions cannot resolve them.

@@ -1,4 +1,4 @@
-// Luminous intensity of a lamp by direction, as photometric files of type C hold it.
+// Luminous intensity of a light by direction, as photometric files of type C hold it.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,4 @@
-// Where a volume shines, and how brightly.
-// The fields that decide what a volume gives off.
+// Where a volume emits, and how brightly: bricks of its grids, and sampling by them.
 #pragma once
 
 #include "math/bounds.h"
@@ -17,6 +16,7 @@ struct ScaledField {
     float scale = 1, offset = 0;
 };
 
+// The fields that decide what a volume emits.
 struct EmissionFields {
     ScaledField amount;      // offset 0
     ScaledField temperature; // K; none unless the glow is thermal
@@ -25,7 +25,7 @@ struct EmissionFields {
     const GridMotion* motion = nullptr; // none: all stands still
 };
 
-// Along a line of render space at one time, for one thread.
+// What a volume emits. Along a line of render space at one time, for one thread.
 class EmissionAlong {
   public:
     EmissionAlong(const EmissionFields& f, Vec3d origin, Vec3d direction, float time)

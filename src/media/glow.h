@@ -1,5 +1,4 @@
-// How much light a medium gives off for what is in it.
-// How the language says what a medium gives off.
+// How much light a medium emits, and how the language says it.
 #pragma once
 
 #include "media/medium_optics.h"
@@ -11,8 +10,8 @@
 
 namespace abbe {
 
-// Per unit of an amount: a spectrum of its own, or Kirchhoff's law, absorption coefficient times Planck's law. The
-// curves must outlive it. Immutable, thread-safe.
+// How much light a medium emits for what is in it. Per unit of an amount: a spectrum of its own, or Kirchhoff's law,
+// absorption coefficient times Planck's law. The curves must outlive it. Immutable, thread-safe.
 class Glow {
   public:
     // W·m⁻³·sr⁻¹·nm⁻¹ at amount 1.
@@ -58,6 +57,7 @@ class GlowTable {
     float perKelvin_ = 0;
 };
 
+// What a medium emits, as a scene states it.
 struct GlowParams {
     const Curve* emission = nullptr;   // W·m⁻³·sr⁻¹·nm⁻¹ at amount 1
     const Curve* emissivity = nullptr; // 1/m at amount 1

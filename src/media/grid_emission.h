@@ -1,5 +1,4 @@
-// Flames: what a volume gives off, found along rays and sampled as a light.
-// A volume that shines, as one of the scene's lights.
+// Flames: what a volume emits, found along rays and sampled as a light.
 #pragma once
 
 #include "media/emission_bricks.h"
@@ -9,6 +8,7 @@
 
 namespace abbe {
 
+// What a ray gathers in a volume that emits.
 class GridEmission final : public MediumEmission {
   public:
     // The fields must outlive it.
@@ -39,6 +39,7 @@ class GridEmission final : public MediumEmission {
     Vec3 centre_;
 };
 
+// A volume that emits, as one of the scene's lights.
 class VolumeLight final : public Light {
   public:
     // Must outlive it. Requires that it is not dark.

@@ -1,6 +1,4 @@
-// A voxel grid that has its place in a scene.
-// Colour of what scatters, from RGB voxels.
-// Fields that drift while the shutter is open.
+// Voxel grids in a scene: at their place, as colours, and moving.
 #pragma once
 
 #include "base/check.h"
@@ -12,7 +10,7 @@
 
 namespace abbe {
 
-// Owns the grid. Immutable, thread-safe.
+// A voxel grid that has its place in a scene. Owns the grid. Immutable, thread-safe.
 template <typename Value> class GridField {
   public:
     // `worldToRender` places the grid's own world. Requires an invertible transform.
@@ -55,8 +53,8 @@ template <typename Value> class FieldAlong {
     Vec3d origin_, direction_;
 };
 
-// A share of the albedo, from scene-linear RGB in [0, 1]; components outside count as the nearest within. The table is
-// for the RGB space of the voxels.
+// Colour of what scatters, from RGB voxels. A share of the albedo, from scene-linear RGB in [0, 1]; components outside
+// count as the nearest within. The table is for the RGB space of the voxels.
 struct GridColor {
     GridField<Vec3> field;
     std::unique_ptr<const UpsamplingTable> table;
@@ -78,7 +76,7 @@ class ColorAlong {
     std::optional<FieldAlong<Vec3>> field_;
 };
 
-// As a file states it.
+// How a field drifts while the shutter is open. As a file states it.
 struct GridVelocity {
     VectorGrid grid;     // in the file's own world, per second
     double scale = 1;    // factor of it
@@ -86,7 +84,8 @@ struct GridVelocity {
     double duration = 0; // s that it is open, >= 0
 };
 
-// What is at x now was at x - v(x) s when the file's fields were taken, s seconds ago. Immutable, thread-safe.
+// Fields that drift while the shutter is open. What is at x now was at x - v(x) s when the file's fields were taken, s
+// seconds ago. Immutable, thread-safe.
 class GridMotion {
   public:
     GridMotion(GridVelocity, const Transform& worldToRender);

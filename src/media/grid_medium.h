@@ -1,5 +1,4 @@
 // Clouds, smoke and fire from voxels.
-// `volume vdb`: grids from a file.
 #pragma once
 
 #include "math/transform.h"
@@ -9,6 +8,7 @@
 
 namespace abbe {
 
+// `volume vdb`: grids from a file.
 struct VdbParams : MediumParams, GlowParams {
     schema::Text file;                   // resolved path
     std::optional<schema::Text> density; // names of grids; empty: the usual one
@@ -38,7 +38,8 @@ struct GridExtras {
     std::optional<ScaledGrid> flame, temperature; // ... the first as its amount, else the density; 1/m or so and K
 };
 
-// Density is that of the grid times a factor, trilinear between voxels. Owns its grids and their bounds.
+// A medium with the density of a grid. Density is that of the grid times a factor, trilinear between voxels. Owns its
+// grids and their bounds.
 class GridMedium final : public OpticalMedium {
   public:
     // `worldToRender` places the grids' own world. Requires an invertible transform, factor >= 0, and a temperature

@@ -1,5 +1,4 @@
-// What collisions do in any medium, whatever its density, and how the language says it.
-// What all media of the language share: the optics of their collisions.
+// The optics that all media of the language share, whatever their density: extinction, albedo, phase function.
 #pragma once
 
 #include "render/medium.h"
@@ -10,7 +9,8 @@
 
 namespace abbe {
 
-// Extinction and albedo, or scattering and absorption; neither: extinction 1/m and albedo 1.
+// Optics as a scene states them. Extinction and albedo, or scattering and absorption; neither: extinction 1/m and
+// albedo 1.
 struct MediumParams {
     const Curve* extinction = nullptr; // 1/m at density 1
     const Curve* albedo = nullptr;
@@ -19,7 +19,7 @@ struct MediumParams {
     schema::Reference phase;
 };
 
-// The curves must outlive it.
+// What collisions do in a medium. The curves must outlive it.
 struct MediumOptics {
     const Curve* extinction = nullptr; // 1/m at density 1, >= 0
     const Curve* albedo = nullptr;     // 0 … 1
@@ -68,7 +68,7 @@ template <typename P> void addOpticsFields(std::vector<schema::FieldInfo>& field
                          .example("phase henyey-greenstein 0.85"));
 }
 
-// Leaves to its heirs where the medium is and how dense.
+// A medium with such optics. Leaves to its heirs where the medium is and how dense.
 class OpticalMedium : public Medium {
   public:
     const Curve& extinction() const final { return *optics_.extinction; }

@@ -1,5 +1,4 @@
-// Scattering by spheres of many sizes at one wavelength.
-// Scattering by one sphere: the series of Lorenz and Mie.
+// Scattering by spheres: of one by the series of Lorenz and Mie, and of many sizes at one wavelength.
 #pragma once
 
 #include <complex>
@@ -8,7 +7,8 @@
 
 namespace abbe {
 
-// Coefficients of the scattered wave, a[n - 1] and b[n - 1] of order n, and what follows from them alone.
+// Scattering by one sphere. Coefficients of the scattered wave, a[n - 1] and b[n - 1] of order n, and what follows from
+// them alone.
 struct MieSeries {
     std::vector<std::complex<double>> a, b;
     double extinction = 0, scattering = 0; // efficiencies: cross-sections over π r²
@@ -31,6 +31,7 @@ struct DropSizes {
     std::vector<double> radii(std::size_t count) const;
 };
 
+// Scattering by spheres of many sizes at one wavelength.
 struct MieScattering {
     std::vector<double> intensity; // at the angles asked for; its integral over the sphere is `scattering`
     double extinction = 0, scattering = 0, asymmetry = 0; // means over the cross-section, as in MieSeries

@@ -1,6 +1,4 @@
-// A box of mist, smoke or cloud made by noise.
-// Noise without an end: what fills a shape, or all of space.
-// Noise as the language writes it: `volume noise` and `medium noise`.
+// Mist, smoke and clouds made by noise, and how the language writes them.
 #pragma once
 
 #include "math/transform.h"
@@ -21,7 +19,8 @@ struct NoiseBox {
     int up = 1;                                                   // axis along which it falls, from the lower face
 };
 
-// Density is the field's, thinned by the box, and 0 outside. Bounds are sampled when it is made; they may be exceeded.
+// A box of noise. Density is the field's, thinned by the box, and 0 outside. Bounds are sampled when it is made; they
+// may be exceeded.
 class NoiseVolume final : public OpticalMedium {
   public:
     // Requires an invertible transform and upper > lower.
@@ -50,7 +49,8 @@ class NoiseVolume final : public OpticalMedium {
     float thickest_; // greatest extinction, 1/m
 };
 
-// Density is the field's, everywhere. The only bounds are those of the pattern, so that thin patterns cost lookups.
+// Noise without an end: what fills a shape, or all of space. Density is the field's, everywhere. The only bounds are
+// those of the pattern, so that thin patterns cost lookups.
 class NoiseMedium final : public OpticalMedium {
   public:
     // Requires an invertible transform, from the pattern's space to the world.
@@ -67,11 +67,13 @@ class NoiseMedium final : public OpticalMedium {
     Vec3d origin_;
 };
 
+// `medium noise`.
 struct NoiseMediumParams : MediumParams, NoisePattern {
     schema::Choice kindWord{"gradient", std::nullopt};
     Transform transform;
 };
 
+// `volume noise`.
 struct NoiseVolumeParams : NoiseMediumParams {
     std::optional<Vec3d> size, center, lowest, highest;
     double edge = 0;

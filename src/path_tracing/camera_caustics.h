@@ -43,7 +43,7 @@ class MergingExclusion {
     bool gathered_ = false; // behind one
 };
 
-// Glints, small images of lamps in mirrors and clear glass, that are probed instead (GlintPlan).
+// Glints, small images of lights in mirrors and clear glass, that are probed instead (GlintPlan).
 class GlintExclusion {
   public:
     GlintExclusion(std::span<const std::uint32_t> glintsOfRow, Vec2 film) : glintsOfRow_(glintsOfRow), film_(film) {}

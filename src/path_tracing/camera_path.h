@@ -109,7 +109,7 @@ Spectrum CameraPath<E>::radiance(Ray ray, const Wavelengths& lambda, float roule
     return Spectrum(_mm256_blendv_ps(found.radiance.v, found.least.v, found.least.v));
 }
 
-// Between vertices: the light of media, and of lamps near the ray.
+// Between vertices: the light of media, and of lights near the ray.
 template <EffectBits E>
 template <typename Follow>
 MediumCollision CameraPath<E>::passMedia(const Ray& ray, float tMax, std::uint32_t depth, std::uint32_t crossings,

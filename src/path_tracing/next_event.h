@@ -26,7 +26,7 @@ template <EffectBits E> class NextEvent {
     void inMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
 
     // The light at one place of the ray, before it is followed: distances drawn by how near they come to a light
-    // [Kulla2012], beside those that tracking finds. In thin fog around a lamp tracking rarely stops where the light
+    // [Kulla2012], beside those that tracking finds. In thin fog around a light tracking rarely stops where the light
     // is.
     //
     // Next-event estimation from there and from where tracking scatters share the place on their light, which leaves

@@ -1,6 +1,5 @@
 // Scattering at one point. Directions are local: +z is the shading normal, wo points towards the eye, wi is the new
 // direction. Both are unit vectors.
-// The ratio of densities in a build in which none depends on wavelength.
 #pragma once
 
 #include "base/flags.h"
@@ -15,7 +14,8 @@
 
 namespace abbe {
 
-// Stands for a Spectrum that is 1 and takes no room and no time.
+// The ratio of densities in a build in which none depends on wavelength. Stands for a Spectrum that is 1 and takes no
+// room and no time.
 struct UnitRatio {
     UnitRatio() = default;
     UnitRatio(Spectrum) {}

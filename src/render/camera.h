@@ -1,5 +1,4 @@
-// From a place on the film to a ray.
-// From a point of the scene to a place on the film: a camera ray the other way.
+// The interface of cameras: rays from the film into the scene, and points of the scene on the film.
 #pragma once
 
 #include "math/vec.h"
@@ -9,6 +8,7 @@
 
 namespace abbe {
 
+// A point of the scene that may be seen by the lens.
 struct LensQuery {
     Vec3 p;                 // render space
     Vec2 lens;              // [0, 1)²
@@ -19,6 +19,7 @@ struct LensQuery {
     Vec2 filmLower, filmUpper;
 };
 
+// From a point of the scene to a place on the film: a camera ray the other way.
 struct LensConnection {
     Vec3 lens;          // on the outermost surface of the camera, render space
     Vec3 wi;            // unit, from p to `lens`
@@ -33,6 +34,7 @@ struct LensConnection {
     bool heroOnly = false; // as CameraRay::heroOnly
 };
 
+// A place on the film, on the lens and in the shutter interval.
 struct CameraSample {
     Vec2 film; // pixels from the upper left corner of the full frame; (0.5, 0.5) is the middle of the first pixel
     Vec2 lens; // [0, 1)²
@@ -46,7 +48,8 @@ struct CameraRay {
     bool heroOnly = false; // other wavelengths take other ways: weight and ray are the hero's alone
 };
 
-// Immutable, thread-safe. Render space has its origin at the camera (docs/conventions.md).
+// From a place on the film to a ray. Immutable, thread-safe. Render space has its origin at the camera
+// (docs/conventions.md).
 class Camera {
   public:
     virtual ~Camera() = default;

@@ -1,6 +1,5 @@
 // How often the parts of light transport were at work: whole numbers that follow from the samples alone, whoever took
 // them in which order.
-// Counters of a record with their names, so that each is named in one place.
 #pragma once
 
 #include "base/work.h"
@@ -16,7 +15,8 @@ namespace abbe {
 // Whether reports and headers have it.
 enum class Reported : std::uint8_t { never, always, withLightPaths, withRounds, asDropped };
 
-// `Count`: std::uint64_t, perhaps const. Counters of several records add up by sums.
+// A counter of a record with its name, so that each is named in one place. `Count`: std::uint64_t, perhaps const.
+// Counters of several records add up by sums.
 template <typename Count> struct Counter {
     Count* place;
     const char* name; // in JSON: "light_paths"

@@ -84,7 +84,7 @@ constexpr const EffectInfo& infoOf(Effect effect) {
 // Who asked for an effect, for `abbe explain` and `forbid`.
 struct EffectReason {
     Effect effect;
-    Span asker; // invalid: the scene as a whole
+    Span place; // invalid: the scene as a whole
     std::string why;
 };
 

@@ -1,7 +1,4 @@
-// The image while it is being made: exact XYZ sums for every pixel and replicate.
-// Which part of a picture a path belongs to.
-// Light that paths from the lights bring to a pixel.
-// For films that stand in the place of another.
+// The interface of films, which sum up what paths bring to pixels.
 #pragma once
 
 #include "math/vec.h"
@@ -15,7 +12,8 @@
 
 namespace abbe {
 
-// By what it meets between the light and the eye; D scatters diffusely or in a medium, S does not.
+// Which part of a picture a path belongs to. By what it meets between the light and the eye; D scatters diffusely or in
+// a medium, S does not.
 enum class PathComponent : std::uint8_t {
     direct,   // E S* D? L: at most one D, and no S between it and the light
     indirect, // more than one D
@@ -23,13 +21,15 @@ enum class PathComponent : std::uint8_t {
 };
 inline constexpr std::size_t kPathComponents = 3;
 
-// Who brings it: a light path that the lens sees, or a round of merging, in which light paths are gathered where camera
-// paths end (caustics/merging/merge_kernel.h). Each kind is counted, and averaged, by itself.
+// A kind of light that is added beside the samples of pixels. Who brings it: a light path that the lens sees, or a
+// round of merging, in which light paths are gathered where camera paths end (caustics/merging/merge_kernel.h). Each
+// kind is counted, and averaged, by itself.
 enum class SplatKind : std::uint8_t { lightPath, merged };
 inline constexpr std::size_t kSplatKinds = 2;
 
-// What is added to one pixel, for the time of the call. The sum of a pixel's splats over the number of light paths, or
-// of rounds, tends to the pixel's radiance: the number of pixels of the frame and the filter are in it.
+// Light that paths from the lights bring to a pixel. What is added to one pixel, for the time of the call. The sum of a
+// pixel's splats over the number of light paths, or of rounds, tends to the pixel's radiance: the number of pixels of
+// the frame and the filter are in it.
 struct Splat {
     Xyz value; // finite, each component below ExactSum::kLargest
     // The same before the sensor, for spectral layers: value = sensor(radiance, lambda) · factor.
@@ -57,9 +57,10 @@ struct PixelBounds {
     std::int64_t area() const { return static_cast<std::int64_t>(width()) * height(); }
 };
 
-// Replicates are independent randomisations of the sample set; their spread gives honest error bars for correlated
-// samples [Owen1997]. A pixel's samples go to that pixel alone (filter importance sampling [Ernst2006]), so threads
-// never share one; sums are exact, so that they do not depend on the order of the samples either.
+// The image while it is being made: exact XYZ sums for every pixel and replicate. Replicates are independent
+// randomisations of the sample set; their spread gives honest error bars for correlated samples [Owen1997]. A pixel's
+// samples go to that pixel alone (filter importance sampling [Ernst2006]), so threads never share one; sums are exact,
+// so that they do not depend on the order of the samples either.
 class Film {
   public:
     virtual ~Film() = default;
@@ -93,9 +94,9 @@ class Film {
     virtual std::unique_ptr<SampleRecorder> makeRecorder() { return nullptr; }
 };
 
-// Answers whatever it is asked as the other film does, so that everybody plans and draws alike with either; what is
-// added is left to the derived class. The other film outlives it.
-class StandInFilm : public Film {
+// For films that stand in the place of another. Answers as the other film does, so that everybody plans and draws alike
+// with either; what is added is left to the derived class. The other film outlives it.
+class FilmDecorator : public Film {
   public:
     PixelBounds bounds() const override { return like_.bounds(); }
     int replicates() const override { return like_.replicates(); }
@@ -108,7 +109,7 @@ class StandInFilm : public Film {
     bool takesMerged() const override { return like_.takesMerged(); }
 
   protected:
-    explicit StandInFilm(const Film& like) : like_(like) {}
+    explicit FilmDecorator(const Film& like) : like_(like) {}
 
   private:
     const Film& like_;

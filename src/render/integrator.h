@@ -1,6 +1,4 @@
-// An algorithm that turns a scene into an image.
-// What was found out before a render about light that camera paths find seldom or never, for people to read.
-// A rough picture of the frame before the first sample.
+// The interface of integrators, which turn a scene into an image: settings, control, statistics, findings.
 #pragma once
 
 #include "render/film.h"
@@ -21,8 +19,9 @@
 
 namespace abbe {
 
-// One record for each technique, of a type of the technique's own (LightPathFindings, …). All of it depends on the
-// scene, the frame, the pixel filter, the seed and the size of the pilots alone.
+// What was found out before a render about light that camera paths find seldom or never, for people to read. One record
+// for each technique, of a type of the technique's own (LightPathFindings, …). All of it depends on the scene, the
+// frame, the pixel filter, the seed and the size of the pilots alone.
 class CausticFindings {
   public:
     int pilot = 0; // the size of the pilots: RenderSettings::pilot; 0: none
@@ -53,9 +52,9 @@ struct EndlessPaths {
         shapes; // between which they go, those that are met most often first; empty: there are none
 };
 
-// The frame in square cells, row by row, of a few samples each. For people to see while plans are made: no sample of it
-// is in the image.
-struct FirstLook {
+// A rough picture of the frame before the first sample. The frame in square cells, row by row, of a few samples each.
+// For people to see while plans are made: no sample of it is in the image.
+struct FramePreview {
     PixelBounds frame;
     int cellSize = 1; // pixels; cells at the right and lower borders may be cut
     int columns = 0, rows = 0;
@@ -159,10 +158,11 @@ struct RenderControl {
     std::function<void(const RenderStatistics&)> takeSnapshot = {};
     // From the calling thread: once, before the first sample and before anything is planned; and after each pass, with
     // no thread at work on the film.
-    std::function<void(const FirstLook&)> firstLook = {};
+    std::function<void(const FramePreview&)> framePreview = {};
     std::function<void()> passEnded = {};
 };
 
+// An algorithm that turns a scene into an image.
 class Integrator {
   public:
     virtual ~Integrator() = default;

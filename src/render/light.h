@@ -1,6 +1,4 @@
-// Sources of light, as next-event estimation and BSDF sampling see them.
-// A point of a light from which a path of light starts.
-// Where a light is and where it shines, for choosing among many lights.
+// The interfaces of lights, as next-event estimation, BSDF sampling and light paths see them.
 #pragma once
 
 #include "math/bounds.h"
@@ -17,7 +15,7 @@
 
 namespace abbe {
 
-// Drawn with no regard to any receiver. Render space.
+// A point of a light from which a light path starts. Drawn with no regard to any receiver. Render space.
 struct LightOrigin {
     // Where light leaves to: everywhere, from a point without a surface; or from the outer side, or both, of a surface.
     enum class Sides : std::uint8_t { all, front, both };
@@ -46,9 +44,10 @@ struct LightOrigin {
     float cosine(Vec3 w) const { return point() ? 1.f : std::abs(dot(n, w)); }
 };
 
-// Holds whatever the light, or one part of it, gives off while the shutter is open: light leaves points of the box, in
-// directions within acos(cosEmission) of a normal that is within acos(cosNormals) of the axis. Wider is never wrong,
-// only slower to converge; what is narrower than the light loses light.
+// Where a light is and where it shines, for choosing among many lights. Holds whatever the light, or one part of it,
+// gives off while the shutter is open: light leaves points of the box, in directions within acos(cosEmission) of a
+// normal that is within acos(cosNormals) of the axis. Wider is never wrong, only slower to converge; what is narrower
+// than the light loses light.
 struct LightBounds {
     Bounds3 box;           // render space
     Vec3 axis{0, 0, 1};    // unit, of the cone of normals
@@ -108,12 +107,12 @@ struct LightReach {
 class DistantLight;
 class PlacedLight;
 
-// What every light has. It is also a DistantLight, a PlacedLight (perhaps a SurfaceLight), or a medium that shines.
-// Immutable once the scene is committed, thread-safe, render space.
+// What every light has. It is also a DistantLight, a PlacedLight (perhaps a
+// SurfaceLight), or a medium that shines. Immutable once the scene is committed, thread-safe, render space.
 class Light {
   public:
     virtual ~Light() = default;
-    // Which rays meet it; whatever this says, it is asked for its light. Set before the scene is committed.
+    // Which rays meet it; whatever this says, next-event estimation samples it. Set before the scene is committed.
     Visibility visible() const { return visible_; }
     void setVisible(Visibility v) { visible_ = v; }
     // Called once, after the bounds of all finite geometry are known and before anything else.
@@ -137,9 +136,9 @@ class Light {
     virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
     // True if it has an extent, but nothing that rays could meet: found by sampling alone, and its samples are deltas
     // whose density counts.
-    virtual bool bodiless() const { return false; }
+    virtual bool hasNoSurface() const { return false; }
     // Whether nothing that was scattered meets it, whatever its extent.
-    bool unmet() const { return bodiless() || !visible_.has(RayKind::scattered); }
+    bool neverHit() const { return hasNoSurface() || !visible_.has(RayKind::scattered); }
 
     // What some lights are besides; null if this is none.
     virtual const DistantLight* asDistant() const { return nullptr; }
@@ -162,7 +161,7 @@ class Light {
 class DistantLight : public Light {
   public:
     const DistantLight* asDistant() const final { return this; }
-    // False for a single direction, which no ray has but by sampling: nothing is asked of escaped() then.
+    // False for a single direction, which no ray has but by sampling: escaped() is not called then.
     virtual bool hasExtent() const { return true; }
     // Radiance arriving along a ray of unit direction `w` that left the scene, and the density with which
     // sample(from, 0, ·) makes that direction.

@@ -1,7 +1,4 @@
-// What fills space: fog, smoke, cloud, milk.
-// The way of a ray through a field, piece by piece.
-// Light that a medium gives off by itself: flame, glowing gas.
-// Scattering at a point inside a medium: how much goes where.
+// The interfaces of what fills space: fog, smoke, clouds, milk, flames.
 #pragma once
 
 #include "math/bounds.h"
@@ -17,8 +14,8 @@
 
 namespace abbe {
 
-// A stretch of a ray along which a field (the density of a medium) is known to stay within bounds. Distances along
-// the ray.
+// A stretch of a ray along which a field (the density of a medium) is known to
+// stay within bounds. Distances along the ray.
 struct MediumSegment {
     float tNear = 0, tFar = 0;
     float minimum = 0, mean = 0, maximum = 0; // of the field; `mean` is any value between, the nearer the better
@@ -46,7 +43,8 @@ class EmissionWalk {
     ~EmissionWalk() = default; // as MediumWalk
 };
 
-// Immutable, thread-safe, render space. A Light may know how to sample it (Light::emission()).
+// Light that a medium emits: flame, glowing gas. Immutable, thread-safe, render space. A Light may know how to sample
+// it (Light::emission()).
 class MediumEmission {
   public:
     virtual ~MediumEmission() = default;
@@ -59,8 +57,9 @@ class MediumEmission {
     virtual float pdfSolidAngle(Vec3 from, Vec3 p) const noexcept = 0;
 };
 
-// Rotationally symmetric about the direction in which light travels. Immutable, thread-safe. `cosine` is that of the
-// angle between the directions of travel before and after: 1 goes straight on.
+// Scattering at a point inside a medium: how much goes where. Rotationally symmetric about the direction in which light
+// travels. Immutable, thread-safe. `cosine` is that of the angle between the directions of travel before and after: 1
+// goes straight on.
 class PhaseFunction {
   public:
     virtual ~PhaseFunction() = default;
@@ -90,8 +89,8 @@ class MediumWalk {
     ~MediumWalk() = default; // never deleted: walks are trivially destructible and live in a WalkSpace
 };
 
-// Extinction is density(x) · extinction(λ): absorption and scattering vary in space together. Immutable, thread-safe,
-// render space.
+// What fills space. Extinction is density(x) · extinction(λ): absorption and scattering vary in space together.
+// Immutable, thread-safe, render space.
 class Medium {
   public:
     // Its place in Scene::media, set by whoever keeps it, for what is counted and charged.

@@ -1,5 +1,4 @@
-// Who wants to know more of a path than the light that it found: the layers of a film.
-// What a film keeps of samples beyond their XYZ.
+// Observers of paths: what the layers of a film record beyond the light that a path found.
 #pragma once
 
 #include "render/bsdf.h"
@@ -11,8 +10,9 @@
 
 namespace abbe {
 
-// Called by the path loop in the order of events. Watching changes nothing of the path. All spectra are per lane of the
-// wavelengths that the path started with, over their density: as the radiance that the path returns.
+// Is told what a path does. Called by the path loop in the order of events. Watching changes nothing of the path. All
+// spectra are per lane of the wavelengths that the path started with, over their density: as the radiance that the path
+// returns.
 class PathObserver {
   public:
     virtual ~PathObserver() = default;
@@ -44,7 +44,8 @@ class PathObserver {
     virtual void leaves(Vec3 /*direction*/) noexcept {}
 };
 
-// Of one thread at a time. For every sample: start(), the events of its path, and then keep() or drop().
+// What a film keeps of samples beyond their XYZ. Of one thread at a time. For every sample: start(), the events of its
+// path, and then keep() or drop().
 class SampleRecorder : public PathObserver {
   public:
     // A pixel within the film's bounds; all samples up to the next pixel belong to it and to one replicate.

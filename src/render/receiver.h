@@ -1,5 +1,4 @@
-// Where light is asked for.
-// How a surface scatters light, roughly.
+// A place that light arrives at, as choosing and sampling lights see it.
 #pragma once
 
 #include "math/vec.h"
@@ -25,8 +24,9 @@ struct Receiver {
     bool oneSided() const { return surface && !twoSided; }
 };
 
-// What choosing among lights needs to know of a Bsdf: the shares of its light that go evenly, by the cosine, and about
-// the directions in which GGX microfacets mirror or refract wo. An estimate, which costs noise where it is wrong.
+// How a surface scatters light, roughly. What choosing among lights needs to know of a Bsdf: the shares of its light
+// that go evenly, by the cosine, and about the directions in which GGX microfacets mirror or refract wo. An estimate,
+// which costs noise where it is wrong.
 struct ScatterOutline {
     struct Glossy {
         float share = 0;

@@ -1,6 +1,4 @@
 // How far a render has come, tile by tile: with the film's sums all that is needed to go on with it.
-// Where a portion of samples was cut short.
-// The way into a film for light paths, which whoever wants to see their sums at rest can close.
 #pragma once
 
 #include "base/check.h"
@@ -19,8 +17,8 @@
 
 namespace abbe {
 
-// Samples of a tile are taken unit by unit: of pixels, row by row, and of each its replicates. Of light paths a unit is
-// a sample of a replicate, and of merging a round.
+// Where a portion of samples was cut short. Samples of a tile are taken unit by unit: of pixels, row by row, and of
+// each its replicates. Of light paths a unit is a sample of a replicate, and of merging a round.
 struct PortionPlace {
     std::uint32_t unit = 0; // all units before it are done,
     std::uint32_t done = 0; // and so many samples, or light paths, of this one
@@ -32,9 +30,10 @@ struct CutPortion {
     PortionPlace at;
 };
 
-// Many are inside at once; to close it is to wait for those inside and to let nobody else in meanwhile, so that threads
-// which come and go without end cannot keep it open. A lock for each block of light paths would do as well, if threads
-// could hold thousands of them.
+// The way into a film for light paths, which whoever wants to see their sums at rest can close. Many are inside at
+// once; to close it is to wait for those inside and to let nobody else in meanwhile, so that threads which come and go
+// without end cannot keep it open. A lock for each block of light paths would do as well, if threads could hold
+// thousands of them.
 class LightGate {
   public:
     using Pass = std::shared_lock<std::shared_mutex>;
@@ -67,10 +66,11 @@ struct TileState {
     std::vector<DroppedSample> examples = {}; // kExamples at most
 };
 
-// The tiles of a film's bounds, row by row, and behind them blocks of light paths: tiles without pixels, which a render
-// takes to the same samples. While it goes on, a tile and the film's pixels in it are changed by the holder of its
-// mutex alone: who holds it finds both in step, at any moment and without stopping the render. A block's light is all
-// over the film, so blocks and splats are in step together: while nobody is inside the gate.
+// How far all tiles have come. The tiles of a film's bounds, row by row, and behind them blocks of light paths: tiles
+// without pixels, which a render takes to the same samples. While it goes on, a tile and the film's pixels in it are
+// changed by the holder of its mutex alone: who holds it finds both in step, at any moment and without stopping the
+// render. A block's light is all over the film, so blocks and splats are in step together: while nobody is inside the
+// gate.
 class RenderState {
   public:
     static constexpr int kTileSize = 16;

@@ -1,5 +1,4 @@
-// Geometry that can be met by rays and, if it emits, be sampled.
-// What light paths are sent to.
+// The interfaces of shapes: geometry that rays can meet and, if it emits, that can be sampled.
 #pragma once
 
 #include "math/bounds.h"
@@ -17,7 +16,7 @@
 
 namespace abbe {
 
-// A shape whose material focuses light (Material::focuses()).
+// What light paths are sent to. A shape whose material focuses light (Material::focuses()).
 struct FocusingShape {
     Bounds3 box;      // for all the time that the shutter is open, m, render space; infinite where it is not known
     std::string name; // as in Scene::names
@@ -121,8 +120,8 @@ class GeometrySink {
     void quads(std::span<const Vec3> vertices, Quads indices) { quads({&vertices, 1}, indices); }
 };
 
-// Immutable after construction; methods are thread-safe and do not throw. Coordinates are those in which the shape was
-// made: render space, or an object's space under an instance.
+// The interface of every shape. Immutable after construction; methods are thread-safe and do not throw. Coordinates are
+// those in which the shape was made: render space, or an object's space under an instance.
 class Shape {
   public:
     virtual ~Shape() = default;

@@ -1,6 +1,4 @@
 // Where a ray met a surface, with all that shading needs.
-// A surface next to one of its points, in double.
-// The space of a shape before its transform, in which patterns stick to it.
 #pragma once
 
 #include "math/frame.h"
@@ -20,9 +18,10 @@ inline std::pair<Vec3d, Vec3d> tangentsOf(Vec3d n) {
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-// Where a line meets a surface, and how the shading normal turns there: what it takes to follow a narrow beam beyond
-// mirrors and lenses. In double, since a lens magnifies the rounding of its own points. Of a flat surface it is the
-// plane; of a triangle with vertex normals the interpolated normal, which is the one that refracts.
+// A surface next to one of its points, in double. Where a line meets a surface, and how the shading normal turns there:
+// what it takes to follow a narrow beam beyond mirrors and lenses. In double, since a lens magnifies the rounding of
+// its own points. Of a flat surface it is the plane; of a triangle with vertex normals the interpolated normal, which
+// is the one that refracts.
 struct SurfacePatch {
     Vec3d p;
     Vec3d ng;                    // unit, outside
@@ -80,6 +79,7 @@ inline Vec3 spawnOrigin(Vec3 p, Vec3 pError, Vec3 ng, Vec3 w) {
 
 inline Vec3 spawnOrigin(const SurfaceHit& hit, Vec3 w) { return spawnOrigin(hit.p, hit.pError, hit.ng, w); }
 
+// The space of a shape before its transform, in which patterns stick to it.
 class OwnSpace {
   public:
     // `map`: from the coordinates of the shape.

@@ -1,6 +1,4 @@
 // Parameters of materials that may vary over a surface: a number, a curve or a texture.
-// Marks a lookup of a texture.
-// From a hit to what textures are asked.
 #pragma once
 
 #include "base/work.h"
@@ -10,14 +8,14 @@
 
 namespace abbe {
 
-// Around one lookup of a material or a light, whatever textures that one is made of.
+// Marks a lookup of a texture. Around one lookup of a material or a light, whatever textures that one is made of.
 class TextureWork : public WorkScope {
   public:
     TextureWork() : WorkScope(Work::textures) { ++workState.textureLookups; }
 };
 
-// The cone of the path meets the tangent plane in an ellipse; its half axes in uv follow from dp/du and dp/dv by least
-// squares [Igehy1999, sec. 3.2; Pharr2023, eq. 10.5].
+// From a hit to the query of a texture. The cone of the path meets the tangent plane in an ellipse; its half axes in uv
+// follow from dp/du and dp/dv by least squares [Igehy1999, sec. 3.2; Pharr2023, eq. 10.5].
 inline TextureQuery::TextureQuery(const SurfaceHit& h)
     : uv(h.uv), position(h.local), normal(h.localNormal), radius(h.footprint * h.localScale), hit(&h) {
     if (!(h.footprint > 0)) return;

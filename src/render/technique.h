@@ -12,8 +12,8 @@ struct Technique {
     // Owen-scrambled Sobol points; jittered strata, as many as a replicate has samples, in every pair of dimensions;
     // or independent random numbers.
     enum class Numbers : std::uint8_t { sobol, stratified, random } numbers = Numbers::sobol;
-    // How light is found: by asking lights and by scattering, or by one alone. What lights cannot be asked for
-    // (mirrors, parts of the sky that a light never samples) is found by scattering in any case.
+    // How light is found: by next-event estimation and by scattering, or by one alone. What next-event estimation
+    // cannot find (mirrors, parts of the sky that a light never samples) is found by scattering in any case.
     enum class Strategy : std::uint8_t { mis, lightsOnly, bsdfOnly } strategy = Strategy::mis;
     // How the two are weighed where both find the same light: the heuristics of [Veach1997, sec. 9.2], one half each,
     // or the balance heuristic as if one of the two had more samples than it has.
@@ -21,7 +21,8 @@ struct Technique {
     // Where paths go on: as the surface or medium scatters; evenly over the hemisphere, or the sphere where light is
     // let through; or by a mixture of both, weighed by its density. Mirrors and clear glass are followed in any case.
     enum class Directions : std::uint8_t { importance, uniform, mixed } directions = Directions::importance;
-    // Which light is asked: by what it may give to the place; by its power alone, or evenly.
+    // Which light next-event estimation samples: chosen by what it may give to the place; by its power alone, or
+    // evenly.
     enum class LightChoice : std::uint8_t { tree, power, uniform } lightChoice = LightChoice::tree;
     // Which paths go on: by what the pixel is expected to show, by their throughput, or all but those that carry next
     // to nothing. Paths beyond kLongPath vertices are never certain to go on.

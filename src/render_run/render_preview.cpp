@@ -39,7 +39,7 @@ DisplayPicture pictureOf(const ResolvedImage& image, const FilmSettings& film) {
 
 } // namespace
 
-DisplayPicture pictureOf(const FirstLook& look, const FilmSettings& film, double exposure, int most) {
+DisplayPicture pictureOf(const FramePreview& look, const FilmSettings& film, double exposure, int most) {
     const int side = std::clamp(most / look.columns, 1, look.cellSize);
     DisplayPicture picture{look.columns * side, look.rows * side, {}, film.space};
     const LookColors colors(film, exposure);
@@ -51,7 +51,7 @@ DisplayPicture pictureOf(const FirstLook& look, const FilmSettings& film, double
     return picture;
 }
 
-std::size_t paintMissing(ResolvedImage& image, const PixelFilm& film, const FirstLook& look,
+std::size_t paintMissing(ResolvedImage& image, const PixelFilm& film, const FramePreview& look,
                          const FilmSettings& settings, double exposure) {
     const LookColors colors(settings, exposure);
     std::size_t i = 0, missing = 0;
@@ -75,10 +75,10 @@ RenderPreview::~RenderPreview() {
     if (shown_) std::filesystem::remove(path_, ignored);
 }
 
-bool RenderPreview::show(const FirstLook& look) {
-    double foretold = look.secondsForSample * how_.samples * (how_.mayTrace ? kTracedTime : 1);
-    if (how_.mostSeconds > 0) foretold = std::min(foretold, how_.mostSeconds);
-    if (foretold < kSoon || look.cells.empty()) return false;
+bool RenderPreview::show(const FramePreview& look) {
+    double predicted = look.secondsForSample * how_.samples * (how_.mayTrace ? kTracedTime : 1);
+    if (how_.mostSeconds > 0) predicted = std::min(predicted, how_.mostSeconds);
+    if (predicted < kSoon || look.cells.empty()) return false;
     return write(abbe::pictureOf(look, how_.film, how_.exposure, kWidestLook));
 }
 

@@ -34,7 +34,7 @@ class RenderPreview {
     const std::string& path() const { return path_; }
     // Whether it was written, here and below; not if the image will be there as soon. No thread may be at work on the
     // film.
-    bool show(const FirstLook&);
+    bool show(const FramePreview&);
     // Only after a look was shown.
     bool show(const PixelFilm&);
 
@@ -50,9 +50,9 @@ class RenderPreview {
 
 // Cells in linear colours of the film: each a square of as many pixels as it has in the image, but fewer if that would
 // be wider than `most`.
-DisplayPicture pictureOf(const FirstLook&, const FilmSettings&, double exposure, int most);
+DisplayPicture pictureOf(const FramePreview&, const FilmSettings&, double exposure, int most);
 
 // Paints pixels without samples as they looked at first. The number of them.
-std::size_t paintMissing(ResolvedImage&, const PixelFilm&, const FirstLook&, const FilmSettings&, double exposure);
+std::size_t paintMissing(ResolvedImage&, const PixelFilm&, const FramePreview&, const FilmSettings&, double exposure);
 
 } // namespace abbe

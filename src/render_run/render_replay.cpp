@@ -2,7 +2,7 @@
 #include "app/console.h"
 #include "render_run/render_run.h"
 #include "rendering/path_record.h"
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 
 #include <fmt/format.h>
 
@@ -55,9 +55,9 @@ ExitCode RenderRun::replay() {
         if (!record.kept()) fault = describeFault({options_.replay[i], {}}, record, built_.scene, loaded_->tree);
         const ReplayedSample sample{options_.replay[i], record, fault ? &*fault : nullptr, built_.exposure};
         if (common_.json)
-            list.push(storyJson(sample, built_.scene));
+            list.push(replayJson(sample, built_.scene));
         else
-            common_.console.data((i > 0 ? "\n" : "") + storyText(sample, built_.scene));
+            common_.console.data((i > 0 ? "\n" : "") + replayText(sample, built_.scene));
     }
     if (common_.json) common_.console.data(list.text(true) + "\n");
     return ExitCode::done;

@@ -171,7 +171,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
     };
     const auto onSnapshot = [&](const RenderStatistics& statistics) { snapshot(film, statistics); };
     RenderControl control{&interrupt.stop(), progress, &state, &interrupt.snapshot(), onSnapshot};
-    control.firstLook = [this, &interrupt](const FirstLook& look) {
+    control.framePreview = [this, &interrupt](const FramePreview& look) {
         look_ = look;
         Diagnostics found;
         warnOfEndlessPaths(look, built_, settings_.timeLimit > 0 ? 0 : static_cast<double>(settings_.samples), found);

@@ -127,16 +127,16 @@ class RenderRun {
     WorkReading earlier_;            // of runs and parts before this one
     std::optional<RenderCheckpoint> checkpoint_;
     std::optional<RenderPreview> preview_;
-    std::optional<FirstLook> look_; // of this run
-    bool hasSamples_ = true;        // that it was to take, at least one
-    bool hasPicture_ = true;        // these, or a first look where the time was up
-    std::size_t lookedAt_ = 0;      // pixels that were written without a sample, as they looked at first
-    bool allBegun_ = true;          // a sample of every pixel was taken, be it that it was dropped
-    bool certificateAlso_ = true;   // no file of somebody else has its name
-    bool outOfMemory_ = false;      // while rendering or writing
-    bool imageWritten_ = false;     // in the end
-    std::string olderCheckpoint_;   // which stays when memory ran out
-    double beyondBudget_ = 0;       // bytes that were taken when that was too much
+    std::optional<FramePreview> look_; // of this run
+    bool hasSamples_ = true;           // that it was to take, at least one
+    bool hasPicture_ = true;           // these, or a first look where the time was up
+    std::size_t lookedAt_ = 0;         // pixels that were written without a sample, as they looked at first
+    bool allBegun_ = true;             // a sample of every pixel was taken, be it that it was dropped
+    bool certificateAlso_ = true;      // no file of somebody else has its name
+    bool outOfMemory_ = false;         // while rendering or writing
+    bool imageWritten_ = false;        // in the end
+    std::string olderCheckpoint_;      // which stays when memory ran out
+    double beyondBudget_ = 0;          // bytes that were taken when that was too much
     bool lostTexture_ = false;
     double watchedUntil_ = 0; // s, textures and memory
     RenderSummary summary_;

@@ -60,9 +60,9 @@ using PilotRun = std::function<CausticPlans(int size, const std::function<bool()
 // By pilots of this size.
 LadderedPlans plansOf(const PilotRun&, int size, const std::function<bool()>& stop);
 
-// By the largest pilots that the budget has room for. What a larger size takes is foretold from the rays that a smaller
-// one took, starting with the smallest, so that without a bound on seconds the size depends on the budget and on
-// counts alone. Seconds are foretold likewise, and pilots that go beyond them are cut short and do not count.
+// By the largest pilots that the budget has room for. What a larger size takes is predicted from the rays that a
+// smaller one took, starting with the smallest, so that without a bound on seconds the size depends on the budget and
+// on counts alone. Seconds are predicted likewise, and pilots that go beyond them are cut short and do not count.
 LadderedPlans climb(const PilotRun&, const PilotBudget&, const std::function<bool()>& stop);
 
 } // namespace abbe

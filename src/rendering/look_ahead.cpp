@@ -68,9 +68,9 @@ class LongPathRecorder final : public SampleRecorder {
 };
 
 // Keeps no light.
-class ListeningFilm final : public StandInFilm {
+class ListeningFilm final : public FilmDecorator {
   public:
-    explicit ListeningFilm(const Film& like) : StandInFilm(like) {}
+    explicit ListeningFilm(const Film& like) : FilmDecorator(like) {}
     void add(int, int, int, const ExactXyz&, std::uint32_t) noexcept override {}
     std::unique_ptr<SampleRecorder> makeRecorder() override { return std::make_unique<LongPathRecorder>(heard); }
 
@@ -132,9 +132,9 @@ constexpr std::uint64_t kPlan = 0x706c616e;    // "plan"
 // scene that absorbs nearly everything they would go on to no end.
 constexpr float kNoRoulette = 1e6f;
 
-class Looker {
+class FramePilot {
   public:
-    Looker(const PathContext& context, TileFunction render, const Film& film, const std::function<bool()>& stop)
+    FramePilot(const PathContext& context, TileFunction render, const Film& film, const std::function<bool()>& stop)
         : context_(context), render_(render), film_(film), stop_(stop),
           frame_(context.scene.frame.area() > 0 ? context.scene.frame : film.bounds()) {}
 
@@ -205,7 +205,7 @@ class Looker {
     }
 
     void describe(const PilotFilm& pilot, double seconds) {
-        FirstLook& first = result_.first;
+        FramePreview& first = result_.first;
         first = {frame_, pilot.cellSize(), pilot.columns(), pilot.rows(), {}, 0, 0, {}};
         first.cells = cellsOf(pilot);
         const double paths = static_cast<double>(pilot.columns()) * pilot.rows() * PilotFilm::kSamples;
@@ -249,7 +249,7 @@ class Looker {
 
 LookAhead lookAhead(const PathContext& context, TileFunction render, const Film& film, const RenderState& state,
                     const std::function<bool()>& stop) {
-    return Looker(context, render, film, stop).run(state);
+    return FramePilot(context, render, film, stop).run(state);
 }
 
 } // namespace abbe

@@ -1,5 +1,4 @@
 // What is found out about a frame before the first sample of its image.
-// Paths that go round and round and lose nothing.
 #pragma once
 
 #include "caustics/shared/kernel_jobs.h"
@@ -15,9 +14,9 @@ namespace abbe {
 // So many rays of a path, in the mean over the frame, are worth a look at why.
 inline constexpr double kManyRays = 100;
 
-// Takes the samples of the cells with the most rays again and looks where their paths go after kLongPath
-// vertices: nothing if that is hardly ever where surfaces take no light away. Whose rays are counted is the context of
-// the pilot, with its roulette.
+// Paths that go round and round and lose nothing. Takes the samples of the cells with the most rays again and looks
+// where their paths go after kLongPath vertices: nothing if that is hardly ever where surfaces take no light away.
+// Whose rays are counted is the context of the pilot, with its roulette.
 EndlessPaths findEndlessPaths(const PathContext&, TileFunction, const PilotFilm&, const RouletteReference&);
 
 class RenderState;
@@ -29,7 +28,7 @@ struct LookAhead {
     SamplingPlan plan;             // even unless the settings ask for more
     std::vector<double> tileCosts; // of a sample in each tile of the state, in rays
     std::uint64_t rays = 0;        // that it took
-    FirstLook first;
+    FramePreview first;
     double raysOfPath = 0; // of a camera path, in the mean over the frame
 };
 

@@ -1,5 +1,4 @@
-// What happens in single samples, for Integrator::repeat().
-// Where a sample that is no radiance went wrong.
+// What happens in single samples, for Integrator::repeat(), and where one that is no radiance went wrong.
 #pragma once
 
 #include "render/film.h"
@@ -17,7 +16,7 @@ namespace abbe {
 struct PathEvent {
     enum class Kind : std::uint8_t {
         surface,  // arrived at `hit` with `beta`
-        sampled,  // asked a light, which `light` reaches: `radiance` of it, scattered by `value`
+        sampled,  // next-event estimation, which `light` answers: `radiance` of it, scattered by `value`
         met,      // found a light by chance, which gives `radiance`
         gathers,  // `light` of it reaches the eye
         scatters, // in direction `next`, if there is one
@@ -108,9 +107,9 @@ class PathRecorder final : public SampleRecorder {
 
 // A film that keeps nothing and shows what happens in samples. Refers to the film that it stands for, which stays as it
 // is. Give repeat() the same samples in the same order.
-class WatchedFilm final : public StandInFilm {
+class WatchedFilm final : public FilmDecorator {
   public:
-    WatchedFilm(const Film& film, std::vector<SampleId> samples) : StandInFilm(film), samples_(std::move(samples)) {}
+    WatchedFilm(const Film& film, std::vector<SampleId> samples) : FilmDecorator(film), samples_(std::move(samples)) {}
 
     const std::vector<SampleId>& samples() const { return samples_; }
     // Of each sample, in order.
@@ -131,7 +130,7 @@ class WatchedFilm final : public StandInFilm {
     PathRecord present_{0};
 };
 
-// The first number of the path that is negative or not finite.
+// Where a sample that is no radiance went wrong. The first number of the path that is negative or not finite.
 struct SampleFault {
     // Who gave it.
     enum class Culprit : std::uint8_t { camera, material, light, medium };

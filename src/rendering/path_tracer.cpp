@@ -25,7 +25,7 @@ namespace {
 
 // At most about this long is a tile in one thread's hands, so that a render ends soon when it is told to.
 constexpr double kPortionSeconds = 0.4;
-// s: a portion that is foretold to go on for longer than this after the time limit is not begun, and what goes on then
+// s: a portion that is predicted to go on for longer than this after the time limit is not begun, and what goes on then
 // is cut short.
 constexpr double kOvertime = 0.1;
 
@@ -96,7 +96,7 @@ class RenderJob {
         const std::function<double()> left = [this] { return timeLeft(); };
         const std::function<bool()> stop = [this] { return stopRequested(); };
         plans_ =
-            planRender({context, kernel_.render, kernel_.lightPaths, film_, state_, control_.firstLook, left, stop});
+            planRender({context, kernel_.render, kernel_.lightPaths, film_, state_, control_.framePreview, left, stop});
         statistics_.caustics = plans_.findings;
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
@@ -277,9 +277,9 @@ class RenderJob {
         p.noise = statistics_.noise;
         p.pathsPerSecond = p.elapsed > 0 ? static_cast<double>(statistics_.paths - pathsBefore_) / p.elapsed : 0;
         p.coreSeconds = statistics_.coreSeconds;
-        const TimeLeft::Outlook outlook = timeLeft_->at(p.elapsed);
-        p.fraction = std::max(least, outlook.fraction);
-        p.left = least < 1 ? outlook.left : 0;
+        const TimeLeft::Forecast forecast = timeLeft_->at(p.elapsed);
+        p.fraction = std::max(least, forecast.fraction);
+        p.left = least < 1 ? forecast.left : 0;
         control_.progress(p);
     }
 
@@ -310,9 +310,9 @@ class RenderJob {
 
 // For plans of a render that is not made: the whole frame with the pixel filter of another film; takes all light and
 // keeps none.
-class PlanFilm final : public StandInFilm {
+class PlanFilm final : public FilmDecorator {
   public:
-    PlanFilm(const Film& like, PixelBounds frame) : StandInFilm(like), frame_(frame) {}
+    PlanFilm(const Film& like, PixelBounds frame) : FilmDecorator(like), frame_(frame) {}
     PixelBounds bounds() const override { return frame_; }
     void add(int, int, int, const ExactXyz&, std::uint32_t) noexcept override {}
     bool takesSplats() const override { return true; }

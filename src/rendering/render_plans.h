@@ -13,9 +13,9 @@ struct PlanInput {
     TileFunction render;        // of the kernel without light paths
     const LightPathKernel& lightPaths;
     const Film& film;
-    RenderState& state;                                // is told the size of the pilots; one that it has stays
-    const std::function<void(const FirstLook&)>& seen; // may be empty
-    const std::function<double()>& timeLeft;           // s, where the settings have a time limit
+    RenderState& state;                                   // is told the size of the pilots; one that it has stays
+    const std::function<void(const FramePreview&)>& seen; // may be empty
+    const std::function<double()>& timeLeft;              // s, where the settings have a time limit
     const std::function<bool()>& stop;
 };
 

@@ -1,5 +1,4 @@
-// How many samples each pixel takes, decided before the first one.
-// A look at the whole frame that measures noise and cost: what a sampling plan goes by.
+// How many samples each pixel takes, decided before the first one by a pilot.
 #pragma once
 
 #include "caustics/shared/kernel_jobs.h"
@@ -21,8 +20,9 @@ struct PlanCell {
     double pixels = 0;                 // how many it has
 };
 
-// The frame in square cells of at least 8 × 8 pixels, at most 8192 of them, each seen through four of its pixels that
-// hashing chooses. Depends on frame and seed alone, like PilotFilm.
+// A pilot of the whole frame that measures noise and cost. The frame in square cells of at least 8 × 8 pixels, at most
+// 8192 of them, each seen through four of its pixels that hashing chooses. Depends on frame and seed alone, like
+// PilotFilm.
 class PlanPilot {
   public:
     static constexpr int kLooks = 4;             // pixels of a cell, two for each half
@@ -86,12 +86,12 @@ class PlanPilot::Probe final : public Film {
     std::array<std::uint32_t, 2> samples_{};
 };
 
-// Pixels take 2^k times the samples that are asked for, k = −2 … 3, so that a render of the same cost has the least
-// mean of variance/(Y² + ε), which is what PixelFilm::relativeNoise() is about: n ∝ √(variance/((Y² + ε)·cost)). What
-// the pilot says is averaged over neighbours, and believed as far as each half of it foretells the other; on an even
-// frame that is not at all. The plan never changes and no sample of the pilot is in the image, so that each pixel is
-// the mean of a number of samples that does not depend on them: unbiased [Kirk1991]. It depends on frame, scene and
-// seed alone.
+// The number of samples of each pixel. Pixels take 2^k times the samples that are asked for, k = −2 … 3, so that a
+// render of the same cost has the least mean of variance/(Y² + ε), which is what PixelFilm::relativeNoise() is about: n
+// ∝ √(variance/((Y² + ε)·cost)). What the pilot says is averaged over neighbours, and believed as far as each half of
+// it predicts the other; on an even frame that is not at all. The plan never changes and no sample of the pilot is in
+// the image, so that each pixel is the mean of a number of samples that does not depend on them: unbiased [Kirk1991].
+// It depends on frame, scene and seed alone.
 class SamplingPlan final : public PixelSamples {
   public:
     static constexpr int kLeast = -2, kMost = 3;

@@ -50,7 +50,7 @@ void TimeLeft::alreadyDone(std::size_t tile, std::uint32_t samples, double coreS
     Tile& t = tiles_[tile];
     t.samples += samples;
     t.seconds += coreSeconds;
-    foretold_ += t.cost * samples;
+    predicted_ += t.cost * samples;
     spent_ += coreSeconds;
 }
 
@@ -64,9 +64,9 @@ void TimeLeft::passEnded(std::uint32_t reached, double noise) {
     if (noise > 0 && samples > 0) points_.push_back({samples, noise});
 }
 
-// What is foretold counts as one sample beside those that were measured.
+// What is predicted counts as one sample beside those that were measured.
 double TimeLeft::workUntil(double end) const {
-    const double unit = foretold_ > 0 ? spent_ / foretold_ : 0;
+    const double unit = predicted_ > 0 ? spent_ / predicted_ : 0;
     const double count = end - goals_.range.first;
     double work = 0;
     for (const Tile& t : tiles_)
@@ -112,18 +112,18 @@ double TimeLeft::endByNoise() const {
     return sum / count;
 }
 
-TimeLeft::Outlook TimeLeft::at(double now) const {
+TimeLeft::Forecast TimeLeft::at(double now) const {
     if (!(spentNow_ > 0) || !(now > began_)) return {};
     const double speed = spentNow_ / (now - began_); // core seconds per second
     double end = goals_.range.last;
     if (goals_.noise > 0 && !points_.empty()) end = std::min(end, endByNoise());
     const double work = workUntil(end);
-    Outlook outlook{spent_ / (spent_ + work), work / speed};
+    Forecast forecast{spent_ / (spent_ + work), work / speed};
     if (goals_.timeLimit > 0) {
         const double left = std::max(goals_.timeLimit - now, 0.0);
-        if (left < outlook.left) outlook = {now / (now + left), left};
+        if (left < forecast.left) forecast = {now / (now + left), left};
     }
-    return outlook;
+    return forecast;
 }
 
 } // namespace abbe

@@ -1,6 +1,4 @@
-// When a render will have met the first of its goals, from how it went so far.
-// In what portions the samples of a pixel are taken.
-// When a render is to end, for those who are in the middle of a pixel, a path or a pilot.
+// The time of a render: the passes of its samples, when it is to end, and when it will.
 #pragma once
 
 #include "base/parallel.h"
@@ -15,9 +13,10 @@
 
 namespace abbe {
 
-// The end of the pass that begins at sample `first` of a replicate. Passes end at powers of two and, from 16 samples
-// on, at quarters in between: every aligned block is a net of its own, and a goal is overshot by a quarter at most. The
-// schedule does not depend on the goal, so a render continued with more samples takes the same passes.
+// In what portions the samples of a pixel are taken. The end of the pass that begins at sample `first` of a replicate.
+// Passes end at powers of two and, from 16 samples on, at quarters in between: every aligned block is a net of its own,
+// and a goal is overshot by a quarter at most. The schedule does not depend on the goal, so a render continued with
+// more samples takes the same passes.
 inline std::uint32_t passEnd(std::uint32_t first) {
     if (first < 2) return 2;
     std::uint32_t power = 1;
@@ -36,8 +35,9 @@ inline std::uint32_t endOfPassWith(std::uint32_t first) {
     return end;
 }
 
-// Looks at the clock and at whoever may end the render from a thread of its own, so that everyone else looks at one
-// flag. If the system has no thread for it the flag stays down, and a render ends between portions alone.
+// When a render is to end, for those who are in the middle of a pixel, a path or a pilot. Looks at the clock and at
+// whoever may end the render from a thread of its own, so that everyone else looks at one flag. If the system has no
+// thread for it the flag stays down, and a render ends between portions alone.
 class EndWatch {
   public:
     // `asked`: set by whoever wants the render to end; null: nobody will. `seconds`: from now on; 0: without an end.
@@ -59,9 +59,10 @@ class EndWatch {
     std::thread thread_;
 };
 
-// Knows no clock and no film: it is told what happened when, in seconds since the render began. A sample of a tile is
-// expected to cost what earlier ones of the tile did; before there are any, in proportion to what a pilot saw. Error is
-// expected to go on falling by the power of the samples by which it fell so far. Not thread-safe.
+// When a render will have met the first of its goals, from how it went so far. Knows no clock and no film: it is told
+// what happened when, in seconds since the render began. A sample of a tile is expected to cost what earlier ones of
+// the tile did; before there are any, in proportion to what a pilot saw. Error is expected to go on falling by the
+// power of the samples by which it fell so far. Not thread-safe.
 class TimeLeft {
   public:
     struct Goals {
@@ -69,7 +70,7 @@ class TimeLeft {
         double noise = 0;     // relative error; 0: none
         double timeLimit = 0; // s; 0: none
     };
-    struct Outlook {
+    struct Forecast {
         double fraction = 0; // of the work, or of the time where that is what ends the render
         double left = -1;    // s; negative: nothing is known yet
     };
@@ -86,11 +87,11 @@ class TimeLeft {
     // All tiles are at this sample, and the error is known.
     void passEnded(std::uint32_t reached, double noise);
 
-    Outlook at(double now) const;
+    Forecast at(double now) const;
 
   private:
     struct Tile {
-        double cost = 1; // foretold
+        double cost = 1; // predicted
         double samples = 0, seconds = 0;
     };
     struct Point {
@@ -104,8 +105,8 @@ class TimeLeft {
     std::vector<Tile> tiles_;
     std::vector<Point> points_; // of ended passes
     double began_ = 0;
-    double foretold_ = 0, spent_ = 0; // of samples taken: in the unit of costs, and core seconds
-    double spentNow_ = 0;             // core seconds of this run
+    double predicted_ = 0, spent_ = 0; // of samples taken: in the unit of costs, and core seconds
+    double spentNow_ = 0;              // core seconds of this run
 };
 
 } // namespace abbe

@@ -274,7 +274,7 @@ std::string verifyText(const VerifyReport& r, const VerifyFacts& facts) {
         text += fmt::format("  whole picture: {} ± {} in {}; of {} tiles {} are too noisy to be judged\n",
                             signedPercent(a.whole.difference), verifyPercent(a.whole.error), kChannels[a.whole.channel],
                             a.tiles, a.unjudged);
-    for (const BlockTest& b : a.culprits(kShownBlocks)) {
+    for (const BlockTest& b : a.worstBlocks(kShownBlocks)) {
         text += fmt::format("  pixels {},{} to {},{}: {} ± {} in {}\n", b.bounds.x0, b.bounds.y0, b.bounds.x1 - 1,
                             b.bounds.y1 - 1, signedPercent(b.difference), verifyPercent(b.error), kChannels[b.channel]);
         for (const std::string& sight : sights(*facts.scene, b.bounds)) text += fmt::format("    {}\n", sight);
@@ -307,7 +307,7 @@ std::string verifyJson(const VerifyReport& r, const VerifyFacts& facts) {
     };
     const Agreement& a = r.agreement;
     Json blocks = Json::list(), sides = Json::list();
-    for (const BlockTest& b : a.culprits(kShownBlocks)) blocks.push(block(b));
+    for (const BlockTest& b : a.worstBlocks(kShownBlocks)) blocks.push(block(b));
     for (const auto& s : r.sides)
         sides.push(Json::object({{"name", s.estimator.name},
                                  {"samples", s.samples},

@@ -2,7 +2,7 @@
 #include "reports/progress.h"
 #include "reports/render_report.h"
 #include "reports/render_text.h"
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 
 namespace abbe {
 

@@ -7,7 +7,7 @@
 #include "film/error_certificate.h"
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 #include "study/cost.h"
 
 #include <cstdint>

@@ -156,8 +156,8 @@ constexpr std::string_view wordOf(LightPathVerdict v) {
     switch (v) {
     case used:
         return "used";
-    case asked:
-        return "asked";
+    case requested:
+        return "requested";
     case off:
         return "off";
     case otherTechnique:
@@ -289,7 +289,7 @@ std::string mergeText(const MergeFindings& f) {
 std::string glintText(const GlintFindings& f) {
     if (!f.measured) return {};
     std::string text =
-        fmt::format("Glints, small images of lamps in mirrors and glass: a pilot took {} rays\n", f.pilotRays);
+        fmt::format("Glints, small images of lights in mirrors and glass: a pilot took {} rays\n", f.pilotRays);
     if (f.found == 0) return text + "  none that camera paths would not find soon enough\n";
     return text +
            fmt::format("  {} probed, {:.2g} rays for each camera path; without probes 1024 samples leave an error of "
@@ -302,8 +302,8 @@ std::string glintText(const GlintFindings& f) {
 std::string lightPathLine(const LightPathFindings& f) {
     if (f.verdict == undecided) return {};
     if (!f.used()) return "no light paths: " + reason(f);
-    return fmt::format("light paths {:.3g} per camera path{}: {}{}", f.share, f.verdict == asked ? ", as asked" : "",
-                       forecast(f), sharesInLine(f));
+    return fmt::format("light paths {:.3g} per camera path{}: {}{}", f.share,
+                       f.verdict == requested ? ", as requested" : "", forecast(f), sharesInLine(f));
 }
 
 std::string manifoldLine(const CausticFindings& all) {
@@ -328,7 +328,7 @@ std::string mergeLine(const MergeFindings& f) {
 
 std::string glintLine(const GlintFindings& f) {
     if (f.found == 0) return {};
-    return fmt::format("{} small image{} of lamps in mirrors and glass {} probed: {:.2g} rays for each camera path",
+    return fmt::format("{} small image{} of lights in mirrors and glass {} probed: {:.2g} rays for each camera path",
                        f.found, f.found == 1 ? "" : "s", f.found == 1 ? "is" : "are", f.rays);
 }
 
@@ -337,7 +337,7 @@ std::string lightPathText(const CausticFindings& all) {
     if (f.verdict == undecided) return {};
     if (!f.measured) return fmt::format("Light paths: none, {}\n", reason(f));
     std::string text = f.used() ? fmt::format("Light paths: {:.3g} per camera path{}\n", f.share,
-                                              f.verdict == asked ? ", as `light-paths` of `render` asks" : "")
+                                              f.verdict == requested ? ", as `light-paths` of `render` asks" : "")
                                 : fmt::format("Light paths: none, {}\n", reason(f));
     if (f.used())
         text += fmt::format("  {:.3g} % of them go on past what first spreads them, a rough surface or a medium\n",

@@ -37,7 +37,7 @@ ImageAttribute costAttribute(const CostReport&);
 // Nothing if the image has none, or none that can be read.
 std::optional<CostReport> readCost(std::span<const ImageAttribute>);
 
-// One line, such as "light paths 2 per camera path: forecast 12 × as efficient (lamp → ball 63 %, lamp → elsewhere
+// One line, such as "light paths 2 per camera path: forecast 12 × as efficient (light → ball 63 %, light → elsewhere
 // 22 %)" or "no light paths: nothing focuses light". Empty where nobody looked.
 std::string lightPathLine(const LightPathFindings&);
 // The same with all that was measured for all techniques, line by line.

@@ -85,8 +85,8 @@ void warnOfHeavyTail(const ErrorFigure& error, Diagnostics& diagnostics) {
             error.tail, std::sqrt(1 + error.unseen), error.untrustedTiles, error.tiles));
     const PixelBounds& b = error.worst.pixels;
     d.notes.push_back(fmt::format("most noise is at {},{} to {},{}", b.x0, b.y0, b.x1, b.y1));
-    d.help = "light of a small lamp that glossy surfaces or glass gather or mirror does this: more samples, a larger "
-             "lamp or a rougher surface, or `render { light-paths always }`";
+    d.help = "light of a small source that glossy surfaces or glass gather or mirror does this: more samples, a larger "
+             "source or a rougher surface, or `render { light-paths always }`";
 }
 
 void warnOfBlackImage(const ResolvedImage& image, Diagnostics& diagnostics) {
@@ -141,7 +141,7 @@ std::string list(const std::vector<const void*>& things, const BuiltScene& built
 
 } // namespace
 
-void warnOfEndlessPaths(const FirstLook& look, const BuiltScene& built, double samples, Diagnostics& diagnostics) {
+void warnOfEndlessPaths(const FramePreview& look, const BuiltScene& built, double samples, Diagnostics& diagnostics) {
     const std::vector<const void*> shapes(look.endless.shapes.begin(), look.endless.shapes.end());
     if (shapes.empty()) return;
     Diagnostic& d = diagnostics.warning("W0647", placeOf(shapes[0], built), {}, "takes no light away");

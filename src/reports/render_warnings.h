@@ -7,7 +7,7 @@
 #include "film/pixel_film.h"
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 #include "scene/build.h"
 
 namespace abbe {
@@ -40,7 +40,7 @@ void warnOfDisplay(const PictureFigures&, const ShownStops&, Span camera, Diagno
 
 // Before the first sample: between which shapes paths go round that lose no light there. `samples` of each pixel are
 // wanted; 0: as many as there is time for.
-void warnOfEndlessPaths(const FirstLook&, const BuiltScene&, double samples, Diagnostics&);
+void warnOfEndlessPaths(const FramePreview&, const BuiltScene&, double samples, Diagnostics&);
 // Of those that met the safety cap on vertices, with the shapes and media where they did.
 void warnOfCappedPaths(const RenderStatistics&, const BuiltScene&, Diagnostics&);
 

@@ -80,7 +80,7 @@ schema::Reference SceneBuilder::reference(const Definition& definition, Diagnost
     const bool known = named != references_.end();
     const schema::Reference made = known ? named->second : makeReference(definition, diagnostics);
     if (!known && !definition.name.empty()) references_[&definition] = made;
-    if (definition.kind == Kind::material && made.valid()) textures_.askForPart(made.index);
+    if (definition.kind == Kind::material && made.valid()) textures_.usePart(made.index);
     return made;
 }
 

@@ -74,20 +74,20 @@ std::string_view wordOf(SwitchedEffect effect) {
     return words[static_cast<std::size_t>(effect)];
 }
 
-bool BuildContext::leavesOut(EffectSwitch effect, Span asker) {
-    auto& askers = built.askers;
-    if (std::ranges::find(askers, effect, &EffectAsker::effect) == askers.end()) askers.push_back({effect, asker});
+bool BuildContext::leavesOut(EffectSwitch effect, Span where) {
+    auto& users = built.effectUsers;
+    if (std::ranges::find(users, effect, &EffectUser::effect) == users.end()) users.push_back({effect, where});
     return effect.effect == SwitchedEffect::medium ? options.without.leavesOutMedium(effect.medium)
                                                    : options.without.leavesOut(effect.effect);
 }
 
-void BuildContext::noteEffect(Effect effect, Span asker, std::string_view why) {
+void BuildContext::noteEffect(Effect effect, Span where, std::string_view why) {
     built.scene.effects |= effect;
-    if (effect == Effect::motion) leavesOut({SwitchedEffect::motion}, asker); // noted here, whatever moves
+    if (effect == Effect::motion) leavesOut({SwitchedEffect::motion}, where); // noted here, whatever moves
     auto& reasons = built.scene.reasons;
     const bool known = std::ranges::any_of(
-        reasons, [&](const EffectReason& r) { return r.effect == effect && r.asker == asker && r.why == why; });
-    if (!known) reasons.push_back({effect, asker, std::string(why)});
+        reasons, [&](const EffectReason& r) { return r.effect == effect && r.place == where && r.why == why; });
+    if (!known) reasons.push_back({effect, where, std::string(why)});
 }
 
 // Where this build lacks an effect, as those that measure what it costs do.
@@ -95,7 +95,7 @@ void BuildContext::checkCompiled() {
     for (const EffectReason& reason : built.scene.reasons) {
         if (!kLoopEffects.has(reason.effect) || isCompiled(reason.effect)) continue;
         diagnostics
-            .error("E0685", reason.asker, fmt::format("this build has no {}", infoOf(reason.effect).title), reason.why)
+            .error("E0685", reason.place, fmt::format("this build has no {}", infoOf(reason.effect).title), reason.why)
             .help = "build without the CMake option ABBE_WITHOUT";
     }
 }
@@ -113,9 +113,9 @@ void BuildContext::checkForbidden() {
         if (!info) continue;
         for (const EffectReason& reason : built.scene.reasons) {
             if (reason.effect != info->effect) continue;
-            Diagnostic& d = diagnostics.error("E0684", reason.asker.valid() ? reason.asker : row.span,
+            Diagnostic& d = diagnostics.error("E0684", reason.place.valid() ? reason.place : row.span,
                                               fmt::format("this scene forbids {}", info->title), reason.why);
-            if (reason.asker.valid()) d.related.push_back({row.span, "forbidden here"});
+            if (reason.place.valid()) d.related.push_back({row.span, "forbidden here"});
             d.help = fmt::format("leave it out, or take `{}` out of `forbid`", info->word);
         }
     }

@@ -83,9 +83,9 @@ class BuildContext {
     void noteFile(const std::string& path) { built.facts.files.push_back(path); }
 
     // What a scene needs simulated, and who asked for it.
-    void noteEffect(Effect, Span asker, std::string_view why);
+    void noteEffect(Effect, Span where, std::string_view why);
     // True if it is to be left out; notes who asked for it.
-    bool leavesOut(EffectSwitch, Span asker);
+    bool leavesOut(EffectSwitch, Span where);
     // Errors where something needs what the scene forbids, or what this build was made without.
     void checkForbidden();
     void checkCompiled();

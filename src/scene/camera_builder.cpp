@@ -106,7 +106,7 @@ void CameraBuilder::leaveOutEffects(const Definition& camera) {
     const bool still = context_.options.without.leavesOut(SwitchedEffect::motion);
     if (still) built.shutter = {built.shutter.open + built.shutter.duration / 2, 0};
     if (centred || still)
-        built.scene.camera = std::make_unique<HeldCamera>(std::move(built.scene.camera), centred, still);
+        built.scene.camera = std::make_unique<ReducedCamera>(std::move(built.scene.camera), centred, still);
 }
 
 using schema::field;

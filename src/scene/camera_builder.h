@@ -68,7 +68,7 @@ class CameraBuilder {
 
 // The material of the body around the camera, or null. It surrounds the camera if every one of 256 directions, spread
 // evenly, meets the inner side of one opaque material; and it is dark if neither the camera nor any of the points that
-// were met sees a light. A room with a lamp in it is therefore none. Requires: scene.intersector.
+// were met sees a light. A room with a light in it is therefore none. Requires: scene.intersector.
 const Material* darkBodyAroundCamera(const Scene&);
 
 } // namespace abbe

@@ -31,7 +31,7 @@ struct EffectSwitch {
 };
 
 // Where a scene asks for what can be left out: the first place of each.
-struct EffectAsker {
+struct EffectUser {
     EffectSwitch effect;
     Span span;
 };

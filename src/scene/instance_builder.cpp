@@ -222,12 +222,12 @@ void InstanceBuilder::placeMoving(const Definition& d, const ObjectGeometry& geo
 
 // Emitters are made anew for every instance, because each is a light of its own; so are planes, which have no end to
 // transform.
-void InstanceBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& toRender, Span asker,
+void InstanceBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion& toRender, Span where,
                                     Visibility visible) {
     unsharedCount_ += geometry.unshared.size();
     if (unsharedCount_ > kMaxUnshared) {
         if (unsharedCount_ - geometry.unshared.size() <= kMaxUnshared)
-            context_.diagnostics.error("E0607", asker, "instances make more than a million copies of lights and planes",
+            context_.diagnostics.error("E0607", where, "instances make more than a million copies of lights and planes",
                                        "each of them is one of its own");
         return;
     }
@@ -242,7 +242,7 @@ void InstanceBuilder::placeUnshared(const ObjectGeometry& geometry, const Motion
     }
     for (const NestedObject& nested : geometry.nested)
         for (const Placement& place : nested.placements)
-            placeUnshared(*nested.object, Motion(place.map()).then(nested.carried).then(toRender), asker,
+            placeUnshared(*nested.object, Motion(place.map()).then(nested.carried).then(toRender), where,
                           nested.visible & visible);
 }
 

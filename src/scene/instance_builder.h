@@ -106,7 +106,7 @@ class InstanceBuilder {
     void placeMoving(const Definition&, const ObjectGeometry&, const Place&);
     void placeStill(const Definition&, std::vector<Placement>, const ObjectGeometry&, const Place&);
     void placeFocusing(const std::vector<FocusingShape>& shared, const std::vector<Placement>&, Assembly* into);
-    void placeUnshared(const ObjectGeometry&, const Motion& toRender, Span asker, Visibility);
+    void placeUnshared(const ObjectGeometry&, const Motion& toRender, Span where, Visibility);
     // Where an `instance` (without parameters) or `instances` puts its object; nothing after an error.
     std::vector<Placement> placements(const Definition&, const InstancesParams*,
                                       const std::vector<Definition>& siblings, const Transform& outwards);

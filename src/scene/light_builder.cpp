@@ -45,7 +45,7 @@ void LightBuilder::add(std::unique_ptr<Light> light, const Definition& d, Visibi
     if (!light) return;
     light->setVisible(visible);
     if (!(light->power() > 0))
-        context_.diagnostics.warning("W0740", d.span, "this light is dark; no light is asked of it");
+        context_.diagnostics.warning("W0740", d.span, "this light is dark; it is left out of next-event estimation");
     if (!checkPower(*light, d.span)) return;
     context_.built.scene.names[light.get()] = context_.nameOf(d);
     if (const MediumEmission* glow = light->emission()) context_.built.scene.names[glow] = context_.nameOf(d);
@@ -76,7 +76,8 @@ const SurfaceLight* LightBuilder::emitterOf(const LoadedShape& shape, const Shap
         texture = std::make_unique<const LightTexture>(placed, *emission.texture, toOwn, *emission.radiance.curve,
                                                        context_.options.geometry);
         if (texture->black())
-            context_.diagnostics.warning("W0740", d.span, "this light is dark; no light is asked of it");
+            context_.diagnostics.warning("W0740", d.span,
+                                         "this light is dark; it is left out of next-event estimation");
     }
     const bool both = emission.bothSides;
     std::unique_ptr<AreaLight> light;
@@ -98,23 +99,23 @@ bool LightBuilder::takeTexture(const AreaLightParams& params, const Shape& shape
                                LightContext& context) {
     context.texturesOpen = context_.options.geometry;
     context.texture = params.radiance.texture;
-    Span asker = params.radiance.span;
+    Span where = params.radiance.span;
     if (params.texture.valid()) {
         if (context.texture) {
             context_.diagnostics
-                .error("E0755", asker, "`texture` has no effect beside a `radiance` that is a texture itself",
+                .error("E0755", where, "`texture` has no effect beside a `radiance` that is a texture itself",
                        "this texture")
                 .help = "multiply the two: `texture product { first …; second … }`";
             return false;
         }
         for (const schema::Node& property : d.properties)
-            if (property.name() == "texture") asker = property.nameSpan();
-        context.texture = textures_.textureFor(params.texture, TextureUse::light, asker);
+            if (property.name() == "texture") where = property.nameSpan();
+        context.texture = textures_.textureFor(params.texture, TextureUse::light, where);
         if (!context.texture) return false;
     }
     if (!context.texture) return true;
     context.textureWhite = textures_.white(*context.texture);
-    return textures_.checkLight(*context.texture, asker, {d, shape});
+    return textures_.checkLight(*context.texture, where, {d, shape});
 }
 
 void LightBuilder::checkGroups() {
@@ -177,7 +178,7 @@ void LightSite::addArea(const AreaLightParams& params, const MakeSurface& make) 
         if (motion) context.motion = &*motion;
         auto light = makeAreaLight(params, *shape, context, scene().diagnostics);
         if (!light || !lights_.checkPower(*light, definition_.span)) return;
-        // A lamp emits and reflects nothing.
+        // A light emits and reflects nothing.
         const Shape* const placed = lights_.shapes().keep(std::move(shape));
         scene().built.scene.names[placed] = scene().nameOf(definition_);
         scene().built.declared[placed] = definition_.nameSpan;

@@ -12,10 +12,10 @@
 
 namespace abbe {
 
-std::uint32_t MaterialBuilder::keep(std::unique_ptr<const Material> material, Span asker) {
-    materials_.push_back(withoutAbsorption(std::move(material), asker));
+std::uint32_t MaterialBuilder::keep(std::unique_ptr<const Material> material, Span where) {
+    materials_.push_back(withoutAbsorption(std::move(material), where));
     const auto index = static_cast<std::uint32_t>(materials_.size() - 1);
-    askers_.emplace_back(index, asker);
+    places_.emplace_back(index, where);
     return index;
 }
 
@@ -35,17 +35,17 @@ schema::Reference MaterialBuilder::reference(const Definition& d) {
     open_.push_back(&d);
     textures_.beginMaterial();
     MadeMaterial made = makerOf<MakeMaterial>(*d.type)(bindInto, {context_, d, materials_});
-    auto askers = textures_.endMaterial();
+    auto uses = textures_.endMaterial();
     open_.pop_back();
     if (!made.material) return {};
     if (made.inside) made.material = translucent(std::move(made.material), *made.inside, d);
     auto material = modified(std::move(made.material), made.modifiers, d);
     if (!material) return {};
-    if (made.modifiers.normal) askers.push_back({made.modifiers.normal->reference.index, made.modifiers.normal->span});
-    if (made.modifiers.bump) askers.push_back({made.modifiers.bumpMap.index, made.modifiers.bump->span});
+    if (made.modifiers.normal) uses.push_back({made.modifiers.normal->reference.index, made.modifiers.normal->span});
+    if (made.modifiers.bump) uses.push_back({made.modifiers.bumpMap.index, made.modifiers.bump->span});
     context_.built.scene.names[material.get()] = context_.nameOf(d);
     const schema::Reference kept{keep(std::move(material), d.span)};
-    textures_.keepAskers(kept.index, std::move(askers));
+    textures_.keepUses(kept.index, std::move(uses));
     return kept;
 }
 
@@ -116,8 +116,8 @@ std::unique_ptr<const Material> MaterialBuilder::modified(std::unique_ptr<const 
 }
 
 std::unique_ptr<const Material> MaterialBuilder::withoutAbsorption(std::unique_ptr<const Material> material,
-                                                                   Span asker) {
-    if (!material->absorption() || !context_.leavesOut({SwitchedEffect::absorption}, asker)) return material;
+                                                                   Span where) {
+    if (!material->absorption() || !context_.leavesOut({SwitchedEffect::absorption}, where)) return material;
     return std::make_unique<ClearMaterial>(*inner_.emplace_back(std::move(material)));
 }
 
@@ -186,7 +186,7 @@ void MaterialBuilder::noteEffects() {
         {Effect::thinFilm, "a thin film covers it"},
         {Effect::bumps, "a map bends its normals"},
     };
-    for (const auto& [index, span] : askers_) {
+    for (const auto& [index, span] : places_) {
         if (!used_.contains(index)) continue; // what no shape shows asks for nothing
         Effects needs = materials_[index]->needs();
         if (materials_[index]->usesTextures()) needs |= Effect::textures;

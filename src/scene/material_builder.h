@@ -77,7 +77,7 @@ struct MadeMaterial {
 // Makes a material of its registered type from bound parameters.
 using MakeMaterial = MadeMaterial (*)(const BindParams&, const MaterialContext&);
 
-// The material of shapes that name none, and of lamps.
+// The material of shapes that name none, and of lights.
 std::unique_ptr<const Material> makePlainMaterial(const Curve* reflectance);
 
 class MaterialBuilder {
@@ -102,10 +102,10 @@ class MaterialBuilder {
     std::vector<std::unique_ptr<const Material>> release();
 
   private:
-    std::uint32_t keep(std::unique_ptr<const Material>, Span asker);
+    std::uint32_t keep(std::unique_ptr<const Material>, Span where);
     const Material* filled(const Material* surface, const ShapeParams&);
     std::unique_ptr<const Material> withoutAbsorption(std::unique_ptr<const Material>,
-                                                      Span asker); // where it is left out
+                                                      Span where); // where it is left out
     // The material as modified, or the material itself where nothing is; null after an error.
     std::unique_ptr<const Material> modified(std::unique_ptr<const Material>, const MaterialModifiers&,
                                              const Definition&);
@@ -119,7 +119,7 @@ class MaterialBuilder {
     MediumBuilder& media_;
     std::vector<std::unique_ptr<const Material>> materials_, inner_; // the second: those that others wrap
     std::vector<const Definition*> open_;                            // being made
-    std::vector<std::pair<std::uint32_t, Span>> askers_;             // who made it, for effects
+    std::vector<std::pair<std::uint32_t, Span>> places_;             // who made it, for effects
     std::map<double, std::optional<std::uint32_t>> plain_;           // by reflectance
     std::map<std::pair<const Material*, const Medium*>, std::optional<std::uint32_t>> filled_;
     std::set<std::uint32_t> used_; // of shapes that were placed

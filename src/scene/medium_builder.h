@@ -82,9 +82,9 @@ class MediumBuilder {
     // Makes the volume of a definition; null after an error or where it is left out.
     MadeMedium makeVolume(const Definition&, const Transform& toRender);
 
-    // Where media are: in shapes, or in all of space from where `asker` says so.
+    // Where media are: in shapes, or in all of space from where `where` says so.
     void noteInterior(const Medium&);
-    void noteOpen(const Medium& medium, Span asker) { open_.emplace_back(&medium, asker); }
+    void noteOpen(const Medium& medium, Span where) { open_.emplace_back(&medium, where); }
     // A shape with its box in render space; of what is placed in objects or moves: everything. `repeated`: in an
     // object, of which there may be several.
     void notePlaced(const Material&, const Bounds3& box, bool repeated);

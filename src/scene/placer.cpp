@@ -196,15 +196,15 @@ void Placer::placeAll(const std::vector<Definition>& definitions, const Place& p
 // What moves while the shutter is open is built where it is when the shutter opens, and carried on from there as one
 // instance.
 
-void Placer::carry(const KeyedTransform& own, const Place& outer, Span asker,
+void Placer::carry(const KeyedTransform& own, const Place& outer, Span where,
                    const std::function<void(const Place&)>& build) {
     Place place = outer;
     place.motion = motion_.within(outer.motion, own);
     if (!place.motion.moves() || (outer.into != outer.base && !motion_.moves(own))) return build(place);
-    if (!motion_.check(place.motion, asker)) return;
-    context_.noteEffect(Effect::motion, asker, "it moves while the shutter is open");
+    if (!motion_.check(place.motion, where)) return;
+    context_.noteEffect(Effect::motion, where, "it moves while the shutter is open");
     const Motion onwards = motion_.fromOpening(place.motion);
-    if (!motion_.check(onwards, asker)) return;
+    if (!motion_.check(onwards, where)) return;
     Assembly carried;
     place.into = &carried;
     build(place);
@@ -212,7 +212,7 @@ void Placer::carry(const KeyedTransform& own, const Place& outer, Span asker,
     const Bounds3 bounds = carried.bounds;
     const std::vector<FocusingShape> focusing = std::move(carried.focusing);
     const int levels = carried.levels;
-    addMoving(addAssembly(std::move(carried)), levels, bounds, focusing, onwards, outer.base, asker);
+    addMoving(addAssembly(std::move(carried)), levels, bounds, focusing, onwards, outer.base, where);
 }
 
 std::uint32_t Placer::addAssembly(Assembly parts) {
@@ -224,7 +224,7 @@ std::uint32_t Placer::addAssembly(Assembly parts) {
 }
 
 void Placer::addMoving(std::uint32_t object, int levels, const Bounds3& bounds,
-                       const std::vector<FocusingShape>& focusing, const Motion& motion, Assembly* into, Span asker,
+                       const std::vector<FocusingShape>& focusing, const Motion& motion, Assembly* into, Span where,
                        Visibility visible) {
     const Bounds3 box = motion_.swept(motion, bounds);
     for (const FocusingShape& shape : focusing)
@@ -232,20 +232,20 @@ void Placer::addMoving(std::uint32_t object, int levels, const Bounds3& bounds,
     if (!into) {
         if (!box.empty()) extend(box);
         embree.addMoving(object, motion, EmbreeSceneBuilder::kScene, visible);
-    } else if (nest(*into, levels, asker)) {
+    } else if (nest(*into, levels, where)) {
         into->bounds.add(box);
         into->moving.push_back({object, motion, visible});
     }
 }
 
-bool Placer::nest(Assembly& into, int levels, Span asker) {
-    if (levels + 2 > kMaxInstanceLevels) return tooDeep(asker), false; // the scene itself is one more
+bool Placer::nest(Assembly& into, int levels, Span where) {
+    if (levels + 2 > kMaxInstanceLevels) return tooDeep(where), false; // the scene itself is one more
     into.levels = std::max(into.levels, levels + 1);
     return true;
 }
 
-void Placer::tooDeep(Span asker) {
-    context_.diagnostics.error("E0633", asker, fmt::format("objects nest more than {} levels deep", kMaxInstanceLevels),
+void Placer::tooDeep(Span where) {
+    context_.diagnostics.error("E0633", where, fmt::format("objects nest more than {} levels deep", kMaxInstanceLevels),
                                "this one is too deep");
 }
 
@@ -303,18 +303,18 @@ Passing Placer::passingOf(const ShapeParams& params) {
     return passing;
 }
 
-void Placer::noteVisible(Visibility visible, Passing passing, const Definition& asker) {
+void Placer::noteVisible(Visibility visible, Passing passing, const Definition& definition) {
     if (visible == kVisibleToAll) return;
     if (passing.entered) {
         context_.diagnostics
-            .error("E0635", visibleSpan(asker), "light goes through this shape, so all rays have to see it",
+            .error("E0635", visibleSpan(definition), "light goes through this shape, so all rays have to see it",
                    "hides glass, a boundary or an interior")
             .help = "only opaque shapes can be hidden, and thin sheets, which have no inside";
         return;
     }
     if (passing.open && !seenAlike(visible)) {
         context_.diagnostics
-            .error("E0635", visibleSpan(asker), "shadows and reflections have to see the same openings",
+            .error("E0635", visibleSpan(definition), "shadows and reflections have to see the same openings",
                    "hides a shape whose `opacity` is below 1 from one of them")
             .help = "name both `shadows` and `reflections`, or neither of them";
         return;

@@ -85,12 +85,12 @@ class Placer {
 
     // Builds what has a transform of its own in the place around it, or, if that moves, in an assembly that is then set
     // going. What moves in something that moves is set going by itself, with both motions.
-    void carry(const KeyedTransform& own, const Place& outer, Span asker, const std::function<void(const Place&)>&);
+    void carry(const KeyedTransform& own, const Place& outer, Span where, const std::function<void(const Place&)>&);
     std::uint32_t addAssembly(Assembly);
     void addMoving(std::uint32_t object, int levels, const Bounds3&, const std::vector<FocusingShape>&, const Motion&,
-                   Assembly* into, Span asker, Visibility = kVisibleToAll);
-    bool nest(Assembly& into, int levels, Span asker); // makes room for an object with so many in it, or reports
-    void tooDeep(Span asker);
+                   Assembly* into, Span where, Visibility = kVisibleToAll);
+    bool nest(Assembly& into, int levels, Span where); // makes room for an object with so many in it, or reports
+    void tooDeep(Span where);
     std::vector<FocusingShape>& focusingIn(Assembly* into) {
         return into ? into->focusing : context_.built.scene.focusing;
     }
@@ -100,7 +100,7 @@ class Placer {
     Passing passingOf(const ShapeParams&);
     // Notes what the scene asks of those who trace rays. What light goes through it meets on its way in and out,
     // whatever ray it is: such a shape is seen by all.
-    void noteVisible(Visibility, Passing, const Definition& asker);
+    void noteVisible(Visibility, Passing, const Definition& definition);
     void checkLightPathsSeeAll();
 
     // Where a shape is, for `abbe info`. Boxes in objects stay in the object's space, which its instances place; all

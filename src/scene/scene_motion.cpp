@@ -31,12 +31,12 @@ Motion SceneMotion::fromOpening(const Motion& motion) const {
     return Motion(atOpening(motion).inverse().value()).then(motion);
 }
 
-bool SceneMotion::check(const Motion& motion, Span asker) const {
+bool SceneMotion::check(const Motion& motion, Span where) const {
     for (int i = 0; i <= kSamples; ++i) {
         const double after = context_.built.shutter.duration * i / kSamples;
         const auto fault = Placement::findFault(motion.at(context_.built.shutter.open + after));
         if (!fault) continue;
-        context_.diagnostics.error("E0631", asker, fmt::format("this place cannot be used: {}", *fault),
+        context_.diagnostics.error("E0631", where, fmt::format("this place cannot be used: {}", *fault),
                                    fmt::format("{:.6g} s after the shutter opens", after));
         return false;
     }
@@ -51,14 +51,14 @@ Bounds3 SceneMotion::swept(const Motion& motion, const Bounds3& box) const {
     return all;
 }
 
-bool SceneMotion::ofLight(const Motion& toRender, Span asker, std::optional<LightMotion>& result) const {
+bool SceneMotion::ofLight(const Motion& toRender, Span where, std::optional<LightMotion>& result) const {
     if (!toRender.moves()) return true;
-    if (!check(toRender, asker)) return false;
-    context_.noteEffect(Effect::motion, asker, "this light moves while the shutter is open");
+    if (!check(toRender, where)) return false;
+    context_.noteEffect(Effect::motion, where, "this light moves while the shutter is open");
     const Motion onwards = fromOpening(toRender);
     if (!LightMotion::keepsShape(onwards, context_.built.shutter)) {
         context_.diagnostics
-            .error("E0634", asker, "a light keeps its shape while the shutter is open",
+            .error("E0634", where, "a light keeps its shape while the shutter is open",
                    "is stretched on its way, or mirrored")
             .help = "move it, turn it, or scale it evenly in all directions";
         return false;

@@ -24,10 +24,10 @@ class SceneMotion {
     Transform atOpening(const Motion& motion) const { return motion.at(opening()); }
     Motion fromOpening(const Motion&) const; // requires an invertible map at the opening
     // Whether something can be placed so all the time; false after an error.
-    bool check(const Motion&, Span asker) const;
+    bool check(const Motion&, Span where) const;
     Bounds3 swept(const Motion&, const Bounds3&) const;
     // False after an error; nothing if the light stands still.
-    bool ofLight(const Motion& toRender, Span asker, std::optional<LightMotion>&) const;
+    bool ofLight(const Motion& toRender, Span where, std::optional<LightMotion>&) const;
 
   private:
     BuildContext& context_;

@@ -74,66 +74,66 @@ const Texture* TextureBuilder::requested(schema::Reference made, const schema::T
         whole.parts.emplace_back(made.index, !request.role);
         return textures_[made.index].get();
     }
-    if (!openAskers_.empty()) openAskers_.back().push_back({made.index, request.span});
+    if (!openUses_.empty()) openUses_.back().push_back({made.index, request.span});
     return textureFor(made, useFor(request.role), request.span);
 }
 
-std::vector<TextureBuilder::Asker> TextureBuilder::endMaterial() {
-    auto askers = std::move(openAskers_.back());
-    openAskers_.pop_back();
-    return askers;
+std::vector<TextureBuilder::Use> TextureBuilder::endMaterial() {
+    auto uses = std::move(openUses_.back());
+    openUses_.pop_back();
+    return uses;
 }
 
-void TextureBuilder::keepAskers(std::uint32_t material, std::vector<Asker> askers) {
-    if (!askers.empty()) askers_.emplace(material, std::move(askers));
+void TextureBuilder::keepUses(std::uint32_t material, std::vector<Use> uses) {
+    if (!uses.empty()) uses_.emplace(material, std::move(uses));
 }
 
-void TextureBuilder::askForPart(std::uint32_t material) {
-    if (openAskers_.empty()) return;
-    const auto found = askers_.find(material);
-    if (found != askers_.end())
-        openAskers_.back().insert(openAskers_.back().end(), found->second.begin(), found->second.end());
+void TextureBuilder::usePart(std::uint32_t material) {
+    if (openUses_.empty()) return;
+    const auto found = uses_.find(material);
+    if (found != uses_.end())
+        openUses_.back().insert(openUses_.back().end(), found->second.begin(), found->second.end());
 }
 
 // Every attribute that a texture asks for, directly or in its parts.
-void TextureBuilder::checkAttributes(std::uint32_t texture, Span asker, const TexturedShape& on) {
+void TextureBuilder::checkAttributes(std::uint32_t texture, Span where, const TexturedShape& on) {
     if (const auto* const attribute = dynamic_cast<const AttributeTexture*>(textures_[texture].get())) {
         const VertexAttributes* const attributes = on.shape.attributes();
         const auto names = attributes ? attributes->attributeNames() : std::vector<std::string_view>{};
         if (std::ranges::find(names, attribute->name()) != names.end()) return;
         auto& d = context_.diagnostics.error(
-            "E0734", asker, fmt::format("the shape has no attribute `{}`", attribute->name()), "this texture");
+            "E0734", where, fmt::format("the shape has no attribute `{}`", attribute->name()), "this texture");
         d.related.push_back({on.definition.span, "on this shape"});
         const std::string_view meant = schema::nearest(attribute->name(), {names.begin(), names.end()});
         d.help = names.empty()   ? "attributes are the vertex properties of a PLY file, or `attribute` beside `points`"
                  : meant.empty() ? "its attributes are " + schema::quotedList(names)
                                  : schema::didYouMean(meant) + " it has " + schema::quotedList(names);
     }
-    for (const auto& [part, asNumber] : parts_[texture].parts) checkAttributes(part, asker, on);
+    for (const auto& [part, asNumber] : parts_[texture].parts) checkAttributes(part, where, on);
 }
 
 // Images need texture coordinates; boxes have them on every face.
-void TextureBuilder::checkTexture(std::uint32_t texture, Span asker, const TexturedShape& on) {
-    checkAttributes(texture, asker, on);
+void TextureBuilder::checkTexture(std::uint32_t texture, Span where, const TexturedShape& on) {
+    checkAttributes(texture, where, on);
     const bool coordinates = on.shape.hasTextureCoordinates() || on.uvOnFaces;
     if (coordinates || !textures_[texture]->needsUv()) return;
-    auto& d = context_.diagnostics.error("E0733", asker, "a texture over uv is on a shape without texture coordinates",
+    auto& d = context_.diagnostics.error("E0733", where, "a texture over uv is on a shape without texture coordinates",
                                          "this texture");
     d.related.push_back({on.definition.span, "on this shape"});
     d.help = "give it texture coordinates (`uvs` beside `points`), or use a texture in space: `noise`, `triplanar`";
 }
 
 void TextureBuilder::check(schema::Reference material, const TexturedShape& on) {
-    const auto found = material.valid() ? askers_.find(material.index) : askers_.end();
-    if (found == askers_.end()) return;
-    for (const Asker& asker : found->second) checkTexture(asker.texture, asker.span, on);
+    const auto found = material.valid() ? uses_.find(material.index) : uses_.end();
+    if (found == uses_.end()) return;
+    for (const Use& use : found->second) checkTexture(use.texture, use.span, on);
 }
 
-bool TextureBuilder::checkLight(const Texture& texture, Span asker, const TexturedShape& on) {
+bool TextureBuilder::checkLight(const Texture& texture, Span where, const TexturedShape& on) {
     const std::size_t before = context_.diagnostics.errorCount();
     const auto found = std::ranges::find(textures_, &texture, &std::unique_ptr<Texture>::get);
-    checkTexture(static_cast<std::uint32_t>(found - textures_.begin()), asker, on);
-    lights_.push_back(asker);
+    checkTexture(static_cast<std::uint32_t>(found - textures_.begin()), where, on);
+    lights_.push_back(where);
     return context_.diagnostics.errorCount() == before;
 }
 

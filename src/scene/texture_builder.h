@@ -25,7 +25,7 @@ struct TexturedShape {
 class TextureBuilder {
   public:
     using Definition = schema::Definition;
-    struct Asker {
+    struct Use {
         std::uint32_t texture;
         Span span; // where
     };
@@ -40,15 +40,15 @@ class TextureBuilder {
 
     // While a material is made, the textures that it asks for are noted, those of the materials that it is made of
     // included.
-    void beginMaterial() { openAskers_.emplace_back(); }
-    std::vector<Asker> endMaterial();
-    void keepAskers(std::uint32_t material, std::vector<Asker>);
-    void askForPart(std::uint32_t material); // of the material that is being made, if one is
+    void beginMaterial() { openUses_.emplace_back(); }
+    std::vector<Use> endMaterial();
+    void keepUses(std::uint32_t material, std::vector<Use>);
+    void usePart(std::uint32_t material); // of the material that is being made, if one is
 
     // Errors where the textures of a material do not fit a shape.
     void check(schema::Reference material, const TexturedShape&);
     // The same for the texture of a light; false after an error.
-    bool checkLight(const Texture&, Span asker, const TexturedShape&);
+    bool checkLight(const Texture&, Span where, const TexturedShape&);
 
     // What a texture of radiance makes of white: as `radiance rgb 1 1 1` in its colour space, or 1 if it has none.
     const Curve* white(const Texture&);
@@ -69,16 +69,16 @@ class TextureBuilder {
 
     const std::shared_ptr<TextureStore>& store(); // made with the first call
     bool prepare(std::uint32_t, TextureUse, Span user);
-    void checkTexture(std::uint32_t texture, Span asker, const TexturedShape&);
-    void checkAttributes(std::uint32_t texture, Span asker, const TexturedShape&);
+    void checkTexture(std::uint32_t texture, Span where, const TexturedShape&);
+    void checkAttributes(std::uint32_t texture, Span where, const TexturedShape&);
 
     BuildContext& context_;
     std::vector<std::unique_ptr<Texture>> textures_;
     std::vector<Parts> parts_; // like textures_
     std::shared_ptr<TextureStore> store_;
-    std::vector<OpenTexture> openTextures_;              // being made, each for the one before
-    std::vector<std::vector<Asker>> openAskers_;         // of materials being made
-    std::map<std::uint32_t, std::vector<Asker>> askers_; // of materials, with those that they are made of
+    std::vector<OpenTexture> openTextures_;          // being made, each for the one before
+    std::vector<std::vector<Use>> openUses_;         // of materials being made
+    std::map<std::uint32_t, std::vector<Use>> uses_; // of materials, with those that they are made of
     std::map<const RgbSpace*, const Curve*> whites_;
     std::vector<Span> lights_; // where lights ask for theirs
 };

@@ -52,13 +52,13 @@ void collectPlaced(const Definition& owner, std::vector<const Definition*>& out)
     }
 }
 
-// Reports that nothing of this kind has the name that `asker` asks for, with the nearest one. `help` if there is none.
-void reportTarget(const SceneTree& tree, const Definition& asker, Kind kind, const std::string& help,
+// Reports that nothing of this kind has the name that `reference` names, with the nearest one. `help` if there is none.
+void reportTarget(const SceneTree& tree, const Definition& reference, Kind kind, const std::string& help,
                   Diagnostics& diagnostics) {
-    const auto meant = tree.nearestName({&kind, 1}, asker.target);
-    auto& d =
-        report(diagnostics, asker.targetSpan, "E0202", fmt::format("no {} is named `{}`", keyword(kind), asker.target),
-               meant.empty() ? "unknown name" : didYouMean(meant));
+    const auto meant = tree.nearestName({&kind, 1}, reference.target);
+    auto& d = report(diagnostics, reference.targetSpan, "E0202",
+                     fmt::format("no {} is named `{}`", keyword(kind), reference.target),
+                     meant.empty() ? "unknown name" : didYouMean(meant));
     if (meant.empty())
         d.help = help;
     else

@@ -24,7 +24,7 @@ class Curve {
     virtual double maximum() const = 0;
 };
 
-// The common curve: a 1 nm table from 360 to 830 nm, linear in between. 5 nm data are exact in it, lamps keep their
+// The common curve: a 1 nm table from 360 to 830 nm, linear in between. 5 nm data are exact in it, lights keep their
 // lines.
 class SampledCurve final : public Curve {
   public:

@@ -202,7 +202,7 @@ double CurveStatistics::commonSeconds(const CurveStatistics& other, TimeBasis ba
     return std::max({end, mine.front(), its.front()});
 }
 
-bool CurveStatistics::toldFromZero(double seconds, TimeBasis basis) const {
+bool CurveStatistics::aboveNoise(double seconds, TimeBasis basis) const {
     const auto ladder = ladderSeconds(basis);
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < ladder.size(); ++k)
@@ -250,8 +250,8 @@ Estimate CurveStatistics::efficiencyAgainst(const CurveStatistics& other, TimeBa
         return *its / *mine;
     });
     // A quotient whose divisor may be 0 has no bound [Fieller1954].
-    if (ratio.bounded() && !toldFromZero(seconds, basis)) ratio.high = Estimate::kUnbounded;
-    if (ratio.bounded() && !other.toldFromZero(seconds, basis)) ratio.low = 0;
+    if (ratio.bounded() && !aboveNoise(seconds, basis)) ratio.high = Estimate::kUnbounded;
+    if (ratio.bounded() && !other.aboveNoise(seconds, basis)) ratio.low = 0;
     return ratio;
 }
 

@@ -80,7 +80,7 @@ class CurveStatistics {
     static std::vector<double> ladderSeconds(std::span<const SeedRun>, Weights, TimeBasis);
     std::vector<double> ladderSeconds(TimeBasis) const;
     // Of this curve's errors, not negative at 95 %, at the rung that is nearest.
-    bool toldFromZero(double seconds, TimeBasis) const;
+    bool aboveNoise(double seconds, TimeBasis) const;
 
     std::vector<std::uint32_t> samples_;
     std::vector<SeedRun> runs_;

@@ -119,12 +119,12 @@ class Study {
         if (in_.samples > 0) options.samples = in_.samples;
         with_ = buildScene(*in_.tree, *in_.types, options, none);
         result_.image = render(with_, 0).image;
-        auto askers = with_.askers;
-        std::erase_if(askers, [&](const EffectAsker& a) { return !present(a.effect); });
-        for (const EffectAsker& asker : askers) {
+        auto users = with_.effectUsers;
+        std::erase_if(users, [&](const EffectUser& a) { return !present(a.effect); });
+        for (const EffectUser& user : users) {
             if (stopped()) break;
-            measure(asker, options, static_cast<double>(result_.findings.size()) / static_cast<double>(askers.size()),
-                    1 / static_cast<double>(askers.size()));
+            measure(user, options, static_cast<double>(result_.findings.size()) / static_cast<double>(users.size()),
+                    1 / static_cast<double>(users.size()));
         }
         predict();
         result_.effects = with_.scene.effects;
@@ -189,13 +189,13 @@ class Study {
                 f.predicted = 1 - *seconds / rendering;
     }
 
-    void measure(const EffectAsker& asker, const BuildOptions& options, double done, double share) {
+    void measure(const EffectUser& user, const BuildOptions& options, double done, double share) {
         EffectFinding finding;
-        finding.effect = asker.effect;
-        finding.name = nameOf(asker.effect);
-        finding.asker = asker.span;
+        finding.effect = user.effect;
+        finding.name = nameOf(user.effect);
+        finding.place = user.span;
         BuildOptions without = options;
-        without.without.leaveOut(asker.effect);
+        without.without.leaveOut(user.effect);
         Diagnostics faults;
         const BuiltScene built = buildScene(*in_.tree, *in_.types, without, faults);
         if (faults.hasErrors()) {

@@ -29,7 +29,7 @@ std::optional<double> renderingWithout(const CostReport&, const EffectSwitch&);
 struct EffectFinding {
     EffectSwitch effect;
     std::string name; // "dispersion", "volume fog"
-    Span asker;       // where the scene asks for it
+    Span place;       // where the scene asks for it
     // Rendering, in processor seconds of all threads: what else the machine does has no part in it.
     double secondsOn = 0, secondsOff = 0;
     // Share of secondsOn that goes with it (negative: it saves time), with its 95 % interval over pairs.

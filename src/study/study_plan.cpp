@@ -28,7 +28,7 @@ Reason needsLights(const StudySubject& s) {
 
 // A light without extent is never met by chance: a path tracer that only scatters loses it.
 bool isPoint(const Light& light, const Vec3& from, const Wavelengths& wavelengths) {
-    if (light.unmet()) return true;
+    if (light.neverHit()) return true;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / 8, 0.5f);
         const auto sample = light.sample(Receiver(from), 0, u, wavelengths, 0);
@@ -120,7 +120,7 @@ std::vector<StudyVariant> lightSampling() {
     constexpr const char* kGroup = "light sampling";
     return {
         {"no-nee", "no light sampling", kGroup, "light is met by chance alone", exact,
-         "no next-event estimation: paths find lamps only by running into them",
+         "no next-event estimation: paths find lights only by hitting them",
          [](S& s) { s.technique.strategy = T::Strategy::bsdfOnly; }, false, needsExtent},
         {"lights-only", "light sampling alone", kGroup, "light that is met by chance does not count", exact,
          "behind mirrors and glass, where sampling a light cannot work, met light counts still",
@@ -198,11 +198,11 @@ std::vector<StudyVariant> roulette() {
 std::vector<StudyVariant> lightChoice() {
     constexpr const char* kGroup = "light choice";
     return {
-        {"light-tree", "light tree", kGroup, "lights are asked by what they may give to the place", exact, "",
-         [](S& s) { s.technique.lightChoice = T::LightChoice::tree; }, false, needsManyLights},
-        {"light-power", "lights by power", kGroup, "lights are asked by their power", exact, "",
+        {"light-tree", "light tree", kGroup, "next-event estimation chooses lights by what they may give to the place",
+         exact, "", [](S& s) { s.technique.lightChoice = T::LightChoice::tree; }, false, needsManyLights},
+        {"light-power", "lights by power", kGroup, "next-event estimation chooses lights by their power", exact, "",
          [](S& s) { s.technique.lightChoice = T::LightChoice::power; }, false, needsManyLights},
-        {"light-uniform", "lights evenly", kGroup, "each light is asked as often", exact, "",
+        {"light-uniform", "lights evenly", kGroup, "next-event estimation chooses each light equally often", exact, "",
          [](S& s) { s.technique.lightChoice = T::LightChoice::uniform; }, false, needsManyLights},
     };
 }

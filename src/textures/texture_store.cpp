@@ -241,7 +241,7 @@ Converted convert(const std::string& picture, const AbbeImageInfo& info, const C
         if (problem == 0) return result;
     }
     if (check.notFinite() > 0) throw NotFiniteError(check.notFinite());
-    if (!good && fault.kind == abbeFaultOfMemory) throw BeyondMemory(std::string(fault.reason));
+    if (!good && fault.kind == abbeFaultOfMemory) throw MemoryLimitExceeded(std::string(fault.reason));
     if (!good && fault.kind == abbeFaultOfSource) throw ImageFileError(fault.reason);
     result.problem = !good ? fault.reason : problem != 0 ? std::strerror(problem) : "the folder cannot be written to";
     return result;

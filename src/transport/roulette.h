@@ -1,5 +1,4 @@
 // Expected-contribution Russian roulette: paths live in proportion to what they can still add to their pixel.
-// A coarse look at the whole frame before the render: what roulette goes by.
 #pragma once
 
 #include "render/film.h"
@@ -9,9 +8,10 @@
 
 namespace abbe {
 
-// The frame in square cells, at most 128 × 128 of them, each seen through one of its pixels, chosen by hashing. Depends
-// on the frame and the seed alone and never on the part of the image that is rendered, on threads or on goals, so
-// that what is decided by it is decided alike in crops, continued renders and parts of a render.
+// A coarse look at the whole frame before the render: what roulette goes by. The frame in square cells, at most 128 ×
+// 128 of them, each seen through one of its pixels, chosen by hashing. Depends on the frame and the seed alone and
+// never on the part of the image that is rendered, on threads or on goals, so that what is decided by it is decided
+// alike in crops, continued renders and parts of a render.
 class PilotFilm final : public Film {
   public:
     static constexpr std::uint32_t kSamples = 4; // of each cell

@@ -1,5 +1,4 @@
 // What a path is in: the dielectrics that it has entered [Schmidt2002] and the media that scatter there.
-// Faces of dielectrics that separate nothing, because they lie within others [Schmidt2002].
 #pragma once
 
 #include "render/material.h"
@@ -119,9 +118,10 @@ class Surroundings {
 // and filled with: those that a ray from it leaves without having entered them.
 Surroundings surroundingsAt(const Scene&, Vec3 point, float time);
 
-// Whether the surface of a dielectric, met along the ray from `here`, separates nothing: the same dielectric fills the
-// space on both sides. `beyond` becomes what lies behind it, and hit.outside is set. Faces of several shapes that
-// coincide are met as one: `hit` becomes the face of the dielectric that is entered or, if none is, left.
+// Faces of dielectrics that separate nothing, because they lie within others [Schmidt2002]. Whether the surface of a
+// dielectric, met along the ray from `here`, separates nothing: the same dielectric fills the space on both sides.
+// `beyond` becomes what lies behind it, and hit.outside is set. Faces of several shapes that coincide are met as one:
+// `hit` becomes the face of the dielectric that is entered or, if none is, left.
 inline bool isHiddenFace(const Scene& scene, SurfaceHit& hit, const Ray& ray, const Surroundings& here,
                          Surroundings& beyond) {
     const Material* const before = here.filling();

@@ -34,15 +34,15 @@ struct EyeDirection {
 
 // For paths that look for nothing on their way through media. What these give off is listened to all the same, or such
 // a path would have other random numbers than one that takes it.
-struct NothingOnTheWay {
-    class Unheard final : public EmissionListener {
+struct IgnoreMedia {
+    class IgnoredEmission final : public EmissionListener {
       public:
         void shines(const MediumEmission&, float, const Spectrum&, const Spectrum&, const Spectrum&) override {}
     };
     template <typename Follow>
     MediumCollision operator()(const Ray&, float /*tMax*/, std::uint32_t /*crossings*/, Follow follow) const {
         setWork(Work::surface);
-        Unheard unheard;
+        IgnoredEmission unheard;
         return follow(&unheard);
     }
 };
@@ -122,9 +122,7 @@ template <EffectBits E> class PathWalk {
     // boundary or the end of everything: returns follow(EmissionListener*), which follows it to where it collides.
     template <typename OnTheWay>
     Arrival arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth, [[maybe_unused]] OnTheWay&& onTheWay);
-    Arrival arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) {
-        return arrive(ray, hit, depth, NothingOnTheWay());
-    }
+    Arrival arrive(Ray& ray, SurfaceHit& hit, std::uint32_t depth) { return arrive(ray, hit, depth, IgnoreMedia()); }
 
     // At a surface, in the sampled direction. False where the path ends.
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const EyeDirection&, Ray&);

@@ -91,7 +91,7 @@ double Agreement::detectable() const {
     return whole.error * (studentOfScore(scoreOfTwoSided(level / 2 / kChannels), whole.freedom) + kPower);
 }
 
-std::vector<BlockTest> Agreement::culprits(std::size_t most) const {
+std::vector<BlockTest> Agreement::worstBlocks(std::size_t most) const {
     std::vector<BlockTest> found;
     const double n = kChannels * static_cast<double>(blocks.size());
     for (const BlockTest& t : blocks) {

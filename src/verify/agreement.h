@@ -34,7 +34,7 @@ struct Agreement {
     // Relative difference of the whole picture that would have been seen in 99 of 100 runs.
     double detectable() const;
     // Blocks that by themselves say that the two differ; none that lies within one before it.
-    std::vector<BlockTest> culprits(std::size_t most) const;
+    std::vector<BlockTest> worstBlocks(std::size_t most) const;
 };
 
 // Requires sums of the same picture with at least three replicates each.

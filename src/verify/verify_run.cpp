@@ -22,16 +22,16 @@ constexpr std::size_t kFewLights = 8;
 
 std::array<Estimator, 2> verifyEstimators(std::size_t lights) {
     using T = Technique;
-    T scattering, asking;
+    T scattering, nee;
     scattering.weights = T::Weights::scattering;
-    asking.weights = T::Weights::lights;
-    asking.directions = T::Directions::mixed;
-    asking.numbers = T::Numbers::random;
-    asking.roulette = T::Roulette::throughput;
-    if (lights <= kFewLights) asking.lightChoice = T::LightChoice::power;
-    return {
-        {{"scattering", "directions and weights as surfaces sample them; light met by scattering", scattering},
-         {"asking", "half of the directions even, weighed by values; light asked for; independent numbers", asking}}};
+    nee.weights = T::Weights::lights;
+    nee.directions = T::Directions::mixed;
+    nee.numbers = T::Numbers::random;
+    nee.roulette = T::Roulette::throughput;
+    if (lights <= kFewLights) nee.lightChoice = T::LightChoice::power;
+    return {{{"scattering", "directions and weights as surfaces sample them; light found by scattering", scattering},
+             {"nee", "half of the directions uniform, weighted by values; next-event estimation; independent numbers",
+              nee}}};
 }
 
 namespace {

@@ -155,9 +155,9 @@ std::optional<std::string> VdbProcess::deathCause() {
 constexpr std::uint64_t kMostContent = std::uint64_t{1} << 30; // of a frame that is not a grid
 
 // One run of the helper, frame by frame. The first fault is kept and ends it.
-class Conversation {
+class HelperSession {
   public:
-    Conversation(const std::vector<std::string>& arguments, std::string subject)
+    HelperSession(const std::vector<std::string>& arguments, std::string subject)
         : process_(arguments), subject_(std::move(subject)) {
         if (!process_.started()) fault_ = VdbFault{VdbFault::Kind::helper, process_.error(), {}};
     }
@@ -230,7 +230,7 @@ std::optional<VdbFault> checkReadable(const std::string& path) {
 }
 
 // Reads the grid behind a frame that announced it.
-bool receive(Conversation& talk, VdbGrid& grid) {
+bool receive(HelperSession& talk, VdbGrid& grid) {
     VdbGridHead head;
     if (!talk.unpack(head) || !head.facts.indexToWorld.inverse()) {
         talk.damaged();
@@ -266,7 +266,7 @@ std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, st
         arguments.push_back(r.grid);
         arguments.push_back(fmt::format("{}{}", static_cast<int>(r.use), r.optional ? "?" : ""));
     }
-    Conversation talk(arguments, subjectOf(path));
+    HelperSession talk(arguments, subjectOf(path));
     std::vector<VdbGrid> grids;
     while (const auto frame = talk.next()) {
         if (*frame == VdbFrame::noGrid) {
@@ -289,7 +289,7 @@ std::variant<std::vector<VdbGrid>, VdbFault> readVdb(const std::string& path, st
 
 std::variant<VdbFileInfo, VdbFault> inspectVdb(const std::string& path) {
     if (auto fault = checkReadable(path)) return *fault;
-    Conversation talk({"info", path}, subjectOf(path));
+    HelperSession talk({"info", path}, subjectOf(path));
     VdbFileInfo info;
     while (const auto frame = talk.next())
         if (*frame == VdbFrame::fileInfo && !talk.unpack(info)) talk.damaged();
@@ -299,7 +299,7 @@ std::variant<VdbFileInfo, VdbFault> inspectVdb(const std::string& path) {
 
 std::variant<std::string, VdbFault> runVdbHelper(const std::vector<std::string>& arguments,
                                                  const std::function<void(double)>& progress) {
-    Conversation talk(arguments, "the volume");
+    HelperSession talk(arguments, "the volume");
     std::string text;
     while (const auto frame = talk.next()) {
         double fraction = 0;

@@ -12,7 +12,7 @@ for name in dispersion motion 'volume milk'; do
     says found.csv "$name,"
     says found.json "\"name\":\"$name\""
 done
-says found.json '"asker":"bill.scene:'
+says found.json '"place":"bill.scene:'
 says found.json '"bill":{"seconds"'
 "$json_lines" --whole <found.json || fault "found.json is no JSON"
 says found.html "abbe-study/1"

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# The time left, of real renders: from a tenth of the run on, what is foretold as the whole is within 20 % of what it
+# The time left, of real renders: from a tenth of the run on, what is predicted as the whole is within 20 % of what it
 # comes to. Work is told in core seconds, so that other programs on the machine do not matter; what the clock makes of it
 # is tested by simulation (tests/unit/rendering/time_left_test.cpp).
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 scene=$scenes/../../../scenes/glass-caustic/glass-caustic.scene
 
-# foretold_well NAME: of the events of a render, core seconds over the fraction done against those at the end. The median
+# predicted_well NAME: of the events of a render, core seconds over the fraction done against those at the end. The median
 # of the errors counts: the events are many.
-foretold_well() {
+predicted_well() {
     local median
     median=$(sed -n 's/.*"event":"progress".*/&/p' events | sed -E 's/.*"done":([0-9.e+-]+).*"core_s":([0-9.e+-]+).*/\1 \2/' |
         awk '{ done[NR] = $1; core[NR] = $2 }
@@ -17,14 +17,14 @@ foretold_well() {
                       printf "%.4f\n", error < 0 ? -error : error } }' |
         sort -g | awk '{ v[NR] = $1 } END { print NR < 5 ? "few" : v[int((NR + 1) / 2)] }')
     printf '%s: median error of the total %s\n' "$1" "$median"
-    awk -v m="$median" 'BEGIN { exit !(m != "few" && m < 0.2) }' || fault "$1: foretold with a median error of $median"
+    awk -v m="$median" 'BEGIN { exit !(m != "few" && m < 0.2) }' || fault "$1: predicted with a median error of $median"
 }
 
 run() { # NAME OPTION…
     local name=$1
     shift
     timeout 300 "$program" "$scene" -o left.exr --checkpoint off --json "$@" >events 2>err || fault "$name: $(cat err)"
-    foretold_well "$name"
+    predicted_well "$name"
 }
 
 run samples --size 96x96 --samples 700

@@ -9,7 +9,7 @@ expect 0 verify "$scene" --size 24x16 --resolution 1
 says out "the estimators agree"
 says out "would have been seen"
 says out "scattering"
-says out "asking"
+says out " nee "
 expect 0 verify "$scene" --size 24x16 --samples 256 --seed 3 --json
 "$json_lines" <out >/dev/null || fault "no JSON lines"
 says out '"verdict":"agree"'

@@ -14,9 +14,9 @@ inline std::string agreementText(const std::string& name, const Agreement& a) {
 }
 
 // The worst tiles.
-inline std::string culpritText(const Agreement& a) {
+inline std::string worstBlocksText(const Agreement& a) {
     std::string text;
-    for (const BlockTest& b : a.culprits(4))
+    for (const BlockTest& b : a.worstBlocks(4))
         text += fmt::format(" [{}, {}) × [{}, {}) {}: {:+.3g} ± {:.2g} %", b.bounds.x0, b.bounds.x1, b.bounds.y0,
                             b.bounds.y1, "XYZ"[b.channel], 100 * b.difference, 100 * b.error);
     return text;

@@ -1,9 +1,9 @@
-// Irradiance on a floor under a glass ball and a round lamp, by quadrature in double precision: what a picture of the
+// Irradiance on a floor under a glass ball and a round light, by quadrature in double precision: what a picture of the
 // caustic is compared with. Nothing of the renderer is used.
 //
-// The ball, the lamp and the place on the floor share a plane of symmetry, and what the ball does to a ray from the
+// The ball, the light and the place on the floor share a plane of symmetry, and what the ball does to a ray from the
 // place depends on the angle α between the ray and the line to the ball's middle alone: rays of one α leave the ball as
-// a cone of revolution about that line. Where the cone meets the plane of the lamp within its rim is a quadratic
+// a cone of revolution about that line. Where the cone meets the plane of the light within its rim is a quadratic
 // inequality in cos φ, φ the angle about the line. So of the integral over directions one dimension is solved exactly,
 // and the other is done by adaptive Gauss-Legendre rules.
 #pragma once
@@ -17,17 +17,17 @@
 
 namespace abbe::test {
 
-// Lengths in radii of the ball. The middles of ball and lamp stand above each other; the lamp faces down.
+// Lengths in radii of the ball. The middles of ball and light stand above each other; the light faces down.
 struct BallCausticScene {
     double index = 1.5;
-    double ball = 1.3;       // height of the middle of the ball above the floor; more than 1
-    double lamp = 5.8;       // height of the lamp above the floor; above the ball
-    double lampRadius = 0.5; // above 0
+    double ball = 1.3;        // height of the middle of the ball above the floor; more than 1
+    double lightHeight = 5.8; // height of the light above the floor; above the ball
+    double lightRadius = 0.5; // above 0
 };
 
 class BallCaustic {
   public:
-    // Ways of light from the lamp to the floor: beside the ball, reflected by its outside, and, with n >= 1 stretches
+    // Ways of light from the light to the floor: beside the ball, reflected by its outside, and, with n >= 1 stretches
     // in the glass, refracted twice and reflected n - 1 times inside.
     static constexpr int kDirect = -1, kReflected = 0, kRefracted = 1;
     // Light that grazes the ball stays in it long: each order brings some at its own distance from the axis, the 12th
@@ -35,12 +35,12 @@ class BallCaustic {
     static constexpr int kOrders = 48;
 
     // `cells`: how many the range of an angle is divided into before it is refined. `tolerance`: absolute, of each way,
-    // in squares of the lamp's radius. Twice as many and half of it show the error.
+    // in squares of the light's radius. Twice as many and half of it show the error.
     // `first`: the least order that irradiance() counts.
     explicit BallCaustic(BallCausticScene scene, int cells = 256, double tolerance = 1e-6, int first = kDirect)
         : s_(scene), cells_(cells), tolerance_(tolerance), first_(first) {}
 
-    // For a lamp of radiance 1, at the distance `rho` from the axis; all ways from `first` on together.
+    // For a light of radiance 1, at the distance `rho` from the axis; all ways from `first` on together.
     double irradiance(double rho) const {
         double sum = 0;
         for (int order = first_; order <= kOrders; ++order) sum += part(order, rho);
@@ -53,7 +53,7 @@ class BallCaustic {
         const double grazing = std::asin(1 / p.distance);
         if (order == kDirect)
             return sum(grazing, std::numbers::pi, cells_, [&](double alpha) {
-                return std::sin(alpha) * overLamp(p, alpha, alpha, p.distance * std::sin(alpha));
+                return std::sin(alpha) * overLight(p, alpha, alpha, p.distance * std::sin(alpha));
             });
         // By the angle of incidence: at grazing incidence everything is smooth in it.
         const double least = order > 2 ? leastIncidence(order) : 0;
@@ -63,7 +63,7 @@ class BallCaustic {
             const double alpha = std::asin(b / p.distance);
             const double turn = 2 * incidence - std::numbers::pi + order * (std::numbers::pi - 2 * refracted);
             const double measure = b / p.distance * std::cos(incidence) / (p.distance * std::cos(alpha));
-            return measure * throughput(order, incidence, refracted) * overLamp(p, alpha, alpha - turn, b);
+            return measure * throughput(order, incidence, refracted) * overLight(p, alpha, alpha - turn, b);
         });
     }
 
@@ -96,14 +96,14 @@ class BallCaustic {
         return order == 0 ? r : (1 - r) * (1 - r) * std::pow(r, order - 1);
     }
 
-    // ∫ cosθ dφ, θ at the floor, over those rays of one α that meet the lamp. They leave the ball at the angle `delta`
+    // ∫ cosθ dφ, θ at the floor, over those rays of one α that meet the light. They leave the ball at the angle `delta`
     // to a, and pass its middle at the distance b. With the origin there, a ray's line in the plane of φ has the moment
-    // -b, and (meeting point - middle of the lamp)·d_y is linear in u = cos φ along x and in sin φ along z.
-    double overLamp(const Place& p, double alpha, double delta, double b) const {
-        const double dx = std::cos(delta), dy = std::sin(delta), height = s_.lamp - s_.ball,
-                     r2 = s_.lampRadius * s_.lampRadius;
+    // -b, and (meeting point - middle of the light)·d_y is linear in u = cos φ along x and in sin φ along z.
+    double overLight(const Place& p, double alpha, double delta, double b) const {
+        const double dx = std::cos(delta), dy = std::sin(delta), height = s_.lightHeight - s_.ball,
+                     r2 = s_.lightRadius * s_.lightRadius;
         const double x0 = height * dx * p.ax, x1 = height * dy * p.ex + b, z = height * dy + b * p.ay;
-        const double y0 = dx * p.ay, y1 = dy * p.ey; // d_y, above 0 towards the lamp
+        const double y0 = dx * p.ay, y1 = dy * p.ey; // d_y, above 0 towards the light
         const double q2 = x1 * x1 - z * z - r2 * y1 * y1, q1 = x0 * x1 - r2 * y0 * y1,
                      q0 = x0 * x0 + z * z - r2 * y0 * y0;
         std::array<double, 5> at{-1, 1, 1, 1, 1};
@@ -131,7 +131,7 @@ class BallCaustic {
         double total = 0;
         for (int c = 0; c < cells; ++c) {
             const double x0 = a + (b - a) * c / cells, x1 = a + (b - a) * (c + 1) / cells;
-            total += refine(f, x0, x1, cell(f, x0, x1), tolerance_ * s_.lampRadius * s_.lampRadius / cells, 40);
+            total += refine(f, x0, x1, cell(f, x0, x1), tolerance_ * s_.lightRadius * s_.lightRadius / cells, 40);
         }
         return total;
     }
@@ -141,7 +141,7 @@ class BallCaustic {
         for (std::size_t i = 0; i < 8; ++i) sum += rule.weight[i] * f(a + (b - a) * rule.node[i]);
         return sum * (b - a);
     }
-    // Where the edge of the lamp comes into sight, the integrand has the singularity of a square root.
+    // Where the edge of the light comes into sight, the integrand has the singularity of a square root.
     template <typename F> static double refine(F&& f, double a, double b, double whole, double tolerance, int depth) {
         if (whole == 0) return 0;
         const double m = (a + b) / 2, left = cell(f, a, m), right = cell(f, m, b);

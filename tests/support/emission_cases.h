@@ -34,16 +34,16 @@ inline const Vec3 kAhead = normalize(Vec3{0.2f, 0.1f, 1});
 class EmissionFiles {
   public:
     EmissionFiles() {
-        writeLamp();
+        writeProfile();
         writeEnvironment(sky(), 24, 12, skyColor);
     }
     EmissionFiles(const EmissionFiles&) = delete;
     EmissionFiles& operator=(const EmissionFiles&) = delete;
     ~EmissionFiles() {
         std::error_code ignored;
-        for (const std::string& path : {lamp(), sky()}) std::filesystem::remove(path, ignored);
+        for (const std::string& path : {profile(), sky()}) std::filesystem::remove(path, ignored);
     }
-    std::string lamp() const { return place("ies"); }
+    std::string profile() const { return place("ies"); }
     std::string sky() const { return place("exr"); }
 
   private:
@@ -52,8 +52,8 @@ class EmissionFiles {
         return (std::filesystem::temp_directory_path() / name).string();
     }
     // Brighter in one plane, and brightest 20 degrees off its axis.
-    void writeLamp() const {
-        std::ofstream file(lamp());
+    void writeProfile() const {
+        std::ofstream file(profile());
         file << "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 19 4 1 2 0 0 0\n1 1 10\n";
         for (int v = 0; v <= 90; v += 5) file << v << ' ';
         file << "\n0 90 270 360\n";
@@ -85,14 +85,14 @@ inline std::vector<EmissionCase> emissionCases() {
                       shape = "emission 0.5; transform { rotate x 60 deg; scale 0.5 0.5 0.8 } }",
                       environment =
                           fmt::format("light environment \"{}\" {{ transform {{ rotate y 25 deg }}; ", files.sky()),
-                      lamp = fmt::format("light ies \"{}\" {{ ", files.lamp()) + facing + "turn 30 deg; ";
+                      emitter = fmt::format("light ies \"{}\" {{ ", files.profile()) + facing + "turn 30 deg; ";
     return {
         {"light point { " + place + flame + "}"},
         {"light spot { " + place + facing + "angle 80 deg; inner-angle 30 deg; " + flame + "}"},
         {"light spot { " + facing + "angle 60 deg; inner-angle 60 deg; " + flame + "}"},
         {"light spot { " + facing + "angle 300 deg; inner-angle 0 deg; " + flame + "}"},
         {"light beam { " + facing + "radius 0.3; divergence 80 deg; " + flame + "}"},
-        {lamp + flame + "}"},
+        {emitter + flame + "}"},
         {quad + flame + "}"},
         {quad + "two-sided on; " + flame + "}"},
         {"light quad { points -0.5 -0.4 0  0.5 -0.4 0.2  0.2 0.6 0  -0.5 0.4 0; " + flame + "}"},
@@ -113,7 +113,7 @@ inline std::vector<EmissionCase> emissionCases() {
         {tetrahedron + solid + "}", false, 6e-3},
         {"light point { " + place + flame + turn + "}"},
         {"light spot { " + facing + "angle 80 deg; " + flame + grow + "}"},
-        {lamp + flame + turn + "}"},
+        {emitter + flame + turn + "}"},
         {"light beam { " + facing + "radius 0.4; divergence 70 deg; " + flame + turn + "}"},
         {quad + flame + turn + "}"},
         {"light sphere { radius 0.3; " + flame + grow + "}", false, 1e-4, 1, false},
@@ -132,10 +132,10 @@ inline std::vector<EmissionCase> emissionCases() {
 }
 
 // The light in a box of 3 m, so that the scene has bounds.
-inline TestScene emissionScene(const EmissionCase& lamp) {
+inline TestScene emissionScene(const EmissionCase& emitter) {
     return TestScene::parse("scene 1\nfilm { size 16 16 }\ncamera { from 0 0 9; look-at 0 0 0; shutter 1 s }\n"
                             "shape box { size 3 3 3 }\n" +
-                            lamp.text + "\n");
+                            emitter.text + "\n");
 }
 
 inline EmissionNumbers emissionNumbers(Random& random) {

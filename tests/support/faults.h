@@ -137,7 +137,7 @@ template <typename Kind> class FaultyLightOf : public Kind {
     LightOutput output() const override { return sound_->output(); }
     std::uint32_t parts() const override { return sound_->parts(); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override { return sound_->bounds(part); }
-    bool bodiless() const override { return sound_->bodiless(); }
+    bool hasNoSurface() const override { return sound_->hasNoSurface(); }
     std::optional<LightReach> reach(const Ray& ray, float tMax) const noexcept override {
         return sound_->reach(ray, tMax);
     }

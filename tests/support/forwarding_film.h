@@ -6,7 +6,7 @@
 namespace abbe::test {
 
 // Hands everything on; derived classes add what they are there for.
-class ForwardingFilm : public StandInFilm {
+class ForwardingFilm : public FilmDecorator {
   public:
     void add(int x, int y, int replicate, const ExactXyz& sum, std::uint32_t samples) noexcept override {
         film_.add(x, y, replicate, sum, samples);
@@ -21,7 +21,7 @@ class ForwardingFilm : public StandInFilm {
     std::unique_ptr<SampleRecorder> makeRecorder() override { return film_.makeRecorder(); }
 
   protected:
-    explicit ForwardingFilm(Film& film) : StandInFilm(film), film_(film) {}
+    explicit ForwardingFilm(Film& film) : FilmDecorator(film), film_(film) {}
 
   private:
     Film& film_;

@@ -1,4 +1,4 @@
-// Small scenes with polished interfaces and a lamp, and what specular manifold sampling makes of them.
+// Small scenes with polished interfaces and a light, and what specular manifold sampling makes of them.
 #pragma once
 
 #include "caustics/manifold/caster_candidates.h"
@@ -22,7 +22,7 @@ inline double dielectricReflectance(double cosine, double index) {
 }
 
 struct ManifoldMean {
-    Moments value; // of the lanes' mean over the lamp's spectrum, so that a white lamp counts its watts
+    Moments value; // of the lanes' mean over the light's spectrum, so that a white light counts its watts
     ManifoldCounts counts;
     Vec3 wi;                      // of the last sample with light
     double last = 0;              // and what it came to

@@ -1,4 +1,4 @@
-// Paths that find lamps by chance, as the path tracer does, as far as manifold sampling says that it has them already.
+// Paths that find lights by chance, as the path tracer does, as far as manifold sampling says that it has them already.
 #pragma once
 
 #include "caustics/shared/aim_cone.h"

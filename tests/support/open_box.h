@@ -1,4 +1,4 @@
-// A room for tests that need walls around lamps.
+// A room for tests that need walls around lights.
 #pragma once
 
 #include <string>

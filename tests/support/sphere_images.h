@@ -1,4 +1,4 @@
-// What a lamp sends to a point by way of a ball of glass, by quadrature over directions: closed forms of a sphere, in
+// What a light sends to a point by way of a ball of glass, by quadrature over directions: closed forms of a sphere, in
 // double, that share nothing with the renderer.
 #pragma once
 
@@ -9,17 +9,17 @@
 
 namespace abbe::test {
 
-// The lamp is a disk of radiance 1 that faces down (-y).
+// The light is a disk of radiance 1 that faces down (-y).
 struct SphereImages {
     Vec3d centre;
     double radius = 1, index = 1.5;
-    Vec3d lamp;
-    double lampRadius = 0.1;
+    Vec3d lightCentre;
+    double lightRadius = 0.1;
 
-    // Where a direction from p leads by way of the ball, and what it brings if the lamp is there.
+    // Where a direction from p leads by way of the ball, and what it brings if the light is there.
     struct Image {
         bool valid = false; // the chain exists
-        double miss = 0;    // distance from the lamp's middle, in its plane; < 0 is never
+        double miss = 0;    // distance from the light's middle, in its plane; < 0 is never
         double factor = 0;
     };
 
@@ -48,15 +48,15 @@ struct SphereImages {
             const double beyond = std::sqrt(1 - (1 - square(cosine)) / square(far));
             d = normalize(d * (1 / far) + n * (cosine / far - beyond));
         }
-        // From outside, upwards, in front of the lamp.
-        const double t = (lamp.y - p.y) / d.y;
+        // From outside, upwards, in front of the light.
+        const double t = (lightCentre.y - p.y) / d.y;
         if (!(t > 0) || !(d.y > 0)) return image;
-        const Vec3d q = p + d * t - lamp;
+        const Vec3d q = p + d * t - lightCentre;
         // Reflected outside the ball is never in its own way; nor is what has left it.
         return {true, std::hypot(q.x, q.z), factor};
     }
 
-    // ∫ factor dω over the directions that lead to the lamp.
+    // ∫ factor dω over the directions that lead to the light.
     double integral(Vec3d p, const char* signature) const {
         const Vec3d axis = normalize(centre - p);
         const auto [x, y] = tangentsOf(axis);
@@ -96,17 +96,17 @@ struct SphereImages {
             const Image corner = at(s, u + (k & 1 ? h : -h), v + (k & 2 ? h : -h), other);
             if (!corner.valid) continue;
             ++valid;
-            lit += corner.miss < lampRadius;
+            lit += corner.miss < lightRadius;
             if (middle.valid) spread = std::max(spread, std::abs(corner.miss - middle.miss));
         }
-        lit += middle.valid && middle.miss < lampRadius;
+        lit += middle.valid && middle.miss < lightRadius;
         const bool whole = middle.valid && valid == 4;
-        const bool far = whole && middle.miss - 3 * spread > lampRadius,
-                   inside = whole && lit == 5 && middle.miss + 2 * spread < lampRadius;
+        const bool far = whole && middle.miss - 3 * spread > lightRadius,
+                   inside = whole && lit == 5 && middle.miss + 2 * spread < lightRadius;
         const bool nothing = !middle.valid && valid == 0;
         if (level >= kAlways && (far || nothing)) return 0;
         if ((level >= kAlways + 2 && inside) || level == kLevels)
-            return middle.valid && middle.miss < lampRadius ? middle.factor * 4 * h * h * square(s.sine) / cosine : 0;
+            return middle.valid && middle.miss < lightRadius ? middle.factor * 4 * h * h * square(s.sine) / cosine : 0;
         double sum = 0;
         for (int k = 0; k < 4; ++k)
             sum += refined(s, u + (k & 1 ? h : -h) / 2, v + (k & 2 ? h : -h) / 2, h / 2, level + 1);

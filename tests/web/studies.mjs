@@ -109,12 +109,12 @@ export function ordinary(seed = 1, chosen = changes) {
         reference: {samplesPerHalf: 16384, seconds: 61.2, relMse: 5.1e-8}, curves, strips, errorScale: {name: "inferno", low: 0, high: 0.5, unit: "relative error"},
         referencePng: png(width, height, room),
         effects: [
-            {name: "dispersion", asker: "prism.scene:12:3", secondsOn: 1.2, secondsOff: 1.0, deltaTime: 0.167, low: 0.15, high: 0.19, flip: 0.062, relMse: 1e-3, png: noisy(0.02, random), note: "", reason: null},
-            {name: "motion", asker: "prism.scene:31:5", secondsOn: 1.2, secondsOff: 1.16, deltaTime: 0.033, low: 0.02, high: 0.05, flip: 0.004, relMse: 2e-5, png: noisy(0.02, random), note: "keys of two objects", reason: null},
-            {name: "volume haze", asker: "prism.scene:40:1", secondsOn: 1.2, secondsOff: 0.7, deltaTime: 0.417, low: 0.4, high: 0.43, flip: 0.11, relMse: 3e-2, png: noisy(0.1, random), note: "", reason: null},
-            {name: "subsurface", asker: "prism.scene:44:9", secondsOn: 1.2, secondsOff: 1.19, deltaTime: 0.008, low: -0.01, high: 0.02, flip: 0.021, relMse: 4e-4, png: noisy(0.05, random), note: "", reason: null},
-            {name: "depth of field", asker: "prism.scene:3:9", secondsOn: 1.2, secondsOff: 1.18, deltaTime: 0.016, low: 0.0, high: 0.03, flip: 0.019, relMse: 5e-4, png: noisy(0.05, random), note: "", reason: null},
-            {name: "textures", asker: "prism.scene:50:1", secondsOn: null, secondsOff: null, deltaTime: null, low: null, high: null, flip: null, relMse: null, png: null, note: "", reason: "without its texture the lamp has no power"}],
+            {name: "dispersion", place: "prism.scene:12:3", secondsOn: 1.2, secondsOff: 1.0, deltaTime: 0.167, low: 0.15, high: 0.19, flip: 0.062, relMse: 1e-3, png: noisy(0.02, random), note: "", reason: null},
+            {name: "motion", place: "prism.scene:31:5", secondsOn: 1.2, secondsOff: 1.16, deltaTime: 0.033, low: 0.02, high: 0.05, flip: 0.004, relMse: 2e-5, png: noisy(0.02, random), note: "keys of two objects", reason: null},
+            {name: "volume haze", place: "prism.scene:40:1", secondsOn: 1.2, secondsOff: 0.7, deltaTime: 0.417, low: 0.4, high: 0.43, flip: 0.11, relMse: 3e-2, png: noisy(0.1, random), note: "", reason: null},
+            {name: "subsurface", place: "prism.scene:44:9", secondsOn: 1.2, secondsOff: 1.19, deltaTime: 0.008, low: -0.01, high: 0.02, flip: 0.021, relMse: 4e-4, png: noisy(0.05, random), note: "", reason: null},
+            {name: "depth of field", place: "prism.scene:3:9", secondsOn: 1.2, secondsOff: 1.18, deltaTime: 0.016, low: 0.0, high: 0.03, flip: 0.019, relMse: 5e-4, png: noisy(0.05, random), note: "", reason: null},
+            {name: "textures", place: "prism.scene:50:1", secondsOn: null, secondsOff: null, deltaTime: null, low: null, high: null, flip: null, relMse: null, png: null, note: "", reason: "without its texture the lamp has no power"}],
         bill: {seconds: 2.0, threads: 2, accounted: 0.985, rows: [["embree", "Embree", 0.9, 5.1e6, {note: "all rays of the rows below and above"}], ["surface", "surfaces", 0.42, 2.2e6, {}], ["lights", "light sampling", 0.31, 2.9e6, {}],
             ["camera", "camera", 0.11, 6e5, {}], ["film", "film", 0.09, 0, {count: 64000, counted: "samples"}], ["volume-haze", "volume haze", 0.08, 3e5, {elsewhere: 0.5, count: 4e5, counted: "densities"}],
             ["textures", "textures", 0.04, 0, {count: 198000, counted: "lookups"}], ["dispersion", "dispersion", 0, 48000, {elsewhere: 0.12}], ["motion", "motion", 0, 0, {count: 0, counted: "hits of what moves"}],
@@ -148,7 +148,7 @@ export function oddities() {
     hostile.curves[3].label = "anotherverylongnamewithoutspaces".repeat(5);
     hostile.curves[0].label = "as <b>rendered</b>";
     hostile.effects[0].name = evil;
-    hostile.effects[0].asker = evil;
+    hostile.effects[0].place = evil;
     hostile.bill.rows[0].label = evil;
     hostile.program.command = `abbe study ${evil}`;
     hostile.measure = evil;

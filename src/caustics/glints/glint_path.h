@@ -94,7 +94,7 @@ void GlintPath<E>::trace(Ray ray, const Wavelengths& lambda, bool heroOnly, Choo
 // What the queries find, in their order.
 template <EffectBits E>
 void searchGlints(const PathContext& context, std::span<const GlintQuery> queries, PathCounters& counters,
-                  const GlintHearer& hear) {
+                  const GlintCallback& report) {
     Sampler sampler;
     Arena arena;
     auto media = PathWalk<E>::makeMedia(context.scene, *context.stop);
@@ -109,7 +109,7 @@ void searchGlints(const PathContext& context, std::span<const GlintQuery> querie
         if (!(camera.weight > 0)) continue;
         GlintPath<E> path(context, sampler, arena, counters, media);
         startFromCamera(path.walk(), at, camera, around);
-        const auto tell = [&](const GlintView& view) { hear(i, view, path.wavelengths()); };
+        const auto tell = [&](const GlintView& view) { report(i, view, path.wavelengths()); };
         RandomStream random(query.seed);
         if (query.chain)
             path.follow(camera.ray, lambda, camera.heroOnly, *query.chain, tell);

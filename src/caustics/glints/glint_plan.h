@@ -1,6 +1,5 @@
-// Where on the film mirrors and clear glass show small images of lamps: glints.
-// What was found out about small images of lamps in mirrors and glass before a render, for people to read.
-// Lights that are small enough to be seen as glints.
+// Glints, small images of lights that mirrors and clear glass show on the film: which there are, and what to do with
+// them.
 #pragma once
 
 #include "caustics/shared/chain_signature.h"
@@ -15,7 +14,8 @@
 
 namespace abbe {
 
-// It depends on the scene, the frame, the pixel filter and the seed alone.
+// What was found out about glints before a render, for people to read. It depends on the scene, the frame, the pixel
+// filter and the seed alone.
 struct GlintFindings {
     bool measured = false;   // a pilot has run
     std::uint32_t found = 0; // glints that are probed
@@ -24,7 +24,7 @@ struct GlintFindings {
     std::uint64_t pilotRays = 0; // that it took to find out
 };
 
-// Render space.
+// A light that is small enough to be seen as a glint. Render space.
 struct GlintLight {
     const Light* source = nullptr;
     bool distant = false;
@@ -61,17 +61,17 @@ struct FilmBox {
     float area() const { return std::max(0.f, upper.x - lower.x) * std::max(0.f, upper.y - lower.y); }
 };
 
-// In the box, by that chain.
+// One small image of a light on the film. In the box, by that chain.
 struct Glint {
     ChainSignature chain;
     FilmBox box;
     std::uint32_t side = 2; // side² probes of it belong to every sample of a pixel that sees the box
 };
 
-// Frozen before light is gathered. Which light that is: a camera path whose place on the film is in a glint's box has
-// met delta interfaces alone, with exactly the glint's events, and then one of the lamps. Camera paths leave it out;
-// instead samples of the pixels that see a box send probes into it, which take exactly these events and so need not
-// find them by chance (glint_path.h). How well the boxes fit decides on the noise alone.
+// The glints of a render. Frozen before light is gathered. Which light that is: a camera path whose place on the film
+// is in a glint's box has met delta interfaces alone, with exactly the glint's events, and then one of the lights.
+// Camera paths leave it out; instead samples of the pixels that see a box send probes into it, which take exactly these
+// events and so need not find them by chance (glint_path.h). How well the boxes fit decides on the noise alone.
 class GlintPlan {
   public:
     GlintPlan() = default;
@@ -84,8 +84,8 @@ class GlintPlan {
     bool has(const Light* light) const { return lights_.contains(light); }
     // Those that pixels of a row of the frame may see, by their places in glints().
     std::span<const std::uint32_t> ofRow(int y) const;
-    // Whether the light of a plan's lamp that was met by `chain` from there is left to probes. `row`: ofRow() of a
-    // pixel that has that place within reach.
+    // Whether light of one of the plan's lights that was met by `chain` from there is left to probes. `row`: ofRow() of
+    // a pixel that has that place within reach.
     bool covers(std::span<const std::uint32_t> row, const ChainSignature& chain, Vec2 film) const {
         for (const std::uint32_t i : row)
             if (glints_[i].chain == chain && glints_[i].box.contains(film)) return true;

@@ -26,7 +26,7 @@ constexpr std::uint64_t kKey = 0x676c696e74; // "glint"
 constexpr std::size_t kMostLights = 8;
 constexpr int kStep = 4, kWalks = 36; // pixels between places from which so many walks start
 constexpr double kMostSeeds = 16384;  // such places; larger frames and smaller pilots have wider steps
-constexpr float kNear = 1.2f;         // of the lamp's direction: from where Newton's method starts
+constexpr float kNear = 1.2f;         // of the light's direction: from where Newton's method starts
 constexpr int kPixelBlock = 4;        // pixels; of candidates that are alike and this near one is taken
 constexpr std::uint32_t kMostCandidates = 16384, kLeastCandidates = 64; // of which Newton's method starts
 constexpr int kIterations = 32;
@@ -47,7 +47,7 @@ struct Candidate {
     float miss = 0;
 };
 
-// Where the film shows the middle of a lamp, at one wavelength.
+// Where the film shows the middle of a light, at one wavelength.
 struct Image {
     Vec2 film, half;        // of its extent along the film's axes, pixels
     double area = 0;        // pixels
@@ -92,13 +92,13 @@ class GlintPlanner {
         return true;
     }
 
-    void ask(std::span<const GlintQuery> queries, std::uint64_t& rays, const GlintHearer& hear) const {
+    void send(std::span<const GlintQuery> queries, std::uint64_t& rays, const GlintCallback& report) const {
         PathCounters counters;
-        kernel_.glints(context_, queries, counters, hear);
+        kernel_.glints(context_, queries, counters, report);
         rays += counters.vertices;
     }
 
-    // How far off a lamp a segment goes, across two axes. Stereographic: it grows all the way to the opposite
+    // How far off a light a segment goes, across two axes. Stereographic: it grows all the way to the opposite
     // direction, or Newton's method would not find the way back.
     static Vec2 missOf(const GlintView& view, const GlintLight& light, const Frame& about) {
         const Vec3 towards = light.from(view.p);
@@ -127,7 +127,7 @@ class GlintPlanner {
         return queries;
     }
 
-    // Walks that go near a lamp; of those that are alike the nearest.
+    // Walks that go near a light; of those that are alike the nearest.
     std::vector<Candidate> candidates() {
         const std::vector<GlintQuery> queries = seeds();
         constexpr std::size_t kPart = 256;
@@ -137,7 +137,7 @@ class GlintPlanner {
         parallelFor(parts.size(), [&](std::size_t i) {
             if (stop_()) return;
             const auto part = std::span(queries).subspan(i * kPart, std::min(kPart, queries.size() - i * kPart));
-            ask(part, rays[i], [&](std::size_t k, const GlintView& view, const Wavelengths&) {
+            send(part, rays[i], [&](std::size_t k, const GlintView& view, const Wavelengths&) {
                 if (most > 0 && static_cast<std::uint32_t>(view.chain.length()) > most) return;
                 for (std::size_t l = 0; l < lights_.size(); ++l) {
                     const float miss = length(view.direction - lights_[l].from(view.p));
@@ -162,7 +162,7 @@ class GlintPlanner {
         return list;
     }
 
-    // One segment of a chain at a place, and before and behind it along both axes of the film: how far off the lamp it
+    // One segment of a chain at a place, and before and behind it along both axes of the film: how far off the light it
     // goes, and how that changes.
     struct Look {
         std::array<bool, 5> seen{};
@@ -182,7 +182,7 @@ class GlintPlanner {
         queries[4].film.y += 0.5f * difference;
         Look look;
         Frame about;
-        ask(queries, rays, [&](std::size_t k, const GlintView& view, const Wavelengths& lambda) {
+        send(queries, rays, [&](std::size_t k, const GlintView& view, const Wavelengths& lambda) {
             if (k == 0) {
                 about = Frame::fromNormal(light.from(view.p));
                 look.p = view.p;

@@ -1,5 +1,4 @@
-// Camera paths over delta interfaces, for who looks for glints before a render.
-// Delta lobes that are taken on purpose and not by chance.
+// Camera paths over delta interfaces, by which a pilot looks for glints.
 #pragma once
 
 #include "caustics/shared/chain_signature.h"
@@ -12,6 +11,7 @@
 
 namespace abbe {
 
+// A delta lobe that is taken on purpose and not by chance.
 struct ForcedLobe {
     BsdfSample sample;     // of density 1: its weight is the ratio of the deltas
     float probability = 0; // with which sample() takes it
@@ -47,7 +47,7 @@ struct GlintView {
     const SurfaceHit* hit;       // where it ends; null: nowhere
     float time = 0;              // as Ray::time
 
-    // What a lamp gives in this direction, if it is what is seen.
+    // What a light gives in this direction, if it is what is seen.
     Spectrum emitted(const Light& light, const Wavelengths& lambda) const {
         if (hit) return hit->light == &light ? hit->light->emitted(*hit, -direction, lambda) : Spectrum(0.f);
         const DistantLight* const distant = light.asDistant();

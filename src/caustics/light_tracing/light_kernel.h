@@ -152,7 +152,7 @@ template <EffectBits E> class LightKernel {
 };
 
 template <EffectBits E> TileResult traceLight(const PathContext& context, Film& film, const LightJob& job) {
-    struct Nobody {
+    struct NoListener {
         void starts(const EmittedRay&) {}
         void sees(const EmittedRay&, const LensSplat&, double) {}
     } nobody;

@@ -167,7 +167,7 @@ template <EffectBits E> void LightPath<E>::arriveAt(const EmittedRay& start, Vec
         else if (!start.density.distant)
             ends = static_cast<double>(std::abs(dot(start.n, start.ray.direction)));
         rivals_.nee = ends / start.density.total();
-        rivals_.bsdf = start.unmet ? 0 : rivals_.nee;
+        rivals_.bsdf = start.neverHit ? 0 : rivals_.nee;
     }
     rivals_.bsdf /= cosine;
     rivals_.nee /= cosine;

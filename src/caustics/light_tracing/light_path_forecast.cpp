@@ -21,7 +21,7 @@ void add(LightPathShare& to, const LightPathShare& s) {
     to.after += s.after;
 }
 
-// Those of the same names, as of a lamp that is placed many times.
+// Those of the same names, as of a light that is placed many times.
 std::vector<LightPathShare> byName(const std::vector<LightPathShare>& shares) {
     std::vector<LightPathShare> result;
     std::map<std::pair<std::string, std::string>, std::size_t> places;
@@ -162,7 +162,7 @@ void LightPathForecast::limitOutliers() {
 }
 
 double LightPathForecast::fireflies() const {
-    constexpr double kFirefly = 3; // light that is asked for varies by less
+    constexpr double kFirefly = 3; // light from next-event estimation varies by less
     double sum = 0;
     for (const Term& t : terms_)
         if (t.firefly > kFirefly) sum += t.ofCamera(0);
@@ -173,9 +173,9 @@ double LightPathForecast::fireflies() const {
 // which are the rarest; a mean of samples has all of it, stratified or not. The rest is as noisy as it was seen to be,
 // which is less than its second moment: most of it may be light that camera paths find with next to no noise.
 double LightPathForecast::variance(double share, const CameraVariance& alone) const {
-    double foretold = 0;
-    for (const Term& t : terms_) foretold += t.ofCamera(0);
-    double missed = std::max(0.0, foretold - alone.secondMoment);
+    double predicted = 0;
+    for (const Term& t : terms_) predicted += t.ofCamera(0);
+    double missed = std::max(0.0, predicted - alone.secondMoment);
     double variance = 0, seenAlone = 0, seen = 0;
     for (const Term& t : terms_) {
         if (missed > 0)

@@ -1,5 +1,4 @@
-// How noisy a picture will be with light paths, foretold from a few of them and a look at some pixels.
-// Where light paths go, for people to read.
+// How noisy a picture will be with light paths, predicted by a pilot of a few light paths and some pixels.
 #pragma once
 
 #include "caustics/light_tracing/light_path_plan.h"
@@ -13,8 +12,9 @@
 
 namespace abbe {
 
-// Those of the same light and target by name added up, the largest shares first, LightPathFindings::kShares at most:
-// the last one stands for all that are left. Pairs that nothing is sent to are left out.
+// Where light paths go, for people to read. Those of the same light and target by name added up, the largest shares
+// first, LightPathFindings::kShares at most: the last one stands for all that are left. Pairs that nothing is sent to
+// are left out.
 std::vector<LightPathShare> largestShares(const std::vector<LightPathShare>&);
 
 // What camera paths bring, relative and in the mean over the frame as NoiseMeasure has it.
@@ -41,7 +41,7 @@ struct CameraNoise {
 CameraNoise cameraNoise(const PathContext&, TileFunction traced, const RouletteReference&, const LightPathPlan&,
                         const NoiseMeasure&);
 
-// By samples of light paths of density q ∫ f² / (p + s q) is foretold for any number s of them beside one camera path
+// By samples of light paths of density q ∫ f² / (p + s q) is predicted for any number s of them beside one camera path
 // of density p: weighed by the balance heuristic, that is the second moment of a sample of all pixels [Veach1997, sec.
 // 9.2]. No camera path has to find the light first.
 class LightPathForecast {
@@ -53,7 +53,7 @@ class LightPathForecast {
     // Variance of what light paths can bring, with `share` of them for each camera path; camera paths were seen to have
     // `alone` of it without them. Of light paths the second moment is the variance: they are many for a pixel and bring
     // little each. They count as independent, although they are stratified over the picture as a whole: pixels have
-    // little of that unless lamps are small.
+    // little of that unless lights are small.
     double variance(double share, const CameraVariance& alone) const;
 
   private:

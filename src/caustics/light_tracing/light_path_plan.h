@@ -1,5 +1,4 @@
-// How paths of light take part in a render.
-// What was found out about paths of light before a render, for people to read.
+// How light tracing takes part in a render: the plan, and what its pilot found.
 #pragma once
 
 #include "caustics/shared/aimed_emission.h"
@@ -11,7 +10,7 @@
 
 namespace abbe {
 
-// Frozen before light is gathered.
+// How many light paths there are, and where they go. Frozen before light is gathered.
 struct LightPathPlan {
     AimedEmission emission;
     // Light paths for each sample of all pixels of the frame; > 0.
@@ -33,7 +32,8 @@ struct LightPathShare {
     double before = 0, after = 0;
 };
 
-// All of it depends on the scene, the frame, the seed and the size of the pilots alone.
+// What was found out about light paths before a render, for people to read. All of it depends on the scene, the frame,
+// the seed and the size of the pilots alone.
 struct LightPathFindings {
     static constexpr std::size_t kShares = 8;
 
@@ -54,7 +54,7 @@ struct LightPathFindings {
     // As judged, the largest first; at most kShares, the last of them stands for all further ones.
     std::vector<LightPathShare> shares;
 
-    bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::asked; }
+    bool used() const { return verdict == LightPathVerdict::used || verdict == LightPathVerdict::requested; }
 };
 
 } // namespace abbe

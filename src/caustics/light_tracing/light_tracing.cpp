@@ -96,7 +96,7 @@ class LightPathPlanner {
         findings_.afterSpread = static_cast<double>(learned.afterSpread);
         learned.alone = alone();
         plan = std::make_unique<const LightPathPlan>(std::move(learned));
-        return forced ? asked : used;
+        return forced ? requested : used;
     }
 
     // By names, what was heard, if there were `paths` light paths for each camera path.

@@ -1,5 +1,4 @@
-// A path from a point over delta interfaces towards a light: follows a narrow beam over such a chain.
-// Finds chains of delta interfaces that lead to a point of a light.
+// Chains of delta interfaces from a point to a point of a light: following one, and finding them.
 #pragma once
 
 #include "caustics/shared/chain_signature.h"
@@ -38,7 +37,7 @@ struct SpecularChain {
     double miss2() const { return miss.x * miss.x + miss.y * miss.y; }
 };
 
-// Where light is asked for, and what surrounds that point on the side of the light.
+// The point at which a chain starts, and what surrounds that point on the side of the light.
 struct ChainStart {
     Receiver receiver{Vec3()};
     Vec3 pError{}, ng{}; // of a surface; ng is unit. 0 in a medium
@@ -56,7 +55,7 @@ class ChainTracer {
         : scene_(scene), followed_(followed), start_(start), target_(target), lambda_(lambda) {}
 
     // The chain whose first direction is this, with these events; `first`: the shape that it must meet first. False if
-    // there is none: it meets something else, or cannot reflect or refract like that. Nothing is asked about what lies
+    // there is none: it meets something else, or cannot reflect or refract like that. It does not matter what lies
     // between its end and the light, nor about how much light it carries.
     bool trace(Vec3d direction, ChainSignature signature, const Shape* first, SpecularChain& chain);
     // Whether anything lies between the end of a solution and the light; sets chain.clearness.
@@ -90,10 +89,10 @@ class ChainTracer {
     std::uint64_t rays_ = 0;
 };
 
-// Newton's method for the first direction of a chain whose last one points at the target: shooting, where
-// [Hanika2015] and [Zeltner2020] move all vertices at once. The only unknown is a direction, whatever the length of the
-// chain, and every iterate is a path that light can take. Deterministic: which solution it finds, or none, is a
-// function of the direction that it starts from.
+// Finds chains of delta interfaces that lead to a point of a light. Newton's method for the first direction of a chain
+// whose last one points at the target: shooting, where [Hanika2015] and [Zeltner2020] move all vertices at once. The
+// only unknown is a direction, whatever the length of the chain, and every iterate is a path that light can take.
+// Deterministic: which solution it finds, or none, is a function of the direction that it starts from.
 class ChainSolver {
   public:
     // Misses of solutions are below this (rad).

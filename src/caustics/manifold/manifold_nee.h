@@ -7,8 +7,8 @@
 namespace abbe {
 
 // For light that such chains bring to the first vertex behind others of them. No light path can show it to the lens,
-// and a path from the camera finds a small lamp by luck alone. It is found by manifold sampling, and left out where a
-// path has met such a lamp by such a chain. The walk outlives it.
+// and a path from the camera finds a small light by luck alone. It is found by manifold sampling, and left out where a
+// path has met such a light by such a chain. The walk outlives it.
 template <EffectBits E> class ManifoldNee {
   public:
     explicit ManifoldNee(PathWalk<E>& walk) : walk_(walk) {}

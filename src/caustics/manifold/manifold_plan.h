@@ -1,5 +1,4 @@
-// Which caustics are found by specular manifold sampling.
-// What was found out about caustics behind glass and in mirrors before a render, for people to read.
+// How specular manifold sampling takes part in a render: the plan, and what its pilot found.
 #pragma once
 
 #include "caustics/shared/chain_signature.h"
@@ -45,20 +44,21 @@ struct SpecularCaster {
     std::array<float, ManifoldKinds::kCount> weights{};
 };
 
-// Frozen before light is gathered: it says which light the path tracer leaves out.
+// Which caustics are found by specular manifold sampling. Frozen before light is gathered: it says which light the path
+// tracer leaves out.
 struct ManifoldPlan {
-    struct AskedLight {
+    struct SampledLight {
         const Light* light = nullptr;
-        float weight = 1; // > 0: how often it is asked, relative to the others
-        // sr: where the lamp's image is larger than this, it is left to others: to merging or to the path tracer, whose
-        // rays find it soon enough. The image of the whole lamp is meant, magnified as at the point of it that a chain
-        // leads to. Next to caustics it has no bound, and estimates of it would have none either.
+        float weight = 1; // > 0: how often it is sampled, relative to the others
+        // sr: where the light's image is larger than this, it is left to others: to merging or to the path tracer,
+        // whose rays find it soon enough. The image of the whole light is meant, magnified as at the point of it that a
+        // chain leads to. Next to caustics it has no bound, and estimates of it would have none either.
         float largestImage = 0.5f;
     };
 
     std::vector<SpecularCaster> casters; // those of casterCandidates() that are wanted
-    std::vector<AskedLight> lights;      // with Light::paths() other than none
-    // How many estimates a vertex asks for; their mean counts. Each has its own point of the lamp: where that decides
+    std::vector<SampledLight> lights;    // with Light::paths() other than none
+    // How many estimates a vertex takes; their mean counts. Each has its own point of the light: where that decides
     // how much light there is, as near caustics, this is worth more than as many paths from the camera.
     std::uint32_t estimates = 1; // > 0
     // Solutions of which a trial in this many would find one are given up. Trials cost as much as there are solutions,
@@ -66,13 +66,14 @@ struct ManifoldPlan {
     std::uint32_t maxTrials = 100'000;
 };
 
-// Of manifold sampling. It depends on the scene, the frame and the seed alone.
+// What was found out about caustics behind glass and in mirrors before a render, for people to read. Of manifold
+// sampling. It depends on the scene, the frame and the seed alone.
 struct ManifoldFindings {
     static constexpr std::size_t kObstacles = 4;
 
     bool measured = false; // a pilot has run: whether the numbers below mean anything
     bool used = false;
-    bool leftToMerging = false; // which has the light of all these lamps; the pilot found too few chains to trust them
+    bool leftToMerging = false; // which serves all these lights; the pilot found too few chains to trust them
     std::uint64_t chains = 0;   // that the pilot found
     // Of a sample of every pixel, in the mean over pixels: relative second moment of the light that chains of polished
     // interfaces bring to what is seen by way of others, as chance and as manifold sampling find it; relative variance

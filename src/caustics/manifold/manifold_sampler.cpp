@@ -59,7 +59,7 @@ float preference(const SpecularCaster& caster, Vec3 p) {
 // dω at the receiver per area across the light's last ray, or per solid angle of a light far away.
 double directionsPerTarget(const SpecularChain& chain) { return 1 / (std::abs(chain.determinant()) * chain.spread2); }
 
-// sr that the lamp would fill if it were everywhere as here; 0 for a lamp that is a point.
+// sr that the light would fill if it were everywhere as here; 0 for a light that is a point.
 double imageSize(const SpecularChain& chain, const LightTarget& target) {
     if (target.delta) return 0;
     const Vec3 w = -Vec3(chain.last().out);
@@ -114,10 +114,10 @@ ManifoldSampler::ManifoldSampler(const Scene& scene, ManifoldPlan plan) : scene_
     }
     weights.clear();
     for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
-        const ManifoldPlan::AskedLight& asked = plan_.lights[i];
-        ABBE_CHECK(asked.light->paths() != LightPaths::none && asked.weight > 0);
-        lights_.emplace(asked.light, i);
-        weights.push_back(static_cast<double>(asked.weight));
+        const ManifoldPlan::SampledLight& sampled = plan_.lights[i];
+        ABBE_CHECK(sampled.light->paths() != LightPaths::none && sampled.weight > 0);
+        lights_.emplace(sampled.light, i);
+        weights.push_back(static_cast<double>(sampled.weight));
     }
     if (!weights.empty()) lightChoice_.emplace(weights);
 }

@@ -1,6 +1,4 @@
-// Caustics that are seen through glass or in mirrors: light that small sources send over one to three delta interfaces
-// to a point that is not a mirror itself [Zeltner2020].
-// Light that small sources send to a point through glass or by mirrors.
+// Specular manifold sampling: caustics that are seen through glass or in mirrors [Zeltner2020].
 #pragma once
 
 #include "caustics/manifold/chain_tracer.h"
@@ -28,7 +26,7 @@ struct ManifoldSample {
     // W·m⁻²·nm⁻¹ on a surface that faces wi: what f(wo, wi) |cos θ| or a phase function is to be multiplied with. All
     // densities are divided out.
     Spectrum irradiance{0.f};
-    // Of the chain, by the lamp as a path that meets it would see it: with the irradiance above the second moment that
+    // Of the chain, by the light as a path that meets it would see it: with the irradiance above the second moment that
     // chance would have in place of this. 0 for lights that nobody meets by chance.
     Spectrum radiance{0.f};
     const Light* light = nullptr;
@@ -62,11 +60,12 @@ struct CoveredChain {
     bool following = false;
 };
 
-// Light and chain are drawn; then first directions towards the caster, from each of which Newton's method finds a
-// solution or none. A solution that was found with probability p counts 1/p, for which the number of further trials
-// until it comes back is an estimate without bias [Zeltner2020]. There is no density of these paths, so that
-// the path tracer leaves out exactly those that follow() and covers() know, instead of a weight for each technique.
-// That is decided by the path alone: by its events and shapes, and by how large the lamp appears by way of it.
+// Finds light that small sources send over one to three delta interfaces to a point that is not a mirror itself. Light
+// and chain are drawn; then first directions towards the caster, from each of which Newton's method finds a solution or
+// none. A solution that was found with probability p counts 1/p, for which the number of further trials until it comes
+// back is an estimate without bias [Zeltner2020]. There is no density of these paths, so that the path tracer leaves
+// out exactly those that follow() and covers() know, instead of a weight for each technique. That is decided by the
+// path alone: by its events and shapes, and by how large the light appears by way of it.
 //
 // Immutable, thread-safe; the scene must outlive it.
 class ManifoldSampler {
@@ -95,15 +94,15 @@ class ManifoldSampler {
 
     // A camera path went on from a place of the shape by this lobe.
     void follow(CoveredChain& chain, const Shape*, Lobes lobe) const noexcept;
-    // Whether some light of this lamp by such a chain is covered, as far as its shapes and events tell.
+    // Whether this light by such a chain is covered, as far as its shapes and events tell.
     bool coversKind(const CoveredChain& chain, const Light*) const noexcept;
-    // Whether light that the path meets next is covered: whoever asked at the start of the chain has it already.
+    // Whether light that the path meets next is covered: manifold sampling at the start of the chain has it already.
     // `start` and `direction` as there; `met`: LightTarget::met(). Cheap where no such light can be covered.
     bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
                 const Wavelengths&) const noexcept;
 
   private:
-    // Whether the lamp's image is, so that chains to it are covered.
+    // Whether the light's image is, so that chains to it are covered.
     bool isSmall(const SpecularChain&, const LightTarget&) const noexcept;
 
     const Scene& scene_;
@@ -115,12 +114,12 @@ class ManifoldSampler {
     std::unordered_map<const Light*, std::uint32_t> lights_;
 };
 
-// Who hears of light asked for by manifold sampling: pilots. Called by one thread.
+// Who hears of light that manifold sampling looks for: pilots. Called by one thread.
 class ManifoldListener {
   public:
     virtual ~ManifoldListener() = default;
     // For a path of throughput `beta` an estimate at `start` came to `light` at the eye; a path that meets the same
-    // lamp by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates;
+    // light by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates;
     // `light` is that of one, not its share of the mean.
     virtual void sampled(const ChainStart& start, const Spectrum& beta, const Wavelengths&, const Spectrum& light,
                          const Spectrum& chance) = 0;

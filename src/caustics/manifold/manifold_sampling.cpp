@@ -60,7 +60,7 @@ constexpr int kPilotCells = 40, kLeastPilotCells = 4;                           
 constexpr int kPilotReplicates = PilotPixel::kMostReplicates;
 constexpr std::uint32_t kLooks = 256, kLeastLooks = 8; // of ManifoldPilot, each at all kinds of chains
 constexpr std::uint32_t kMostEstimates = 16;
-// A lamp that fills more than this everywhere has no small images.
+// A light that fills more than this everywhere has no small images.
 constexpr double kLargeLight = 0.5; // sr
 // sr. Merging finds the light near caustics with little noise, where estimates by manifold sampling are rare and
 // bright: a tile at the cusp behind the mirror of scenes/mirror-caustic keeps, with 1024 samples, an error of 11 % with
@@ -101,7 +101,7 @@ struct Cell {
     // estimates at one vertex of their products
     double second = 0, chance = 0, product = 0;
     double rays = 0;
-    std::uint64_t asked = 0;
+    std::uint64_t sampled = 0;
     ManifoldCounts counts;
     struct Look {
         ChainStart start;
@@ -116,7 +116,7 @@ class CellListener final : public ManifoldListener {
     CellListener(const Scene& scene, Cell& cell) : scene_(scene), cell_(cell) {}
     void sampled(const ChainStart& start, const Spectrum& beta, const Wavelengths& lambda, const Spectrum& light,
                  const Spectrum& chance) override {
-        const bool even = cell_.asked++ % 2 == 0; // a path asks at one vertex, or none
+        const bool even = cell_.sampled++ % 2 == 0; // a path samples at one vertex, or none
         if (cell_.looks.empty()) cell_.looks.push_back({start, mean(beta), lambda});
         const double found = scene_.sensor(light, lambda).y;
         if (!even) cell_.product += before_ * found;
@@ -147,7 +147,7 @@ class ManifoldPlanner {
         plan.estimates = 2;
         const ManifoldSampler first(context_.scene, plan);
         const std::vector<Cell> seen = look(first, kLearnChains);
-        if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.asked > 0; })) {
+        if (!stop_() && std::ranges::any_of(seen, [](const Cell& c) { return c.sampled > 0; })) {
             plan = learn(plan, seen);
             judge(look(ManifoldSampler(context_.scene, plan), kJudgeChains));
             plan.estimates = findings_.estimates;
@@ -278,7 +278,7 @@ void ManifoldSampling::leave(const Scene& scene, const LightSet& merged) {
     auto& [sampler, findings, raysBeside] = planned_;
     if (!sampler) return;
     ManifoldPlan plan = sampler->plan();
-    const auto isMerged = [&](const ManifoldPlan::AskedLight& light) { return merged.contains(light.light); };
+    const auto isMerged = [&](const ManifoldPlan::SampledLight& light) { return merged.contains(light.light); };
     for (auto& light : plan.lights)
         if (isMerged(light)) light.largestImage = kLargestBesideMerging;
     if (std::ranges::all_of(plan.lights, isMerged)) {

@@ -1,5 +1,4 @@
-// Manifold sampling: whether caustics behind glass and in mirrors are worth it in a scene.
-// Learns which kinds of chains are worth trying.
+// Manifold sampling as a technique for caustics: whether it pays in a scene, and for which chains.
 #pragma once
 
 #include "caustics/manifold/manifold_plan.h"
@@ -10,9 +9,10 @@
 
 namespace abbe {
 
-// Looks at points that paths reach, before light is gathered, and sets SpecularCaster::weights so that a second brings
-// the most: in proportion to the root of the mean square of a kind's light over its rays. Kinds that found nothing keep
-// a small share, since a pilot sees little; what is covered does not change. Not thread-safe; deterministic.
+// Learns which kinds of chains are worth trying. Looks at points that paths reach, before light is gathered, and sets
+// SpecularCaster::weights so that a second brings the most: in proportion to the root of the mean square of a kind's
+// light over its rays. Kinds that found nothing keep a small share, since a pilot sees little; what is covered does not
+// change. Not thread-safe; deterministic.
 class ManifoldPilot {
   public:
     // Of kinds that found little or nothing; the best of a caster has 1.

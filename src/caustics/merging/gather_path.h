@@ -79,7 +79,7 @@ void GatherPath<E>::gather(Ray ray, const Wavelengths& lambda, bool heroOnly, co
             walk_.arrive(ray, hit, depth_, [&](const Ray& leg, float tMax, std::uint32_t, auto follow) {
                 setWork(Work::lights);
                 if (depth_ > 0 && photons.inMedia.size() > 0) gatherAlong(leg, tMax, photons.inMedia, radius, tell);
-                return NothingOnTheWay()(leg, tMax, 0, follow);
+                return IgnoreMedia()(leg, tMax, 0, follow);
             });
         if (arrival != Arrival::surface || !anyNonZero(path.beta)) return;
         way_ += length(hit.p - from_);

@@ -134,7 +134,7 @@ template <EffectBits E> class MergeKernel {
         for (const Sum& sum : sums_) gathered_.push_back({x, y, factor, sum});
     }
 
-    // Of one lamp, for light groups.
+    // Of one light, for light groups.
     struct Sum {
         const Light* light = nullptr;
         Spectrum radiance{0.f}, closer{0.f};

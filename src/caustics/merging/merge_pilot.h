@@ -13,7 +13,7 @@ namespace abbe {
 // Some rounds with few light paths, gathered by an even part of the pixels.
 class MergePilot {
   public:
-    // Light of one lamp in one pixel of one round; luminance.
+    // What one light adds to one pixel in one round; luminance.
     struct Pixel {
         std::uint32_t light = 0; // place in the scene
         int x = 0, y = 0;

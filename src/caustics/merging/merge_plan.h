@@ -1,5 +1,4 @@
-// How light paths are merged with camera paths in a render.
-// What was found out about merging of light paths before a render, for people to read.
+// How photon merging takes part in a render: the plan, and what its pilot found.
 #pragma once
 
 #include "caustics/shared/aimed_emission.h"
@@ -12,13 +11,13 @@
 
 namespace abbe {
 
-// Frozen before light is gathered. A round has `photons` light paths and a camera path through every pixel, which all
-// have the same wavelengths and the same time.
+// How light paths are merged with camera paths. Frozen before light is gathered. A round has `photons` light paths and
+// a camera path through every pixel, which all have the same wavelengths and the same time.
 //
 // Which light that is: the camera path meets mirrors and clear glass alone, then, at least one of them behind it, a
 // vertex that spreads light; the light path meets a mirror or clear glass first, and anything after it. What manifold
-// sampling covers is left out. The path tracer leaves out exactly that: light of these lamps that it meets by way of a
-// delta, behind such a vertex (MergingExclusion).
+// sampling covers is left out. The path tracer leaves out exactly that: what these lights send that it meets by way of
+// a delta, behind such a vertex (MergingExclusion).
 struct MergePlan {
     AimedEmission emission;
     std::unordered_set<const Light*> lights; // whose light is merged
@@ -34,7 +33,8 @@ struct MergePlan {
     static float radius(std::uint32_t round) { return kRadius * std::pow(static_cast<float>(round) + 1, -1.f / 6); }
 };
 
-// It depends on the scene, the frame and the seed alone.
+// What was found out about merging before a render, for people to read. It depends on the scene, the frame and the seed
+// alone.
 struct MergeFindings {
     bool measured = false; // a pilot has run: whether the numbers below mean anything
     bool used = false;

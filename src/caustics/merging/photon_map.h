@@ -27,11 +27,11 @@ struct Photon {
     const Light* light = nullptr;   // where it began,
     std::uint32_t target = 0;       // sent to what: as in EmittedRay,
     Vec2 aim;                       // and where in that
-    float cameraOdds = 0;       // density of the camera paths that come from the lamp here, without the scattering at
+    float cameraOdds = 0;       // density of the camera paths that come from the light here, without the scattering at
                                 // p, over that of the light paths; 0: there are none
     std::uint32_t vertices = 0; // at which it was scattered on the way
     bool heroOnly = false;      // `flux` and densities are those of the first lane, eight times
-    bool followed = false;      // by a chain that manifold sampling covers, if p is asked for it
+    bool followed = false;      // by a chain that manifold sampling covers, if p samples it
     std::uint8_t axis = 0;      // PhotonMap's own
 };
 

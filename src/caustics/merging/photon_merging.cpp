@@ -31,7 +31,7 @@ constexpr double kRoundCost = 2;
 constexpr std::array kEvery{1u, 2u, 4u};
 constexpr int kCameraRow = 24, kLeastCameraRow = 6; // pixels in which rays of camera paths are counted
 
-// Light of one lamp: relative second moments of a sample of every pixel, in the mean over pixels.
+// Of one light: relative second moments of a sample of every pixel, in the mean over pixels.
 struct Moments {
     double camera = 0;          // as camera paths find it
     double merged = 0;          // in a round
@@ -120,7 +120,7 @@ class MergePlanner {
         return name == context_.scene.names.end() ? "a light" : name->second;
     }
 
-    // Lamps that camera paths find better by themselves are left to them; then the number of rounds that serves best.
+    // Lights that camera paths find better by themselves are left to them; then the number of rounds that serves best.
     bool decide(MergePlan& plan, const MergePilot::Heard& heard, const NoiseMeasure& measure) {
         const bool forced = context_.settings.technique.merging == Technique::Merging::always;
         const double most = std::min<double>(kMostPaths, kMostPhotons / std::max(heard.photons, 1e-3));

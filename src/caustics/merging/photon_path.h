@@ -71,7 +71,7 @@ template <EffectBits E> bool PhotonPath<E>::followedFrom(const EmittedRay& start
     CoveredChain chain;
     chain.start();
     for (std::size_t i = links->size(); i-- > 0;) sampler->follow(chain, (*links)[i].shape, (*links)[i].lobe);
-    if (start.unmet) return sampler->coversKind(chain, start.light);
+    if (start.neverHit) return sampler->coversKind(chain, start.light);
     const float time = walk().path.time;
     ChainStart from;
     from.receiver = Receiver(hit.p, hit.shading.z, true);

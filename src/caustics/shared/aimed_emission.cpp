@@ -162,7 +162,7 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
     ray.density.position = static_cast<double>(origin->pdf);
     ray.density.direction = pdfDirection(source, *origin, w, ray.target);
     ray.deltaPosition = origin->point();
-    ray.unmet = ray.deltaPosition || source.light->unmet();
+    ray.neverHit = ray.deltaPosition || source.light->neverHit();
     return ray;
 }
 
@@ -225,7 +225,7 @@ std::optional<EmittedRay> AimedEmission::sampleDistant(const Source& source, std
     ray.density.position = pdfPosition(source, ray.ray.origin, w, target);
     ray.density.direction = s->delta ? 1 : static_cast<double>(s->pdfSolidAngle);
     ray.deltaDirection = s->delta;
-    ray.unmet = s->delta || source.light->unmet();
+    ray.neverHit = s->delta || source.light->neverHit();
     return ray;
 }
 

@@ -127,7 +127,7 @@ class MergeListener {
 };
 
 // Of the query with this number: what is seen behind each event, at these wavelengths.
-using GlintHearer = std::function<void(std::size_t, const GlintView&, const Wavelengths&)>;
+using GlintCallback = std::function<void(std::size_t, const GlintView&, const Wavelengths&)>;
 
 // A kernel beside light paths.
 struct LightPathKernel {
@@ -135,7 +135,7 @@ struct LightPathKernel {
     TileResult (*trace)(const PathContext&, Film&, const LightJob&);
     TileResult (*listen)(const PathContext&, Film&, const LightJob&, LightListener&);
     TileResult (*merge)(const PathContext&, Film&, const MergeJob&, MergeListener*); // null: nobody listens
-    void (*glints)(const PathContext&, std::span<const GlintQuery>, PathCounters&, const GlintHearer&);
+    void (*glints)(const PathContext&, std::span<const GlintQuery>, PathCounters&, const GlintCallback&);
 };
 
 } // namespace abbe

@@ -11,11 +11,11 @@ namespace abbe {
 
 struct Scene;
 
-// What has been decided on light paths, and why. All but `used` and `asked` mean that there are none.
+// What has been decided on light paths, and why. All but `used` and `requested` mean that there are none.
 enum class LightPathVerdict : std::uint8_t {
     undecided,      // nobody looked, or the look was cut short
     used,           // forecast to pay
-    asked,          // whatever is forecast: `light-paths always` or `alone`
+    requested,      // whatever is forecast: `light-paths always` or `alone`
     off,            // `light-paths off`
     otherTechnique, // another choice of `render` is at odds with them
     hiddenShapes,   // shadows and reflections see different shapes, which light paths cannot tell apart

@@ -282,8 +282,8 @@ TEST_CASE("case 5: rays at edges and vertices") {
     c.measured("share of rays aimed at its very vertices that escape", doctor::escapesAtVertices(100000), 0.01);
 }
 
-// The whole chain of a shadow ray to a lamp: it must not be stopped by the lamp or by the surface it leaves.
-TEST_CASE("case 1: shadow rays end before the lamp") {
+// The whole chain of a shadow ray to a light: it must not be stopped by the light or by the surface it leaves.
+TEST_CASE("case 1: shadow rays end before the light") {
     HardCase c;
     int all = 0;
     for (float scale : {1e-5f, 1.f, 1e5f}) {
@@ -298,8 +298,8 @@ TEST_CASE("case 1: shadow rays end before the lamp") {
             SurfaceHit hit;
             const Vec3 above = at(16 * random.uniform() - 8, 1, 16 * random.uniform() - 8);
             REQUIRE(scene->intersect({above, {0, -1, 0}}, hit));
-            const Shape& lamp = i & 1 ? static_cast<const Shape&>(tilted) : ball;
-            const auto s = lamp.sampling()->sample(hit.p, 0, {random.uniform(), random.uniform()});
+            const Shape& light = i & 1 ? static_cast<const Shape&>(tilted) : ball;
+            const auto s = light.sampling()->sample(hit.p, 0, {random.uniform(), random.uniform()});
             if (!s) continue;
             const Vec3 to = s->p - hit.p;
             if (dot(to, s->ng) * (i & 1 ? -1.f : 1.f) > -1e-3f * length(to)) continue; // edge-on
@@ -308,7 +308,7 @@ TEST_CASE("case 1: shadow rays end before the lamp") {
             const Vec3 start = spawnOrigin(hit, to);
             const float distance = length(end - start);
             const Ray shadow{start, (end - start) * (1 / distance), distance};
-            SurfaceHit other; // the two lamps may shade each other
+            SurfaceHit other; // the two lights may shade each other
             if (scene->occluded(shadow) && scene->intersect(shadow, other) && length(other.p - s->p) < 1e-3f * scale)
                 ++blocked;
             ++tried;

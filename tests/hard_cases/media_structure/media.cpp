@@ -31,8 +31,8 @@ Followed follow(MediumTracker& tracker, RandomStream& random) {
 
 } // namespace
 
-// A closed white room with a lamp of radiance 1 in its ceiling; in a closed room of albedo ρ light goes round 1/(1 - ρ)
-// times.
+// A closed white room with a light of radiance 1 in its ceiling; in a closed room of albedo ρ light goes round 1/(1 -
+// ρ) times.
 TEST_CASE("case 61: nothing absorbs in a cloud") {
     HardCase c;
     const TestScene room = TestScene::parse(

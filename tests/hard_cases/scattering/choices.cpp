@@ -99,15 +99,15 @@ TEST_CASE("case 37: reuse of a random number") {
     c.atLeast("p of χ² of 1024 lights picked by ten choices each", chiSquareTest(picks, wanted).pValue, 1e-4);
 }
 
-// A lamp so small that its density per solid angle is 3e19: its square has no place in single precision.
+// A light so small that its density per solid angle is 3e19: its square has no place in single precision.
 TEST_CASE("case 38: MIS weights of extreme densities") {
     HardCase c;
-    const auto shown = [](const char* lamp) {
+    const auto shown = [](const char* emitter) {
         const TestScene scene = TestScene::parse(
             std::string(
                 "scene 1\nfilm { size 4 4; filter box 0.5 }\ncamera { from 0 2 0.1; look-at 0 0 0; fov 10 deg }\n"
                 "shape plane { material conductor { index metal Ag; roughness 1 } }\n") +
-            lamp);
+            emitter);
         REQUIRE_MESSAGE(!scene.diagnostics().hasErrors(), scene.report());
         const TestImage image = render(scene, 64);
         CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
@@ -116,9 +116,9 @@ TEST_CASE("case 38: MIS weights of extreme densities") {
     const double point = shown("light point { position 1 1 0; power 100 W }\n");
     double worst = 0;
     for (const char* radius : {"1e-3", "1e-6", "1e-10", "1e-15"}) {
-        const double lamp =
+        const double emitter =
             shown(fmt::format("light sphere {{ center 1 1 0; radius {}; power 100 W }}\n", radius).c_str());
-        const double off = std::abs(lamp / point - 1);
+        const double off = std::abs(emitter / point - 1);
         worst = off <= worst ? worst : off;
     }
     c.measured("light of area lights of 1e-3 to 1e-15 m over that of a point", worst, 1e-3);

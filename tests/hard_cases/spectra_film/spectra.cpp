@@ -120,7 +120,7 @@ TEST_CASE("case 49: saturated colours, exact black and white") {
             static_cast<double>(std::abs(1 - (0.5f + x / (2 * std::sqrt(1 + x * x))))));
 }
 
-TEST_CASE("case 50: lamps with lines") {
+TEST_CASE("case 50: lights with lines") {
     HardCase c;
     c.doctor();
     double worst = 0;

@@ -16,7 +16,7 @@ struct CertifiedScene {
     std::uint32_t samples, reference; // per pixel
 };
 
-// Smooth light, glossy reflections of lamps of all sizes, a thousand lamps, caustics, fog, smoke, hair, textures.
+// Smooth light, glossy reflections of lights of all sizes, a thousand lights, caustics, fog, smoke, hair, textures.
 constexpr CertifiedScene kScenes[] = {
     {"cornell-box", {48, 48}, 32, 2048},
     {"veach-mis", {96, 64}, 64, 4096},
@@ -94,13 +94,13 @@ TEST_CASE("certificate: intervals hold the errors of renders") {
         CHECK(c.relative.share() >= 0.9);
         CHECK(c.display.share() >= 0.9);
         CHECK(c.relative.meanWidth() < 0.6); // an interval that holds everything says nothing
-        CHECK(c.display.meanWidth() < 1.5);  // of veach-mis, whose lamps are a few pixels
+        CHECK(c.display.meanWidth() < 1.5);  // of veach-mis, whose lights are a few pixels
     }
     if (chosen && std::string(chosen) == kUnseen.name) CHECK(coverages(kUnseen, view, seeds).relative.share() < 0.9);
 }
 
 // Nightly with 60 seeds, of which 52 held before the tail was looked at, all others with a larger error than stated.
-TEST_CASE("certificate: intervals hold the error of a glossy caustic of a small lamp") {
+TEST_CASE("certificate: intervals hold the error of a glossy caustic of a small light") {
     const char* asked = std::getenv("ABBE_SEEDS");
     if (!nightly() && !asked) return;
     const OcioView view(ViewInput::aces2065_1);

@@ -45,7 +45,7 @@ template <typename Sample, typename Pdf> ChiSquareResult directionTest(Sample&& 
     return chiSquareTest(observed, expected);
 }
 
-// Three balls in front of the lamp, two of them overlapping, one behind it and one around it.
+// Three balls in front of the light, two of them overlapping, one behind it and one around it.
 EmissionPlan someTargets(Vec3 origin) {
     EmissionPlan plan;
     const Vec3 side = Frame::fromNormal(kAhead).x;
@@ -62,7 +62,7 @@ EmissionPlan someTargets(Vec3 origin) {
     return plan;
 }
 
-// Of the paths that start at one point of a lamp.
+// Of the paths that start at one point of a light.
 ChiSquareResult mixtureTest(const Light& light, const AimedEmission& emission, Random& random) {
     EmissionNumbers fixed = emissionNumbers(random);
     constexpr float time = 0.4f;
@@ -124,13 +124,13 @@ ChiSquareResult diskTest(const Light& light, const AimedEmission& emission, Vec3
 
 TEST_CASE("emission: directions of every light follow its own density") {
     Random random(31);
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Light& light = *test.scene().lights.at(0);
         ChiSquareResult result;
-        if (lamp.distant) {
-            if (light.asDistant()->sampleDistant({0.5f, 0.5f}, kAt, 0)->delta || lamp.text.size() < 40)
+        if (emitter.distant) {
+            if (light.asDistant()->sampleDistant({0.5f, 0.5f}, kAt, 0)->delta || emitter.text.size() < 40)
                 continue; // half a degree
             result = directionTest(
                 [&] {
@@ -156,13 +156,13 @@ TEST_CASE("emission: directions of every light follow its own density") {
 
 TEST_CASE("emission: aimed directions and places follow the density of the whole mixture") {
     Random random(32);
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Scene& scene = test.scene();
         const AimedEmission emission(scene.lights, scene.intersector->bounds(), someTargets(Vec3(scene.origin)));
         const Light& light = *scene.lights.at(0);
-        const ChiSquareResult result = lamp.distant
+        const ChiSquareResult result = emitter.distant
                                            ? diskTest(light, emission, scene.intersector->bounds().centre(), random)
                                            : mixtureTest(light, emission, random);
         CAPTURE(result.statistic);
@@ -176,9 +176,9 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
     constexpr int cells = 16;
     constexpr double half = 0.8; // m
     Random random(34);
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Scene& scene = test.scene();
         const AimedEmission emission(scene.lights, scene.intersector->bounds(), someTargets(Vec3(scene.origin)));
         const Light& light = *scene.lights.at(0);
@@ -186,17 +186,17 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
         EmissionNumbers fixed = emissionNumbers(random);
         const auto draw = [&] {
             fixed.aim = random.uniform();
-            (lamp.distant ? fixed.position : fixed.direction) = {random.uniform(), random.uniform()};
+            (emitter.distant ? fixed.position : fixed.direction) = {random.uniform(), random.uniform()};
             return emission.sample(fixed, kAt, time);
         };
         std::optional<EmittedRay> some;
         // From a point that faces the wall.
         while (!(some = draw()) || (lengthSquared(some->n) > 0 && dot(some->n, kAhead) < 0.3f))
             fixed = emissionNumbers(random);
-        // Aslant to what comes from far away, or before a lamp.
-        const Vec3 towards = lamp.distant ? some->ray.direction : kAhead;
+        // Aslant to what comes from far away, or before a light.
+        const Vec3 towards = emitter.distant ? some->ray.direction : kAhead;
         const Vec3 facing = normalize(towards + Frame::fromNormal(towards).x * 0.8f);
-        const Vec3 centre = (lamp.distant ? Vec3{} : kAhead * 1.4f) - Vec3(scene.origin);
+        const Vec3 centre = (emitter.distant ? Vec3{} : kAhead * 1.4f) - Vec3(scene.origin);
         const Frame frame = Frame::fromNormal(facing);
         std::vector<double> observed(cells * cells, 0), expected(cells * cells, 0);
         const int samples = chiSquareSamples();
@@ -213,7 +213,7 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
                 observed[static_cast<std::size_t>(row * cells + column)] += 1;
         }
         std::optional<LightOrigin> origin;
-        if (!lamp.distant) origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
+        if (!emitter.distant) origin = light.asPlaced()->sampleOrigin(some->part, fixed.position, kAt, time);
         const int fine = pointsPerCell();
         for (int i = 0; i < cells * fine; ++i)
             for (int j = 0; j < cells * fine; ++j) {
@@ -221,9 +221,9 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
                     return static_cast<float>(((k + 0.5) / (cells * fine) * 2 - 1) * half);
                 };
                 const Vec3 p = centre + frame.x * at(j) + frame.y * at(i);
-                const Vec3 way = lamp.distant ? some->ray.direction : p - origin->p, w = normalize(way);
-                if (!lamp.distant && !anyNonZero(light.asPlaced()->leaving(*origin, w, kAt))) continue;
-                const EmissionDensity d = lamp.distant
+                const Vec3 way = emitter.distant ? some->ray.direction : p - origin->p, w = normalize(way);
+                if (!emitter.distant && !anyNonZero(light.asPlaced()->leaving(*origin, w, kAt))) continue;
+                const EmissionDensity d = emitter.distant
                                               ? emission.density(&light, p, w, time)
                                               : emission.density(&light, some->part, origin->p, origin->n, w, time);
                 expected[static_cast<std::size_t>(i / fine * cells + j / fine)] +=
@@ -241,9 +241,9 @@ TEST_CASE("emission: where paths arrive follows the density per area of the wall
 
 TEST_CASE("emission: a path that is found from its other end has the density with which it was made") {
     Random random(33);
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Scene& scene = test.scene();
         const AimedEmission emission(scene.lights, scene.intersector->bounds(), someTargets(Vec3(scene.origin)));
         const Light& light = *scene.lights.at(0);
@@ -261,7 +261,7 @@ TEST_CASE("emission: a path that is found from its other end has the density wit
                        std::abs(d.direction - ray.density.direction) > tolerance * ray.density.direction;
             };
             ++made;
-            if (lamp.distant) {
+            if (emitter.distant) {
                 different += differs(emission.density(&light, ray.ray.origin + w * 2, w, time), 1e-5);
                 continue;
             }
@@ -287,7 +287,8 @@ TEST_CASE("emission: a path that is found from its other end has the density wit
         CAPTURE(met);
         CHECK(made > 1500);
         CHECK(different <= made / 500); // at the edges of cones and cells
-        const bool body = !lamp.distant && !light.bodiless() && !light.asPlaced()->sampleOrigin(0, {}, kAt, 0)->point();
+        const bool body =
+            !emitter.distant && !light.hasNoSurface() && !light.asPlaced()->sampleOrigin(0, {}, kAt, 0)->point();
         CHECK((!body || met > made / 2));
         CHECK(metDifferent <= met / 50);
     }

@@ -25,12 +25,12 @@ struct Patch {
     }
 };
 
-Patch patchFor(const EmissionCase& lamp, Vec3 origin) {
-    if (lamp.distant) return {Vec3{0.3f, -0.2f, 0.4f} - origin, normalize(Vec3{0.3f, 1, 0.2f}), 0.4f};
+Patch patchFor(const EmissionCase& emitter, Vec3 origin) {
+    if (emitter.distant) return {Vec3{0.3f, -0.2f, 0.4f} - origin, normalize(Vec3{0.3f, 1, 0.2f}), 0.4f};
     return {kAhead * 1.3f - origin, normalize(Vec3{0.1f, -0.3f, 0} - kAhead), 0.4f};
 }
 
-// W/m² on the patch, by asking the light from its points: next-event estimation.
+// W/m² on the patch, by next-event estimation from its points.
 Moments asked(const Light& light, const Patch& patch, int samples, std::uint64_t seed) {
     Moments result;
     Random random(seed);
@@ -79,7 +79,7 @@ struct Aim {
     double error; // that is small enough to tell: relative, of the mean
 };
 
-// At the patch, beside it, and at everything that must not matter: balls that overlap, hold the lamp, lie behind it or
+// At the patch, beside it, and at everything that must not matter: balls that overlap, hold the light, lie behind it or
 // are hardly there.
 std::vector<Aim> aimsAt(const Patch& patch) {
     const AimTarget at{patch.centre, 1.1f * patch.radius};
@@ -103,12 +103,12 @@ std::vector<Aim> aimsAt(const Patch& patch) {
 
 TEST_CASE("emission: paths of light carry the power of their light") {
     std::uint64_t seed = 100;
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Light& light = *test.scene().lights.at(0);
-        REQUIRE(light.paths() == (lamp.distant ? LightPaths::distant : LightPaths::placed));
-        if (!lamp.keepsPower) continue;
+        REQUIRE(light.paths() == (emitter.distant ? LightPaths::distant : LightPaths::placed));
+        if (!emitter.keepsPower) continue;
         const AimedEmission emission(test.scene().lights, test.scene().intersector->bounds(), {});
         Moments power;
         Random random(++seed);
@@ -118,26 +118,26 @@ TEST_CASE("emission: paths of light carry the power of their light") {
             const auto ray = emission.sample(emissionNumbers(random), lambda, random.uniform());
             power.add(ray ? watts(ray->beta, lambda) : 0);
         }
-        const double expected = light.power() * lamp.powerFactor;
+        const double expected = light.power() * emitter.powerFactor;
         CAPTURE(power.mean());
         CAPTURE(expected);
         CAPTURE(power.standardError());
-        CHECK(std::abs(power.mean() - expected) < 3.5 * power.standardError() + lamp.powerError * expected);
+        CHECK(std::abs(power.mean() - expected) < 3.5 * power.standardError() + emitter.powerError * expected);
         CHECK(power.standardError() < 0.01 * expected);
     }
 }
 
-TEST_CASE("emission: what strikes a surface is what it gets by asking the light, aimed or not") {
+TEST_CASE("emission: what strikes a surface is what next-event estimation finds, aimed or not") {
     std::uint64_t seed = 500;
     const int samples = nightly() ? 1000000 : 150000;
-    for (const EmissionCase& lamp : emissionCases()) {
-        CAPTURE(lamp.text);
-        const TestScene test = emissionScene(lamp);
+    for (const EmissionCase& emitter : emissionCases()) {
+        CAPTURE(emitter.text);
+        const TestScene test = emissionScene(emitter);
         const Scene& scene = test.scene();
-        const Patch patch = patchFor(lamp, Vec3(scene.origin));
+        const Patch patch = patchFor(emitter, Vec3(scene.origin));
         const Light& light = *scene.lights.at(0);
         const Moments expected =
-            lamp.sampledWhole ? asked(light, patch, samples, ++seed) : looked(light, patch, 4 * samples, ++seed);
+            emitter.sampledWhole ? asked(light, patch, samples, ++seed) : looked(light, patch, 4 * samples, ++seed);
         CAPTURE(expected.mean());
         CAPTURE(expected.standardError());
         REQUIRE(expected.mean() > 0);
@@ -154,11 +154,11 @@ TEST_CASE("emission: what strikes a surface is what it gets by asking the light,
 }
 
 TEST_CASE("emission: a collimated beam strikes what it is asked to light, and no more") {
-    const EmissionCase lamp{"light beam { toward 0.2 0.1 1; radius 0.9; color blackbody 2700 K; power 10 W }"};
-    const TestScene test = emissionScene(lamp);
+    const EmissionCase emitter{"light beam { toward 0.2 0.1 1; radius 0.9; color blackbody 2700 K; power 10 W }"};
+    const TestScene test = emissionScene(emitter);
     const Scene& scene = test.scene();
     const Light& light = *scene.lights.at(0);
-    const Patch patch = patchFor(lamp, Vec3(scene.origin));
+    const Patch patch = patchFor(emitter, Vec3(scene.origin));
     constexpr int samples = 100000;
     const Moments expected = asked(light, patch, samples, 700);
     const double across = std::abs(static_cast<double>(dot(patch.n, kAhead)));

@@ -1,4 +1,4 @@
-// Points of emitters by their texture coordinates, and hits by their points: what lamps with textures need.
+// Points of emitters by their texture coordinates, and hits by their points: what lights with textures need.
 #include "geometry/flat_shapes.h"
 #include "geometry/mesh.h"
 #include "geometry/round_shapes.h"

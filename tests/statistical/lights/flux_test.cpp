@@ -53,7 +53,7 @@ Flux fluxOf(const TestScene& test) {
     return {crossing * perUnit->lumens, crossing * perUnit->watts};
 }
 
-// A lamp that shines down as a cosine does, a little brighter in one plane, to be scaled by its `power`.
+// A light that shines down as a cosine does, a little brighter in one plane, to be scaled by its `power`.
 std::string iesFile() {
     const auto path = std::filesystem::temp_directory_path() / fmt::format("abbe_flux_{}.ies", getpid());
     std::ofstream file(path);
@@ -67,7 +67,7 @@ std::string iesFile() {
 
 } // namespace
 
-TEST_CASE("a lamp of 1 klm sends out 1 klm, and one of 10 W sends out 10 W") {
+TEST_CASE("a light of 1 klm sends out 1 klm, and one of 10 W sends out 10 W") {
     const std::string ies = iesFile();
     const std::string shapes[] = {
         "light point { ",
@@ -95,7 +95,7 @@ TEST_CASE("a lamp of 1 klm sends out 1 klm, and one of 10 W sends out 10 W") {
     std::filesystem::remove(ies);
 }
 
-TEST_CASE("without `power` a photometric file says how bright its lamp is") {
+TEST_CASE("without `power` a photometric file says how bright its light is") {
     const std::string ies = iesFile();
     const TestScene scene =
         TestScene::parse(fmt::format("scene 1\ncamera {{ }}\nlight ies \"{}\" {{ color illuminant A }}\n", ies));

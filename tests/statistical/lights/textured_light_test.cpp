@@ -1,4 +1,4 @@
-// Lamps with pictures and patterns: how much light they give, where their samples go, and that what is sampled is what
+// Lights with pictures and patterns: how much light they give, where their samples go, and that what is sampled is what
 // is met.
 #include "math/warp.h"
 #include "render/intersector.h"
@@ -14,8 +14,8 @@
 namespace abbe::test {
 namespace {
 
-// A lamp near the origin.
-TestScene lamp(const std::string& text) {
+// A light near the origin.
+TestScene litScene(const std::string& text) {
     return TestScene::parse("scene 1\nfilm { size 16 16 }\ncamera { }\n" + text + "\n");
 }
 
@@ -74,7 +74,7 @@ void agrees(double got, double expected) { CHECK(got == doctest::Approx(expected
 
 } // namespace
 
-TEST_CASE("a lamp with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
+TEST_CASE("a light with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
     for (const std::string& shape : kShapes)
         for (const std::string& texture : kTextures) {
             if (!possible(shape, texture)) continue;
@@ -82,10 +82,10 @@ TEST_CASE("a lamp with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
                 if (*color && !nightly() && &shape != kShapes) continue;
                 const std::string text = shape + color + texture;
                 CAPTURE(text);
-                const TestScene luminous = lamp(text + "; power 1 klm }");
+                const TestScene luminous = litScene(text + "; power 1 klm }");
                 agrees(fluxOf(*luminous.scene().lights.at(0)).lumens, 1000);
                 if (&texture != kTextures && !nightly()) continue;
-                const TestScene radiant = lamp(text + "; power 10 W }");
+                const TestScene radiant = litScene(text + "; power 10 W }");
                 agrees(fluxOf(*radiant.scene().lights.at(0)).watts, 10);
                 CHECK(radiant.scene().lights.at(0)->power() == doctest::Approx(10).epsilon(1e-4));
             }
@@ -94,25 +94,26 @@ TEST_CASE("a lamp with a texture, of 1 klm or 10 W, sends out 1 klm or 10 W") {
 
 TEST_CASE("a screen with a picture sends out the light that was asked for") {
     const std::string picture = "texture image \"scenes/textures/textures.png\"; size 2 1; ";
-    agrees(fluxOf(*lamp("light quad { " + picture + "power 1 klm }").scene().lights.at(0)).lumens, 1000);
-    agrees(fluxOf(*lamp("light quad { " + picture + "power 10 W; color blackbody 2700 K }").scene().lights.at(0)).watts,
+    agrees(fluxOf(*litScene("light quad { " + picture + "power 1 klm }").scene().lights.at(0)).lumens, 1000);
+    agrees(fluxOf(*litScene("light quad { " + picture + "power 10 W; color blackbody 2700 K }").scene().lights.at(0))
+               .watts,
            10);
 }
 
 TEST_CASE("luminance and radiance are those where the texture is white") {
     // Half of the area is white: half of the flux of a plain one, π L A.
     const TestScene half =
-        lamp("light quad { size 2 1; luminance 100 nits; texture checker { even 1; odd 0; scale 2 } }");
+        litScene("light quad { size 2 1; luminance 100 nits; texture checker { even 1; odd 0; scale 2 } }");
     agrees(fluxOf(*half.scene().lights.at(0)).lumens, 100 * kPiD);
-    const TestScene absolute = lamp("light quad { size 2 1; radiance checker { even 0.5; odd 0; scale 2 } }");
+    const TestScene absolute = litScene("light quad { size 2 1; radiance checker { even 0.5; odd 0; scale 2 } }");
     agrees(fluxOf(*absolute.scene().lights.at(0)).watts, 0.25 * 470 * kPiD * 2);
-    const TestScene shape = lamp("shape quad { size 2 1; emission checker { even 0.5; odd 0.1; scale 2 } }");
+    const TestScene shape = litScene("shape quad { size 2 1; emission checker { even 0.5; odd 0.1; scale 2 } }");
     agrees(fluxOf(*shape.scene().lights.at(0)).watts, 0.3 * 470 * kPiD * 2);
-    const TestScene material = lamp("shape quad { size 2 1; material openpbr { emission-luminance 100 nits; "
-                                    "emission-color checker { even 1; odd 0; scale 2 } } }");
+    const TestScene material = litScene("shape quad { size 2 1; material openpbr { emission-luminance 100 nits; "
+                                        "emission-color checker { even 1; odd 0; scale 2 } } }");
     agrees(fluxOf(*material.scene().lights.at(0)).lumens, 100 * kPiD);
-    // A colour where it is one: its flux is that of the plain lamp of that colour.
-    const auto lumens = [](const std::string& text) { return fluxOf(*lamp(text).scene().lights.at(0)).lumens; };
+    // A colour where it is one: its flux is that of the plain light of that colour.
+    const auto lumens = [](const std::string& text) { return fluxOf(*litScene(text).scene().lights.at(0)).lumens; };
     const double plain = lumens("light quad { radiance rgb 1 0.5 0.2 }"),
                  white = lumens("light quad { radiance rgb 1 1 1 }");
     const double filtered = lumens("light quad { luminance 10 nits; texture ramp { stop 0 rgb 1 0.5 0.2 } }");
@@ -120,14 +121,14 @@ TEST_CASE("luminance and radiance are those where the texture is white") {
     CHECK(filtered / unfiltered == doctest::Approx(plain / white).epsilon(0.005));
 }
 
-TEST_CASE("samples of a lamp with a texture are met as they are, with the density that they were made with") {
+TEST_CASE("samples of a light with a texture are met as they are, with the density that they were made with") {
     std::uint64_t seed = 40;
     for (const std::string& shape : kShapes)
         for (const std::string& texture : kTextures) {
             if (!possible(shape, texture)) continue;
             CAPTURE(shape);
             CAPTURE(texture);
-            const TestScene test = lamp(shape + texture + "; radiance 1 }");
+            const TestScene test = litScene(shape + texture + "; radiance 1 }");
             const Light& light = *test.scene().lights.at(0);
             Random random(++seed);
             int met = 0, different = 0;
@@ -162,7 +163,7 @@ TEST_CASE("points on a screen follow their density: χ² over its texture coordi
     const char* const text =
         "light quad { size 2 1; radiance 1; texture product { first ramp { over u; stop 0.3 0; stop "
         "1 1 }; second checker { even 1; odd 0.02; scale 4 } } }";
-    const TestScene test = lamp(text);
+    const TestScene test = litScene(text);
     const Light& light = *test.scene().lights.at(0);
     const Vec3 origin(test.scene().origin); // render space lies about it
     std::uint64_t seed = 90;
@@ -208,9 +209,9 @@ TEST_CASE("points on a screen follow their density: χ² over its texture coordi
     }
 }
 
-TEST_CASE("a lamp that is black nearly everywhere is found by its samples; one that is black is left out (case 35)") {
+TEST_CASE("a light that is black nearly everywhere is found by its samples; one that is black is left out (case 35)") {
     const char* const spot = "light quad { size 2 1; power 100 lm; texture ramp { over u; stop 0.96 0; stop 0.97 1 } }";
-    const TestScene test = lamp(spot);
+    const TestScene test = litScene(spot);
     const Light& light = *test.scene().lights.at(0);
     Random random(3);
     int lit = 0;
@@ -221,7 +222,7 @@ TEST_CASE("a lamp that is black nearly everywhere is found by its samples; one t
     }
     CHECK(lit > 450); // by the shape alone: some 35
     for (const char* amount : {"power 1 klm", "luminance 10 nits", "radiance 1"}) {
-        const TestScene black = lamp(fmt::format(
+        const TestScene black = litScene(fmt::format(
             "light quad {{ {}; texture checker {{ even 0; odd 0 }} }}\nlight point {{ position 0 0 5; power 1 lm }}",
             amount));
         CHECK(black.report().find("4:1: warning[W0740]") != std::string::npos);
@@ -229,14 +230,15 @@ TEST_CASE("a lamp that is black nearly everywhere is found by its samples; one t
         const TestImage image = render(black, 8);
         CHECK(image.statistics.dropped == std::array<std::uint64_t, 3>{});
     }
-    CHECK(lamp("light quad { radiance checker { }; texture noise { } }").report().find("E0755") != std::string::npos);
-    CHECK(lamp("light mesh { points { - 0 2 0; - 1 2 0; - 0 2 1 }; faces { - 0 1 2 }; radiance checker { } }")
+    CHECK(litScene("light quad { radiance checker { }; texture noise { } }").report().find("E0755") !=
+          std::string::npos);
+    CHECK(litScene("light mesh { points { - 0 2 0; - 1 2 0; - 0 2 1 }; faces { - 0 1 2 }; radiance checker { } }")
               .report()
               .find("E0733") != std::string::npos);
 }
 
-TEST_CASE("polygons of a lamp are chosen by the light of their texture, and none is forgotten") {
-    const TestScene test = lamp(
+TEST_CASE("polygons of a light are chosen by the light of their texture, and none is forgotten") {
+    const TestScene test = litScene(
         "light mesh { points { - 0 0 0; - 1 0 0; - 1 1 0; - 0 1 0; - 0 0 2; - 1 0 2; - 1 1 2; - 0 1 2 }; "
         "faces { - 0 1 2; - 0 2 3; - 4 5 6 7 }; luminance 100 nits; texture ramp { over z; stop 0.9 0.1; stop 1 1 } }");
     const Light& light = *test.scene().lights.at(0);
@@ -245,7 +247,7 @@ TEST_CASE("polygons of a lamp are chosen by the light of their texture, and none
     for (std::uint32_t part = 0; part < 3; ++part) total += static_cast<double>(light.bounds(part)->power);
     CHECK(total == doctest::Approx(light.visiblePower()).epsilon(1e-3));
     CHECK(static_cast<double>(light.bounds(2)->power) / total == doctest::Approx(10 / 11.0).epsilon(0.02));
-    const TestScene dark = lamp(
+    const TestScene dark = litScene(
         "light mesh { points { - 0 0 0; - 1 0 0; - 1 1 0; - 0 1 0; - 0 0 2; - 1 0 2; - 1 1 2; - 0 1 2 }; "
         "faces { - 0 1 2; - 0 2 3; - 4 5 6 7 }; luminance 100 nits; texture ramp { over z; stop 0.9 0; stop 1 1 } }");
     CHECK(dark.scene().lights.at(0)->bounds(0)->power > 0);

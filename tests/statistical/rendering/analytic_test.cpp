@@ -46,19 +46,19 @@ double polygonIrradiance(const std::vector<Vec3d>& corners, Vec3d p) {
 
 } // namespace
 
-TEST_CASE("a lamp inside a matte sphere: all light that is not direct is even") {
+TEST_CASE("a light inside a matte sphere: all light that is not direct is even") {
     // Between any two patches of a sphere the form factor is the same, so after one reflection irradiance is uniform:
-    // ρ Φ / (4 π R² (1 - ρ)), wherever the lamp is.
+    // ρ Φ / (4 π R² (1 - ρ)), wherever the light is.
     const double rho = 0.6, radius = 2, intensity = 3;
-    const Vec3d lamp{0.5, -0.25, 0.75};
+    const Vec3d light{0.5, -0.25, 0.75};
     const auto scene = TestScene::parse(
         kAnalyticHeader + fmt::format("camera {{ from 0 0 1; look-at 0.3 0.2 -1; fov 70 deg }}\n"
                                       "shape sphere {{ radius {}; material diffuse {{ reflectance {} }} }}\n"
                                       "light point {{ position {} {} {}; color 1; intensity {} cd }}\n",
-                                      radius, rho, lamp.x, lamp.y, lamp.z, intensity * kLuminousScale));
+                                      radius, rho, light.x, light.y, light.z, intensity * kLuminousScale));
     const double even = rho * 4 * kPiD * intensity / (4 * kPiD * square(radius) * (1 - rho));
     const auto expected = overPixel(scene, [&](Vec3d p, Vec3d) {
-        const Vec3d to = lamp - p;
+        const Vec3d to = light - p;
         const double direct = intensity * -dot(to, p) / radius / std::pow(length(to), 3);
         return rho / kPiD * (direct + even);
     });
@@ -73,7 +73,7 @@ TEST_CASE("a quad light over a floor: Lambert's formula") {
                                         "shape quad { size 40 40; material diffuse { reflectance 0.7 };"
                                         "             transform { rotate x -90 deg } }\n"
                                         "light quad { points -1 2 -1  1.5 2 -1  1.5 2 0.5  -1 2 0.5; radiance 5 }\n");
-    // The eye is below the lamp and sees the floor alone.
+    // The eye is below the light and sees the floor alone.
     const std::vector<Vec3d> corners = {{-1, 2, -1}, {1.5, 2, -1}, {1.5, 2, 0.5}, {-1, 2, 0.5}};
     const auto expected = overPixel(scene, [&](Vec3d p, Vec3d) {
         return std::abs(p.y) < 1e-3 ? 0.7 / kPiD * 5 * polygonIrradiance(corners, p) : -1;
@@ -86,15 +86,15 @@ TEST_CASE("a quad light over a floor: Lambert's formula") {
          {Technique::Strategy::mis, Technique::Strategy::lightsOnly, Technique::Strategy::bsdfOnly}) {
         settings.technique.strategy = strategy;
         const TestImage image = render(scene, settings);
-        int onLamp = 0;
+        int onLight = 0;
         const auto masked = [&](int x, int y) {
             const double v = expected(x, y);
-            onLamp += v < 0;
+            onLight += v < 0;
             return v;
         };
         const bool bsdf = strategy == Technique::Strategy::bsdfOnly;
         checkSame(compareExpected(image.film, masked), bsdf ? 0.01 : 0.001);
-        CHECK(onLamp == 0);
+        CHECK(onLight == 0);
     }
 }
 

@@ -20,15 +20,15 @@ constexpr View kLine{"line", 0, 0.6}, kEdge{"edge", 0.6, 1.8};
 constexpr double kReflectance = 1e-5;
 constexpr double kQuadratureError = 5e-4; // relative; measured below
 
-BallCausticScene sceneOf(double lampRadius) {
+BallCausticScene sceneOf(double lightRadius) {
     BallCausticScene scene;
-    scene.lampRadius = lampRadius;
+    scene.lightRadius = lightRadius;
     return scene;
 }
 
 // Exact radiance of a view's pixels.
-std::vector<double> expected(const View& view, double lampRadius, double refined = 1) {
-    const BallCaustic caustic(sceneOf(lampRadius), static_cast<int>(256 * refined), 1e-6 / refined);
+std::vector<double> expected(const View& view, double lightRadius, double refined = 1) {
+    const BallCaustic caustic(sceneOf(lightRadius), static_cast<int>(256 * refined), 1e-6 / refined);
     const double w = view.pixel();
     const BallCausticProfile profile(caustic, std::hypot(view.to, w / 2) + 1e-9, w / refined, 1e-4 / refined);
     std::vector<double> radiance;
@@ -40,40 +40,40 @@ std::vector<double> expected(const View& view, double lampRadius, double refined
     return radiance;
 }
 
-// Of a ray that may meet the ball, in vectors and without symmetry: what of a lamp of radiance 1 comes along it, with
+// Of a ray that may meet the ball, in vectors and without symmetry: what of a light of radiance 1 comes along it, with
 // all its branches.
 double followed(const BallCausticScene& s, Vec3d p, Vec3d d) {
     const Vec3d middle{0, s.ball, 0};
-    const auto lampAlong = [&s](Vec3d from, Vec3d way) {
+    const auto lightAlong = [&s](Vec3d from, Vec3d way) {
         if (way.y <= 0) return 0.0;
-        const Vec3d at = from + way * ((s.lamp - from.y) / way.y);
-        return at.x * at.x + at.z * at.z <= square(s.lampRadius) ? 1.0 : 0.0;
+        const Vec3d at = from + way * ((s.lightHeight - from.y) / way.y);
+        return at.x * at.x + at.z * at.z <= square(s.lightRadius) ? 1.0 : 0.0;
     };
     const auto reflected = [](Vec3d way, Vec3d n) { return way - n * (2 * dot(way, n)); };
     const Vec3d o = p - middle;
     const double half = dot(o, d), root = half * half - dot(o, o) + 1;
-    if (root <= 0 || half > 0) return lampAlong(p, d);
+    if (root <= 0 || half > 0) return lightAlong(p, d);
     Vec3d at = p + d * (-half - std::sqrt(root)), n = at - middle;
     const double ci = -dot(d, n), ct = std::sqrt(1 - (1 - ci * ci) / square(s.index));
     const double rs = (ci - s.index * ct) / (ci + s.index * ct), rp = (s.index * ci - ct) / (s.index * ci + ct);
     const double r = (rs * rs + rp * rp) / 2;
-    double sum = r * lampAlong(at, reflected(d, n)), inside = 1 - r;
+    double sum = r * lightAlong(at, reflected(d, n)), inside = 1 - r;
     Vec3d way = d / s.index + n * (ci / s.index - ct);
     for (int i = 0; i < 200 && inside > 1e-9; ++i, inside *= r) {
         at = at + way * (-2 * dot(way, n));
         n = at - middle;
         // Outwards by Snell's law; the tangential part grows by the index.
-        sum += inside * (1 - r) * lampAlong(at, (way - n * dot(way, n)) * s.index + n * ci);
+        sum += inside * (1 - r) * lightAlong(at, (way - n * dot(way, n)) * s.index + n * ci);
         way = reflected(way, n);
     }
     return sum;
 }
 
-TestScene load(const char* camera, double lampRadius, std::optional<Vec2i> size = {}) {
+TestScene load(const char* camera, double lightRadius, std::optional<Vec2i> size = {}) {
     BuildOptions options;
     options.camera = camera;
     options.size = size;
-    return TestScene::load("scenes/check/ball-caustic.scene", options, {fmt::format("lamp-radius={}", lampRadius)});
+    return TestScene::load("scenes/check/ball-caustic.scene", options, {fmt::format("lamp-radius={}", lightRadius)});
 }
 
 // Estimates of as many places against the exact values; the largest of their relative standard errors.
@@ -101,22 +101,22 @@ TestImage rendered(const TestScene& scene, std::uint32_t samples) {
 }
 
 // The pixels of a view.
-void compareView(const View& view, double lampRadius, std::uint32_t samples) {
-    const TestImage image = rendered(load(view.name, lampRadius), samples);
+void compareView(const View& view, double lightRadius, std::uint32_t samples) {
+    const TestImage image = rendered(load(view.name, lightRadius), samples);
     std::vector<Estimate> found;
     for (int i = 0; i < 20; ++i) found.push_back(image.film.pixel(i, 0));
-    compare(fmt::format("{}, lamp of radius {}", view.name, lampRadius), found, expected(view, lampRadius));
+    compare(fmt::format("{}, lamp of radius {}", view.name, lightRadius), found, expected(view, lightRadius));
 }
 
 // As light falls alike on all sides of the axis, a place can be all pixels at about that distance from it: a ring of
 // the picture, in which many more light paths end. `resolution`: of the relative standard errors, which must be less.
-void compareRings(double lampRadius, std::uint32_t samples, double resolution) {
+void compareRings(double lightRadius, std::uint32_t samples, double resolution) {
     constexpr int kPlaces = 20, kWide = 2 * kPlaces;
     const double w = kLine.to / kPlaces;
-    const TestScene scene = load("rings", lampRadius, Vec2i{kWide, kWide});
+    const TestScene scene = load("rings", lightRadius, Vec2i{kWide, kWide});
     const TestImage image = rendered(scene, samples);
     CHECK(image.statistics.lightPaths > 0);
-    const BallCausticProfile profile(BallCaustic(sceneOf(lampRadius)), 1.5 * kLine.to, w, 1e-4);
+    const BallCausticProfile profile(BallCaustic(sceneOf(lightRadius)), 1.5 * kLine.to, w, 1e-4);
     std::vector<double> exact(kPlaces);
     std::vector<std::array<double, 32>> sums(kPlaces);
     for (int y = 0; y < kWide; ++y)
@@ -133,14 +133,14 @@ void compareRings(double lampRadius, std::uint32_t samples, double resolution) {
         for (const double v : replicates) m.add(v);
         found.push_back({m.mean(), m.variance() / m.count(), m.count() - 1});
     }
-    CHECK(compare(fmt::format("rings, lamp of radius {}", lampRadius), found, exact) < resolution);
+    CHECK(compare(fmt::format("rings, lamp of radius {}", lightRadius), found, exact) < resolution);
 }
 
 } // namespace
 
 TEST_CASE("quadrature under a ball: as brute force has it") {
-    // A lattice of directions about the vertical line, even in solid angle times cosine; it sees the rim of the lamp to
-    // about 1/√n of the hits' number.
+    // A lattice of directions about the vertical line, even in solid angle times cosine; it sees the rim of the light
+    // to about 1/√n of the hits' number.
     BallCausticScene s = sceneOf(0.5);
     const BallCaustic caustic(s);
     for (const double rho : {0.1, 0.4, 1.3, 1.7}) {
@@ -160,18 +160,18 @@ TEST_CASE("quadrature under a ball: light beside the ball alone is the form fact
     // [Howell2010, B-13], far enough out that the ball hides nothing.
     const BallCausticScene s = sceneOf(0.5);
     for (const double a : {2.5, 4.0}) {
-        const double sum = a * a + s.lamp * s.lamp + 0.25, h2 = s.lamp * s.lamp;
+        const double sum = a * a + s.lightHeight * s.lightHeight + 0.25, h2 = s.lightHeight * s.lightHeight;
         const double exact = kPiD / 2 * (1 - (a * a + h2 - 0.25) / std::sqrt(sum * sum - a * a));
         CHECK(BallCaustic(s).part(BallCaustic::kDirect, a) == doctest::Approx(exact).epsilon(1e-6));
     }
 }
 
 TEST_CASE("quadrature under a ball: twice as fine is the same to 0.05 %") {
-    for (const double lampRadius : {0.5, 0.1, 0.02}) {
-        if (lampRadius < 0.5 && !nightly()) continue;
-        const auto coarse = expected(kLine, lampRadius), fine = expected(kLine, lampRadius, 2);
+    for (const double lightRadius : {0.5, 0.1, 0.02}) {
+        if (lightRadius < 0.5 && !nightly()) continue;
+        const auto coarse = expected(kLine, lightRadius), fine = expected(kLine, lightRadius, 2);
         for (std::size_t i = 0; i < 20; ++i) {
-            INFO("lamp of radius " << lampRadius << ", place " << i);
+            INFO("light of radius " << lightRadius << ", place " << i);
             CHECK(coarse[i] == doctest::Approx(fine[i]).epsilon(kQuadratureError));
         }
     }
@@ -181,8 +181,8 @@ TEST_CASE("irradiance at twenty places under a ball") {
     compareView(kLine, 0.5, nightly() ? 1u << 19 : 1u << 16);
     compareView(kEdge, 0.5, nightly() ? 1u << 19 : 1u << 16);
     // Nightly, two and a half standard errors of any place are 0.5 %; most are far less.
-    for (const double lampRadius : {0.5, 0.1, 0.02})
-        compareRings(lampRadius, nightly() ? 7u << 13 : 1u << 10, nightly() ? 0.002 : 0.04);
+    for (const double lightRadius : {0.5, 0.1, 0.02})
+        compareRings(lightRadius, nightly() ? 7u << 13 : 1u << 10, nightly() ? 0.002 : 0.04);
 }
 
 } // namespace abbe::test

@@ -9,7 +9,7 @@
 namespace abbe::test {
 namespace {
 
-constexpr const char* kLampRoom = R"(scene 1
+constexpr const char* kLightRoom = R"(scene 1
 film { size 24 24; filter box 0.5 }
 camera { from 0 2 9; look-at 0 1 0; fov 40 deg }
 shape floor quad { points -5 0 5  5 0 5  5 0 -5  -5 0 -5; material diffuse { reflectance 0.6 } }
@@ -86,7 +86,7 @@ using enum Technique::LightChoice;
 } // namespace
 
 TEST_CASE("a thousand lights of all kinds: by the tree as by power, with less noise (T3.1)") {
-    const auto scene = TestScene::parse(kLampRoom + randomLights(1000, true, 4));
+    const auto scene = TestScene::parse(kLightRoom + randomLights(1000, true, 4));
     const TestImage byTree = renderBy(scene, tree, 128, 1), byPower = renderBy(scene, power, 512, 2);
     checkSame(compareImages(byTree.film, byPower.film), 0.04);
     const double gain = 4 * spread(byPower) / spread(byTree);
@@ -94,8 +94,8 @@ TEST_CASE("a thousand lights of all kinds: by the tree as by power, with less no
     CHECK(gain > 1.8);
 }
 
-// Without places that a lamp all but touches, where an even choice would converge too slowly to say anything: the means
-// are compared to a fifth of a per cent.
+// Without places that a light all but touches, where an even choice would converge too slowly to say anything: the
+// means are compared to a fifth of a per cent.
 TEST_CASE("a thousand lights over a floor: by the tree as by an even choice (T3.1)") {
     Random random(9);
     const auto u = [&random](double a, double b) { return a + (b - a) * static_cast<double>(random.uniform()); };
@@ -127,7 +127,7 @@ shape shiny sphere { center 0.8 0.4 0.5; radius 0.4; material conductor { index 
 
 TEST_CASE("emitters, a sun and a sky: the tree's choice against scattering alone") {
     const auto scene =
-        TestScene::parse(kLampRoom + randomLights(40, false, 5) +
+        TestScene::parse(kLightRoom + randomLights(40, false, 5) +
                          "light sun { elevation 40 deg; angular-diameter 20 deg; irradiance 0.2 W-per-m2 "
                          "}\nlight sky { luminance 3 nits }\n");
     using enum Technique::Strategy;
@@ -137,8 +137,8 @@ TEST_CASE("emitters, a sun and a sky: the tree's choice against scattering alone
     checkSame(compareImages(both.film, bsdf.film), 0.05);
 }
 
-// Lamps that are seen in the surfaces alone, and so large that scattering finds them about as often as the choice does:
-// hits must be weighed with the same choice as samples, whatever the lobes make of it.
+// Lights that are seen in the surfaces alone, and so large that scattering finds them about as often as the choice
+// does: hits must be weighed with the same choice as samples, whatever the lobes make of it.
 TEST_CASE("shiny surfaces: the tree's choice by lobes against scattering alone and by power") {
     Random random(8);
     const auto u = [&random](double a, double b) { return a + (b - a) * static_cast<double>(random.uniform()); };
@@ -169,15 +169,15 @@ shape block sphere { center 1.5 0.9 0; radius 0.9; material openpbr { base-color
 }
 
 TEST_CASE("lights in fog: the choice along the ray and the choice where it scatters make one picture") {
-    const auto scene = TestScene::parse(kLampRoom + randomLights(12, true, 6) +
+    const auto scene = TestScene::parse(kLightRoom + randomLights(12, true, 6) +
                                         "volume air atmosphere { extinction 0.05 per-m; albedo 1 }\n");
     const TestImage byTree = renderBy(scene, tree, 256, 1), byPower = renderBy(scene, power, 512, 2);
     checkSame(compareImages(byTree.film, byPower.film), 0.07);
 }
 
-TEST_CASE("moving lamps are chosen wherever they are") {
+TEST_CASE("moving lights are chosen wherever they are") {
     const auto scene = TestScene::parse(
-        std::string(kLampRoom).replace(std::string(kLampRoom).find("from 0 2 9"), 0, "shutter 1 s; ") +
+        std::string(kLightRoom).replace(std::string(kLightRoom).find("from 0 2 9"), 0, "shutter 1 s; ") +
         "light quad { points -0.3 0 0.3  -0.3 0 -0.3  0.3 0 -0.3  0.3 0 0.3; power 10 W\n"
         "  transform { at 0 s { translate -3 1.5 1 }; at 1 s { rotate z 100 deg; translate 3 3 -2 } } }\n"
         "light sphere { center 0 3 0; radius 0.1; power 3 W }\nlight spot { position 0 3 2; toward 0 -1 0; power 3 W\n"
@@ -189,13 +189,13 @@ TEST_CASE("moving lamps are chosen wherever they are") {
 // docs/hard_cases.md, case 35.
 TEST_CASE("dark lights are told of, left out, and do no harm") {
     const auto scene =
-        TestScene::parse(std::string(kLampRoom) + "light point { position 0 3 0; power 0 W }\n"
-                                                  "light sphere { center 0 3 0; radius 0.2; luminance 0 nits }\n"
-                                                  "light point { position 0 3 2; power 3 W }\n");
+        TestScene::parse(std::string(kLightRoom) + "light point { position 0 3 0; power 0 W }\n"
+                                                   "light sphere { center 0 3 0; radius 0.2; luminance 0 nits }\n"
+                                                   "light point { position 0 3 2; power 3 W }\n");
     CHECK(scene.report().find("W0740") != std::string::npos);
     const auto alone = TestScene::parse(
-        std::string(kLampRoom) + "shape sphere { center 0 3 0; radius 0.2; material diffuse { reflectance 0 } }\n"
-                                 "light point { position 0 3 2; power 3 W }\n");
+        std::string(kLightRoom) + "shape sphere { center 0 3 0; radius 0.2; material diffuse { reflectance 0 } }\n"
+                                  "light point { position 0 3 2; power 3 W }\n");
     const TestImage a = renderBy(scene, tree, 64, 1), b = renderBy(alone, tree, 64, 1);
     checkSame(compareImages(a.film, b.film), 0.02);
 }

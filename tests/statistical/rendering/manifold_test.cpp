@@ -1,4 +1,4 @@
-// Manifold sampling against quadrature of a ball's images of a lamp, and against paths that find the lamp by chance.
+// Manifold sampling against quadrature of a ball's images of a light, and against paths that find the light by chance.
 #include "support/manifold_cases.h"
 #include "support/manifold_walk.h"
 #include "support/sphere_images.h"
@@ -29,8 +29,9 @@ void checkAgainstWalk(const ManifoldMean& m, const Moments& walked, double resol
 
 } // namespace
 
-TEST_CASE("the images of a small lamp in a glass ball: refracted, reflected, reflected inside") {
-    const SphereImages ball{.centre = {0, 1.6, 0}, .radius = 1, .index = 1.5, .lamp = {1.5, 7, 0}, .lampRadius = 0.1};
+TEST_CASE("the images of a small light in a glass ball: refracted, reflected, reflected inside") {
+    const SphereImages ball{
+        .centre = {0, 1.6, 0}, .radius = 1, .index = 1.5, .lightCentre = {1.5, 7, 0}, .lightRadius = 0.1};
     const ManifoldCase test("shape sphere { center 0 1.6 0; radius 1; material dielectric { ior 1.5 } }\n"
                             "light disk { center 1.5 7 0; normal 0 -1 0; radius 0.1; radiance 1 }\n");
     struct Point {
@@ -78,7 +79,7 @@ TEST_CASE("the images of a small lamp in a glass ball: refracted, reflected, ref
     CHECK(ball.integral({2, 0, 2}, "TT") == 0);
 }
 
-TEST_CASE("a lamp all around a ball of glass: each kind of chain carries what Fresnel gives it") {
+TEST_CASE("a light all around a ball of glass: each kind of chain carries what Fresnel gives it") {
     const ManifoldCase test("shape sphere { center 0 0 4; radius 1; material dielectric { ior 1.5 } }\n"
                             "light sphere { center 0 0 2; radius 40; two-sided on; radiance 1 }\n");
     constexpr double sine2 = 1.0 / 16; // of the cone that the ball fills
@@ -114,7 +115,7 @@ TEST_CASE("all that is covered, and nothing else: two casters, every chain of up
     const Vec3 points[] = {{0.2f, 0, 0.3f}, {0.3f, 0.2f, -3}};
     for (int i = 0; i < 4; ++i) {
         CAPTURE(i);
-        // All images of the lamp, or the smaller ones alone.
+        // All images of the light, or the smaller ones alone.
         ManifoldCase test(scenes[i % 2], i % 2 ? (i < 2 ? kInfinity : 0.05f) : (i < 2 ? kInfinity : 0.02f));
         REQUIRE(test.scene.report() == "");
         REQUIRE(test.sampler->plan().casters.size() == 2);

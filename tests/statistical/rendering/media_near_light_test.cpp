@@ -1,4 +1,4 @@
-// Lamps in thin fog: distances drawn towards the light beside those of tracking.
+// Lights in thin fog: distances drawn towards the light beside those of tracking.
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
 
@@ -31,7 +31,7 @@ double single(double x, double y, double s) {
 
 } // namespace
 
-TEST_CASE("a lamp in thin fog: single scattering along every ray, and little noise") {
+TEST_CASE("a light in thin fog: single scattering along every ray, and little noise") {
     constexpr double s = 2e-4;
     const auto scene = TestScene::parse(std::string(kView) + "light point { position 0.4 1.6 0; intensity 100 cd }\n" +
                                         fmt::format("volume air atmosphere {{ extinction {} per-m; albedo 1 }}\n", s));
@@ -39,7 +39,7 @@ TEST_CASE("a lamp in thin fog: single scattering along every ray, and little noi
     settings.samples = 512;
     settings.maxDepth = 1;
     const TestImage image = render(scene, settings);
-    // Relative to the middle of the image: the lamp's spectrum drops out.
+    // Relative to the middle of the image: the light's spectrum drops out.
     const double half = std::tan(17 * kPiD / 180);
     const auto expected = [&](int px, int py) {
         double sum = 0;
@@ -55,25 +55,25 @@ TEST_CASE("a lamp in thin fog: single scattering along every ray, and little noi
     checkSame(compareExpected(image.film, [&](int x, int y) { return scale * expected(x, y); }), 0.003);
 }
 
-TEST_CASE("spots, balls, mirrors and moving lamps in fog: the same with and without scattering towards them") {
-    const char* const lamps[] = {
+TEST_CASE("spots, balls, mirrors and moving lights in fog: the same with and without scattering towards them") {
+    const char* const lights[] = {
         "light sphere { center 0.3 1.9 0; radius 0.5; power 100 W }\n",
         "light sphere { center 0.3 1.9 0; radius 0.5; power 100 W }\n"
         "shape sphere { center -0.4 -0.3 0; radius 0.4; material conductor { index metal Ag; roughness 0 } }\n",
         "light sphere { center 0.3 1.9 0; radius 0.5; power 100 W }\n"
         "shape sphere { radius 0.9; material boundary; interior homogeneous { extinction 0.8 per-m; albedo 0.9; "
         "phase henyey-greenstein 0.6 } }\n"};
-    for (const char* const lamp : lamps)
+    for (const char* const emitter : lights)
         for (const char* const extinction : {"0.05 per-m", "1 per-m", "table 400 0.5 700 2 per-m"}) {
-            INFO(lamp, extinction);
+            INFO(emitter, extinction);
             TestScene scene = TestScene::parse(
-                std::string(kView) + lamp +
+                std::string(kView) + emitter +
                 fmt::format("volume air atmosphere {{ extinction {}; albedo 0.8; scale-height 3 m }}\n", extinction));
             RenderSettings settings = scene.settings();
             settings.samples = 768;
             settings.maxDepth = 4;
             const TestImage both = render(scene, settings);
-            settings.technique.strategy = Technique::Strategy::bsdfOnly; // finds the lamp by chance alone
+            settings.technique.strategy = Technique::Strategy::bsdfOnly; // finds the light by chance alone
             settings.samples = 4096;
             ++settings.seed;
             checkSame(compareImages(both.film, render(scene, settings).film), 0.05);

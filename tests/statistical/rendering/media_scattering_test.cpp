@@ -78,8 +78,8 @@ TEST_CASE("single scattering of a sun by a ball of fog") {
     }
 }
 
-TEST_CASE("single scattering of a lamp inside a ball of fog") {
-    const Vec3d lamp{0.1, 0.8, -0.1};
+TEST_CASE("single scattering of a light inside a ball of fog") {
+    const Vec3d emitter{0.1, 0.8, -0.1};
     const std::string light = "light point { position 0.1 0.8 -0.1; power 10 }\n";
     const double intensity = kPiD * wallRadiance("light point { position 0 0 1; power 10 }");
     REQUIRE(intensity > 0);
@@ -87,15 +87,15 @@ TEST_CASE("single scattering of a lamp inside a ball of fog") {
         INFO(g);
         checkSingle(light, g, 0.008, [&](Vec3d from, Vec3d direction) {
             const auto [near, far] = chord(from, direction);
-            // Over the angle at the lamp, which takes the peak away.
-            const double closest = dot(lamp - from, direction);
-            const double d = length(from + direction * closest - lamp);
+            // Over the angle at the light, which takes the peak away.
+            const double closest = dot(emitter - from, direction);
+            const double d = length(from + direction * closest - emitter);
             const double a = std::atan((near - closest) / d), b = std::atan((far - closest) / d);
             constexpr int steps = 400;
             double sum = 0;
             for (int i = 0; i < steps; ++i) {
                 const double t = closest + d * std::tan(a + (b - a) * (i + 0.5) / steps);
-                const Vec3d in = from + direction * t - lamp;
+                const Vec3d in = from + direction * t - emitter;
                 sum += std::exp(-kExtinction * (t - near + length(in))) *
                        henyeyGreenstein(dot(in, -direction) / length(in), g) * (b - a) / steps / d;
             }

@@ -82,7 +82,7 @@ TEST_CASE("what comes through an absorbing ball: Beer-Lambert along every chord"
               0.004);
 }
 
-TEST_CASE("the two strategies and both together agree in fog with a lamp") {
+TEST_CASE("the two strategies and both together agree in fog with a light") {
     const std::string text =
         "scene 1\nfilm { size 16 16; filter box 0.5 }\n" + std::string(kOutside) +
         "shape sphere { center 0.3 1.6 0.2; radius 0.4; emission 5; material diffuse { reflectance 0 } }\n"

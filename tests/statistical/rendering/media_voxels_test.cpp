@@ -9,7 +9,7 @@
 namespace abbe::test {
 namespace {
 
-// A smoke of some height, its foot at the origin, with a lamp that scattering finds too.
+// A smoke of some height, its foot at the origin, with a light that scattering finds too.
 struct SmokeScene {
     std::string file;                  // in quotes
     double height = 0, extinction = 0; // m; at density 1, 1/m

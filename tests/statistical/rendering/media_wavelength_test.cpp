@@ -29,7 +29,7 @@ void checkWavelengths(const std::string& text, double resolution) {
 
 } // namespace
 
-TEST_CASE("wavelengths in media: extinction 1 : 16, not white, under a lamp and a coloured sky") {
+TEST_CASE("wavelengths in media: extinction 1 : 16, not white, under a light and a coloured sky") {
     checkWavelengths("shape sphere { radius 1; material boundary; interior homogeneous { extinction table 400 0.3  "
                      "700 4.8; albedo table 400 0.95  700 0.6; phase henyey-greenstein 0.5 } }\n",
                      0.005);

@@ -55,14 +55,14 @@ void compare(const std::string& name, const std::string& film, const std::string
     CHECK(s.cappedPaths == 0);
 }
 
-// An integrating sphere of radius 1 around a shell of glass, and in its hollow a lamp in the middle and the eye. Light
-// from the walls is even and comes back to them in full, but for what meets the lamp. So the eye sees the radiance of
+// An integrating sphere of radius 1 around a shell of glass, and in its hollow a light in the middle and the eye. Light
+// from the walls is even and comes back to them in full, but for what meets the light. So the eye sees the radiance of
 // the walls in every direction, whatever the glass makes of it: a closed room without absorption is in equilibrium.
 struct Shell {
     double outer, inner;
     double eye; // from the middle
 
-    std::string scene(const std::string& lamp, bool followed = false) const {
+    std::string scene(const std::string& light, bool followed = false) const {
         const std::string glass =
             fmt::format("    shape sphere {{ radius {}; material dielectric {{ ior {}; priority 1 }} }}\n"
                         "    shape sphere {{ radius {}; material dielectric {{ ior 1; priority 2 }} }}\n",
@@ -70,7 +70,7 @@ struct Shell {
         return fmt::format("camera spherical {{ from 0 {} 0 }}\n"
                            "shape sphere {{ radius 1; material diffuse {{ reflectance {} }} }}\n",
                            eye, kMergedReflectance) +
-               (followed ? glass : "object shell {\n" + glass + "}\ninstance shell\n") + lamp;
+               (followed ? glass : "object shell {\n" + glass + "}\ninstance shell\n") + light;
     }
     // Share of the light of an even ball of radius a in the middle that gets out, and of light from outside towards
     // that ball that gets in. What is reflected comes back to the ball: it keeps its distance from the middle.

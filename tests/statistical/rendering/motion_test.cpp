@@ -62,7 +62,7 @@ TEST_CASE("motion: a moving shape is the mean of the shapes that stand still") {
     check(againstStills(kFloor + "light sky { radiance 1 }\nshape box { size 1.2 0.3 0.3; " + kTurn + " }\n", 4096));
 }
 
-TEST_CASE("motion: a moving group with a lamp in it, a lamp that grows, and a lamp point") {
+TEST_CASE("motion: a moving group with a light in it, a light that grows, and a light point") {
     check(againstStills(kFloor + "group { " + kTurn +
                             "\nshape box { size 1 0.2 0.2 }\n"
                             "light quad { points -0.3 0.4 -0.3  0.3 0.4 -0.3  0.3 0.4 0.3  -0.3 0.4 0.3; radiance 2; "
@@ -90,7 +90,7 @@ TEST_CASE("motion: a sun and a spot that turn") {
 
 TEST_CASE("motion: strategies agree on lights that move") {
     const std::string eye = "camera { from 0 0.5 4; look-at 0 0 0; fov 40 deg; shutter 1 s }\n";
-    for (const std::string& lamp : std::initializer_list<std::string>{
+    for (const std::string& light : std::initializer_list<std::string>{
              "light quad { points -0.5 0.9 -0.5  0.5 0.9 -0.5  0.5 0.9 0.5  -0.5 0.9 0.5; radiance 2; two-sided on; " +
                  kTurn + " }\n",
              "light sphere { radius 0.4; radiance 2; transform { at 0 s { scale 0.5; translate -0.8 0.5 0 }\nat 1 s { "
@@ -99,8 +99,8 @@ TEST_CASE("motion: strategies agree on lights that move") {
              "light sun { toward 0.3 -1 0; angular-diameter 40 deg; irradiance 1000 lx; transform { at 0 s { rotate z "
              "0 deg }\nat 1 s { rotate z 60 deg } } }\n",
          }) {
-        INFO(lamp);
-        const std::string text = eye + kFloor + lamp;
+        INFO(light);
+        const std::string text = eye + kFloor + light;
         const TestImage mis = renderWith(text, Strategy::mis, 2048, 1),
                         lights = renderWith(text, Strategy::lightsOnly, 2048, 2),
                         bsdf = renderWith(text, Strategy::bsdfOnly, 8192, 3);

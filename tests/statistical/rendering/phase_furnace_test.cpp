@@ -41,11 +41,12 @@ TEST_CASE("a white ball of drops in a white surrounding cannot be seen, at any w
 }
 
 TEST_CASE("strategies agree where light is scattered at every wavelength in its own way") {
-    const std::string lamp = "shape sphere { center 0.3 2.2 1; radius 0.5; emission 5; material diffuse { reflectance "
-                             "0 } }\nlight sky { radiance 0.2 }\n";
+    const std::string emitter =
+        "shape sphere { center 0.3 2.2 1; radius 0.5; emission 5; material diffuse { reflectance "
+        "0 } }\nlight sky { radiance 0.2 }\n";
     for (const char* phase : {kDrops, kMix}) {
         INFO(std::string(phase));
-        const TestScene built = TestScene::parse(scene(phase, lamp));
+        const TestScene built = TestScene::parse(scene(phase, emitter));
         const std::vector<TestImage> images = renderByEachStrategy(built, 2048);
         for (const Channel channel : {Channel::x, Channel::y, Channel::z}) {
             checkSame(compareImages(images[0].film, images[1].film, channel), 0.025);

@@ -30,7 +30,7 @@ TestImage renderScene(const fs::path& path, Technique::Strategy strategy, std::u
 
 // Lights that scattered rays meet too seldom, or never.
 bool smallLights(const fs::path& path) {
-    // A sphere of a micrometre; lamps of millimetres that glass and gold gather.
+    // A sphere of a micrometre; lights of millimetres that glass and gold gather.
     for (const char* name : {"tiny-light", "wine-glass", "gold-ring", "diamond", "mirror-caustic"})
         if (path.stem() == name) return true;
     const TestScene scene = TestScene::load(path);
@@ -41,11 +41,11 @@ bool smallLights(const fs::path& path) {
     });
 }
 
-// Metal nearly as smooth as a mirror shows a lamp to those who look for it: samples of the lamp alone find it in so few
-// paths that replicates do not see the tail. (Of parametric-shapes with 8192 samples, the mean found by lamps is within
-// 0.6 % of that of both strategies, the mean found by scattering within 0.04 %. Of films, whose varnish mirrors the
-// sky, 0.7 % and 0.01 %.)
-bool mirrorsLamps(const fs::path& path) {
+// Metal nearly as smooth as a mirror shows a light to those who look for it: samples of the light alone find it in so
+// few paths that replicates do not see the tail. (Of parametric-shapes with 8192 samples, the mean found by lights is
+// within 0.6 % of that of both strategies, the mean found by scattering within 0.04 %. Of films, whose varnish mirrors
+// the sky, 0.7 % and 0.01 %.)
+bool mirrorsLights(const fs::path& path) {
     return path.stem() == "parametric-shapes" || path.stem() == "daylight" || path.stem() == "films";
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("scenes: strategies agree") {
         ++scenes;
         const int before = compared;
         const TestImage mis = renderScene(path, Strategy::mis, 1);
-        if (!mirrorsLamps(path)) compared += agree(renderScene(path, Strategy::lightsOnly, 2), mis);
+        if (!mirrorsLights(path)) compared += agree(renderScene(path, Strategy::lightsOnly, 2), mis);
         if (!smallLights(path)) compared += agree(renderScene(path, Strategy::bsdfOnly, 3), mis);
         if (compared == before) uncounted += " " + path.stem().string();
         CHECK(mis.statistics.dropped == std::array<std::uint64_t, 3>{});

@@ -50,16 +50,16 @@ void checkStrategies(const StrategyScene& s) {
     }
 }
 
-const std::string kLamp = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n";
+const std::string kLight = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n";
 
 } // namespace
 
 TEST_CASE("strategies: matte box, quad light") {
     checkStrategies(
-        {"box", kOpenBox + kLamp + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
+        {"box", kOpenBox + kLight + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
 }
 
-TEST_CASE("strategies: lamps with textures") {
+TEST_CASE("strategies: lights with textures") {
     const std::string ball = "shape sphere { center 0.3 -0.6 0; radius 0.4; material conductor { index metal Au; "
                              "roughness 0.5 } }\n";
     checkStrategies({"screen",
@@ -79,7 +79,7 @@ TEST_CASE("strategies: lamps with textures") {
 
 TEST_CASE("strategies: rough metals") {
     checkStrategies({"metals",
-                     kOpenBox + kLamp +
+                     kOpenBox + kLight +
                          "shape sphere { center -0.45 -0.5 0; radius 0.45;"
                          " material conductor { index metal Au; roughness 0.6 } }\n"
                          "shape sphere { center 0.5 -0.5 0.1; radius 0.45;"
@@ -93,18 +93,18 @@ TEST_CASE("strategies: rough glass, plain, dispersive and absorbing") {
                               "ior glass SF11; roughness 0.7; absorption table 400 6  600 0.5  700 2"})
         checkStrategies(
             {glass,
-             kOpenBox + kLamp +
+             kOpenBox + kLight +
                  fmt::format("shape sphere {{ center 0 -0.3 0; radius 0.6; material dielectric {{ {} }} }}\n", glass),
              1536, 0, 0.004, 11});
 }
 
-TEST_CASE("strategies: a matte thing inside rough absorbing glass, with the lamp inside too") {
+TEST_CASE("strategies: a matte thing inside rough absorbing glass, with the light inside too") {
     // Next-event estimation through an interface: the segment to the light runs in the other medium.
     const std::string block = "shape sphere { center 0 -0.2 0; radius 0.75;"
                               " material dielectric { ior 1.5; roughness 0.8; absorption 1.2 } }\n";
     checkStrategies(
         {"inside", kOpenBox + block + "light sphere { center 0 -0.2 0; radius 0.3; radiance 6 }\n", 512, 0, 0.004});
-    checkStrategies({"outside", kOpenBox + kLamp + block, 512, 0, 0.004});
+    checkStrategies({"outside", kOpenBox + kLight + block, 512, 0, 0.004});
 }
 
 TEST_CASE("strategies: many lights of different kinds and powers") {

@@ -71,7 +71,7 @@ TEST_CASE("subsurface: a white plate, block and needle in one mesh lose nothing"
     }
 }
 
-// A lamp in a hollow cube that scatters nothing: walls of a hundred mean free paths let none of its light out.
+// A light in a hollow cube that scatters nothing: walls of a hundred mean free paths let none of its light out.
 TEST_CASE("subsurface: light goes through a wall by its inside alone") {
     const std::string points = corners({-1, -1, -1}, {1, 1, 1}) + corners({-0.9, -0.9, -0.9}, {0.9, 0.9, 0.9}),
                       faces = sides(0) + sides(8, false),

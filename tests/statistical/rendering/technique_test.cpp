@@ -13,7 +13,7 @@ namespace abbe::test {
 namespace {
 
 constexpr const char* kTechniqueHeader = "scene 1\nfilm { size 24 24; filter box 0.5 }\n";
-const std::string kTechniqueLamp =
+const std::string kTechniqueLight =
     "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8 0.9 -0.8  0.8 0.9 0.7; radiance 2 }\n"
     "light sphere { center -0.7 -0.3 0.5; radius 0.15; radiance 3 }\n";
 
@@ -25,28 +25,28 @@ struct TechniqueScene {
 
 // Matte, rough metal, and gloss over a matte ground: a delta lobe beside others.
 TechniqueScene surfaces() {
-    return {kOpenBox + kTechniqueLamp +
+    return {kOpenBox + kTechniqueLight +
             "shape sphere { center -0.4 -0.55 0; radius 0.42; material conductor { index metal Au; roughness 0.6 } }\n"
             "shape sphere { center 0.5 -0.55 0.1; radius 0.42; material openpbr { base-color 0.5; specular-roughness 0 "
             "} }\n"};
 }
 // Rough dispersive glass, whose densities depend on wavelength.
 TechniqueScene roughGlass() {
-    return {kOpenBox + kTechniqueLamp +
+    return {kOpenBox + kTechniqueLight +
                 "shape sphere { center 0 -0.45 0; radius 0.5; material dielectric { ior cauchy 1.4 0.03; roughness 0.9;"
                 " absorption table 400 0.5 700 0.1 } }\n",
             512};
 }
 // Polished glass, which ends all wavelengths but one.
 TechniqueScene polishedGlass() {
-    return {kOpenBox + kTechniqueLamp +
+    return {kOpenBox + kTechniqueLight +
                 "shape sphere { center 0.3 -0.6 0.2; radius 0.35; material dielectric { ior glass SF11 } }\n",
             512};
 }
-// Fog whose extinction depends on wavelength, a lamp in it, and a diffuse transmitter.
+// Fog whose extinction depends on wavelength, a light in it, and a diffuse transmitter.
 TechniqueScene fog() {
     return {
-        kOpenBox + kTechniqueLamp +
+        kOpenBox + kTechniqueLight +
             "volume atmosphere { scattering table 400 0.5 700 0.2; absorption 0.05; phase henyey-greenstein { g 0.4 "
             "} }\n"
             "shape quad { points -0.5 -0.4 0.2  0.5 -0.4 0.2  0.5 0.3 -0.1  -0.5 0.3 -0.1; material "
@@ -92,7 +92,8 @@ std::map<std::string, Technique> techniques() {
     return all;
 }
 
-// Of the mean of the image. Even directions rarely meet small lamps and narrow lobes, one wavelength is coloured noise.
+// Of the mean of the image. Even directions rarely meet small lights and narrow lobes, one wavelength is coloured
+// noise.
 double resolution(const Technique& t) {
     if (t.directions == Technique::Directions::uniform) return t.weights == Technique::Weights::equal ? 0.06 : 0.025;
     return t.wavelengths == 1 ? 0.015 : 0.008;
@@ -153,8 +154,8 @@ TEST_CASE("techniques: what a light is never asked for is found by scattering") 
     std::filesystem::remove(path);
 }
 
-// Nothing is absorbed and nothing leaves: only the rule for long paths ends them, and light from the lamp adds up to no
-// end but for the lamp itself, which is black.
+// Nothing is absorbed and nothing leaves: only the rule for long paths ends them, and light from the light adds up to
+// no end but for the light itself, which is black.
 TEST_CASE("techniques: paths end in a closed white box, whatever the roulette") {
     std::string text = "scene 1\nfilm { size 4 4; filter box 0.5 }\n" + kOpenBox +
                        "shape front quad { material white; points -1 -1 5  -1 1 5  1 1 5  1 -1 5 }\n"

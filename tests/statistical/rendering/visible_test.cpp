@@ -11,13 +11,13 @@ namespace {
 
 using Weights = Technique::Weights;
 
-// A satin floor and a rough ball under a lamp that is large, near and out of the picture; scattering finds much of it.
-TestScene hiddenStage(const std::string& more, const std::string& lamp = "") {
+// A satin floor and a rough ball under a light that is large, near and out of the picture; scattering finds much of it.
+TestScene hiddenStage(const std::string& more, const std::string& light = "") {
     return TestScene::parse(
         "scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 6; roulette off }\n"
         "camera { from 0 1.6 4; look-at 0 0.5 0; fov 38 deg }\n"
         "light key quad { points -1.2 2.4 -1  1.2 2.4 -1  1.2 2.4 1  -1.2 2.4 1; luminance 900 nits; " +
-        lamp +
+        light +
         " }\n"
         "light sky { luminance 60 nits; color rgb 0.3 0.5 1 }\n"
         "shape floor quad { points -3 0 -3  -3 0 3  3 0 3  3 0 -3; material conductor { index metal Al; roughness 0.5 "
@@ -34,7 +34,7 @@ TestImage renderWeighed(const TestScene& scene, Weights weights, std::uint32_t s
     return render(scene, settings);
 }
 
-// Light that both techniques find: by both of them, by scattering alone and by asking alone.
+// Light that both techniques find: by both of them, by scattering alone and by next-event estimation alone.
 void techniquesAgree(const TestScene& scene, double error) {
     const std::uint32_t samples = nightly() ? 4096 : 512;
     const TestImage both = renderWeighed(scene, Weights::balance, samples, 1);
@@ -60,7 +60,8 @@ std::string cardSeenBy(const std::string& visible) {
 
 } // namespace
 
-TEST_CASE("shapes that shadows and reflections see differently: scattering and asking come to the same light") {
+TEST_CASE("shapes that shadows and reflections see differently: scattering and next-event estimation come to the same "
+          "light") {
     for (const std::string visible :
          {"camera reflections", "shadows", "camera shadows", "reflections", "camera", "none"}) {
         CAPTURE(visible);
@@ -68,14 +69,14 @@ TEST_CASE("shapes that shadows and reflections see differently: scattering and a
     }
 }
 
-TEST_CASE("lamps that reflections or shadows do not see light the scene all the same") {
+TEST_CASE("lights that reflections or shadows do not see light the scene all the same") {
     for (const std::string visible : {"camera", "shadows", "none", "camera shadows", "reflections"}) {
         CAPTURE(visible);
         techniquesAgree(hiddenStage(cardSeenBy(""), fmt::format("visible-to {}", visible)), 0.01);
     }
 }
 
-TEST_CASE("hidden shapes in fog, between places in it and a lamp") {
+TEST_CASE("hidden shapes in fog, between places in it and a light") {
     for (const std::string visible : {"camera reflections", "shadows"}) {
         CAPTURE(visible);
         techniquesAgree(hiddenStage(cardSeenBy(visible) +
@@ -96,7 +97,7 @@ TEST_CASE("behind a boundary and in front of openings hidden shapes count as eve
     }
 }
 
-TEST_CASE("a lamp out of the picture may be hidden from the camera: the same bits") {
+TEST_CASE("a light out of the picture may be hidden from the camera: the same bits") {
     CHECK(differingPixels(hiddenStage(cardSeenBy("")), hiddenStage(cardSeenBy(""), "visible-to shadows reflections"),
                           kWholePicture) == 0);
 }

@@ -11,7 +11,7 @@ using test::TestScene;
 
 namespace {
 
-// A lamp over a floor, all of it lit: no edge of a shadow, so that points beat random numbers by far.
+// A light over a floor, all of it lit: no edge of a shadow, so that points beat random numbers by far.
 constexpr const char* kSmooth = R"(scene 1
 camera { from 0 2 2.5; look-at 0 0 0; fov 30 deg }
 film   { size 16 16 }
@@ -175,7 +175,7 @@ TEST_CASE("variants that make no difference are left out") {
     for (const StudyVariant& v : chosen.variants) CHECK(std::string_view(v.id) != "sobol");
     CHECK_FALSE(leftOut(chosen, "random"));
     CHECK_FALSE(leftOut(chosen, "no-nee"));
-    // With a lamp that cannot be met by chance, and one more to choose from.
+    // With a light that cannot be met by chance, and one more to choose from.
     const auto lit = TestScene::parse(std::string(kSmooth) + "light bulb point { position 1 1 1; power 10 W }\n");
     const ChosenVariants more = chooseVariants(subjectOf(lit), all);
     CHECK(leftOut(more, "no-nee"));

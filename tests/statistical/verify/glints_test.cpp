@@ -1,4 +1,4 @@
-// Small images of lamps in mirrors and glass, probed and by camera paths alone, of lamps that these do find.
+// Small images of lights in mirrors and glass, probed and by camera paths alone, of lights that these do find.
 #include "caustics/glints/glint_plan.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
@@ -27,7 +27,7 @@ void agree(const std::string& name, const TestScene& scene, double error) {
     const Agreement a = compare(expected.sums, found.sums, 2e-3);
     const auto& glints = found.statistics.caustics.of<GlintFindings>();
     MESSAGE(agreementText(name, a) << fmt::format("; {} glints, {:.3g} rays", glints.found, glints.rays));
-    INFO(culpritText(a));
+    INFO(worstBlocksText(a));
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);
@@ -37,7 +37,7 @@ void agree(const std::string& name, const TestScene& scene, double error) {
 
 // A ball above a floor that is nearly black: most of the light is that of glints. All events of a chain are likely, and
 // most filters have no tails, or camera paths would know neither the light nor what they miss.
-TestScene inlineScene(const std::string& lamp, const std::string& material, const std::string& camera = "",
+TestScene inlineScene(const std::string& light, const std::string& material, const std::string& camera = "",
                       const std::string& film = "filter box") {
     return TestScene::parse("scene 1\nfilm { size 48 36; " + film +
                             " }\nrender { max-depth 3 }\n"
@@ -45,13 +45,13 @@ TestScene inlineScene(const std::string& lamp, const std::string& material, cons
                             camera + " }\nshape sphere { radius 1.3; material " + material +
                             " }\n"
                             "shape plane { center 0 -1.4 0; material diffuse { reflectance 0.02 } }\n" +
-                            lamp);
+                            light);
 }
 
 const char* const kSun = "light sun { elevation 40 deg; azimuth 150 deg; irradiance 1 klx; angular-diameter 10 deg }\n";
 const char* const kSunBehind =
     "light sun { elevation 35 deg; azimuth 20 deg; irradiance 1 klx; angular-diameter 10 deg }\n";
-const char* const kLamp = "light sphere { center 3 4 4; radius 0.4; radiance 10 }\n";
+const char* const kLight = "light sphere { center 3 4 4; radius 0.4; radiance 10 }\n";
 const char* const kGlass = "dielectric { ior 2.4 }";
 
 } // namespace
@@ -62,8 +62,8 @@ TEST_CASE("glints: glass that disperses") {
     agree("SF11", inlineScene(kSunBehind, "dielectric { ior glass SF11 }"), 0.05);
 }
 
-TEST_CASE("glints: a lamp at a place, in silver, and a lens with an opening") {
-    agree("lamp", inlineScene(kLamp, "conductor { index metal Ag }", "aperture 100 mm; focus 5", ""), 0.05);
+TEST_CASE("glints: a light at a place, in silver, and a lens with an opening") {
+    agree("lamp", inlineScene(kLight, "conductor { index metal Ag }", "aperture 100 mm; focus 5", ""), 0.05);
 }
 
 TEST_CASE("glints: fog on the way") {

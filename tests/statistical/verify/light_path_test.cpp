@@ -134,7 +134,7 @@ const char* const kLoopFloor =
 
 } // namespace
 
-TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
+TEST_CASE("light paths: matte and glossy surfaces, lights of several kinds") {
     const std::string camera = "camera { from 0 2.2 4; look-at 0 0.2 0; fov 34 deg }\n";
     const std::string things =
         std::string(kLoopFloor) +
@@ -146,16 +146,16 @@ TEST_CASE("light paths: matte and glossy surfaces, lamps of several kinds") {
 }
 
 TEST_CASE("light paths: caustics of glass and of glass that disperses") {
-    // The ball is seen, too, with the lamp in it.
+    // The ball is seen, too, with the light in it.
     const std::string camera = "camera { from 0 2.3 3.5; look-at 0 0.8 0; fov 34 deg }\n";
     const std::string floor = kLoopFloor;
-    const std::string lamp = "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n";
+    const std::string emitter = "light sphere { center -1.5 5 -1; radius 0.8; radiance 10 }\n";
     EmissionPlan plan;
     plan.targets = {{{-0.35f, 1.8f - 2.3f, -0.3f - 3.5f}, 0.46f}}; // render space has its origin at the camera
     for (const char* ior : {"1.5", "glass SF11"})
         compareBoth(
             ior,
-            camera + floor + lamp +
+            camera + floor + emitter +
                 fmt::format("shape sphere {{ center -0.35 1.8 -0.3; radius 0.45; material dielectric {{ ior {} }} }}\n",
                             ior),
             24, 200, plan);
@@ -188,7 +188,7 @@ TEST_CASE("light paths: fog") {
 
 // A caustic in a mirror, and one seen through the ball that makes it: manifold sampling and what it leaves to chance.
 TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampling") {
-    const auto sceneOf = [](const std::string& view, const std::string& ior, const std::string& lamp) {
+    const auto sceneOf = [](const std::string& view, const std::string& ior, const std::string& emitter) {
         return TestScene::parse("scene 1\nfilm { size 32 24; filter box 0.5 }\nrender { max-depth 8 }\n"
                                 "camera { from 0 2.3 3.5; " +
                                 view + " }\n" + kLoopFloor +
@@ -198,7 +198,7 @@ TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampl
                                 "shape mirror quad { points { - -2 0 -1.5; - 2 0 -1.5; - 2 2 -1.5; - -2 2 -1.5 };"
                                 " material conductor { index metal Ag } }\n"
                                 "light sphere { center -1.5 5 -1; " +
-                                lamp + " }\n");
+                                emitter + " }\n");
     };
     const std::string wide = "look-at 0 0.6 0; fov 40 deg", narrow = "look-at -0.3 0.6 -1.5; fov 24 deg";
     for (const char* ior : {"1.5", "glass SF11"}) {

@@ -1,5 +1,5 @@
 // As a user has them: paths from the camera alone, paths from the lights beside them, and paths from the lights for all
-// that they can bring come to one picture. Lamps are large enough for camera paths to meet them by glass and metal.
+// that they can bring come to one picture. Lights are large enough for camera paths to meet them by glass and metal.
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
 
@@ -32,7 +32,7 @@ void agree(const std::string& name, const Picture& expected, const Picture& foun
                                                                   static_cast<double>(found.statistics.lightPaths) /
                                                                       static_cast<double>(found.statistics.paths));
     MESSAGE(text);
-    INFO(text << culpritText(a));
+    INFO(text << worstBlocksText(a));
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);
@@ -106,7 +106,7 @@ TEST_CASE("light paths: a glass ball in fog") {
 
 // Most of what is seen the medium scatters before anything else; the wall is lit through the prism, too, and its hero
 // alone may have come that way.
-TEST_CASE("light paths: a lamp in the haze behind a prism") {
+TEST_CASE("light paths: a light in the haze behind a prism") {
     compareWays("haze",
                 lightPathScene("camera { from 0.4 1.2 3; look-at 0 0.7 0; fov 40 deg }\n" + std::string(kFloor) +
                                "light spot { position -1.9 1 0.2; look-at 1 0.7 0; angle 50 deg; inner-angle 30 deg; "
@@ -136,7 +136,7 @@ TEST_CASE("light paths: rough glass and rough metal all around the camera") {
         128, 0.003);
 }
 
-TEST_CASE("light paths: walls and a lamp that the camera does not see") {
+TEST_CASE("light paths: walls and a light that the camera does not see") {
     compareWays("hidden",
                 lightPathScene(
                     "camera { from 0 1.6 4; look-at 0 0.6 0; fov 40 deg }\n" + std::string(kFloor) +
@@ -160,7 +160,7 @@ TEST_CASE("light paths: a wide beam on rough glass and rough metal in haze") {
         112, 0.012);
 }
 
-// The lenses of the shipped scene under a lamp, as wide as a sun of 20 degrees.
+// The lenses of the shipped scene under a light, as wide as a sun of 20 degrees.
 TEST_CASE("light paths: an array of lenses") {
     std::string lenses = "object lens { shape mesh \"scenes/lens-array/lens.obj\" {\n"
                          "    material dielectric { ior glass N-BK7 }; transform { scale 0.01 } } }\n";

@@ -1,5 +1,5 @@
 // Caustics behind mirrors and glass by merging and by camera paths alone, in scenes in which camera paths do find the
-// lamp. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
+// light. Merging blurs: what is lit evenly shows no blur, and the rest is to be as wrong as the two radii say.
 #include "caustics/manifold/manifold_plan.h"
 #include "support/agreement_text.h"
 #include "support/summed_picture.h"
@@ -31,7 +31,7 @@ void mergedAgree(const std::string& name, const Picture& expected, const Picture
     const std::string text = agreementText(name, a) +
                              fmt::format("; {} rounds, {} splats", found.statistics.rounds, found.statistics.splats);
     MESSAGE(text);
-    INFO(text << culpritText(a));
+    INFO(text << worstBlocksText(a));
     CHECK(a.agrees());
     CHECK(a.whole.judged);
     CHECK(a.whole.error < error);
@@ -40,7 +40,7 @@ void mergedAgree(const std::string& name, const Picture& expected, const Picture
     CHECK(found.statistics.cappedPaths == 0);
 }
 
-// A floor behind a mirror, and nothing of the lamp: most of the picture is what can be merged.
+// A floor behind a mirror, and nothing of the light: most of the picture is what can be merged.
 TestScene inlineScene(const std::string& text) {
     return TestScene::parse(
         "scene 1\nfilm { size 48 36 }\nrender { max-depth 16 }\n"
@@ -51,7 +51,7 @@ TestScene inlineScene(const std::string& text) {
         text);
 }
 
-// A lamp in balls within balls: all of its light comes over four faces.
+// A light in balls within balls: all of its light comes over four faces.
 std::string shells(const std::string& outer) {
     return "shape sphere { center 0 0.9 0; radius 0.7; material dielectric { " + outer +
            "; priority 1 } }\n"
@@ -61,12 +61,12 @@ std::string shells(const std::string& outer) {
            "light sphere { center 0.02 0.9 0; radius 0.22; radiance 10 }\n";
 }
 
-const char* const kBallUnderLamp = "shape sphere { center 0 0.9 -1; radius 0.5; material dielectric { ior 1.5 } }\n"
-                                   "light sphere { center 0.2 3.4 -0.6; radius 0.7; radiance 10 }\n";
+const char* const kBallUnderLight = "shape sphere { center 0 0.9 -1; radius 0.5; material dielectric { ior 1.5 } }\n"
+                                    "light sphere { center 0.2 3.4 -0.6; radius 0.7; radiance 10 }\n";
 
 } // namespace
 
-TEST_CASE("merging: a lamp within four balls of glass, in a mirror") {
+TEST_CASE("merging: a light within four balls of glass, in a mirror") {
     const TestScene scene = inlineScene(shells("ior 1.3"));
     mergedAgree("shells", renderMerged(scene, false, 256), renderMerged(scene, true, 64), 0.02);
 }
@@ -77,7 +77,7 @@ TEST_CASE("merging: glass that disperses") {
 }
 
 TEST_CASE("merging: beside manifold sampling, which has some of the light") {
-    const TestScene scene = inlineScene(kBallUnderLamp);
+    const TestScene scene = inlineScene(kBallUnderLight);
     const Picture found = renderMerged(scene, true, 64, Technique::LightPaths::always);
     CHECK(found.statistics.caustics.of<ManifoldFindings>().used);
     mergedAgree("ball", renderMerged(scene, false, 256), found, 0.02);
@@ -93,7 +93,7 @@ TEST_CASE("merging: fog and absorbing glass") {
     mergedAgree("fog", renderMerged(scene, false, 256), renderMerged(scene, true, 128), 0.02);
 }
 
-// Nothing but haze shows the lamp's light, which comes over four faces.
+// Nothing but haze shows the light's light, which comes over four faces.
 TEST_CASE("merging: in haze, in a mirror") {
     const TestScene scene = TestScene::parse(
         "scene 1\nfilm { size 48 36 }\nrender { max-depth 16 }\n"

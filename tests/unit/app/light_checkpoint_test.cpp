@@ -30,8 +30,8 @@ constexpr std::size_t kBlocks = 5;
 constexpr int kPaths = 30; // of a block and sample
 constexpr std::uint32_t kWhole = 8;
 
-const int kLamp = 0;
-const SceneNames kNames{{&kLamp, "lamp"}};
+const int kLight = 0;
+const SceneNames kNames{{&kLight, "lamp"}};
 
 PixelFilm makeLightFilm(PixelBounds bounds) {
     PixelFilm film(bounds, PixelFilter(FilterShape::box, 0.5), 2);
@@ -88,7 +88,7 @@ class Renderer {
                          radiance,
                          lambda,
                          0.5,
-                         p % 2 ? &kLamp : nullptr,
+                         p % 2 ? &kLight : nullptr,
                          static_cast<PathComponent>(p % 3)});
             ++tile.tally.splats;
         }

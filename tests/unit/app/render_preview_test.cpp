@@ -11,8 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // 5 × 3 pixels in cells of two, the luminance of which is 1, 2, 3 … 6.
-FirstLook countingLook() {
-    FirstLook look{{0, 0, 5, 3}, 2, 3, 2, {}, 1};
+FramePreview countingLook() {
+    FramePreview look{{0, 0, 5, 3}, 2, 3, 2, {}, 1};
     for (int i = 1; i <= 6; ++i) look.cells.push_back({1.0 * i, 1.0 * i, 1.0 * i});
     return look;
 }

@@ -37,10 +37,10 @@ TEST_CASE("light paths in a line") {
     CHECK(lightPathLine(f) == "light paths 2 per camera path: forecast 12 × as efficient (lamp → ball 63 %, "
                               "lamp → elsewhere 22 %, sky → ring 10 %, …)");
     f.shares.resize(1);
-    f.verdict = LightPathVerdict::asked;
+    f.verdict = LightPathVerdict::requested;
     f.gain = 1e9;
     CHECK(lightPathLine(f) ==
-          "light paths 2 per camera path, as asked: forecast over a million × as efficient (lamp → ball 63 %)");
+          "light paths 2 per camera path, as requested: forecast over a million × as efficient (lamp → ball 63 %)");
     f.verdict = LightPathVerdict::noGain;
     f.gain = 0.91;
     CHECK(lightPathLine(f) == "no light paths: forecast 0.91 × as efficient, with 2 per camera path");

@@ -66,7 +66,7 @@ struct TwoMirrors {
 TEST_CASE("paths that lose nothing are told with their shapes, where they are declared, and the time that it takes") {
     const TwoMirrors t;
     REQUIRE(t.left);
-    FirstLook look;
+    FramePreview look;
     Diagnostics diagnostics;
     warnOfEndlessPaths(look, t.scene.built(), 64, diagnostics);
     CHECK(diagnostics.all().empty());

@@ -70,7 +70,7 @@ TEST_CASE("memory: what is beyond the limit is refused before it is taken") {
     CHECK(memoryLeft() > 0);
     CHECK(memoryLeft() <= 100 << 20);
     CHECK_NOTHROW(requireMemory(20 << 20));
-    CHECK_THROWS_AS(requireMemory(101 << 20), BeyondMemory);
+    CHECK_THROWS_AS(requireMemory(101 << 20), MemoryLimitExceeded);
     try {
         requireMemory(3e12);
         FAIL("no fault");
@@ -81,7 +81,7 @@ TEST_CASE("memory: what is beyond the limit is refused before it is taken") {
     CHECK(memoryReason(std::bad_alloc()) == "it needs more memory than there is");
     setMemoryLimit(1); // less than what is there already
     CHECK(memoryLeft() == 0);
-    CHECK_THROWS_AS(requireMemory(2 << 20), BeyondMemory);
+    CHECK_THROWS_AS(requireMemory(2 << 20), MemoryLimitExceeded);
 }
 
 using namespace abbe;

@@ -315,7 +315,7 @@ TEST_CASE("places outside of the film are none") {
 
 TEST_CASE("a lens of glass held at one point of the film's side is met by no connection") {
     View v = view("held", makeLensSystem, lens("singlet", 11), {36, 24}, sheet({0, 0, -1}, {1, 0, 0}, {0, 1, 0}));
-    v.placed.camera = std::make_unique<HeldCamera>(std::move(v.placed.camera), true, false);
+    v.placed.camera = std::make_unique<ReducedCamera>(std::move(v.placed.camera), true, false);
     Random random(37);
     const Sighting s = sighting(v, random);
     CHECK_FALSE(v.placed.camera->connect(s.query).has_value());

@@ -173,7 +173,7 @@ inline void addHeld(std::vector<View>& all) {
         if (moving) addOthers(again);
         View held = std::move(*std::ranges::find(again, all[i].name, &View::name));
         held.name += ", held";
-        held.placed.camera = std::make_unique<HeldCamera>(std::move(held.placed.camera), lens, moving);
+        held.placed.camera = std::make_unique<ReducedCamera>(std::move(held.placed.camera), lens, moving);
         all.push_back(std::move(held));
     }
 }

@@ -1,4 +1,4 @@
-// Cylinders, cones and tori as lamps: densities of samples, and the light that they give.
+// Cylinders, cones and tori as lights: densities of samples, and the light that they give.
 #include "geometry/flat_shapes.h"
 #include "geometry/frustum.h"
 #include "geometry/mesh.h"
@@ -146,13 +146,13 @@ TEST_CASE("parametric shapes: density is one over the Jacobian of the map") {
     }
 }
 
-TEST_CASE("parametric shapes: irradiance by samples of the lamp and by rays agree") {
+TEST_CASE("parametric shapes: irradiance by samples of the light and by rays agree") {
     for (const ParametricCase& c : parametricCases()) {
         const Vec3 from(1, 0.5f, 3.5f), n = normalize(Vec3(-0.3f, -0.1f, -1));
         const auto scene = intersectorOf(*c.shape);
         const DirectionSquare directions(c.shape->bounds(), from);
         Random random(6);
-        Moments byLamp, byRays;
+        Moments byLight, byRays;
         for (int i = 0; i < 60000; ++i) {
             const Vec2 u{random.uniform(), random.uniform()};
             double value = 0;
@@ -165,17 +165,17 @@ TEST_CASE("parametric shapes: irradiance by samples of the lamp and by rays agre
                     if (!scene->occluded(shadow)) value = static_cast<double>(dot(w, n) / s->pdfSolidAngle);
                 }
             }
-            byLamp.add(value);
+            byLight.add(value);
             const Vec3 w(directions.direction(random.uniform(), random.uniform()));
             value = 0;
             if (dot(w, n) > 0 && scene->intersect({from, w}, hit) && dot(hit.ng, w) < 0)
                 value = static_cast<double>(dot(w, n)) * directions.solidAngle();
             byRays.add(value);
         }
-        const double error = std::hypot(byLamp.standardError(), byRays.standardError());
-        INFO(c.name << " lamp " << byLamp.mean() << " rays " << byRays.mean() << " error " << error);
+        const double error = std::hypot(byLight.standardError(), byRays.standardError());
+        INFO(c.name << " lamp " << byLight.mean() << " rays " << byRays.mean() << " error " << error);
         CHECK(byRays.mean() > 0);
-        CHECK(std::abs(byLamp.mean() - byRays.mean()) < 4 * error + 1e-4 * byRays.mean());
+        CHECK(std::abs(byLight.mean() - byRays.mean()) < 4 * error + 1e-4 * byRays.mean());
     }
 }
 

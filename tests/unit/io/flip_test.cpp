@@ -161,9 +161,9 @@ TEST_CASE("HDR-FLIP of black references and mostly black ones is finite") {
     const RgbImage black = constant(16, 16, {}), grey = constant(16, 16, {0.5, 0.5, 0.5});
     CHECK(hdrFlip(black, black).mean == 0);
     CHECK(hdrFlip(grey, black).mean > 0.1);
-    RgbImage lamp = black;
-    lamp.rgb[30] = lamp.rgb[31] = lamp.rgb[32] = 100;
-    const HdrFlip flip = hdrFlip(black, lamp);
+    RgbImage light = black;
+    light.rgb[30] = light.rgb[31] = light.rgb[32] = 100;
+    const HdrFlip flip = hdrFlip(black, light);
     CHECK(flip.startExposure == flip.stopExposure);
     CHECK(flip.exposures == 2);
     CHECK(flip.mean > 0);

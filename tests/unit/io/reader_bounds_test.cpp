@@ -166,13 +166,13 @@ TEST_CASE("readers: what does not fit into memory is told before it is taken") {
     const auto peak = residentMemory();
     const MemoryScope scope(40 << 20);
     CHECK(contains(readingExr(folder / "a.exr"), "a.exr`: it takes 96 MiB of memory; "));
-    CHECK_THROWS_AS(readHdr(folder / "a.hdr"), BeyondMemory);
+    CHECK_THROWS_AS(readHdr(folder / "a.hdr"), MemoryLimitExceeded);
     CHECK(residentMemory() < peak + (20 << 20));
     const std::string ply =
         "ply\nformat binary_little_endian 1.0\nelement vertex 20000000\nproperty uchar x\n"
         "property uchar y\nproperty uchar z\nelement face 0\nproperty list uchar uchar vertex_indices\n"
         "end_header\n";
-    CHECK_THROWS_AS(parsePly(ply + std::string(60'000'000, '\1'), "a.ply"), BeyondMemory);
+    CHECK_THROWS_AS(parsePly(ply + std::string(60'000'000, '\1'), "a.ply"), MemoryLimitExceeded);
 }
 
 TEST_CASE("gltf: copies of copies are bounded by the bytes that there are") {

@@ -14,12 +14,12 @@ using schema::Dimension;
 using schema::Quantity;
 
 constexpr double kBeamDegree = kPiD / 180;
-const SampledCurve kBeamLamp([](double nm) { return 37 * std::exp((nm - 360) / 200); });
+const SampledCurve kBeamSpectrum([](double nm) { return 37 * std::exp((nm - 360) / 200); });
 const Wavelengths kBeamAt = Wavelengths::single(555);
 
 LightContext beamContext() {
     LightContext c;
-    c.defaultColor = &kBeamLamp;
+    c.defaultColor = &kBeamSpectrum;
     return c;
 }
 
@@ -27,7 +27,7 @@ struct Opening {
     Vec3d centre{1, -2, 0.5}, axis = normalize(Vec3d{1, 2, -0.5});
     double radius = 0.3, half = 10 * kBeamDegree;
 
-    BeamLight light() const { return {centre, axis, radius, half, {&kBeamLamp, 1}}; }
+    BeamLight light() const { return {centre, axis, radius, half, {&kBeamSpectrum, 1}}; }
     // At a distance from the opening along the axis, and aside.
     Vec3d place(double along, double aside) const {
         const Vec3d across = normalize(cross(axis, Vec3d{0.3, 0.1, 1}));
@@ -98,7 +98,7 @@ TEST_CASE("a collimated beam is as bright 20 m away, and dark beside") {
         CHECK(s->wi.x == doctest::Approx(-1).epsilon(1e-6));
         CHECK(s->delta);
         CHECK(static_cast<double>(s->distance) == doctest::Approx(from.x).epsilon(1e-6));
-        const double spectral = radiantIntegral(kBeamLamp) / kBeamLamp.at(555);
+        const double spectral = radiantIntegral(kBeamSpectrum) / kBeamSpectrum.at(555);
         return static_cast<double>(s->radiance[0]) / static_cast<double>(s->pdfSolidAngle) * spectral;
     };
     for (const float distance : {0.01f, 1.f, 20.f}) {

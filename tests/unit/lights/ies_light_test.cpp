@@ -21,14 +21,15 @@ template <typename F> IntensityTable table(double lastPlane, PlaneSymmetry symme
     return t;
 }
 
-double cosineLamp(double v, double) { return std::max(100 * std::cos(v), 0.0); }
+double cosineLight(double v, double) { return std::max(100 * std::cos(v), 0.0); }
 // Mirrored at both axes.
 double oblong(double v, double h) { return 20 + 50 * square(std::sin(v) * std::cos(h)); }
 
 } // namespace
 
-TEST_CASE("the flux of a lamp: cosine, sphere, oblong") {
-    CHECK(IesProfile(table(0, PlaneSymmetry::axial, cosineLamp)).lumens() == doctest::Approx(100 * kPiD).epsilon(1e-4));
+TEST_CASE("the flux of a light: cosine, sphere, oblong") {
+    CHECK(IesProfile(table(0, PlaneSymmetry::axial, cosineLight)).lumens() ==
+          doctest::Approx(100 * kPiD).epsilon(1e-4));
     CHECK(IesProfile(table(0, PlaneSymmetry::axial, [](double, double) { return 7.0; })).lumens() ==
           doctest::Approx(28 * kPiD).epsilon(1e-9));
     const double whole = 20 * 4 * kPiD + 50 * 4 * kPiD / 3;
@@ -42,7 +43,7 @@ TEST_CASE("planes are mirrored as the file says") {
     const auto half = [](double v, double h) { return 10 + 5 * std::sin(v) * std::cos(h) + square(std::cos(h)); };
     const auto across = [](double v, double h) { return 10 + 5 * std::sin(v) * std::sin(h); };
     const std::pair<IesProfile, double (*)(double, double)> profiles[] = {
-        {IesProfile(table(0, PlaneSymmetry::axial, cosineLamp)), cosineLamp},
+        {IesProfile(table(0, PlaneSymmetry::axial, cosineLight)), cosineLight},
         {IesProfile(table(90, PlaneSymmetry::quarter, oblong)), oblong},
         {IesProfile(table(180, PlaneSymmetry::half, half)), half},
         {IesProfile(table(270, PlaneSymmetry::across, across, 90)), across},
@@ -66,7 +67,7 @@ TEST_CASE("there is no light beyond the measured angles, and all of it at their 
     CHECK(profile.candela(0, 0) == 10);
 }
 
-TEST_CASE("a lamp that points down, seen from above, counts its planes counter-clockwise") {
+TEST_CASE("a light that points down, seen from above, counts its planes counter-clockwise") {
     const ConstantCurve unit(1);
     LightContext context;
     context.defaultColor = &unit;
@@ -91,14 +92,14 @@ TEST_CASE("a lamp that points down, seen from above, counts its planes counter-c
               doctest::Approx(radiance(ninety)).epsilon(1e-5));
         params.turn = 0;
         params.toward = Vec3d{0.3, -0.5, 0.2};
-        const auto tilted = makeIesLight(params, table(0, PlaneSymmetry::axial, cosineLamp), context, diagnostics);
+        const auto tilted = makeIesLight(params, table(0, PlaneSymmetry::axial, cosineLight), context, diagnostics);
         const Vec3 axis = normalize(Vec3{0.3f, -0.5f, 0.2f});
         CHECK(tilted->sample(axis, 0, {}, at, 0)->radiance[0] == doctest::Approx(1 / kPiD).epsilon(1e-3));
         CHECK_FALSE(tilted->sample(-axis, 0, {}, at, 0));
     }
 }
 
-TEST_CASE("dark lamps are left out, or refused if they state a power") {
+TEST_CASE("dark lights are left out, or refused if they state a power") {
     const ConstantCurve unit(1);
     LightContext context;
     context.defaultColor = &unit;

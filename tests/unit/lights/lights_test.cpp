@@ -19,11 +19,11 @@ using schema::Dimension;
 using schema::Quantity;
 
 constexpr double kLightsDegree = kPiD / 180;
-const SampledCurve kLightsLamp([](double nm) { return 37 * std::exp((nm - 360) / 200); });
+const SampledCurve kLightsSpectrum([](double nm) { return 37 * std::exp((nm - 360) / 200); });
 
 LightContext context() {
     LightContext c;
-    c.defaultColor = &kLightsLamp;
+    c.defaultColor = &kLightsSpectrum;
     return c;
 }
 
@@ -63,7 +63,8 @@ TEST_CASE("a spot arrives nowhere on a ray outside of its reach, which is not mu
     std::uniform_real_distribution<float> unit(-1, 1);
     const auto vector = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
     for (const double angle : {0.01, 1.0, 20.0, 70.0, 120.0}) {
-        const SpotLight light({0.2f, 0.1f, 0}, normalize(Vec3{1, 2, 3}), 0, angle * kLightsDegree, {&kLightsLamp, 1});
+        const SpotLight light({0.2f, 0.1f, 0}, normalize(Vec3{1, 2, 3}), 0, angle * kLightsDegree,
+                              {&kLightsSpectrum, 1});
         int lit = 0, within = 0;
         for (int i = 0; i < 2000; ++i) {
             // Rays that come by near the cone, and some of its own directions.
@@ -97,9 +98,9 @@ TEST_CASE("the power of a point light is what was asked for") {
 TEST_CASE("the solid angle of a spot is the integral of its falloff") {
     for (const auto& [inner, outer] :
          {std::pair{20.0, 30.0}, {0.0, 90.0}, {40.0, 40.0}, {100.0, 180.0}, {0.001, 0.002}}) {
-        const SpotLight light({}, {0, 1, 0}, inner * kLightsDegree, outer * kLightsDegree, {&kLightsLamp, 1});
+        const SpotLight light({}, {0, 1, 0}, inner * kLightsDegree, outer * kLightsDegree, {&kLightsSpectrum, 1});
         const float at = Wavelengths::single(555).nm[0];
-        const double onAxis = kLightsLamp.at(at);
+        const double onAxis = kLightsSpectrum.at(at);
         const auto falloff = [&](double theta) {
             const auto s = light.sample(direction(theta, 0.3), 0, {}, Wavelengths::single(at), 0);
             return s ? s->radiance[0] / onAxis : 0.0;
@@ -183,7 +184,7 @@ TEST_CASE("the sun's luminance and its irradiance agree") {
 // Hard case 30.
 TEST_CASE("the solid angle of small suns does not cancel") {
     for (const double half : {2e-5, 1e-4, 1e-3, 0.1, 1.0, kPiD / 2}) {
-        const SunLight sun({0, 1, 0}, half, {&kLightsLamp, 1});
+        const SunLight sun({0, 1, 0}, half, {&kLightsSpectrum, 1});
         const double exact = 4 * kPiD * square(std::sin(half / 2));
         CHECK(1 / sun.sample(Vec3(), 0, {0.5f, 0.5f}, {}, 0)->pdfSolidAngle == doctest::Approx(exact).epsilon(1e-6));
     }
@@ -191,7 +192,7 @@ TEST_CASE("the solid angle of small suns does not cancel") {
 
 TEST_CASE("sampled directions of the sun lie in its disk with its radiance") {
     const double half = 0.265 * kLightsDegree;
-    const SunLight sun({1, 2, 3}, half, {&kLightsLamp, 1});
+    const SunLight sun({1, 2, 3}, half, {&kLightsSpectrum, 1});
     const Wavelengths w = Wavelengths::sample(0.3f);
     test::Random random(4);
     Vec3d sum;
@@ -258,15 +259,15 @@ TEST_CASE("a sky of L gives an open surface π L") {
 }
 
 TEST_CASE("distant lights send their power through the disk around the scene") {
-    SkyLight sky({&kLightsLamp, 1});
-    SunLight sun({0, 1, 0}, 0.01, {&kLightsLamp, 1});
+    SkyLight sky({&kLightsSpectrum, 1});
+    SunLight sun({0, 1, 0}, 0.01, {&kLightsSpectrum, 1});
     Bounds3 bounds;
     bounds.add(Vec3{-1, -2, -2});
     bounds.add(Vec3{1, 2, 2});
     sky.commit(bounds);
     sun.commit(bounds);
-    CHECK(sky.power() == doctest::Approx(4 * kPiD * kPiD * 9 * radiantIntegral(kLightsLamp)));
-    CHECK(sun.power() == doctest::Approx(kPiD * 9 * radiantIntegral(kLightsLamp)));
+    CHECK(sky.power() == doctest::Approx(4 * kPiD * kPiD * 9 * radiantIntegral(kLightsSpectrum)));
+    CHECK(sun.power() == doctest::Approx(kPiD * 9 * radiantIntegral(kLightsSpectrum)));
     sky.commit({});
     CHECK(sky.power() > 0); // planes alone
 }

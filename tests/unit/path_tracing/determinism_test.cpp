@@ -9,7 +9,7 @@
 namespace abbe::test {
 namespace {
 
-// Dome, lamps and shapes of every kind, one of them moving; %s is a material.
+// Dome, lights and shapes of every kind, one of them moving; %s is a material.
 std::string sceneText(const std::string& material) {
     return R"(scene 1
 film { size 37 21 }

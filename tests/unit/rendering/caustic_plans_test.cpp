@@ -291,7 +291,7 @@ TEST_CASE("pilots: the frame is shown before anything is planned, and after each
     int looks = 0, passes = 0;
     RenderControl control;
     control.state = &state;
-    control.firstLook = [&](const FirstLook& look) {
+    control.framePreview = [&](const FramePreview& look) {
         ++looks;
         CHECK(passes == 0);
         CHECK(state.reached() == 0);

@@ -20,7 +20,7 @@ shape box { size 2 2 2; center 0 1 0; material diffuse { reflectance 0.9999 }; t
 light sphere { center 0 1.8 0; radius 0.02; radiance 20 }
 )";
 
-// A ball of clear glass before a small lamp, seen in a mirror: light paths and rounds of merging.
+// A ball of clear glass before a small light, seen in a mirror: light paths and rounds of merging.
 const char* const kCaustic = R"(scene 1
 film { size 20 12 }
 render { light-paths always; merging always }

@@ -13,7 +13,7 @@
 
 namespace abbe::test {
 
-TEST_CASE("blocks of light paths are foretold to cost as much as a tile does") {
+TEST_CASE("blocks of light paths are predicted to cost as much as a tile does") {
     const auto scene = TestScene::parse(R"(scene 1
 render { samples 8 }
 film { size 40 40 }
@@ -57,7 +57,7 @@ LookedAt lookAtFrame(const std::string& text) {
     LookedAt seen;
     std::atomic<bool> stop = false;
     RenderControl control{&stop, {}};
-    control.firstLook = [&](const FirstLook& look) {
+    control.framePreview = [&](const FramePreview& look) {
         for (const Shape* shape : look.endless.shapes) seen.shapes.push_back(scene.scene().names.at(shape));
         seen.rays = look.raysOfPath;
         seen.share = look.endless.share;

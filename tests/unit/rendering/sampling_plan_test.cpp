@@ -167,7 +167,7 @@ TEST_CASE("plan: its looks are at pixels of the frame, two of each half in each 
     }
 }
 
-// A small lamp seen through a rough ball in one corner; the rest is a quiet sky.
+// A small light seen through a rough ball in one corner; the rest is a quiet sky.
 const char* const kUneven = R"(scene 1
 film { size 72 48 }
 camera { from 0 0.9 4; look-at 0.6 0.4 0; fov 40 deg }

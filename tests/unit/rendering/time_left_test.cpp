@@ -24,12 +24,12 @@ struct Simulation {
     std::size_t tiles = 100;
 };
 
-// Of one render: what was foretold when, and when it ended.
+// Of one render: what was predicted when, and when it ended.
 struct Course {
-    std::vector<std::pair<double, TimeLeft::Outlook>> outlooks;
+    std::vector<std::pair<double, TimeLeft::Forecast>> outlooks;
     double end = 0, begin = 0;
 
-    // Largest error of the total that was foretold, relative to the total, of those after this part of the run.
+    // Largest error of the total that was predicted, relative to the total, of those after this part of the run.
     double worstAfter(double part) const {
         double worst = 0;
         for (const auto& [now, outlook] : outlooks)
@@ -41,7 +41,7 @@ struct Course {
 
 class Simulator {
   public:
-    Simulator(const Simulation& s, std::uint64_t seed) : s_(s), random_(seed), timeLeft_(s.goals, foretell()) {}
+    Simulator(const Simulation& s, std::uint64_t seed) : s_(s), random_(seed), timeLeft_(s.goals, predict()) {}
 
     Course run() {
         now_ = s_.preparation;
@@ -65,15 +65,15 @@ class Simulator {
     }
 
   private:
-    std::vector<double> foretell() {
-        std::vector<double> foretold;
+    std::vector<double> predict() {
+        std::vector<double> predicted;
         for (std::size_t i = 0; i < s_.tiles; ++i) {
             // Dear tiles lie together at the end, where the first pass comes to last.
             const double place = static_cast<double>(i) / static_cast<double>(s_.tiles);
             costs_.push_back(0.02 * std::exp(s_.spread * place));
-            foretold.push_back(100 * std::pow(costs_.back(), s_.seenPower) * std::exp(s_.foreseen * normal()));
+            predicted.push_back(100 * std::pow(costs_.back(), s_.seenPower) * std::exp(s_.foreseen * normal()));
         }
-        return foretold;
+        return predicted;
     }
     double normal() {
         return std::sqrt(-2 * std::log(random_.uniformDouble())) * std::cos(6.283185307 * random_.uniformDouble());

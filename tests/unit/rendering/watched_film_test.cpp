@@ -43,7 +43,7 @@ light sun { elevation 40 deg; azimuth 150 deg; irradiance 1 klx; angular-diamete
     const auto tracer = makePathTracer(scene.scene().effects);
     film.keepSplatsOf(*tracer, scene.scene(), settings);
     const CausticFindings plan = tracer->render(scene.scene(), film, settings, {}).caustics;
-    REQUIRE(plan.of<LightPathFindings>().verdict == LightPathVerdict::asked);
+    REQUIRE(plan.of<LightPathFindings>().verdict == LightPathVerdict::requested);
     REQUIRE(plan.of<MergeFindings>().used);
     REQUIRE(plan.of<GlintFindings>().found > 0);
     std::vector<SampleId> all;

@@ -226,7 +226,7 @@ TEST_CASE("camera: in rooms, glass and open bodies it sees") {
     const std::string room = "shape box { center 0 0 5; size 4 4 4; material diffuse }\n";
     CHECK(found(room + "light point { position 1 1 5; intensity 5 cd }\n") == "");
     CHECK(found(room + "light quad { size 0.1 0.1; luminance 5 nits; transform { translate 0 1.9 5 } }\n") == "");
-    // A lamp behind a column: what the camera sees is lit.
+    // A light behind a column: what the camera sees is lit.
     CHECK(found(room + "shape cylinder { center 0.5 0 5; radius 0.2; height 1; material diffuse { reflectance 0.4 } }\n"
                        "light point { position 1.5 0 5; intensity 5 cd }\n") == "");
     CHECK(found("shape sphere { center 0 0 5; radius 1; material dielectric }\n") == "");

@@ -42,9 +42,9 @@ std::size_t usedMedia(const Scene& scene) {
 TEST_CASE("effects left out: nothing is, and all that could be is noted") {
     const TestScene scene = sceneWithout({});
     std::vector<std::string> words;
-    for (const EffectAsker& asker : scene.built().askers) {
-        CHECK(asker.span.valid());
-        words.push_back(std::string(wordOf(asker.effect.effect)) + asker.effect.medium);
+    for (const EffectUser& user : scene.built().effectUsers) {
+        CHECK(user.span.valid());
+        words.push_back(std::string(wordOf(user.effect.effect)) + user.effect.medium);
     }
     std::ranges::sort(words);
     CHECK(words == std::vector<std::string>{"absorption", "bumps", "depth-of-field", "dispersion", "motion",
@@ -128,14 +128,14 @@ shape ball sphere { radius 0.5; material openpbr { transmission-weight 1; transm
     const TestScene with = TestScene::parse(text);
     INFO(with.report());
     REQUIRE(!with.diagnostics().hasErrors());
-    CHECK(with.built().askers.size() == 2);
+    CHECK(with.built().effectUsers.size() == 2);
     CHECK(with.scene().effects.has(Effect::dispersion));
     BuildOptions options;
     options.without.leaveOut({SwitchedEffect::dispersion});
     options.without.leaveOut({SwitchedEffect::thinFilm});
     const TestScene without = TestScene::parse(text, options);
     CHECK(!without.scene().effects.has(Effect::dispersion));
-    CHECK(without.built().askers.size() == 2);
+    CHECK(without.built().effectUsers.size() == 2);
 }
 
 } // namespace abbe::test

@@ -45,7 +45,7 @@ std::string forbid(std::string_view words) { return fmt::format("render {{ forbi
 
 bool asked(const TestScene& scene, Effect effect) {
     return scene.scene().effects.has(effect) && std::ranges::any_of(scene.scene().reasons, [&](const EffectReason& r) {
-               return r.effect == effect && r.asker.valid() && !r.why.empty();
+               return r.effect == effect && r.place.valid() && !r.why.empty();
            });
 }
 

@@ -125,7 +125,7 @@ Result outcomeOf(const TypeInfo& type, const std::string& text, bool asProgram) 
         settings.samples = 4;
         const TestImage image = asProgram ? renderAsProgram(scene, settings, 2) : render(scene, settings, {}, 2);
         const auto& dropped = image.statistics.dropped;
-        // A lamp that is brighter than sums of pixels hold may be looked at: that is told (W0640).
+        // A light that is brighter than sums of pixels hold may be looked at: that is told (W0640).
         const bool mayDazzle = type.kind == Kind::light || type.kind == Kind::shape;
         if (dropped[0] + (mayDazzle ? 0 : dropped[1]) + dropped[2] > 0)
             return {Outcome::failed,

@@ -104,14 +104,14 @@ TEST_CASE("geometry: instances of instances, with their emitters and planes") {
                              "  instance lamp { transform { translate 1 0 0 } } }\n"
                              "instance pair\ninstance pair { transform { translate 0 5 0 } }");
     REQUIRE(scene.report() == "");
-    CHECK(scene.scene().lights.size() == 1 + 4); // the sky, and a light of its own for every lamp
+    CHECK(scene.scene().lights.size() == 1 + 4); // the sky, and a light of its own for every light
     CHECK(scene.built().facts.instances == 4);
     CHECK(scene.built().facts.objects == 2);
-    for (const Vec3d lamp : {Vec3d{-1, 0, 0}, {1, 0, 0}, {-1, 5, 0}, {1, 5, 0}}) {
-        const WorldHit hit = trace(scene, lamp + Vec3d{0, 0, 3}, {0, 0, -1});
-        CHECK(near(hit.p, lamp + Vec3d{0, 0, 0.1}));
+    for (const Vec3d emitter : {Vec3d{-1, 0, 0}, {1, 0, 0}, {-1, 5, 0}, {1, 5, 0}}) {
+        const WorldHit hit = trace(scene, emitter + Vec3d{0, 0, 3}, {0, 0, -1});
+        CHECK(near(hit.p, emitter + Vec3d{0, 0, 0.1}));
         CHECK(hit.hit.light != nullptr);
-        CHECK(near(trace(scene, lamp + Vec3d{0, 0.5, 3}, {0, 0, -1}).p, lamp + Vec3d{0, 0.5, 0.2}));
+        CHECK(near(trace(scene, emitter + Vec3d{0, 0.5, 3}, {0, 0, -1}).p, emitter + Vec3d{0, 0.5, 0.2}));
     }
     CHECK(scene.built().facts.bounds.lower.y == doctest::Approx(-0.1));
     CHECK(scene.built().facts.bounds.upper.y == doctest::Approx(5.7));

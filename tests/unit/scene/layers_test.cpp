@@ -11,7 +11,7 @@
 namespace abbe::test {
 namespace {
 
-// A floor, a sphere of %s and two lamps with names; `layers` is the block's content.
+// A floor, a sphere of %s and two lights with names; `layers` is the block's content.
 std::string sceneText(const std::string& layers, const std::string& material = "diffuse") {
     return "scene 1\nfilm { size 24 16; filter box 0.5; output \"x.exr\" space=acescg" +
            (layers.empty() ? std::string() : "; layers { " + layers + " }") + R"( }

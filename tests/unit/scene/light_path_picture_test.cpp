@@ -106,7 +106,7 @@ TEST_CASE("light paths: a sample taken again is what camera paths bring, and tog
 }
 
 TEST_CASE("light paths: where nobody sees any light one for each camera path is the guess") {
-    // The lamp and its glass are behind the camera, which looks into the dark.
+    // The light and its glass are behind the camera, which looks into the dark.
     const LightPathFindings found = findingsOf(R"(scene 1
 camera { from 0 0 0; look-at 0 0 -1 }
 film { size 16 12 }
@@ -149,7 +149,7 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     for (std::size_t i = 0; i < alone.shares.size(); ++i) CHECK(alone.shares[i].share == found.shares[i].share);
 
     CHECK(findingsOf(lightPathScene("light-paths off")).verdict == off);
-    CHECK(findingsOf(lightPathScene("light-paths always")).verdict == asked);
+    CHECK(findingsOf(lightPathScene("light-paths always")).verdict == requested);
     CHECK(findingsOf(lightPathScene("strategy lights")).verdict == otherTechnique);
     std::string plain = text;
     plain.replace(plain.find("dielectric { ior glass BK7 }"), 28, "diffuse { reflectance 0.5 }");
@@ -179,9 +179,9 @@ TEST_CASE("light paths: going on past a rough surface is left off only as far as
     CHECK(closed.afterSpread < 0.5);
 }
 
-// Under a ball of glass: with a lamp half as wide as the ball the samples of a pixel, stratified over what is full of
-// the lamp, beat paths from it.
-TEST_CASE("light paths: a small lamp needs them, a large one does not") {
+// Under a ball of glass: with a light half as wide as the ball the samples of a pixel, stratified over what is full of
+// the light, beat paths from it.
+TEST_CASE("light paths: a small light needs them, a large one does not") {
     for (const double radius : {0.5, 0.02}) {
         CAPTURE(radius);
         const TestScene scene = TestScene::parse(

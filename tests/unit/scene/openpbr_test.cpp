@@ -106,11 +106,11 @@ TEST_CASE("openpbr emission: numbers, rgb and reflectances are factors, spectra 
     // 0.2126 of white's luminance is that of its red; a texture of the same colour is as bright.
     const Shining red("emission-color rgb 1 0 0"), picture("emission-color checker { even rgb 1 0 0; odd rgb 1 0 0 }");
     const double watts = Shining("").light().visiblePower();
-    CHECK(red.light().visiblePower() / watts == doctest::Approx(0.2126).epsilon(0.15)); // and what lamps are chosen by
+    CHECK(red.light().visiblePower() / watts == doctest::Approx(0.2126).epsilon(0.15)); // and what lights are chosen by
     CHECK(red.towards(0, 620) == doctest::Approx(picture.towards(0, 620)).epsilon(1e-3));
     // Of any scale, and of the same luminance.
-    const Shining lamp("emission-color blackbody 6504 K"), table("emission-color table { - 400 7; - 700 7 }");
-    CHECK(lamp.towards(0) == doctest::Approx(white).epsilon(0.1));
+    const Shining emitter("emission-color blackbody 6504 K"), table("emission-color table { - 400 7; - 700 7 }");
+    CHECK(emitter.towards(0) == doctest::Approx(white).epsilon(0.1));
     CHECK(table.towards(0) == doctest::Approx(100 / 683.0 / 106.857).epsilon(0.02));
     CHECK(codes(build("shape quad { size 2 2; material openpbr { emission-luminance 1 nits; "
                       "emission-color table { - 400 0; - 700 0 } } }\n")) == "E0343");

@@ -36,7 +36,7 @@ TEST_CASE("parametric: axes, open ends, and where z is up") {
     CHECK(near(trace(zUp, {0.2, 0, 9}, {0, 0, -1}).p, {0.2, 0, 2}));
 }
 
-TEST_CASE("parametric: placed by any transform, as instances, as lamps") {
+TEST_CASE("parametric: placed by any transform, as instances, as lights") {
     const std::string place = "transform { scale 1 0.5 -2; rotate z 30 deg; translate 0.3 1 0 }";
     for (const std::string type :
          {"box { size 1 2 1.5", "cylinder { radius 0.7", "cone { height 1.5", "torus { major-radius 0.8"}) {
@@ -56,9 +56,9 @@ TEST_CASE("parametric: placed by any transform, as instances, as lamps") {
             CHECK_UNARY(near(Vec3d(a.hit.ng), Vec3d(b.hit.ng), 1e-4));
         }
         CHECK(met > 8);
-        const auto lamp = build("shape " + type + "; emission 2; " + place + " }");
-        REQUIRE(lamp.report() == "");
-        CHECK(lamp.scene().lights.size() == 2);
+        const auto light = build("shape " + type + "; emission 2; " + place + " }");
+        REQUIRE(light.report() == "");
+        CHECK(light.scene().lights.size() == 2);
     }
 }
 

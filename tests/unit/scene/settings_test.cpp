@@ -130,7 +130,7 @@ TEST_CASE("effects: who asks for them") {
     CHECK(scene.scene().effects == (Effects(Effect::absorption) | Effect::dispersion));
     REQUIRE(scene.scene().reasons.size() == 2);
     for (const EffectReason& reason : scene.scene().reasons) {
-        CHECK(reason.asker.valid());
+        CHECK(reason.place.valid());
         CHECK_FALSE(reason.why.empty());
     }
     CHECK(build("shape sphere { material dielectric { ior 1.5 } }").scene().effects == Effects());

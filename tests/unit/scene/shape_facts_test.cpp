@@ -21,7 +21,7 @@ bool hasBounds(const ShapeFact& fact, Vec3d lower, Vec3d upper) {
 
 } // namespace
 
-TEST_CASE("shapes, lamps and instances have their bounds in the world, parts of objects in the object") {
+TEST_CASE("shapes, lights and instances have their bounds in the world, parts of objects in the object") {
     const TestScene scene = TestScene::parse(R"(scene 1
 camera { from 10 20 30; look-at 0 0 0 }
 shape ball sphere { center 1 2 3; radius 0.5; transform { translate 0 1 0 } }

@@ -64,7 +64,7 @@ TEST_CASE("rays meet what is visible to them: shapes of all kinds, groups, objec
     CHECK(scene.scene().hidden.splits);
 }
 
-TEST_CASE("lamps in objects are hidden with their instances, and tell the scene") {
+TEST_CASE("lights in objects are hidden with their instances, and tell the scene") {
     const TestScene scene = build("object lantern { light quad { size 0.8 0.8; luminance 10 nits } }\n"
                                   "instance lantern { " +
                                   shiftedBy(1) +

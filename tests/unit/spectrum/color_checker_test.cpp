@@ -25,8 +25,8 @@ Xyz heroEstimate(const Curve& patch, const Curve& light, int samples) {
 } // namespace
 
 TEST_CASE("ColorChecker patches under D65, A and FL11 within CIEDE2000 0.1 of direct integration") {
-    for (const char* lamp : {"D65", "A", "FL11"}) {
-        const auto light = illuminantCurve(*findIlluminant(lamp));
+    for (const char* illuminant : {"D65", "A", "FL11"}) {
+        const auto light = illuminantCurve(*findIlluminant(illuminant));
         const Xyz white = integrate(*light);
         double worst = 0;
         for (int i = 1; i <= 24; ++i) {
@@ -34,7 +34,7 @@ TEST_CASE("ColorChecker patches under D65, A and FL11 within CIEDE2000 0.1 of di
             const Lab direct = toLab(integrate(*patch, *light), white);
             worst = std::max(worst, deltaE2000(direct, toLab(heroEstimate(*patch, *light, 4096), white)));
         }
-        CAPTURE(lamp);
+        CAPTURE(illuminant);
         CHECK(worst < 0.1);
         CHECK(worst < 0.01); // what is reached
     }
@@ -105,15 +105,15 @@ TEST_CASE("dark skin has the ACES values that colour-science computes") {
                                     0.409, 0.42,  0.436, 0.45,  0.462, 0.465, 0.448, 0.432, 0.421};
     const auto patch = reflectanceCurve({"", "", 380, 5, kDarkSkin});
     struct Published {
-        const char* lamp;
+        const char* illuminant;
         Vec3d aces;
     };
-    // Its reference camera [Academy2014] is balanced to the lamp channel by channel and has a flare of half a per cent
+    // Its reference camera [Academy2014] is balanced to the light channel by channel and has a flare of half a per cent
     // of a white; 18 % stays 0.18.
-    for (const auto& [lamp, aces] : {Published{"D65", {0.11718149, 0.08663609, 0.05897268}},
-                                     Published{"A", {0.13583991, 0.09431845, 0.05928214}}}) {
-        CAPTURE(lamp);
-        const auto light = illuminantCurve(*findIlluminant(lamp));
+    for (const auto& [illuminant, aces] : {Published{"D65", {0.11718149, 0.08663609, 0.05897268}},
+                                           Published{"A", {0.13583991, 0.09431845, 0.05928214}}}) {
+        CAPTURE(illuminant);
+        const auto light = illuminantCurve(*findIlluminant(illuminant));
         const Vec3d white = renderedAces(ConstantCurve(1), *light), seen = renderedAces(*patch, *light);
         const auto camera = [](double v, double w) { return (v / w + 0.005) * 0.18 / 0.185; };
         const Vec3d ours(camera(seen.x, white.x), camera(seen.y, white.y), camera(seen.z, white.z));

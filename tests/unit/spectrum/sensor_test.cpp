@@ -150,7 +150,7 @@ double distance(const Xyz& a, const Xyz& b) {
 }
 
 std::unique_ptr<const Curve> patch(int i) { return reflectanceCurve(*findMeasured("macbeth-" + std::to_string(i))); }
-std::unique_ptr<const Curve> lamp(const char* name) { return illuminantCurve(*findIlluminant(name)); }
+std::unique_ptr<const Curve> namedLight(const char* name) { return illuminantCurve(*findIlluminant(name)); }
 
 // Colour differences of the 24 patches between a camera and the observer, both under `light`.
 struct Differences {
@@ -174,7 +174,7 @@ Differences differences(const Sensor& sensor, const Curve& light) {
 TEST_CASE("sensor: without a camera it is the observer, bit for bit") {
     const Sensor sensor;
     CHECK(sensor.isObserver());
-    const auto light = lamp("FL11");
+    const auto light = namedLight("FL11");
     for (int i = 0; i < 1000; ++i) {
         const Wavelengths w = Wavelengths::sample((static_cast<float>(i) + 0.5f) / 1000);
         const Xyz a = sensor(light->at(w), w), b = toXyz(light->at(w), w);
@@ -185,7 +185,7 @@ TEST_CASE("sensor: without a camera it is the observer, bit for bit") {
 
 TEST_CASE("sensor: every camera gives its light the observer's colour") {
     REQUIRE(sensorNames().size() == 3);
-    const auto a = lamp("A"), d65 = lamp("D65"), e = lamp("E");
+    const auto a = namedLight("A"), d65 = namedLight("D65"), e = namedLight("E");
     const auto kelvin = blackbodyCurve(5000);
     const double scale = 1 / integrate(*kelvin).y;
     const SampledCurve thermal([&](double nm) { return scale * kelvin->at(nm); });
@@ -198,7 +198,7 @@ TEST_CASE("sensor: every camera gives its light the observer's colour") {
 }
 
 TEST_CASE("sensor: paths tend to the integral, by plain sums over the published figures") {
-    const auto light = lamp("D65");
+    const auto light = namedLight("D65");
     const Sensor sensor(*findSensitivities("nikon-d850"), *light);
     for (const int i : {1, 13, 15, 18, 19}) {
         const auto p = patch(i);
@@ -210,7 +210,7 @@ TEST_CASE("sensor: paths tend to the integral, by plain sums over the published 
 
 TEST_CASE("sensor: the figures and the matrix, found again from seven bands") {
     // The matrix is unknown here: three bands determine it, it must give the colours of four others.
-    const auto light = lamp("D65");
+    const auto light = namedLight("D65");
     const CameraSensitivities& camera = *findSensitivities("canon-5d-mark-iv");
     const Sensor sensor(camera, *light);
     const auto signals = [&](double centre) { // of a band of 20 nm, by plain sums over the camera's figures
@@ -238,7 +238,7 @@ TEST_CASE("sensor: the figures and the matrix, found again from seven bands") {
 TEST_CASE("sensor: cameras see surfaces nearly as the observer does") {
     // Cameras are no observers, but near enough on surfaces; and under another light than that of the fit they err
     // more.
-    const auto d65 = lamp("D65"), fl11 = lamp("FL11");
+    const auto d65 = namedLight("D65"), fl11 = namedLight("FL11");
     for (const std::string_view name : sensorNames()) {
         CAPTURE(name);
         const Sensor sensor(*findSensitivities(name), *d65);

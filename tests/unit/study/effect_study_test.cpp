@@ -1,4 +1,4 @@
-// What effects cost and show: found where they are, cancelled where they change nothing, foretold by the cost report.
+// What effects cost and show: found where they are, cancelled where they change nothing, predicted by the cost report.
 #include "study/effect_study.h"
 #include "support/scene_test.h"
 
@@ -47,7 +47,7 @@ TEST_CASE("study of effects: a scene without any has nothing to find") {
 
 TEST_CASE("study of effects: a cloud takes time and is seen; glass that hides behind the camera is neither") {
     const EffectStudy study =
-        studyOf(std::string(kRoom) + // what pilots spend in the cloud no cost report foretells
+        studyOf(std::string(kRoom) + // what pilots spend in the cloud no cost report predicts
                     "render { light-paths off }\nmedium fog homogeneous { extinction 2 per-m; albedo 0.9 }\n"
                     "shape cloud sphere { center 0 1 0.5; radius 0.6; material boundary; interior fog }\n"
                     "shape far sphere { center 0 1 40; radius 0.01; material dielectric { ior glass SF11 } }\n",

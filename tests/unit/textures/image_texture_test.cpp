@@ -256,8 +256,8 @@ TEST_CASE("image texture: curves and primaries") {
     }
     CHECK(s.codes() == "");
     // Light has no upper bound.
-    const auto lamp = s.texture(s.file("lamp.tif", plain(7, 3, 2, 4)), "", "periodic", TextureUse::light);
-    CHECK(lamp->value(query(0.5f, 0.5f)).x == 7);
+    const auto emitter = s.texture(s.file("lamp.tif", plain(7, 3, 2, 4)), "", "periodic", TextureUse::light);
+    CHECK(emitter->value(query(0.5f, 0.5f)).x == 7);
     CHECK(s.codes() == "");
 }
 

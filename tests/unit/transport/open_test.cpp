@@ -34,7 +34,7 @@ TEST_CASE("the eye sees the share of the sky that two open sheets leave") {
     }
 }
 
-TEST_CASE("lamps and the sky shine through open sheets, found on the light or by chance") {
+TEST_CASE("lights and the sky shine through open sheets, found on the light or by chance") {
     for (const char* light : {"light sky { radiance 1 }", "light point { position 0 2 0; intensity 100 cd }",
                               "light sun { toward 0 -1 0; angular-diameter 20 deg; irradiance 3 W-per-m2 }"}) {
         CAPTURE(light);

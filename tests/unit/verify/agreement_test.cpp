@@ -111,14 +111,14 @@ TEST_CASE("agreement: what differs is found where it is") {
     const auto spot = [](int x, int y) { return x >= 16 && x < 24 && y >= 8 && y < 16 ? 1.8 : 1.0; };
     const Agreement r = compareFilms(noisy(5), noisy(6, 0.5, spot));
     CHECK(!r.agrees());
-    const auto culprits = r.culprits(5);
-    REQUIRE(!culprits.empty());
-    CHECK(culprits[0].bounds.x0 == 16);
-    CHECK(culprits[0].bounds.y0 == 8);
-    CHECK(culprits[0].bounds.x1 == 24);
-    CHECK(culprits[0].difference == doctest::Approx(0.8).epsilon(0.2));
-    CHECK(culprits.size() == 1); // larger blocks that hold it are the same news
-    CHECK(compareFilms(noisy(5), noisy(6)).culprits(5).empty());
+    const auto worst = r.worstBlocks(5);
+    REQUIRE(!worst.empty());
+    CHECK(worst[0].bounds.x0 == 16);
+    CHECK(worst[0].bounds.y0 == 8);
+    CHECK(worst[0].bounds.x1 == 24);
+    CHECK(worst[0].difference == doctest::Approx(0.8).epsilon(0.2));
+    CHECK(worst.size() == 1); // larger blocks that hold it are the same news
+    CHECK(compareFilms(noisy(5), noisy(6)).worstBlocks(5).empty());
 }
 
 TEST_CASE("agreement: a block whose noise is all in one replicate is not judged") {

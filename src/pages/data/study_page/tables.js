@@ -85,10 +85,10 @@ function effects() {
         onclick: event => event.currentTarget.firstChild.classList.toggle("large")}, make("img", {class: "thumb", src: pngUrl(e.png), alt: `without ${e.name}`})) : null;
     made.append(table(["effect", "without it", "asked for by", "share of the time", "time on", "time off", "FLIP", "error if left out"],
         [...measured, ...all.filter(e => !measured.includes(e))].map(e => measured.includes(e)
-            ? make("tr", {}, make("td", {}, e.name, e.note ? make("small", {}, e.note) : null), make("td", {class: "text"}, thumb(e) ?? "–"), make("td", {class: "text"}, e.asker || "–"),
+            ? make("tr", {}, make("td", {}, e.name, e.note ? make("small", {}, e.note) : null), make("td", {class: "text"}, thumb(e) ?? "–"), make("td", {class: "text"}, e.place || "–"),
                 make("td", {}, percent(e.deltaTime, 2), make("small", {}, between(e.low, e.high, v => percent(v, 2)))), make("td", {}, timeText(e.secondsOn, 3)), make("td", {}, timeText(e.secondsOff, 3)),
                 make("td", {}, significant(e.flip, 2)), make("td", {}, positive(e.relMse) ? errorText(e.relMse, 2) : "–"))
-            : make("tr", {}, make("td", {}, e.name), make("td", {class: "text"}, "–"), make("td", {class: "text"}, e.asker || "–"), make("td", {class: "text", colspan: 5}, e.reason || "not measured")))));
+            : make("tr", {}, make("td", {}, e.name), make("td", {class: "text"}, "–"), make("td", {class: "text"}, e.place || "–"), make("td", {class: "text", colspan: 5}, e.reason || "not measured")))));
 }
 // FLIP goes by its root: small changes are apart, and nothing is at minus infinity.
 function effectPlot(list, width) {

@@ -11,9 +11,9 @@
 namespace abbe {
 namespace {
 
-const auto* const kLamp = reinterpret_cast<const Light*>(0x10); // never looked at
+const auto* const kLight = reinterpret_cast<const Light*>(0x10); // never looked at
 
-GlintPlan plan(std::vector<Glint> glints) { return {{0, 0, 40, 30}, 1.5f, std::move(glints), {kLamp}}; }
+GlintPlan plan(std::vector<Glint> glints) { return {{0, 0, 40, 30}, 1.5f, std::move(glints), {kLight}}; }
 
 } // namespace
 
@@ -39,8 +39,8 @@ TEST_CASE("glints: a place belongs to the chain whose box has it") {
     CHECK(!p.covers(row, ChainSignature::of("R"), {7, 7}));
     CHECK(p.covers(row, ChainSignature::of("TRT"), {7, 7}));
     CHECK(!p.covers(row, ChainSignature::of("TT"), {5.5f, 5.5f}));
-    CHECK(p.has(kLamp));
-    CHECK(!p.has(kLamp + 1));
+    CHECK(p.has(kLight));
+    CHECK(!p.has(kLight + 1));
 }
 
 TEST_CASE("glints: boxes of one chain that overlap become one, so that nothing is probed twice") {
@@ -98,9 +98,10 @@ TEST_CASE("glints: a forced lobe has all of the light that chance would find") {
 
 namespace abbe::test {
 
-// A ball before a mirror. The lamp is seen in the ball; in the mirror in the ball; and in the ball in the mirror in the
-// ball, which is 0.02 pixels wide, while the slope from which Newton's method goes there changes its sign within 0.2.
-TEST_CASE("glints: the lamp in a ball in a mirror in that ball") {
+// A ball before a mirror. The light is seen in the ball; in the mirror in the ball; and in the ball in the mirror in
+// the ball, which is 0.02 pixels wide, while the slope from which Newton's method goes there changes its sign within
+// 0.2.
+TEST_CASE("glints: the light in a ball in a mirror in that ball") {
     const TestScene scene =
         TestScene::parse("scene 1 length=cm\nfilm { size 240 180 }\nrender { max-depth 3 }\n"
                          "camera { from 4 23 44; look-at 1 5 -5; lens 48 mm }\n"

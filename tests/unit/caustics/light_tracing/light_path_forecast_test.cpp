@@ -1,4 +1,4 @@
-// What is foretold of light paths where it is known: light of one density, and what camera paths miss.
+// What is predicted of light paths where it is known: light of one density, and what camera paths miss.
 // The largest shares of light paths, and the names of what they are sent to.
 #include "caustics/light_tracing/light_path_forecast.h"
 #include "caustics/shared/aim_targets.h"
@@ -163,7 +163,7 @@ TEST_CASE("light path shares: the largest, and all others in one") {
     CHECK(keptBefore == doctest::Approx(before));
     const auto twice =
         largestShares({{"lamp", "ball", 0.1, 1, 2}, {"lamp", "", 0.5, 0, 0}, {"lamp", "ball", 0.3, 3, 4}});
-    REQUIRE(twice.size() == 2); // a lamp that is placed twice
+    REQUIRE(twice.size() == 2); // a light that is placed twice
     CHECK(twice[1].share == doctest::Approx(0.4));
     CHECK(twice[1].before == 4);
     CHECK(twice[1].after == 6);

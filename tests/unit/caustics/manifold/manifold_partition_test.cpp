@@ -94,8 +94,8 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     plan.casters[0].weights[ManifoldKinds::indexOf(ChainSignature::of("RR"))] = 0;
     const ManifoldSampler sampler(scene, plan);
     const Shape& ball = *plan.casters[0].shape;
-    const Light& lamp = *plan.lights[0].light;
-    // A path that goes by way of the ball to the lamp, as Newton's method finds it.
+    const Light& emitter = *plan.lights[0].light;
+    // A path that goes by way of the ball to the light, as Newton's method finds it.
     const ChainStart start = test.start({-0.3f, 0, 0.2f});
     const Wavelengths lambda = Wavelengths::sample(0.3f);
     RandomStream random(3);
@@ -104,7 +104,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     const ManifoldChoice choice{0, ChainSignature::of("TT"), 1};
     ManifoldCounts counts;
     while (!sample) {
-        target = *LightTarget::sample(lamp, 0, 1, {random.uniform(), random.uniform()}, lambda, 0);
+        target = *LightTarget::sample(emitter, 0, 1, {random.uniform(), random.uniform()}, lambda, 0);
         sample = sampler.estimate(start, target, choice, lambda, random, counts);
     }
     const auto covered = [&](std::initializer_list<std::pair<const Shape*, Lobes>> vertices) {
@@ -129,7 +129,7 @@ TEST_CASE("a chain is covered as long as every vertex belongs to it") {
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, other, lambda));
     chain.stop();
     CHECK_FALSE(sampler.covers(chain, start, sample->wi, target, lambda));
-    // The lamp's image there is a few 1e-3 sr.
+    // The light's image there is a few 1e-3 sr.
     for (auto& light : plan.lights) light.largestImage = 1e-5f;
     const ManifoldSampler stricter(scene, plan);
     chain = {};

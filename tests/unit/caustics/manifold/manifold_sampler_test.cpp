@@ -52,7 +52,7 @@ TEST_CASE("signatures are numbered one to one") {
     CHECK(ManifoldKinds::indexOf(ChainSignature::of("TTT")) == 13);
 }
 
-TEST_CASE("a lamp in a plane mirror of glass") {
+TEST_CASE("a light in a plane mirror of glass") {
     const ManifoldCase test(
         "shape quad { size 8 8; transform { rotate y 180 deg; translate 0 0 2 }; material dielectric { ior 1.5 } }\n"
         "light point { position 1 0.5 0; power 12.566 W }\n");
@@ -71,7 +71,7 @@ TEST_CASE("a lamp in a plane mirror of glass") {
     }
 }
 
-TEST_CASE("a lamp above water, seen from the ground of a pool") {
+TEST_CASE("a light above water, seen from the ground of a pool") {
     const ManifoldCase test(
         "shape plane { material dielectric { ior 1.33 } }\nlight point { position 0 1.5 0; power 12.566 W }\n");
     for (const float x : {0.f, 0.4f, 2.f, 6.f}) {

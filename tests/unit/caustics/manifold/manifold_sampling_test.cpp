@@ -17,11 +17,11 @@ CausticFindings planned(const char* file, Technique::Merging merging) {
     return causticsOf(scene, settings);
 }
 
-// A plan of a ball of glass and two lamps, in which kind TRT is one that a pilot hardly saw; beside merging of the
-// light of the first lamps.
+// A plan of a ball of glass and two lights, in which kind TRT is one that a pilot hardly saw; beside merging of the
+// light of the first lights.
 class BesideMerging {
   public:
-    explicit BesideMerging(std::size_t mergedLamps, bool onlyRare = false)
+    explicit BesideMerging(std::size_t mergedLights, bool onlyRare = false)
         : test_("shape ball sphere { material dielectric { ior 1.5 } }\n"
                 "light sphere { center 3 0 0; radius 0.1; radiance 1 }\n"
                 "light sphere { center 0 3 0; radius 0.1; radiance 1 }\n") {
@@ -36,7 +36,7 @@ class BesideMerging {
         pilots.sampler = std::make_unique<const ManifoldSampler>(scene, std::move(plan));
         technique_ = ManifoldSampling(std::move(pilots));
         LightSet merged;
-        for (std::size_t i = 0; i < mergedLamps; ++i) merged.insert(scene.lights.at(i).get());
+        for (std::size_t i = 0; i < mergedLights; ++i) merged.insert(scene.lights.at(i).get());
         technique_.leave(scene, merged);
     }
     const PlannedManifold& planned() const { return technique_.planned(); }
@@ -44,7 +44,7 @@ class BesideMerging {
     float frequent() const {
         return planned().sampler->plan().casters.at(0).weights[ManifoldKinds::indexOf(ChainSignature::of("TT"))];
     }
-    float largestImage(std::size_t lamp) const { return planned().sampler->plan().lights.at(lamp).largestImage; }
+    float largestImage(std::size_t light) const { return planned().sampler->plan().lights.at(light).largestImage; }
 
   private:
     static inline const std::size_t kRare = ManifoldKinds::indexOf(ChainSignature::of("TRT"));
@@ -63,8 +63,8 @@ TEST_CASE("manifold sampling: a kind of chain that the pilot hardly saw is left 
     CHECK(both.largestImage(1) == 0.02f);
 }
 
-// Nobody else would find them: the light of the second lamp is not merged.
-TEST_CASE("manifold sampling: rare kinds stay where a lamp's light is not merged") {
+// Nobody else would find them: the light of the second light is not merged.
+TEST_CASE("manifold sampling: rare kinds stay where a light's light is not merged") {
     const BesideMerging one(1);
     REQUIRE(one.planned().sampler);
     CHECK(one.rare() == ManifoldPilot::kLeastWeight);

@@ -10,7 +10,7 @@ TestScene scene(const std::string& lights) {
     return TestScene::parse("scene 1\ncamera { from 0 0 9; shutter 1 s }\nshape box { size 3 3 3 }\n" + lights + "\n");
 }
 
-const char* const kLamps[] = {
+const char* const kLights[] = {
     "light point { position 0 0 0; power 10 W }",
     "light spot { position 0 0 0; toward 0 0 1; angle 0.1 deg; power 10 W }",
     "light quad { size 0.5 0.5; power 10 W }",
@@ -24,7 +24,7 @@ const char* const kLamps[] = {
 } // namespace
 
 TEST_CASE("aimed emission: targets around, at, behind and far from a light, of any size") {
-    const Vec3 origin(scene(kLamps[0]).scene().origin);
+    const Vec3 origin(scene(kLights[0]).scene().origin);
     const std::vector<std::vector<AimTarget>> targets = {
         {{Vec3{0, 0, 0} - origin, 1}},
         {{Vec3{0, 0, 0} - origin, 1e-20f}},
@@ -39,9 +39,9 @@ TEST_CASE("aimed emission: targets around, at, behind and far from a light, of a
         {{Vec3{0, 0, 1} - origin, 0.5f}, {Vec3{0, 0, 1} - origin, 0.5f}},
     };
     std::uint64_t seed = 1;
-    for (const char* lamp : kLamps) {
-        CAPTURE(lamp);
-        const TestScene test = scene(lamp);
+    for (const char* emitter : kLights) {
+        CAPTURE(emitter);
+        const TestScene test = scene(emitter);
         const Light& light = *test.scene().lights.at(0);
         for (std::size_t i = 0; i < targets.size(); ++i) {
             CAPTURE(i);

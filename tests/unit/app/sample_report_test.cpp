@@ -1,7 +1,7 @@
 // What went wrong with samples, as people read it and as the header of an image holds it.
 
 #include "reports/render_warnings.h"
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 
 #include <doctest/doctest.h>
 

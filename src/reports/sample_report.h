@@ -56,7 +56,7 @@ struct ReplayedSample {
 };
 
 // For people: a block of lines.
-std::string storyText(const ReplayedSample&, const Scene&);
-Json storyJson(const ReplayedSample&, const Scene&);
+std::string replayText(const ReplayedSample&, const Scene&);
+Json replayJson(const ReplayedSample&, const Scene&);
 
 } // namespace abbe

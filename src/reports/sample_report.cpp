@@ -1,4 +1,4 @@
-#include "reports/sample_story.h"
+#include "reports/sample_report.h"
 
 #include "rendering/path_record.h"
 
@@ -215,11 +215,12 @@ std::string eventText(const PathEvent& e, const Scene& scene) {
         return fmt::format("{:<3}collision in a medium at {}\n", e.vertex, triple(place(e, scene))) +
                line("throughput", e.beta);
     case Kind::sampled:
-        return fmt::format("   asks the light `{}`, density {:.6g}; that of the material {:.6g}\n", light, e.pdf,
-                           e.value.pdfSolidAngle) +
+        return fmt::format(
+                   "   samples the light `{}` (next-event estimation), density {:.6g}; that of the material {:.6g}\n",
+                   light, e.pdf, e.value.pdfSolidAngle) +
                line("radiance", e.radiance) + line("value", e.value.fcos);
     case Kind::met:
-        return fmt::format("   meets the light `{}`, density of asking for it {:.6g}\n", light, e.pdf) +
+        return fmt::format("   meets the light `{}`, density of next-event estimation {:.6g}\n", light, e.pdf) +
                line("radiance", e.radiance);
     case Kind::gathers:
         return line("gives the eye", e.light);
@@ -286,7 +287,7 @@ Json eventJson(const PathEvent& e, const Scene& scene) {
 
 } // namespace
 
-std::string storyText(const ReplayedSample& s, const Scene& scene) {
+std::string replayText(const ReplayedSample& s, const Scene& scene) {
     std::string all = fmt::format("pixel {}  sample {}\n", pixelText(s.id), sampleText(s.id));
     all += line("wavelengths, nm", s.record.lambda().nm);
     for (const PathEvent& e : s.record.events()) all += eventText(e, scene);
@@ -296,7 +297,7 @@ std::string storyText(const ReplayedSample& s, const Scene& scene) {
     return all + fmt::format("dropped: {}\n", s.fault ? text(*s.fault) : std::string());
 }
 
-Json storyJson(const ReplayedSample& s, const Scene& scene) {
+Json replayJson(const ReplayedSample& s, const Scene& scene) {
     Json events = Json::list();
     for (const PathEvent& e : s.record.events()) events.push(eventJson(e, scene));
     const Xyz xyz = s.record.xyz() * s.exposure;
