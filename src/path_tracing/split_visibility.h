@@ -9,7 +9,7 @@
 //
 // So the weights of both sum to 1 wherever shadow rays see the source, and to 0 elsewhere. Mirrors and clear glass show
 // what scattered rays meet, as they have no next-event estimation. Shapes with openings, boundaries and dielectrics are
-// seen by both kinds alike (SceneBuilder::checkVisible): what stands between is solid.
+// seen by both kinds alike (Placer::noteVisible): what stands between is solid.
 #pragma once
 
 #include "transport/walk.h"
