@@ -226,7 +226,7 @@ std::optional<ForeignFile> byText(std::string_view text) {
 enum class Match { none, misspelt, word };
 
 // Of a line's first word to those that begin one in a scene.
-Match likenessOf(std::string_view line, bool mayBeMisspelt) {
+Match matchOf(std::string_view line, bool mayBeMisspelt) {
     const std::string_view word = line.substr(0, std::min(line.find_first_of(" \t{;("), line.size()));
     if (word == "scene" || word == "param" || word.starts_with("x-") || schema::findKind(word) ||
         line.starts_with("/-"))
@@ -250,7 +250,7 @@ std::optional<ForeignFile> byWhatIsMissing(std::string_view text) {
         const std::string_view line = trimmed(text.substr(0, end));
         text.remove_prefix(std::min(end + 1, text.size()));
         if (line.empty()) continue;
-        const Match likeness = likenessOf(line, lines < kEnough);
+        const Match likeness = matchOf(line, lines < kEnough);
         if (likeness == Match::word) return std::nullopt;
         misspelt = misspelt || likeness == Match::misspelt;
         ++lines;

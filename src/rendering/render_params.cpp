@@ -4,25 +4,25 @@ namespace abbe {
 
 namespace {
 
-constexpr std::string_view kNumbers[] = {"sobol", "stratified", "random"};
-constexpr std::string_view kStrategies[] = {"mis", "lights", "bsdf"};
-constexpr std::string_view kWeights[] = {"balance", "power", "equal", "lights", "scattering"};
-constexpr std::string_view kDirections[] = {"importance", "uniform", "mixed"};
-constexpr std::string_view kLightChoices[] = {"tree", "power", "uniform"};
-constexpr std::string_view kRoulettes[] = {"pilot", "throughput", "off"};
-constexpr std::string_view kLightPaths[] = {"automatic", "off", "always", "alone"};
-constexpr std::string_view kMergings[] = {"automatic", "off", "always"};
+constexpr std::string_view kNumberWords[] = {"sobol", "stratified", "random"};
+constexpr std::string_view kStrategyWords[] = {"mis", "lights", "bsdf"};
+constexpr std::string_view kWeightWords[] = {"balance", "power", "equal", "lights", "scattering"};
+constexpr std::string_view kDirectionWords[] = {"importance", "uniform", "mixed"};
+constexpr std::string_view kLightChoiceWords[] = {"tree", "power", "uniform"};
+constexpr std::string_view kRouletteWords[] = {"pilot", "throughput", "off"};
+constexpr std::string_view kLightPathWords[] = {"automatic", "off", "always", "alone"};
+constexpr std::string_view kMergingWords[] = {"automatic", "off", "always"};
 
 } // namespace
 
-template <> std::span<const std::string_view> words<Technique::Numbers>() { return kNumbers; }
-template <> std::span<const std::string_view> words<Technique::Strategy>() { return kStrategies; }
-template <> std::span<const std::string_view> words<Technique::Weights>() { return kWeights; }
-template <> std::span<const std::string_view> words<Technique::Directions>() { return kDirections; }
-template <> std::span<const std::string_view> words<Technique::LightChoice>() { return kLightChoices; }
-template <> std::span<const std::string_view> words<Technique::Roulette>() { return kRoulettes; }
-template <> std::span<const std::string_view> words<Technique::LightPaths>() { return kLightPaths; }
-template <> std::span<const std::string_view> words<Technique::Merging>() { return kMergings; }
+template <> std::span<const std::string_view> words<Technique::Numbers>() { return kNumberWords; }
+template <> std::span<const std::string_view> words<Technique::Strategy>() { return kStrategyWords; }
+template <> std::span<const std::string_view> words<Technique::Weights>() { return kWeightWords; }
+template <> std::span<const std::string_view> words<Technique::Directions>() { return kDirectionWords; }
+template <> std::span<const std::string_view> words<Technique::LightChoice>() { return kLightChoiceWords; }
+template <> std::span<const std::string_view> words<Technique::Roulette>() { return kRouletteWords; }
+template <> std::span<const std::string_view> words<Technique::LightPaths>() { return kLightPathWords; }
+template <> std::span<const std::string_view> words<Technique::Merging>() { return kMergingWords; }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };

@@ -327,9 +327,9 @@ void Placer::noteVisible(Visibility visible, Passing passing, const Definition& 
 
 // Light paths follow one kind of rays from lights to what they light.
 void Placer::checkLightPathsSeeAll() {
-    using LightPaths = Technique::LightPaths;
-    const LightPaths choice = context_.built.render.lightPaths;
-    if (!context_.built.scene.hidden.splits || (choice != LightPaths::always && choice != LightPaths::alone)) return;
+    const Technique::LightPaths choice = context_.built.render.lightPaths;
+    const bool demanded = choice == Technique::LightPaths::always || choice == Technique::LightPaths::alone;
+    if (!context_.built.scene.hidden.splits || !demanded) return;
     context_.diagnostics
         .error("E0636", context_.tree.header.span,
                fmt::format("`light-paths {}` does not go with shapes that only some rays see", word(choice)),
