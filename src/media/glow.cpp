@@ -62,7 +62,7 @@ std::string_view findContradiction(const GlowParams& p, const MediumOptics& opti
     if (p.emissivity && !temperature) return "`emissivity` goes with `temperature`";
     const bool absorbs = optics.extinction->maximum() > 0 && (optics.albedo->minimum() < 1 || color);
     if (temperature && !p.emissivity && !absorbs)
-        return "a hot medium shines by what it absorbs, and this one absorbs nothing: give it an `albedo` below 1, "
+        return "a hot medium emits as much as it absorbs, and this one absorbs nothing: give it an `albedo` below 1, "
                "`absorption`, or an `emissivity`";
     return {};
 }

@@ -45,7 +45,7 @@ std::vector<FieldInfo> gridFields() {
         gridField("flame", &P::flame)
             .key(numberKey("scale", 0, "Factor of its values; 1 when absent."))
             .synonyms({"flames", "fire", "flame_grid", "emission_grid"})
-            .doc("Name of the grid that is the amount of what shines; the density when absent.")
+            .doc("Name of the grid that is the amount of what emits; the density when absent.")
             .example("flame flames scale=3"),
         gridField("color", &P::color)
             .synonyms({"Cd", "albedo_grid", "scattering_grid"})

@@ -220,9 +220,9 @@ std::string reason(const LightPathFindings& f) {
     case noGain:
         return fmt::format("{}, with {:.3g} per camera path", forecast(f), f.bestShare);
     case noPilot:
-        return "nobody looked for caustics: `--pilot 0`, or `--time` is too short for it";
+        return "no pilot looked for caustics: `--pilot 0`, or `--time` is too short for it";
     default:
-        return "nobody looked";
+        return "no pilot has run";
     }
 }
 

@@ -57,7 +57,7 @@ void warnOfMissingSamples(const MissingSamples& missing, Diagnostics& diagnostic
                                      : "the time ended before every pixel had a sample";
     diagnostics
         .warning("W0668", {},
-                 fmt::format("{}; {:.2g} % of the image show a rough first look", why,
+                 fmt::format("{}; {:.2g} % of the image show a rough preview", why,
                              100 * static_cast<double>(missing.pixels) / static_cast<double>(missing.image.area())))
         .help =
         missing.allBegun ? "W0640 says what was dropped and where" : "give it more `--time`, or a smaller `--size`";

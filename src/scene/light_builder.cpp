@@ -65,7 +65,7 @@ const SurfaceLight* LightBuilder::emitterOf(const LoadedShape& shape, const Shap
     // A light that is sampled would shine from its holes, too.
     if (const Material* material = shapes_.materials.ofShape(shape.common); material && material->mayBeOpen()) {
         context_.diagnostics
-            .error("E0754", d.span, "a shape that shines has a material with holes", "its `opacity` is below 1")
+            .error("E0754", d.span, "a shape that emits has a material with holes", "its `opacity` is below 1")
             .help = "take the opacity off, or put the light behind a shape with holes";
         return nullptr;
     }

@@ -217,7 +217,7 @@ bool canBePart(schema::Reference reference, std::string_view property, const Mat
     if (!boundary && !(part.emission().luminance > 0)) return true;
     parts.diagnostics()
         .error("E0723", placeOf(parts.definition, property),
-               boundary ? "a boundary cannot be a part of a material" : "a part of a material cannot shine",
+               boundary ? "a boundary cannot be a part of a material" : "a part of a material cannot emit",
                boundary ? "there is nothing that scatters" : "gives off light")
         .help = boundary ? "for a surface that lets light through, write `opacity`"
                          : "leave its emission out, or give the shape itself an `emission`";

@@ -159,11 +159,11 @@ void MediumBuilder::limitDense(const Bounds3* extent) {
         if (medium->emission()) {
             context_.diagnostics
                 .error("E0651", span,
-                       fmt::format("light goes {} in this medium, which shines", lengthText(1 / densest)), "too dense")
-                .help =
-                fmt::format("at its distance from the camera positions are told apart to {}: let it be thinner, "
-                            "or make the shape a light with a surface",
-                            lengthText(least));
+                       fmt::format("the mean free path in this medium, which emits, is {}", lengthText(1 / densest)),
+                       "too dense")
+                .help = fmt::format("at its distance from the camera positions resolve {}: make it thinner, "
+                                    "or make the shape a light with a surface",
+                                    lengthText(least));
             continue;
         }
         context_.diagnostics
@@ -183,7 +183,7 @@ MadeMedium makeHomogeneous(const HomogeneousParams& params, const MediumContext&
     if (!optics) return {};
     const bool hot = params.temperature > 0;
     if (const auto fault = findContradiction(params, *optics, hot); !fault.empty()) {
-        context.scene.diagnostics.error("E0647", context.definition.span, "this medium cannot shine so",
+        context.scene.diagnostics.error("E0647", context.definition.span, "this medium cannot emit like this",
                                         std::string(fault));
         return {};
     }

@@ -92,7 +92,7 @@ GridExtras extrasOf(const VdbParams& params, const MediumOptics& optics, std::sp
 
 bool checkVdbGlow(const VdbParams& params, const MediumOptics& optics, const MediumContext& context) {
     const auto say = [&](std::string_view fault) {
-        context.scene.diagnostics.error("E0647", context.definition.span, "this volume cannot shine so",
+        context.scene.diagnostics.error("E0647", context.definition.span, "this volume cannot emit like this",
                                         std::string(fault));
         return false;
     };

@@ -64,7 +64,7 @@ few=$(figure pilot_rays)
 expect 0 "$scene" --size 24x24 --samples 16 --json --pilot 4 -o tiny.exr
 below "rays of pilots of a small picture" $((4 * few)) "$(figure pilot_rays)"
 expect 0 "$scene" --size 24x24 --samples 16 --pilot 0 -o none.exr
-says err "nobody looked for caustics"
+says err "no pilot looked for caustics"
 expect 2 "$scene" --pilot 5
 
 finish
