@@ -83,9 +83,13 @@ bool parse(int argc, char** argv, Options& o) {
             o.reference = static_cast<std::uint32_t>(number());
         else if (!std::strcmp(argv[i], "--samples"))
             o.most = static_cast<std::uint32_t>(number());
-        else if (!std::strcmp(argv[i], "--light-choice"))
-            o.choice = lightChoiceOf(++i < argc ? argv[i] : "");
-        else
+        else if (!std::strcmp(argv[i], "--light-choice")) {
+            for (const auto choice :
+                 {Technique::LightChoice::tree, Technique::LightChoice::power, Technique::LightChoice::uniform}) {
+                if (i + 1 < argc && word(choice) == argv[i + 1]) o.choice = choice;
+            }
+            ++i;
+        } else
             o.scene = argv[i];
     }
     return o.scene != nullptr;

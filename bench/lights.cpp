@@ -67,8 +67,8 @@ MeasuredRender render(const BuiltScene& built, Technique::LightChoice choice, st
     return measuredRender(built, how, 1);
 }
 
-void measure(const BuiltScene& built, const MeasuredRender& reference, const char* word, int count, const Options& o) {
-    const auto choice = lightChoiceOf(word);
+void measure(const BuiltScene& built, const MeasuredRender& reference, Technique::LightChoice choice, int count,
+             const Options& o) {
     const MeasuredRender trial = render(built, choice, 4, 7);
     const auto samples = static_cast<std::uint32_t>(std::max(1.0, 4 * o.seconds / trial.statistics.coreSeconds));
     const MeasuredRender a = render(built, choice, samples, 1), b = render(built, choice, samples, 2);
@@ -76,7 +76,7 @@ void measure(const BuiltScene& built, const MeasuredRender& reference, const cha
     const RelativeError e = relativeError(a, b, reference);
     // At 512×512 a sample of every pixel takes longer by the number of pixels.
     const double pixels = square(512.0 / o.size);
-    std::printf("%7d  %-7s  %7u  %5.3f  %8.4f %8.4f  %8.2f %8.2f  %7.3f %7.3f\n", count, word, samples,
+    std::printf("%7d  %-7s  %7u  %5.3f  %8.4f %8.4f  %8.2f %8.2f  %7.3f %7.3f\n", count, word(choice).data(), samples,
                 static_cast<double>(a.statistics.paths) * 1e-6 / a.statistics.coreSeconds, e.all * seconds / o.seconds,
                 e.trimmed * seconds / o.seconds, e.all * samples, e.trimmed * samples, 1 / (e.all * seconds * pixels),
                 1 / (e.trimmed * seconds * pixels));
@@ -92,8 +92,9 @@ void run(const Options& o) {
         const auto scene = test::TestScene::parse(hall(count, o.size));
         if (scene.diagnostics().hasErrors()) throw std::runtime_error(scene.report());
         const MeasuredRender reference = render(scene.built(), Technique::LightChoice::tree, o.reference, 1000);
-        for (const char* word : {"tree", "power", "uniform"}) {
-            measure(scene.built(), reference, word, count, o);
+        for (const auto choice :
+             {Technique::LightChoice::tree, Technique::LightChoice::power, Technique::LightChoice::uniform}) {
+            measure(scene.built(), reference, choice, count, o);
             if (count == 1) break; // no choice
         }
     }
