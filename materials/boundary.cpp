@@ -14,14 +14,14 @@ class NothingBsdf final : public Bsdf {
 
 class Boundary final : public Material {
   public:
-    // Only the path loop of media looks through.
-    Effects needs() const override { return Effect::media; }
+    Boundary() {
+        // Only the path loop of media looks through.
+        traits_ = {.needs = Effect::media, .choosesLobe = false, .isBoundary = true, .focuses = false};
+    }
+
     const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena& arena) const noexcept override {
         return arena.make<NothingBsdf>();
     }
-    bool choosesLobe() const override { return false; }
-    bool focuses() const override { return false; }
-    bool isBoundary() const override { return true; }
 };
 
 } // namespace

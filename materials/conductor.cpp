@@ -95,6 +95,7 @@ class Conductor final : public Material {
         : n_(*params.index.n), k_(*params.index.k), roughness_(params.roughness, 0, 1),
           anisotropy_(params.anisotropy, 0, 1), tint_(params.tint, 1),
           shaped_(roughness_.textured() || anisotropy_.textured()) {
+        traits_ = {.isOpaque = true, .usesTextures = shaped_ || tint_.textured(), .seesOutside = true};
         if (shaped_) return;
         ggx_ =
             Ggx::fromRoughness(static_cast<float>(params.roughness.value), static_cast<float>(params.anisotropy.value));
@@ -109,10 +110,6 @@ class Conductor final : public Material {
         if (ggx.smooth()) return arena.make<SmoothConductorBsdf>(n, k, tint);
         return arena.make<RoughConductorBsdf>(n, k, tint, ggx, stretched_ ? &*stretched_ : nullptr);
     }
-
-    bool usesTextures() const override { return shaped_ || tint_.textured(); }
-    bool isOpaque() const override { return true; }
-    bool seesOutside() const override { return true; }
 
   private:
     const Curve &n_, &k_;

@@ -7,6 +7,8 @@
 #include "render/surface_input.h"
 #include "spectrum/curve.h"
 
+#include <optional>
+
 namespace abbe {
 namespace {
 
@@ -14,17 +16,12 @@ class Dielectric final : public Material {
   public:
     explicit Dielectric(const DielectricParams& params)
         : ior_(params.ior ? params.ior : &crown_), roughness_(params.roughness, 0, 1),
-          ggx_(Ggx::fromRoughness(static_cast<float>(params.roughness.value), 0)), absorption_(params.absorption) {
-        if (!params.attenuationColor) return;
-        attenuation_ = std::make_unique<AttenuationCurve>(*params.attenuationColor, params.attenuationDistance);
-        absorption_ = attenuation_.get();
-    }
-
-    Effects needs() const override {
-        Effects effects;
-        if (!ior_->isConstant()) effects |= Effect::dispersion;
-        if (absorption_) effects |= Effect::absorption;
-        return effects;
+          ggx_(Ggx::fromRoughness(static_cast<float>(params.roughness.value), 0)) {
+        if (params.attenuationColor) attenuation_.emplace(*params.attenuationColor, params.attenuationDistance);
+        inside_ = {.absorption = attenuation_ ? &*attenuation_ : params.absorption, .ior = ior_};
+        traits_ = {.usesTextures = roughness_.textured(), .seesOutside = true};
+        if (!ior_->isConstant()) traits_.needs |= Effect::dispersion;
+        if (inside_.absorption) traits_.needs |= Effect::absorption;
     }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
@@ -35,17 +32,12 @@ class Dielectric final : public Material {
         return arena.make<SmoothDielectricBsdf>(n);
     }
 
-    const Curve* absorption() const override { return absorption_; }
-    const Curve* ior() const override { return ior_; }
-    bool usesTextures() const override { return roughness_.textured(); }
-
   private:
     ConstantCurve crown_{1.5}; // of the default
     const Curve* ior_;
     NumberInput roughness_;
-    Ggx ggx_;                 // unless it is textured
-    const Curve* absorption_; // null: clear
-    std::unique_ptr<const Curve> attenuation_;
+    Ggx ggx_; // unless it is textured
+    std::optional<AttenuationCurve> attenuation_;
 };
 
 } // namespace

@@ -34,16 +34,13 @@ class DiffuseBsdf final : public Bsdf {
 
 class Diffuse final : public Material {
   public:
-    explicit Diffuse(const DiffuseParams& params) : reflectance_(params.reflectance, 0.5f) {}
+    explicit Diffuse(const DiffuseParams& params) : reflectance_(params.reflectance, 0.5f) {
+        traits_ = {.choosesLobe = false, .isOpaque = true, .focuses = false, .usesTextures = reflectance_.textured()};
+    }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& wavelengths, Arena& arena) const noexcept override {
         return arena.make<DiffuseBsdf>(reflectance_.at(hit, wavelengths));
     }
-
-    bool choosesLobe() const override { return false; }
-    bool isOpaque() const override { return true; }
-    bool focuses() const override { return false; }
-    bool usesTextures() const override { return reflectance_.textured(); }
 
   private:
     SpectrumInput reflectance_;

@@ -47,7 +47,9 @@ class DiffuseTransmissionBsdf final : public Bsdf {
 class DiffuseTransmission final : public Material {
   public:
     explicit DiffuseTransmission(const DiffuseTransmissionParams& p)
-        : reflectance_(p.reflectance, kDefault), transmittance_(p.transmittance, kDefault) {}
+        : reflectance_(p.reflectance, kDefault), transmittance_(p.transmittance, kDefault) {
+        traits_ = {.focuses = false, .usesTextures = reflectance_.textured() || transmittance_.textured()};
+    }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         const Spectrum r = reflectance_.at(hit, lambda), t = transmittance_.at(hit, lambda);
@@ -55,8 +57,6 @@ class DiffuseTransmission final : public Material {
         const Spectrum scale = Spectrum(1.f) / max(r + t, Spectrum(1.f));
         return arena.make<DiffuseTransmissionBsdf>(r * scale, t * scale);
     }
-    bool focuses() const override { return false; }
-    bool usesTextures() const override { return reflectance_.textured() || transmittance_.textured(); }
 
   private:
     SpectrumInput reflectance_, transmittance_;

@@ -29,6 +29,14 @@ class Hair final : public Material {
         fibre_.eta = static_cast<float>(p.ior);
         fibre_.sinScale = static_cast<float>(std::sin(p.scaleAngle));
         fibre_.cosScale = static_cast<float>(std::cos(p.scaleAngle));
+        traits_ = {
+            .needs = Effect::interfaces,
+            .reversible = false,
+            .focuses = false,
+            .usesTextures = eumelanin_.textured() || pheomelanin_.textured() || color_.textured() ||
+                            longitudinal_.textured() || azimuthal_.textured(),
+            .mayBeOpen = true,
+        };
     }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
@@ -43,15 +51,7 @@ class Hair final : public Material {
         if (const float c = pheomelanin_.at(hit); c > 0) fibre.absorption += pheomelaninAbsorption(lambda) * c;
         return arena.make<HairBsdf>(fibre);
     }
-    bool usesTextures() const override {
-        return eumelanin_.textured() || pheomelanin_.textured() || color_.textured() || longitudinal_.textured() ||
-               azimuthal_.textured();
-    }
-
     // All that happens in a fibre has happened where light met it from outside: on its way out of a tube it goes on.
-    Effects needs() const override { return Effect::interfaces; }
-    bool reversible() const override { return false; }
-    bool mayBeOpen() const override { return true; }
     float opacity(const SurfaceHit& hit) const noexcept override { return dot(hit.arrival, hit.ng) > 0 ? 0.f : 1.f; }
 
     static constexpr float kMostMelanin = 100;

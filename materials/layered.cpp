@@ -154,21 +154,23 @@ class Layered final : public Material {
     Layered(const LayeredParams& params, const Material& base)
         : base_(base), gloss_(params.ior->at(587.6), params.roughness), tint_(params.tint, 1),
           absorption_(params.absorption), thickness_(static_cast<float>(params.thickness)),
-          scale_(params.thicknessScale, 0, kThickest), darkening_(params.darkening, 0, 1) {}
+          scale_(params.thicknessScale, 0, kThickest), darkening_(params.darkening, 0, 1) {
+        traits_ = {
+            .needs = base.needs(),
+            .isOpaque = base.isOpaque(),
+            .reversible = base.reversible(),
+            .focuses = base.reversible(), // by the coat, if not by the base
+            .usesTextures = base.usesTextures() || gloss_.textured() || tint_.textured() || scale_.textured() ||
+                            darkening_.textured(),
+            .mayBeOpen = base.mayBeOpen(),
+            .seesOutside = base.seesOutside(),
+        };
+    }
 
-    Effects needs() const override { return base_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         return arena.make<LayeredBsdf>(gloss_.at(hit), partBsdf(base_, hit, lambda, arena), depth(hit, lambda),
                                        darkening_.at(hit));
     }
-    bool usesTextures() const override {
-        return base_.usesTextures() || gloss_.textured() || tint_.textured() || scale_.textured() ||
-               darkening_.textured();
-    }
-    bool reversible() const override { return base_.reversible(); }
-    bool seesOutside() const override { return base_.seesOutside(); }
-    bool isOpaque() const override { return base_.isOpaque(); }
-    bool mayBeOpen() const override { return base_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override { return base_.opacity(hit); }
 
   private:

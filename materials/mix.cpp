@@ -20,9 +20,18 @@ bool sameCurve(const Curve* a, const Curve* b) {
 class Mix final : public Material {
   public:
     Mix(const MixParams& params, const Material& first, const Material& second)
-        : first_(first), second_(second), inside_(hasInside(second) ? second : first), amount_(params.amount, 0, 1) {}
+        : first_(first), second_(second), amount_(params.amount, 0, 1) {
+        inside_ = (hasInside(second) ? second : first).inside();
+        traits_ = {
+            .needs = first.needs() | second.needs(),
+            .reversible = first.reversible() && second.reversible(),
+            .focuses = first.focuses() || second.focuses(),
+            .usesTextures = amount_.textured() || first.usesTextures() || second.usesTextures(),
+            .mayBeOpen = first.mayBeOpen() || second.mayBeOpen(),
+            .seesOutside = first.seesOutside() || second.seesOutside(),
+        };
+    }
 
-    Effects needs() const override { return first_.needs() | second_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         const Shares s = shares(hit);
         // Of what meets the surface at all.
@@ -32,19 +41,10 @@ class Mix final : public Material {
         return arena.make<MixedBsdf>(partBsdf(first_, hit, lambda, arena), partBsdf(second_, hit, lambda, arena),
                                      amount);
     }
-    const Curve* absorption() const override { return inside_.absorption(); }
-    const Medium* interior() const override { return inside_.interior(); }
-    bool usesTextures() const override { return amount_.textured() || first_.usesTextures() || second_.usesTextures(); }
-    bool reversible() const override { return first_.reversible() && second_.reversible(); }
-    bool focuses() const override { return first_.focuses() || second_.focuses(); }
-    bool mayBeOpen() const override { return first_.mayBeOpen() || second_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {
         const Shares s = shares(hit);
         return s.first + s.second;
     }
-    const Curve* ior() const override { return inside_.ior(); }
-    int priority() const override { return inside_.priority(); }
-    bool seesOutside() const override { return first_.seesOutside() || second_.seesOutside(); }
 
   private:
     struct Shares {
@@ -56,7 +56,7 @@ class Mix final : public Material {
         return {(1 - amount) * first_.opacity(hit), amount * second_.opacity(hit)};
     }
 
-    const Material &first_, &second_, &inside_;
+    const Material &first_, &second_;
     NumberInput amount_;
 };
 

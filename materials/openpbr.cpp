@@ -80,17 +80,11 @@ class OpenPbr final : public Material {
   public:
     explicit OpenPbr(const OpenPbrParams&);
 
-    Effects needs() const override;
     const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept override;
-    const Curve* absorption() const override { return attenuation_ ? &*attenuation_ : nullptr; }
-    const Curve* ior() const override { return refracts() ? ior_ : nullptr; }
-    bool seesOutside() const override { return true; }
     SurfaceEmission emission() const override {
         return {p_.emissionLuminance, p_.emissionColor.curve, p_.emissionColor.texture, p_.geometryThinWalled,
                 veil_ ? &*veil_ : nullptr};
     }
-    bool usesTextures() const override;
-    bool bends() const override { return turnsTangent(p_); }
     void bend(SurfaceHit& hit) const noexcept override {
         if (bends())
             hit.shading =
@@ -98,6 +92,8 @@ class OpenPbr final : public Material {
     }
 
   private:
+    Effects effects() const;
+    bool textured() const;
     bool refracts() const { return !p_.geometryThinWalled && !transmissionWeight_.is(0) && !baseMetalness_.is(1); }
     OpenPbrCover cover(const SurfaceHit&, const Wavelengths&) const;
     OpenPbrMetal metal(const SurfaceHit&, const Wavelengths&, const OpenPbrCover&) const;
@@ -159,9 +155,11 @@ OpenPbr::OpenPbr(const OpenPbrParams& p)
         const Ggx ggx = Ggx::fromRoughness(coatRoughness_.at({}), coatRoughnessAnisotropy_.at({}));
         if (!ggx.smooth() && ggx.alphaX() != ggx.alphaY()) stretchedCoat_.emplace(ggx.alphaX(), ggx.alphaY());
     }
+    traits_ = {.needs = effects(), .usesTextures = textured(), .bends = turnsTangent(p), .seesOutside = true};
+    inside_ = {.absorption = attenuation_ ? &*attenuation_ : nullptr, .ior = refracts() ? ior_ : nullptr};
 }
 
-Effects OpenPbr::needs() const {
+Effects OpenPbr::effects() const {
     Effects effects;
     if (refracts() && !ior_->isConstant()) effects |= Effect::dispersion;
     if (attenuation_) effects |= Effect::absorption;
@@ -169,8 +167,8 @@ Effects OpenPbr::needs() const {
     return effects;
 }
 
-bool OpenPbr::usesTextures() const {
-    if (bends() || (!coatWeight_.is(0) && coatFrame_.usesTextures())) return true;
+bool OpenPbr::textured() const {
+    if (turnsTangent(p_) || (!coatWeight_.is(0) && coatFrame_.usesTextures())) return true;
     for (const NumberInput* n :
          {&baseWeight_, &baseDiffuseRoughness_, &baseMetalness_, &specularWeight_, &specularRoughness_,
           &specularRoughnessAnisotropy_, &transmissionWeight_, &subsurfaceWeight_, &coatWeight_, &coatRoughness_,

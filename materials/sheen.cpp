@@ -57,14 +57,15 @@ class SheenBsdf final : public Bsdf {
 class Sheen final : public Material {
   public:
     explicit Sheen(const SheenParams& p)
-        : color_(p.color, 1), baseColor_(p.baseColor, 0.2f), roughness_(p.roughness, 0, 1) {}
+        : color_(p.color, 1), baseColor_(p.baseColor, 0.2f), roughness_(p.roughness, 0, 1) {
+        traits_ = {.isOpaque = true,
+                   .focuses = false,
+                   .usesTextures = color_.textured() || baseColor_.textured() || roughness_.textured()};
+    }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         return arena.make<SheenBsdf>(color_.at(hit, lambda), baseColor_.at(hit, lambda), roughness_.at(hit));
     }
-    bool isOpaque() const override { return true; }
-    bool focuses() const override { return false; }
-    bool usesTextures() const override { return color_.textured() || baseColor_.textured() || roughness_.textured(); }
 
   private:
     SpectrumInput color_, baseColor_;

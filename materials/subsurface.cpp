@@ -64,12 +64,13 @@ class DiffuseBoundaryBsdf final : public Bsdf {
 
 class DiffuseBoundary final : public Material {
   public:
-    DiffuseBoundary(double ior, const schema::TexturedNumber& roughness) : gloss_(ior, roughness) {}
+    DiffuseBoundary(double ior, const schema::TexturedNumber& roughness) : gloss_(ior, roughness) {
+        traits_ = {.usesTextures = gloss_.textured()};
+    }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths&, Arena& arena) const noexcept override {
         return arena.make<DiffuseBoundaryBsdf>(gloss_.at(hit));
     }
-    bool usesTextures() const override { return gloss_.textured(); }
 
   private:
     GlossRange gloss_;

@@ -66,12 +66,13 @@ class ThinDielectricBsdf final : public Bsdf {
 
 class ThinDielectric final : public Material {
   public:
-    explicit ThinDielectric(const ThinDielectricParams& p) : ior_(p.ior), tint_(p.tint, 1) {}
+    explicit ThinDielectric(const ThinDielectricParams& p) : ior_(p.ior), tint_(p.tint, 1) {
+        traits_ = {.usesTextures = tint_.textured()};
+    }
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         return arena.make<ThinDielectricBsdf>(ior_ ? ior_->at(lambda) : Spectrum(1.5f), tint_.at(hit, lambda));
     }
-    bool usesTextures() const override { return tint_.textured(); }
 
   private:
     const Curve* ior_; // null: 1.5

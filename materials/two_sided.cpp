@@ -37,23 +37,25 @@ SurfaceHit fromBehind(const SurfaceHit& hit) {
 
 class TwoSided final : public Material {
   public:
-    TwoSided(const Material& front, const Material& back) : front_(front), back_(back) {}
+    TwoSided(const Material& front, const Material& back) : front_(front), back_(back) {
+        traits_ = {
+            .needs = front.needs() | back.needs(),
+            .choosesLobe = front.choosesLobe() || back.choosesLobe(),
+            .reversible = front.reversible() && back.reversible(),
+            .focuses = front.focuses() || back.focuses(),
+            .usesTextures = front.usesTextures() || back.usesTextures(),
+            .bends = true, // nothing for the whole: asks for hit.arrival
+            .mayBeOpen = front.mayBeOpen() || back.mayBeOpen(),
+            .seesOutside = front.seesOutside() || back.seesOutside(),
+        };
+    }
 
-    Effects needs() const override { return front_.needs() | back_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         const float side = dot(hit.arrival, hit.ng);
         if (side < 0) return &partBsdf(front_, hit, lambda, arena);
         const Bsdf* back = arena.make<TurnedBsdf>(partBsdf(back_, fromBehind(hit), lambda, arena), turned(Frame{}));
         return side > 0 ? back : arena.make<TwoSidedBsdf>(partBsdf(front_, hit, lambda, arena), *back);
     }
-    bool choosesLobe() const override { return front_.choosesLobe() || back_.choosesLobe(); }
-    bool usesTextures() const override { return front_.usesTextures() || back_.usesTextures(); }
-    bool seesOutside() const override { return front_.seesOutside() || back_.seesOutside(); }
-    bool reversible() const override { return front_.reversible() && back_.reversible(); }
-    // Nothing for the whole: asks for hit.arrival.
-    bool focuses() const override { return front_.focuses() || back_.focuses(); }
-    bool bends() const override { return true; }
-    bool mayBeOpen() const override { return front_.mayBeOpen() || back_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {
         return dot(hit.arrival, hit.ng) > 0 ? back_.opacity(fromBehind(hit)) : front_.opacity(hit);
     }

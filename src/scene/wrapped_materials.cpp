@@ -32,16 +32,16 @@ Vec3 bumpedNormal(const BumpMap& map, const SurfaceHit& hit) {
     return l2 < kInfinity ? bent * (1 / std::sqrt(l2)) : n;
 }
 
-Effects ModifiedMaterial::needs() const {
-    Effects effects = inner_.needs();
-    if (mayBeOpen() || modifiers_.priority != 0) effects |= Effect::interfaces;
-    if (modifiers_.normal.texture || modifiers_.bump.texture) effects |= Effect::bumps;
-    return effects;
-}
-
-bool ModifiedMaterial::usesTextures() const {
-    return modifiers_.opacity.textured() || modifiers_.normal.texture || modifiers_.bump.texture ||
-           inner_.usesTextures();
+ModifiedMaterial::ModifiedMaterial(const Material& inner, const Modifiers& modifiers)
+    : ForwardingMaterial(inner), modifiers_(modifiers) {
+    const bool bent = modifiers.normal.texture || modifiers.bump.texture;
+    if (!modifiers.opacity.is(1)) traits_.mayBeOpen = true;
+    if (traits_.mayBeOpen) traits_.isOpaque = false;
+    if (bent) traits_.bends = true;
+    if (bent || modifiers.opacity.textured()) traits_.usesTextures = true;
+    if (traits_.mayBeOpen || modifiers.priority != 0) traits_.needs |= Effect::interfaces;
+    if (bent) traits_.needs |= Effect::bumps;
+    inside_.priority = modifiers.priority;
 }
 
 void ModifiedMaterial::bend(SurfaceHit& hit) const noexcept {

@@ -11,27 +11,16 @@ namespace abbe {
 // All as the inner material has it, to which it refers.
 class ForwardingMaterial : public Material {
   public:
-    explicit ForwardingMaterial(const Material& inner) : inner_(inner) {}
+    explicit ForwardingMaterial(const Material& inner) : inner_(inner) {
+        traits_ = inner.traits();
+        inside_ = inner.inside();
+    }
 
-    Effects needs() const override { return inner_.needs(); }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         return inner_.bsdf(hit, lambda, arena);
     }
-    bool choosesLobe() const override { return inner_.choosesLobe(); }
-    const Curve* absorption() const override { return inner_.absorption(); }
-    const Medium* interior() const override { return inner_.interior(); }
-    bool isBoundary() const override { return inner_.isBoundary(); }
-    bool isOpaque() const override { return inner_.isOpaque(); }
-    bool reversible() const override { return inner_.reversible(); }
-    bool focuses() const override { return inner_.focuses(); }
-    bool usesTextures() const override { return inner_.usesTextures(); }
-    bool bends() const override { return inner_.bends(); }
     void bend(SurfaceHit& hit) const noexcept override { inner_.bend(hit); }
-    bool mayBeOpen() const override { return inner_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override { return inner_.opacity(hit); }
-    const Curve* ior() const override { return inner_.ior(); }
-    int priority() const override { return inner_.priority(); }
-    bool seesOutside() const override { return inner_.seesOutside(); }
     SurfaceEmission emission() const override { return inner_.emission(); }
 
   protected:
@@ -54,20 +43,13 @@ class ModifiedMaterial final : public ForwardingMaterial {
         BumpMap bump;
         int priority = 0;
     };
-    ModifiedMaterial(const Material& inner, const Modifiers& modifiers)
-        : ForwardingMaterial(inner), modifiers_(modifiers) {}
+    ModifiedMaterial(const Material& inner, const Modifiers&);
 
-    Effects needs() const override;
-    bool usesTextures() const override;
-    bool bends() const override { return modifiers_.normal.texture || modifiers_.bump.texture || inner_.bends(); }
     // The normal that the maps say, as far as consistentNormal() lets it.
     void bend(SurfaceHit&) const noexcept override;
-    bool isOpaque() const override { return inner_.isOpaque() && !mayBeOpen(); }
-    bool mayBeOpen() const override { return !modifiers_.opacity.is(1) || inner_.mayBeOpen(); }
     float opacity(const SurfaceHit& hit) const noexcept override {
         return modifiers_.opacity.at(hit) * inner_.opacity(hit);
     }
-    int priority() const override { return modifiers_.priority; }
 
   private:
     Modifiers modifiers_;
@@ -80,26 +62,20 @@ Vec3 bumpedNormal(const BumpMap&, const SurfaceHit& hit);
 // A material whose shapes are filled with a medium, to which it refers.
 class FilledMaterial final : public ForwardingMaterial {
   public:
-    FilledMaterial(const Material& surface, const Medium& interior)
-        : ForwardingMaterial(surface), interior_(interior) {}
-
-    Effects needs() const override { return inner_.needs() | interior_.needs(); }
-    const Medium* interior() const override { return &interior_; }
-
-  private:
-    const Medium& interior_;
+    FilledMaterial(const Material& surface, const Medium& interior) : ForwardingMaterial(surface) {
+        traits_.needs |= interior.needs();
+        inside_.interior = &interior;
+    }
 };
 
 // A dielectric that absorbs nothing.
 class ClearMaterial final : public ForwardingMaterial {
   public:
-    using ForwardingMaterial::ForwardingMaterial;
-
-    Effects needs() const override {
+    explicit ClearMaterial(const Material& inner) : ForwardingMaterial(inner) {
         const auto absorbs = static_cast<Effects::Bits>(Effect::absorption);
-        return Effects::fromBits(static_cast<Effects::Bits>(inner_.needs().bits() & ~absorbs));
+        traits_.needs = Effects::fromBits(static_cast<Effects::Bits>(inner.needs().bits() & ~absorbs));
+        inside_.absorption = nullptr;
     }
-    const Curve* absorption() const override { return nullptr; }
 };
 
 } // namespace abbe

@@ -83,8 +83,8 @@ TEST_CASE("case 10: texture coordinates that give no direction") {
     m.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     m.quads = {{0, 1, 2, 3}};
     struct Textured final : Material {
+        Textured() { traits_ = {.usesTextures = true}; }
         const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept override { return nullptr; }
-        bool usesTextures() const override { return true; }
     } const textured;
     int bad = 0, naive = 0;
     using Uvs = std::vector<Vec2>;

@@ -22,8 +22,8 @@ using namespace abbe::test;
 namespace {
 
 struct Textured final : Material {
+    Textured() { traits_ = {.usesTextures = true}; }
     const Bsdf* bsdf(const SurfaceHit&, const Wavelengths&, Arena&) const noexcept override { return nullptr; }
-    bool usesTextures() const override { return true; }
 };
 const Textured kTextured;
 

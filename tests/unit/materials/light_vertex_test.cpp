@@ -24,11 +24,10 @@ const ConstantCurve kGrey(0.7), kFree(0.001), kTint(0.6);
 // Turns its normal for whoever looks, as bumps do.
 class Bumped final : public Material {
   public:
-    explicit Bumped(const Material& inner) : inner_(inner) {}
+    explicit Bumped(const Material& inner) : inner_(inner) { traits_ = {.bends = true}; }
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& w, Arena& arena) const noexcept override {
         return inner_.bsdf(hit, w, arena);
     }
-    bool bends() const override { return true; }
     void bend(SurfaceHit& hit) const noexcept override {
         const Vec3 n = consistentNormal(hit.ng, normalize(hit.shading.z + Vec3{0.5f, -0.3f, 0}), -hit.arrival);
         hit.shading = Frame::fromNormalTangent(n, hit.shading.x);
