@@ -115,6 +115,9 @@ class FaceMaterials final : public Shape {
     void parametrize(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const override {
         shape_->parametrize(raw, ray, hit);
     }
+    Vec3 carried(const RawHit& raw, const Ray& ray, const SurfaceHit& hit, float time) const override {
+        return shape_->carried(raw, ray, hit, time);
+    }
     bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
     const SurfaceSampling* sampling() const override { return shape_->sampling(); }
     const VertexAttributes* attributes() const override { return shape_->attributes(); }

@@ -159,6 +159,24 @@ TEST_CASE("deformation: a square that rises, tilts and grows is met where the fo
     }
 }
 
+TEST_CASE("deformation: points go along, whether or not faces have materials of their own") {
+    const MeshData begin = squareMesh(true);
+    MeshData end = begin;
+    for (Vec3& p : end.positions) p.x += 1;
+    const DeformingMesh plain = deforming({begin, end});
+    const FaceMaterials dressed(std::make_unique<const DeformingMesh>(deforming({begin, end})), {nullptr}, {0});
+    for (const Shape* shape : {static_cast<const Shape*>(&plain), static_cast<const Shape*>(&dressed)}) {
+        const auto scene = sceneOf(*shape);
+        const Ray ray{{1, 0.5f, 9}, {0, 0, -1}, kInfinity, 0.5f};
+        SurfaceHit hit;
+        REQUIRE(scene->intersect(ray, hit));
+        const auto passage = scene->passage(ray, hit, hit.distance);
+        REQUIRE(passage);
+        CHECK(length(passage->opening - Vec3(0.5f, 0.5f, 0)) < 1e-5f);
+        CHECK(length(passage->closing - Vec3(1.5f, 0.5f, 0)) < 1e-5f);
+    }
+}
+
 TEST_CASE("deformation: a mesh in three steps is at every time the mesh that stands there") {
     const std::vector<MeshData> keys{ball(0), ball(1), ball(2)};
     const DeformingMesh mesh = deforming(keys);
