@@ -30,7 +30,8 @@ ExitCode run(const RenderOptions&, const CommonOptions&);
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string scene;  // empty: where it was when the first part was made
-    std::string output; // EXR
+    std::string output; // EXR, or a part (.abbe)
+    bool soFar = false; // also where samples are missing
     PngOptions png;
     ViewOptions view;
 

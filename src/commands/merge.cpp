@@ -13,11 +13,14 @@ const char* const kMergeHelp = R"(Puts parts of a render together, to the bits o
 
 Examples:
   abbe merge room.part*.abbe -o room.exr
-  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples)";
+  abbe merge left.part1.abbe right.part1.abbe -o room.exr      crops with the same samples
+  abbe merge room.part[1-9].abbe -o room.first9.abbe           one part instead of nine, to be merged later
+  abbe merge room.part*.abbe --so-far -o look.exr              what there is, of parts that are still rendered)";
 
 void addArguments(Arguments& a, MergeOptions& o) {
     a.argument("parts", &o.parts, "Parts of one render (.abbe)").require();
-    a.value("-o,--output", "FILE", &o.output, "Image to write (EXR)").require();
+    a.value("-o,--output", "FILE", &o.output, "Image to write (EXR), or one part for all (.abbe)").require();
+    a.flag("--so-far", &o.soFar, "Leave out what is missing: of parts that are not finished, or not there");
     a.value("--scene", "FILE", &o.scene, "Where the scene is now");
     addPng(a, o.png, o.view);
     addView(a, o.view);
@@ -57,7 +60,9 @@ ExitCode run(const MergeOptions& options, const CommonOptions& common) {
         render.checkpoint.off = true;
         render.crop.reset();
         render.part.reset();
+        render.skip = 0;
         render.parts = options.parts;
+        render.soFar = options.soFar;
         return run(render, common);
     } catch (const CheckpointFault& fault) {
         Diagnostics diagnostics;

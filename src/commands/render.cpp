@@ -68,6 +68,7 @@ void addPieces(Arguments& a, RenderOptions& o) {
     a.read("--crop", "X0,Y0,X1,Y1", o.crop, "a rectangle such as 0,0,640,360", readCrop, "Render these pixels only");
     a.read("--part", "K/N", o.part, "a part such as 2/4", readPart,
            "Take the K-th of N ranges of the samples and write a part for `merge`");
+    a.value("--skip", "N", &o.skip, "With --part: leave out the first N samples per pixel, which earlier parts have");
 }
 
 } // namespace

@@ -89,7 +89,8 @@ struct RenderSettings {
     std::uint32_t maxDepth = 0;        // 0: no limit
     double noiseTarget = 0;            // relative error at which to stop (0.005 for 0.5 %); 0: none
     double timeLimit = 0;              // s; 0: none
-    std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken
+    std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken,
+    std::uint32_t skip = 0;            // behind the first so many per pixel, a multiple of the replicates
     bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
     // How large the pilots are by which light paths, merging and what else serves caustics are planned: 0 (none, and no
     // such plan) to kFullPilot, each four times the work of the one before. kPilotByWork: the largest that take no more
@@ -102,10 +103,12 @@ struct RenderSettings {
         const auto r = static_cast<std::uint64_t>(replicates);
         return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (samples + r - 1) / r));
     }
-    // Of this part of it. Requires 1 <= part <= parts.
+    // Of this part of it. Requires 1 <= part <= parts and skip below samples.
     SampleRange range(int replicates) const {
-        const std::uint64_t all = samplesPerReplicate(replicates);
-        return {static_cast<std::uint32_t>(all * (part - 1) / parts), static_cast<std::uint32_t>(all * part / parts)};
+        const std::uint64_t begin = skip / static_cast<std::uint32_t>(replicates);
+        const std::uint64_t all = samplesPerReplicate(replicates) - begin;
+        return {static_cast<std::uint32_t>(begin + all * (part - 1) / parts),
+                static_cast<std::uint32_t>(begin + all * part / parts)};
     }
 };
 

@@ -38,9 +38,13 @@ struct RenderOptions {
     CheckpointOptions checkpoint;
     std::optional<PixelBounds> crop;
     std::optional<Vec2i> part;      // x of y equal ranges of the samples; a file for `merge` is written
+    std::uint32_t skip = 0;         // samples per pixel that parts of an earlier round have
     std::vector<std::string> parts; // nothing is rendered, but these are put together
+    bool soFar = false;             // also where samples are missing
 
     bool makesFiles() const { return !pixel; }
+    // Whether parts become one part, not an image.
+    bool mergesToPart() const { return !parts.empty() && output.ends_with(".abbe"); }
 };
 
 } // namespace abbe

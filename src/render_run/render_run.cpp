@@ -4,6 +4,7 @@
 #include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "checkpoints/render_identity.h"
+#include "checkpoints/render_parts.h"
 #include "pictures/display_view.h"
 #include "rendering/path_tracer.h"
 #include "reports/image_header.h"
@@ -87,23 +88,46 @@ ExitCode RenderRun::checkFilm() {
 ExitCode RenderRun::checkOutputs() {
     summary_.image = imagePath(options_.output, film_, options_.input.path);
     if (options_.part) summary_.image = partPath(summary_.image, *options_.part);
-    if (!options_.part && std::filesystem::path(summary_.image).extension() != ".exr")
+    const bool makesPart = options_.part || options_.mergesToPart();
+    if (options_.mergesToPart() && isForeignCheckpoint(summary_.image))
+        return refuse("E0661", fmt::format("`{}` is there already, and was not made by this program", summary_.image),
+                      "`-o FILE` writes the part elsewhere", ExitCode::faulty);
+    if (!makesPart && std::filesystem::path(summary_.image).extension() != ".exr")
         return refuse("E0431", fmt::format("the image `{}` must be an EXR", summary_.image),
                       "name it `….exr`; a PNG is written beside it", ExitCode::usage);
-    if (built_.layers.deep && !options_.part) summary_.deep = deepPath(summary_.image);
+    if (built_.layers.deep && !makesPart) summary_.deep = deepPath(summary_.image);
     for (const std::string& path : {summary_.image, summary_.deep}) {
         if (path.empty()) continue;
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);
     }
-    if (const std::string path = summary_.image + ".json"; !options_.part && isForeignCertificate(path)) {
+    if (const std::string path = summary_.image + ".json"; !makesPart && isForeignCertificate(path)) {
         certificateAlso_ = false;
         warn("W0667",
              fmt::format("no certificate will be written: `{}` is there already, and was not made by this program",
                          path),
              "the header of the image has it");
     }
-    return checkPng();
+    return makesPart ? ExitCode::done : checkPng();
+}
+
+// Of a round of parts.
+ExitCode RenderRun::checkSkip() {
+    const std::uint32_t replicates = built_.render.replicates;
+    if (options_.skip == 0) return ExitCode::done;
+    if (!options_.part)
+        return refuse("E0760", "--skip leaves samples out that an earlier round of parts has, so it needs --part",
+                      "`--part 1/1` is all that is left", ExitCode::usage);
+    if (options_.skip % replicates != 0)
+        return refuse("E0760",
+                      fmt::format("--skip {}: each of the {} replicates has the same number of samples", options_.skip,
+                                  replicates),
+                      fmt::format("`--skip {}`", (options_.skip / replicates + 1) * replicates), ExitCode::usage);
+    if (options_.skip >= settings_.samples)
+        return refuse("E0760", fmt::format("--skip {} leaves nothing of {} samples", options_.skip, settings_.samples),
+                      "`--samples` is the number of the whole render, earlier rounds included", ExitCode::usage);
+    settings_.skip = options_.skip;
+    return ExitCode::done;
 }
 
 ExitCode RenderRun::prepare() {
@@ -114,6 +138,7 @@ ExitCode RenderRun::prepare() {
     if (const ExitCode code = checkFilm(); code != ExitCode::done) return code;
     if (!alone())
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
+    if (const ExitCode code = checkSkip(); code != ExitCode::done) return code;
     if (options_.part) {
         settings_.part = static_cast<std::uint32_t>(options_.part->x);
         settings_.parts = static_cast<std::uint32_t>(options_.part->y);
@@ -218,17 +243,27 @@ void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& inte
 // Parts that were rendered elsewhere, as if it had been here.
 ExitCode RenderRun::merge() {
     try {
-        RenderParts parts(options_.parts);
+        const PartsWanted wanted = options_.mergesToPart() ? PartsWanted::range
+                                   : options_.soFar        ? PartsWanted::soFar
+                                                           : PartsWanted::whole;
+        RenderParts parts(options_.parts, wanted);
         parts.check(identity());
         film_.crop = parts.bounds();
         settings_.pilot = parts.pilot();
         PixelFilm film = makeFilm(film_.crop);
         watch_.lap();
         const WorkScope work(Work::merging);
+        settings_.samples = parts.whole() * static_cast<std::uint32_t>(film.replicates());
         summary_.statistics = parts.addTo(film.planes());
+        summary_.partial = summary_.statistics.stopped;
         earlier_ = parts.work();
         summary_.noise = film.relativeNoise();
         endPhase("merging", watch_.lap());
+        if (options_.mergesToPart()) {
+            parts.write(summary_.image, film.planes());
+            report_->image(summary_.image, false);
+            return finish(0);
+        }
         setWork(Work::preparing);
         findDropped(film);
         write(film);

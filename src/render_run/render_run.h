@@ -59,6 +59,7 @@ class RenderRun {
     ExitCode checkFilm();
     void warnOfDeepMemory();
     ExitCode checkOutputs();
+    ExitCode checkSkip();
     ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),

@@ -2,6 +2,7 @@
 #include "checkpoints/checkpoint_file.h"
 #include "checkpoints/render_checkpoint.h"
 #include "checkpoints/render_identity.h"
+#include "checkpoints/render_parts.h"
 #include "film/pixel_film.h"
 #include "math/hash.h"
 

@@ -1,0 +1,54 @@
+// Parts of one render, by ranges of samples or by crops, put together to the bits of the whole.
+#pragma once
+
+#include "checkpoints/render_identity.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+// Where the part `part.x` of `part.y` goes, beside the image: "room.part2.abbe".
+std::string partPath(const std::string& imagePath, Vec2i part);
+
+// What parts have to be together.
+enum class PartsWanted : std::uint8_t {
+    whole, // all samples of all pixels of a rectangle, each in one part
+    range, // the same rectangle in all of them, and their samples follow each other: together they are a part
+    soFar, // what there is, also of parts that are not finished; none twice
+};
+
+class RenderParts {
+  public:
+    // Opens the files. Throws CheckpointFault, IoError; here and below.
+    explicit RenderParts(const std::vector<std::string>& paths, PartsWanted wanted = PartsWanted::whole);
+
+    // That all are parts of the same render, and that of the scene given; that nothing is missing or twice.
+    void check(const std::vector<Fact>& identity) const;
+    // The smallest rectangle around all parts. Requires check().
+    PixelBounds bounds() const;
+    // Adds all of them to an empty film of these bounds. Requires check().
+    RenderStatistics addTo(const FilmPlanes&);
+    // RenderSettings::pilot of all of them. Requires check().
+    int pilot() const { return readers_[0].header().pilot; }
+    // Where the time of all parts went. After addTo().
+    const WorkReading& work() const { return work_; }
+    // Samples of each replicate of the render that they are parts of; of rounds, up to the end of the last one.
+    std::uint32_t whole() const;
+    // Writes the film as one part that stands for all of them. After addTo(); requires PartsWanted::range.
+    void write(const std::string& path, const FilmPlanes&);
+
+  private:
+    void checkFacts(const std::vector<Fact>& identity) const;
+    void checkDisjoint() const;
+    void checkComplete() const;
+    void checkRange() const;
+
+    std::vector<CheckpointReader> readers_; // in the order of their samples
+    PartsWanted wanted_;
+    WorkReading work_;
+    std::optional<RenderState> total_; // of a range: where all of them stand
+};
+
+} // namespace abbe
