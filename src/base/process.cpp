@@ -46,7 +46,8 @@ int spawnProcess(const std::vector<std::string>& words, int out, int err, pid_t&
 
 int waitForProcess(pid_t process) {
     int status = 0;
-    while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {}
+    while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
     return codeOfStatus(status);
 }
 

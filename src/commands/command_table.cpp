@@ -1,5 +1,7 @@
 #include "commands/command_table.h"
 
+#include "commands/farm.h"
+
 namespace abbe {
 
 namespace {
@@ -37,6 +39,7 @@ const CommandTable& commandTable() {
     static const CommandEntry commands[] = {
         {"render", kPictures, kRenderHelp, makeCommand<RenderOptions>},
         {"merge", kPictures, kMergeHelp, makeCommand<MergeOptions>},
+        {"farm", kPictures, kFarmHelp, nullptr, farmActions()},
         {"convert", kPictures, kConvertHelp, makeCommand<ConvertOptions>},
         {"denoise", kPictures, kDenoiseHelp, makeCommand<DenoiseOptions>},
         {"check", kScenes, kCheckHelp, makeCommand<CheckOptions>},

@@ -86,6 +86,8 @@ void addArguments(Arguments& a, RenderOptions& o) {
     a.read("--preview", "on|off", o.preview, "on or off", readSwitch,
            "A PNG of what there is so far, until the image is written");
     addJson(a, "Progress as JSON lines on stdout");
+    a.read("--progress", "TIME", o.progressEvery, "a time such as 5s", readTime,
+           "With --json: a line of it that often, 0.25s");
     a.flag("--cost,--bill", &o.cost, "Print what the time was spent on");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
     a.flag("--strict", &o.strict, "Exit with 4 when there were warnings");

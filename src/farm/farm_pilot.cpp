@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 
 namespace abbe {
 
@@ -34,18 +36,21 @@ double measureSample(const FarmPlan& plan, const FarmFolder& folder) {
     const double scale = std::min(1.0, std::sqrt(kPilotPixels / (double(plan.width) * plan.height)));
     const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
     std::vector<std::string> words{plan.executable, "render", plan.scene};
-    // The size and crop of the whole would say how large the picture is.
-    for (const std::string& word : plan.renderWords) words.push_back(word);
-    std::erase_if(words, [](const std::string& w) { return w.starts_with("--size=") || w.starts_with("--crop="); });
+    // The pilot says itself how large it is and how long it takes.
+    const auto isOwn = [](const std::string& word) {
+        constexpr std::string_view kOwn[] = {"--size=", "--crop=", "--time=", "--checkpoint="};
+        return std::ranges::any_of(kOwn, [&](std::string_view own) { return word.starts_with(own); });
+    };
+    std::ranges::copy_if(plan.renderWords, std::back_inserter(words), std::not_fn(isOwn));
     if (plan.animation) words.push_back(fmt::format("--frames={}", plan.rounds[0].frames[0]));
     const std::string image = folder.path() + "/pilot.exr";
     for (const std::string& word :
          {fmt::format("--size={}x{}", side(plan.width), side(plan.height)), fmt::format("--time={}", kPilotTime),
-          fmt::format("--samples={}", std::min<std::uint32_t>(plan.samples, 64)), std::string("--json"), std::string("--png=off"),
-          std::string("--checkpoint=off"), std::string("--preview=off"), std::string("-o"), image})
+          fmt::format("--samples={}", std::min<std::uint32_t>(plan.samples, 64)), std::string("--json"),
+          std::string("--png=off"), std::string("--checkpoint=off"), std::string("--preview=off"), std::string("-o"),
+          image})
         words.push_back(word);
     const ProcessEnd end = runProcess(words);
-    const std::string stem = folder.path() + "/pilot";
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path(), ignored))
         if (entry.path().filename().string().starts_with("pilot.")) std::filesystem::remove(entry.path(), ignored);

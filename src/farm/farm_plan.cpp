@@ -23,7 +23,8 @@ int groupCount(const FarmRound& round) {
 int partsOf(const FarmPlan& plan, std::uint32_t from, std::uint32_t to) {
     const double most = (to - from) / static_cast<std::uint32_t>(plan.replicates);
     const double seconds = plan.sampleSeconds * plan.width * plan.height * (to - from) / plan.cores;
-    return static_cast<int>(std::clamp(std::ceil(seconds / plan.chunkSeconds), 1.0, std::max(1.0, most)));
+    const double wanted = plan.parts > 0 ? plan.parts : std::ceil(seconds / plan.chunkSeconds);
+    return static_cast<int>(std::clamp(wanted, 1.0, std::max(1.0, most)));
 }
 
 std::vector<FarmTask> tasksOf(const FarmPlan& plan, int round, FarmTask::Kind kind) {

@@ -42,14 +42,15 @@ struct FarmPlan {
     double sampleSeconds = 0;  // measured: of a core, of one sample of one pixel
     int cores = 1;             // of a task
     double chunkSeconds = 600; // wall clock that a part should take
+    int parts = 0;             // of each frame in each round; 0: as many as take so long
     FarmEngineKind engine = FarmEngineKind::slurm;
     int atOnce = 1;                       // tasks of the local engine
     int mostTries = 2;                    // FarmRound::tries
     std::vector<std::string> sbatchWords; // further options of every job
-    bool cancelled = false;
+    bool cancelled = false;    // that is in a file of its own, which whoever holds the plan does not overwrite
     std::string outcome, said; // "done", "limit", "failed" and a sentence, once it is over
     std::vector<FarmRound> rounds;
-    std::vector<std::string> jobs; // of the engine, in the order in which they were submitted
+    std::vector<std::string> jobs;      // of the engine, in the order in which they were submitted
     std::map<std::string, int> offsets; // of array jobs: what their indices have to be added to
 };
 
@@ -62,7 +63,8 @@ struct FarmTask {
     int piece = 0; // of the frame, from 1: which part, or which group of parts
 };
 
-// More parts of a frame than this are first gathered into groups, so that no merge reads more files than the square root.
+// More parts of a frame than this are first gathered into groups, so that no merge reads more files than the square
+// root.
 inline constexpr int kMostMergedParts = 24;
 // Parts in one group, and groups of a frame; 0 groups: they are merged at once.
 int groupSize(const FarmRound&);
@@ -81,6 +83,7 @@ class FarmFolder {
 
     const std::string& path() const { return path_; }
     std::string planFile() const { return path_ + "/plan.json"; }
+    std::string cancelFile() const { return path_ + "/cancelled"; }
     // "r1.0012.p3", "r1.0012.g2", "r1.0012": of a round, a frame and a piece.
     std::string nameOf(const FarmPlan&, const FarmTask&) const;
     // What the task has to say as it goes on, line by line, and how it ended.
@@ -106,6 +109,8 @@ class FarmFolder {
     // Throws FarmFault where there is no shot, or one of another version of the program; IoError.
     FarmPlan readPlan() const;
     void writePlan(const FarmPlan&) const;
+    // Throws IoError.
+    void setCancelled(bool) const;
 
   private:
     std::string path_;

@@ -50,10 +50,10 @@ template <typename Field> void planFields(FarmPlan& p, const Field& field) {
     field("sample_seconds", p.sampleSeconds);
     field("cores", p.cores);
     field("chunk_seconds", p.chunkSeconds);
+    field("parts", p.parts);
     field("at_once", p.atOnce);
     field("most_tries", p.mostTries);
     field("sbatch_words", p.sbatchWords);
-    field("cancelled", p.cancelled);
     field("outcome", p.outcome);
     field("said", p.said);
     field("jobs", p.jobs);
@@ -85,7 +85,16 @@ FarmPlan FarmFolder::readPlan() const {
                         fmt::format("`{}` was planned by another program: `{}`, and this is `{}`", path_, plan.program,
                                     thisProgram()),
                         "samples may differ between versions: go on with that one, or submit the shot anew");
+    plan.cancelled = std::filesystem::exists(cancelFile(), error);
     return plan;
+}
+
+void FarmFolder::setCancelled(bool cancelled) const {
+    std::error_code ignored;
+    if (cancelled)
+        writeAtomically(cancelFile(), std::string_view("`abbe farm resume` goes on\n"));
+    else
+        std::filesystem::remove(cancelFile(), ignored);
 }
 
 void FarmFolder::writePlan(const FarmPlan& plan) const {

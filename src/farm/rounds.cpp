@@ -119,10 +119,9 @@ RoundEnd closeRound(FarmPlan& plan, const FarmFolder& folder, int round) {
         const FarmTask& first = !end.work.parts.empty()        ? end.work.parts[0]
                                 : !end.work.gatherings.empty() ? end.work.gatherings[0]
                                                                : end.work.merges[0];
-        end.said = !hopeless.empty()
-                       ? hopeless
-                       : fmt::format("{} of {} was not done in {} tries", folder.nameOf(plan, first),
-                                     nameOfFrame(plan, first.frame), r.tries + 1);
+        end.said = !hopeless.empty() ? hopeless
+                                     : fmt::format("{} of {} was not done in {} tries", folder.nameOf(plan, first),
+                                                   nameOfFrame(plan, first.frame), r.tries + 1);
         return end;
     }
     ++r.tries;

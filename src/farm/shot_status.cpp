@@ -33,7 +33,7 @@ TaskState stateOf(const FarmPlan& plan, const FarmFolder& folder, const FarmTask
     if (record.done()) return TaskState::done;
     if (const auto found = queue.find(folder.nameOf(plan, task)); found != queue.end())
         return found->second->state == "running" || found->second->state == "completing" ? TaskState::running
-                                                                                          : TaskState::waiting;
+                                                                                         : TaskState::waiting;
     if (plan.engine == FarmEngineKind::local && record.starts > 0 && !record.exit &&
         silenceOf(folder.eventsFile(plan, task)) < kSilence)
         return TaskState::running;
@@ -138,15 +138,15 @@ ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, const std::v
 }
 
 std::string statusTable(const FarmPlan& plan, const FarmFolder& folder, const ShotStatus& status) {
-    std::string s = fmt::format("{}  {}: {}x{}, {} samples{}\n", folder.path(), plan.scene, plan.width, plan.height,
-                                plan.rounds.back().to,
-                                plan.noise > 0 ? fmt::format(" so far planned, until {:.3g} % noise", 100 * plan.noise)
-                                               : std::string());
+    std::string s = fmt::format(
+        "{}  {}: {}x{}, {} samples{}\n", folder.path(), plan.scene, plan.width, plan.height, plan.rounds.back().to,
+        plan.noise > 0 ? fmt::format(" so far planned, until {:.3g} % noise", 100 * plan.noise) : std::string());
     s += fmt::format("{:>8} {:>6} {:>6} {:>8} {:>8} {:>7} {:>9} {:>9} {:>8}  {}\n", "frame", "parts", "done", "running",
                      "waiting", "failed", "requeued", "samples", "noise", "image");
     std::size_t rows = 0, left = 0;
     for (const FrameStatus& f : status.frames) {
-        const bool dull = status.frames.size() > kMostRows && (f.merged || (f.done == 0 && f.running == 0 && f.failed == 0));
+        const bool dull =
+            status.frames.size() > kMostRows && (f.merged || (f.done == 0 && f.running == 0 && f.failed == 0));
         if (dull || rows >= kMostRows) {
             ++left;
             continue;
@@ -155,7 +155,8 @@ std::string statusTable(const FarmPlan& plan, const FarmFolder& folder, const Sh
         s += fmt::format("{:>8} {:>6} {:>6} {:>8} {:>8} {:>7} {:>9} {:>9.4g} {:>8}  {}\n",
                          plan.animation ? fmt::format("{}", f.frame) : std::string("still"), f.parts, f.done, f.running,
                          f.waiting, f.failed, f.requeued, f.samples,
-                         f.noise > 0 ? fmt::format("{:.3g} %", 100 * f.noise) : std::string("-"), f.merged ? "yes" : "no");
+                         f.noise > 0 ? fmt::format("{:.3g} %", 100 * f.noise) : std::string("-"),
+                         f.merged ? "yes" : "no");
     }
     if (left > 0) s += fmt::format("and {} frames that are done or have not begun\n", left);
     s += fmt::format("{}: {:.3g} % of the samples", wordOfState(status.state), 100 * status.fraction);

@@ -13,8 +13,8 @@ namespace abbe {
 struct FrameStatus {
     int frame = 0;
     int parts = 0, done = 0, running = 0, waiting = 0, failed = 0; // of all rounds
-    int requeued = 0;                                               // runs that were taken up again
-    double samples = 0;                                             // per pixel so far
+    int requeued = 0;                                              // runs that were taken up again
+    double samples = 0;                                            // per pixel so far
     double noise = 0; // relative error of these, from what the parts say of themselves; 0: unknown
     bool merged = false;
 };

@@ -1,6 +1,6 @@
-// Slurm (22.05 and later) as an engine, by its own commands: sbatch, squeue, scancel, scontrol. Parts of a round are job
-// arrays; each frame has a job that merges it when its parts have ended, however they did, and looks for itself whether
-// they are complete; a last job closes the round.
+// Slurm (22.05 and later) as an engine, by its own commands: sbatch, squeue, scancel, scontrol. Parts of a round are
+// job arrays; each frame has a job that merges it when its parts have ended, however they did, and looks for itself
+// whether they are complete; a last job closes the round.
 #include "app/console.h"
 #include "base/process.h"
 #include "farm/farm_engine.h"
@@ -142,7 +142,8 @@ class Slurm final : public FarmEngine {
         submitArrays(work.parts, {});
         // An array of its own for each frame, which can begin as soon as that frame's parts have ended.
         for (const FarmTask& merge : work.merges)
-            submitArrays(ofFrame(work.gatherings, merge.frame), jobsOf(plan, ofFrame(work.parts, merge.frame), jobOfTask));
+            submitArrays(ofFrame(work.gatherings, merge.frame),
+                         jobsOf(plan, ofFrame(work.parts, merge.frame), jobOfTask));
         std::vector<std::string> merged;
         const std::vector<FarmTask> all = tasksOf(plan, work.round, FarmTask::Kind::merge);
         for (const FarmTask& merge : work.merges) {
@@ -177,8 +178,9 @@ class Slurm final : public FarmEngine {
   private:
     static FarmFault refused(const char* program, const ProcessEnd& end) {
         if (end.code == 127)
-            return {"E0763", fmt::format("there is no Slurm here: `{}`: {}", program, end.err),
-                    "`--engine local` renders the shot on this machine; on a cluster submit where sbatch can be called"};
+            return {
+                "E0763", fmt::format("there is no Slurm here: `{}`: {}", program, end.err),
+                "`--engine local` renders the shot on this machine; on a cluster submit where sbatch can be called"};
         return {"E0763", fmt::format("Slurm refuses: {}: {}", program, said(end)),
                 "`abbe farm submit --print` writes what it is given, to be read and tried by hand"};
     }

@@ -19,7 +19,8 @@ struct TaskRecord {
     bool outputThere = false; // its file
     // Whether it need not be run again.
     bool done() const { return exit == 0 && outputThere; }
-    // Whether running it again would end the same way: the scene is wrong, or the command, or a part is of another shot.
+    // Whether running it again would end the same way: the scene is wrong, or the command, or a part is of another
+    // shot.
     bool hopeless() const {
         return exit && (*exit == static_cast<int>(ExitCode::faulty) || *exit == static_cast<int>(ExitCode::usage));
     }

@@ -24,7 +24,8 @@ struct CheckpointOptions {
 struct RenderOptions {
     std::vector<SampleId> replay; // these are taken again, and told
     SceneInput input;
-    std::string output; // EXR; empty: from the scene
+    std::string output;      // EXR; empty: from the scene
+    std::vector<int> frames; // of an animation; empty: a still
     PngOptions png;
     ViewOptions view;
     BuildOptions build;
@@ -32,6 +33,7 @@ struct RenderOptions {
     bool quiet = false;
     bool strict = false;
     bool cost = false;            // printed at the end
+    double progressEvery = 0.25;  // s, between lines of JSON
     std::optional<bool> preview;  // while it goes on; unless off
     std::optional<Vec2i> pixel;   // render this one alone and print it
     std::optional<double> memory; // MiB, the most that may be taken

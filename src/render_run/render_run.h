@@ -29,7 +29,7 @@ class RenderRun {
   public:
     RenderRun(const RenderOptions& options, const CommonOptions& common)
         : options_(options), common_(common),
-          report_(common.json && options.replay.empty() ? makeJsonReport(common.console)
+          report_(common.json && options.replay.empty() ? makeJsonReport(common.console, options.progressEvery)
                                                         : makeHumanReport(common.console, options.quiet || alone())) {}
 
     ExitCode run() {

@@ -18,7 +18,7 @@ Json faultsJson(const std::vector<FoundFault>& faults) {
 
 class JsonReport final : public RenderReport {
   public:
-    explicit JsonReport(const Console& console) : console_(console) {}
+    JsonReport(const Console& console, double every) : console_(console), every_(every) {}
 
     void start(const RenderStart& s) override {
         emit(Json::object({{"event", "start"},
@@ -36,9 +36,9 @@ class JsonReport final : public RenderReport {
         emit(Json::object({{"event", "phase"}, {"name", name}, {"seconds", seconds}}));
     }
 
-    // Four times a second at most, and the end.
+    // So often at most, and the end.
     void progress(const Progress& p) override {
-        if (p.fraction < 1 && p.elapsed - lastShown_ < 0.25) return;
+        if (p.fraction < 1 && p.elapsed - lastShown_ < every_) return;
         lastShown_ = p.elapsed;
         emit(Json::object({{"event", "progress"},
                            {"done", p.fraction},
@@ -99,6 +99,7 @@ class JsonReport final : public RenderReport {
     void emit(const Json& event) const { console_.data(event.text() + "\n"); }
 
     Console console_;
+    double every_; // s
     double lastShown_ = -1;
 };
 
@@ -117,6 +118,8 @@ void JsonReport::diagnostics(const Diagnostics& list, const SourceMap& sources) 
 
 } // namespace
 
-std::unique_ptr<RenderReport> makeJsonReport(const Console& console) { return std::make_unique<JsonReport>(console); }
+std::unique_ptr<RenderReport> makeJsonReport(const Console& console, double secondsBetweenProgress) {
+    return std::make_unique<JsonReport>(console, secondsBetweenProgress);
+}
 
 } // namespace abbe

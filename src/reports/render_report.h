@@ -65,6 +65,6 @@ class RenderReport {
 // A bar on a terminal, else a line per tenth or half minute; a summary at the end. Quiet: diagnostics alone.
 std::unique_ptr<RenderReport> makeHumanReport(const Console&, bool quiet);
 // One JSON object a line on stdout; docs/command_line.md lists the events.
-std::unique_ptr<RenderReport> makeJsonReport(const Console&);
+std::unique_ptr<RenderReport> makeJsonReport(const Console&, double secondsBetweenProgress = 0.25);
 
 } // namespace abbe
