@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/memory_limit.h"
 #include "checkpoints/checkpoint_bytes.h"
+#include "checkpoints/packed_bytes.h"
 #include "io/file.h"
 #include "math/byte_hash.h"
 
@@ -18,7 +19,7 @@ namespace abbe {
 namespace {
 
 constexpr char kCheckpointMagic[8] = {'A', 'B', 'B', 'E', 'C', 'K', 'P', 'T'};
-constexpr std::uint32_t kCheckpointVersion = 6;
+constexpr std::uint32_t kCheckpointVersion = 7;
 
 enum BlockKind : std::uint32_t { headerBlock = 1, tileBlock = 2, endBlock = 3, lightBlock = 4, splatBlock = 5 };
 
@@ -161,11 +162,15 @@ void writeTile(const TileState& tile, ByteWriter& out) {
 
 // Those that light paths add to, or all others.
 void writePlanes(const FilmPlanes& planes, bool ofLightPaths, PixelBounds pixels, std::vector<std::byte>& bytes) {
+    std::vector<std::byte> whole;
     for (const auto& plane : planes) {
         if (plane->ofLightPaths() != ofLightPaths) continue;
+        whole.clear();
+        plane->store(pixels, whole);
+        ByteWriter(bytes).number(static_cast<std::uint64_t>(whole.size()));
         const std::size_t at = bytes.size();
         ByteWriter(bytes).number(std::uint64_t{0});
-        plane->store(pixels, bytes);
+        appendPacked(whole, bytes);
         const std::uint64_t size = bytes.size() - at - sizeof size;
         std::memcpy(bytes.data() + at, &size, sizeof size);
     }
@@ -331,7 +336,9 @@ void CheckpointReader::addPlanes(ByteReader& in, const Block& block, const FilmP
                                  PixelBounds pixels) {
     for (const auto& plane : planes) {
         if (plane->ofLightPaths() != ofLightPaths) continue;
-        if (const auto bytes = in.take(in.number<std::uint64_t>()); !in.sound() || !plane->add(pixels, bytes))
+        const auto size = in.number<std::uint64_t>();
+        const auto packed = in.take(in.number<std::uint64_t>());
+        if (!in.sound() || !unpack(packed, size, unpacked_) || !plane->add(pixels, unpacked_))
             damaged(block.begin, "a tile of another size");
     }
     if (!in.atEnd()) damaged(block.begin, "a tile of another size");

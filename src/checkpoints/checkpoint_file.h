@@ -89,6 +89,7 @@ class CheckpointReader {
     RegularFile file_;
     std::uint64_t position_ = 0;
     Block block_;
+    std::vector<std::byte> unpacked_; // of a plane
     CheckpointHeader header_;
 };
 

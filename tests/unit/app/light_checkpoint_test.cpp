@@ -291,7 +291,7 @@ TEST_CASE("no damage to what light paths brought goes unnoticed") {
     CHECK(unnoticed == 0);
     std::string older = bytes;
     older[8] = 2;
-    CHECK(readBad(older).find("is a checkpoint of version 2; this program knows version 6") != std::string::npos);
+    CHECK(readBad(older).find("is a checkpoint of version 2; this program knows version 7") != std::string::npos);
     // Into a film that has no place for it, and from one that had none.
     CHECK(faultOf([&] {
               PixelFilm plain(bounds, PixelFilter(FilterShape::box, 0.5), 2);

@@ -1,0 +1,71 @@
+#include "checkpoints/packed_bytes.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <immintrin.h>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+
+// For each byte of flags the bytes that it stands for.
+constexpr std::array<std::uint64_t, 256> kBytesOfFlags = [] {
+    std::array<std::uint64_t, 256> table{};
+    for (std::size_t flags = 0; flags < table.size(); ++flags)
+        for (unsigned bit = 0; bit < kWord; ++bit)
+            if (flags >> bit & 1) table[flags] |= std::uint64_t{0xff} << (8 * bit);
+    return table;
+}();
+
+// Which bytes are not zero.
+unsigned flagsOf(std::uint64_t word) {
+    const __m128i zero = _mm_cmpeq_epi8(_mm_cvtsi64_si128(static_cast<long long>(word)), _mm_setzero_si128());
+    return ~static_cast<unsigned>(_mm_movemask_epi8(zero)) & 0xff;
+}
+
+} // namespace
+
+void appendPacked(std::span<const std::byte> bytes, std::vector<std::byte>& out) {
+    const std::size_t words = (bytes.size() + kWord - 1) / kWord, begin = out.size();
+    out.resize(begin + words * (1 + kWord));
+    std::byte* to = out.data() + begin;
+    for (std::size_t i = 0; i < words; ++i) {
+        std::uint64_t word = 0;
+        const std::size_t at = i * kWord;
+        std::memcpy(&word, bytes.data() + at, std::min(kWord, bytes.size() - at));
+        const unsigned flags = flagsOf(word);
+        *to = static_cast<std::byte>(flags);
+        const std::uint64_t packed = _pext_u64(word, kBytesOfFlags[flags]);
+        std::memcpy(to + 1, &packed, kWord); // there is room; what is behind the last one is written over
+        to += 1 + std::popcount(flags);
+    }
+    out.resize(static_cast<std::size_t>(to - out.data()));
+}
+
+bool unpack(std::span<const std::byte> packed, std::size_t size, std::vector<std::byte>& out) {
+    const std::size_t words = size / kWord + (size % kWord != 0);
+    if (words > packed.size()) return false; // each takes one byte at least
+    out.resize(words * kWord);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < words; ++i) {
+        if (at >= packed.size()) return false;
+        const auto flags = static_cast<unsigned>(packed[at++]);
+        const auto count = static_cast<std::size_t>(std::popcount(flags));
+        if (count > packed.size() - at) return false;
+        std::uint64_t kept = 0;
+        std::memcpy(&kept, packed.data() + at, count);
+        at += count;
+        const std::uint64_t word = _pdep_u64(kept, kBytesOfFlags[flags]);
+        std::memcpy(out.data() + i * kWord, &word, kWord);
+    }
+    for (std::size_t i = size; i < out.size(); ++i)
+        if (out[i] != std::byte{}) return false;
+    out.resize(size);
+    return at == packed.size();
+}
+
+} // namespace abbe
