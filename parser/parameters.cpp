@@ -59,6 +59,11 @@ void checkValues(std::vector<Value>& values, Diagnostics& diagnostics) {
     values.resize(kMostValues);
 }
 
+// `0 deg`
+bool hasUnit(const std::vector<Value>& values) {
+    return values.size() == 2 && values[0].kind == ValueKind::number && values[1].isText();
+}
+
 std::vector<Value> valuesOf(const schema::Node& node) {
     std::vector<Value> values;
     for (std::size_t i = 0; i < node.valueCount(); ++i) values.push_back(node.value(i));
@@ -141,9 +146,12 @@ void ParameterTable::override(const ParseOptions& options, const SourceMap& sour
         const SourceText text{given.value, value.data(), value.data() + value.size()};
         if (Parameter* const parameter = find(given.name)) {
             parameter->given = readValues(text, *parameter);
+            if (given.ifThere && parameter->given.size() == 1 && hasUnit(parameter->written))
+                parameter->given.push_back(parameter->written[1]);
             checkValues(parameter->given, diagnostics_);
             continue;
         }
+        if (given.ifThere) continue;
         const std::string_view near = nearest(given.name);
         diagnostics_
             .error("E0221", text.span(text.begin, text.end), fmt::format("the scene has no parameter `{}`", given.name),
@@ -263,7 +271,8 @@ void ParameterTable::substitute(std::span<const ParameterUse> uses) {
         }
     }
     for (std::size_t i = 0; i < used_.size(); ++i) {
-        const Parameter& p = document_.parameters[i];
+        Parameter& p = document_.parameters[i];
+        p.used = used_[i];
         if (used_[i] || p.values().empty()) continue; // without a value: reported
         diagnostics_.warning("W0205", p.nameSpan, fmt::format("parameter `{}` is never used", p.name),
                              fmt::format("no `${}` in this file", p.name));

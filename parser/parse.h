@@ -22,6 +22,7 @@ namespace abbe {
 struct ParameterOverride {
     std::string name;
     FileId value = FileId::none;
+    bool ifThere = false; // no fault if the scene has no such parameter; a number then keeps the unit that was written
 };
 
 // Takes `name=value` apart; nothing after a diagnostic.

@@ -84,6 +84,8 @@ std::optional<FrameRange> readRange(std::string_view item, std::string& fault) {
 
 } // namespace
 
+std::string FrameOfRun::text() const { return fmt::format("frame {} of {}", position, count); }
+
 std::vector<int> readFrames(std::string_view text, std::string* fault) {
     std::string why;
     std::vector<int> frames;

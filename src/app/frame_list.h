@@ -1,11 +1,22 @@
 // Frames of an animation as a command line names them, and the files that they are written to.
 #pragma once
 
+#include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace abbe {
+
+// One frame of a list, as it is rendered.
+struct FrameOfRun {
+    int number = 0;
+    std::size_t position = 1, count = 1;   // the first one of so many
+    std::set<std::string>* told = nullptr; // warnings of frames before it, which people need not read again
+    // "frame 12 of 240"
+    std::string text() const;
+};
 
 inline constexpr int kMostFrames = 1000000; // of one list
 

@@ -7,6 +7,7 @@
 #include "schema/scene_tree.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct SceneInput {
     std::vector<std::string> defines; // "name=value" of -D
     // The text comes from there; `path` is what it is called, and says where its files are.
     bool fromStandardInput = false;
+    // This moment of an animation, and not the scene's own: the one place where a frame is chosen. The parameter
+    // `frame` has its number, if the scene has that parameter, and the camera's time is frame / fps later.
+    std::optional<int> frame = {};
 };
 
 // A scene file that was read and resolved. Not movable: the tree refers to sources and types.
@@ -35,6 +39,8 @@ struct LoadedScene {
 
     // How a command ends that met these diagnostics: done without errors.
     ExitCode exitCode() const;
+    // Whether frames of the scene may differ: something has keys, or asks for the parameter `frame`.
+    bool changesWithFrames() const;
 };
 
 // Never null and never throws on bad input; what is wrong is in `diagnostics`.

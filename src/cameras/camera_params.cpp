@@ -68,7 +68,7 @@ std::optional<KeyedTransform> toFile(const CameraParams& params, const Shutter& 
 }
 
 // From the camera to what it looks at when the shutter opens; between two moments it changes evenly.
-std::optional<double> lookAtDistance(const CameraParams& params) {
+std::optional<double> lookAtDistance(const CameraParams& params, double opening) {
     std::optional<double> before;
     double timeBefore = 0;
     const auto at = [&](const CameraMoment& m) -> std::optional<double> {
@@ -78,9 +78,9 @@ std::optional<double> lookAtDistance(const CameraParams& params) {
     if (params.moments.empty()) return at({});
     for (const CameraMoment& m : params.moments) {
         const auto distance = at(m);
-        if (m.time >= params.time) {
+        if (m.time >= opening) {
             if (!before || !distance) return distance;
-            return *before + (*distance - *before) * (params.time - timeBefore) / (m.time - timeBefore);
+            return *before + (*distance - *before) * (opening - timeBefore) / (m.time - timeBefore);
         }
         before = distance;
         timeBefore = m.time;
@@ -88,11 +88,11 @@ std::optional<double> lookAtDistance(const CameraParams& params) {
     return before;
 }
 
-std::optional<Shutter> shutterOf(const CameraParams& params, Span span, Diagnostics& diagnostics) {
-    const Shutter shutter{params.time, params.shutter.value_or(0), params.opening, params.closing};
+std::optional<Shutter> shutterOf(const CameraParams& params, const CameraContext& context, Diagnostics& diagnostics) {
+    const Shutter shutter{params.time + context.frameTime, params.shutter.value_or(0), params.opening, params.closing};
     if (params.opening + params.closing <= 2) return shutter;
     diagnostics
-        .error("E0357", span, "the shutter closes before it is open",
+        .error("E0357", context.span, "the shutter closes before it is open",
                fmt::format("`opening` and `closing` are {:.6g} together", params.opening + params.closing))
         .help = "they are parts of the exposure time, at most 2 together: a triangle";
     return std::nullopt;
@@ -159,7 +159,8 @@ std::vector<FieldInfo> placementFields() {
         field(FieldType::quantity, "time", &P::time)
             .unit({Dimension::time})
             .byDefault("0 s")
-            .doc("When the shutter opens: which moment of the motion is shown.")
+            .doc("When the shutter opens: which moment of the motion is shown. In an animation it counts from each "
+                 "frame.")
             .example("time \"101/24\" s")
             .synonyms({"shutter-open", "shutteropen", "frame"}),
         shutterField(),
@@ -224,7 +225,7 @@ FieldInfo fStopField(std::string_view doc) {
 
 std::optional<CameraPlace> placeCamera(const CameraParams& params, const CameraContext& context,
                                        Diagnostics& diagnostics) {
-    const auto shutter = shutterOf(params, context.span, diagnostics);
+    const auto shutter = shutterOf(params, context, diagnostics);
     if (!shutter) return std::nullopt;
     const auto inFile = toFile(params, *shutter, context, diagnostics);
     if (!inFile) return std::nullopt;
@@ -232,7 +233,7 @@ std::optional<CameraPlace> placeCamera(const CameraParams& params, const CameraC
     const auto axis = [&](Vec3d v) { return Vec3(normalize(toWorld.vector(v))); };
     const bool moves = inFile->movesDuring(shutter->open, shutter->timeAt(1));
     return CameraPlace{toWorld.point({}), Frame{axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})},
-                       lookAtDistance(params), *shutter,
+                       lookAtDistance(params, shutter->open), *shutter,
                        moves ? Motion().then(*inFile).then(context.toWorld) : Motion(toWorld)};
 }
 

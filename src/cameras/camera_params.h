@@ -55,8 +55,9 @@ schema::FieldInfo fStopField(std::string_view doc); // with the block of its bla
 struct CameraContext {
     Transform toWorld; // from the axes of the file: the rotation of a z-up scene
     bool zUp = false;
-    Vec2i filmSize; // pixels, both > 0
-    Span span;      // of the definition's head
+    Vec2i filmSize;       // pixels, both > 0
+    Span span;            // of the definition's head
+    double frameTime = 0; // s, of the frame that is shown; comes to the camera's own time
     // Middle of the bounds of a named shape in world space at a time; nothing if that shape has no size or place.
     std::function<std::optional<Vec3d>(std::string_view, double)> middleOf = {};
 };

@@ -43,62 +43,71 @@ namespace {
 
 using P = RenderParams;
 
+constexpr std::int64_t kSeeds = 9007199254740992; // 2^53: whole numbers that a double holds
+
 std::vector<FieldInfo> goalFields() {
-    return {field(FieldType::choice, "integrator", &P::integrator)
-                .choices({"path"})
-                .byDefault("path")
-                .doc("Algorithm: path tracing with next-event estimation.")
-                .example("integrator path"),
-            field(FieldType::integer, "samples", &P::samples)
-                .range(1, 4294967295.0)
-                .byDefault("64")
-                .synonyms({"spp", "pixelsamples", "sample_count"})
-                .doc("Samples per pixel; the render ends here unless another goal is met before.")
-                .example("samples 256"),
-            field(FieldType::quantity, "noise", &P::noise)
-                .unit({Dimension::fraction})
-                .range(0, 1)
-                .byDefault("0 %")
-                .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
-                .doc("Relative error of the image at which to stop; 0: none.")
-                .example("noise 0.5 %"),
-            field(FieldType::quantity, "time-limit", &P::timeLimit)
-                .unit({Dimension::time})
-                .range(0, 1e9)
-                .byDefault("0 s")
-                .doc("Wall-clock time after which to stop; 0: none.")
-                .example("time-limit 45 min"),
-            field(FieldType::number, "texture-cache", &P::textureCache)
-                .range(16, 1e9)
-                .byDefault("2048")
-                .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
-                .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
-                .example("texture-cache 512"),
-            field(FieldType::toggle, "adaptive", &P::adaptive)
-                .byDefault("off")
-                .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
-                .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
-                .example("adaptive on"),
-            field(FieldType::table, "forbid", &P::forbid)
-                .namedRows()
-                .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
-                .example("forbid { motion; thin-film }"),
-            field(FieldType::integer, "max-depth", &P::maxDepth)
-                .range(0, 100000)
-                .byDefault("0")
-                .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
-                .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
-                .example("max-depth 16"),
-            field(FieldType::integer, "seed", &P::seed)
-                .range(0, 9007199254740992.0)
-                .byDefault("0")
-                .doc("Chooses the random numbers; the same seed gives the same bits.")
-                .example("seed 7"),
-            field(FieldType::integer, "replicates", &P::replicates)
-                .range(1, 16)
-                .byDefault("2")
-                .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
-                .example("replicates 8")};
+    return {
+        field(FieldType::choice, "integrator", &P::integrator)
+            .choices({"path"})
+            .byDefault("path")
+            .doc("Algorithm: path tracing with next-event estimation.")
+            .example("integrator path"),
+        field(FieldType::integer, "samples", &P::samples)
+            .range(1, 4294967295.0)
+            .byDefault("64")
+            .synonyms({"spp", "pixelsamples", "sample_count"})
+            .doc("Samples per pixel; the render ends here unless another goal is met before.")
+            .example("samples 256"),
+        field(FieldType::quantity, "noise", &P::noise)
+            .unit({Dimension::fraction})
+            .range(0, 1)
+            .byDefault("0 %")
+            .synonyms({"threshold", "noise-threshold", "adaptive_threshold"})
+            .doc("Relative error of the image at which to stop; 0: none.")
+            .example("noise 0.5 %"),
+        field(FieldType::quantity, "time-limit", &P::timeLimit)
+            .unit({Dimension::time})
+            .range(0, 1e9)
+            .byDefault("0 s")
+            .doc("Wall-clock time after which to stop; 0: none.")
+            .example("time-limit 45 min"),
+        field(FieldType::number, "texture-cache", &P::textureCache)
+            .range(16, 1e9)
+            .byDefault("2048")
+            .synonyms({"max_memory_MB", "texture-memory", "texturecache"})
+            .doc("Most memory for tiles of image textures, in MiB; what does not fit is read again from disk.")
+            .example("texture-cache 512"),
+        field(FieldType::toggle, "adaptive", &P::adaptive)
+            .byDefault("off")
+            .synonyms({"adaptive-sampling", "use_adaptive_sampling"})
+            .doc("More samples where a pilot finds more noise, fewer elsewhere; unbiased, at the same cost.")
+            .example("adaptive on"),
+        field(FieldType::number, "fps", &P::fps)
+            .range(0.001, 1e6)
+            .byDefault("24")
+            .synonyms({"frame-rate", "framerate", "frames-per-second"})
+            .doc("Frames of an animation in a second: with `--frames` frame N shows the moment N / fps.")
+            .example("fps 25"),
+        field(FieldType::table, "forbid", &P::forbid)
+            .namedRows()
+            .doc("Effects that this scene must not need; `abbe explain FILE --effects` lists all of them.")
+            .example("forbid { motion; thin-film }"),
+        field(FieldType::integer, "max-depth", &P::maxDepth)
+            .range(0, 100000)
+            .byDefault("0")
+            .synonyms({"maxdepth", "max_depth", "bounces", "max-bounces", "depth"})
+            .doc("Scattering events per path; 0: no limit, paths end by Russian roulette alone.")
+            .example("max-depth 16"),
+        field(FieldType::integer, "seed", &P::seed)
+            .range(0, static_cast<double>(kSeeds))
+            .byDefault("0")
+            .doc("Chooses the random numbers; the same seed gives the same bits. The number of a frame comes to it.")
+            .example("seed 7"),
+        field(FieldType::integer, "replicates", &P::replicates)
+            .range(1, 16)
+            .byDefault("2")
+            .doc("Independent sample sets whose spread gives the error bars; 8 for error bars per pixel.")
+            .example("replicates 8")};
 }
 
 // How light is estimated: the same image by other means, to compare.
@@ -156,6 +165,8 @@ TypeInfo renderType() {
     for (FieldInfo& technique : techniqueFields()) type.fields.push_back(std::move(technique));
     return type;
 }
+
+std::int64_t seedOfFrame(std::int64_t seed, int frame) { return ((seed + frame) % kSeeds + kSeeds) % kSeeds; }
 
 bool possibleWavelengths(std::int64_t count) { return count == 1 || count == 2 || count == 4 || count == 8; }
 

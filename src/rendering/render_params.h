@@ -41,6 +41,7 @@ struct RenderParams {
     double noise = 0;           // relative error to stop at; 0: none
     double timeLimit = 0;       // s; 0: none
     double textureCache = 2048; // MiB
+    double fps = 24;            // frames of an animation in a second
     bool adaptive = false;
     schema::TableRows forbid; // rows of one word: effects that the scene must not need
     // The choices of a Technique.
@@ -58,6 +59,9 @@ struct RenderParams {
 schema::TypeInfo renderType();
 // Requires possibleWavelengths(params.wavelengths).
 RenderSettings renderSettings(const RenderParams& params);
+// Frames of an animation have other random numbers each, so that their noise does not stand still like dirt on a
+// window; that of frame 0 is the scene's own.
+std::int64_t seedOfFrame(std::int64_t seed, int frame);
 // Whether a path can have so many different ones, which repeat evenly in its lanes.
 bool possibleWavelengths(std::int64_t count);
 

@@ -55,6 +55,7 @@ CameraContext CameraBuilder::contextOf(const Definition& d) {
     camera.zUp = context_.tree.header.zUp;
     camera.filmSize = {static_cast<int>(context_.built.film.size.x), static_cast<int>(context_.built.film.size.y)};
     camera.span = d.span;
+    if (const auto frame = context_.tree.frame) camera.frameTime = *frame / context_.built.render.fps;
     camera.middleOf = [this](std::string_view name, double time) { return middleOfShape(name, time); };
     return camera;
 }

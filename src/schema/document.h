@@ -119,6 +119,7 @@ class Document {
         std::vector<Value> given;
         std::string_view doc;
         std::string_view defaultText; // as it stands in the file: "-32.9 deg"
+        bool used = false;            // its name stands somewhere in the tree
 
         const std::vector<Value>& values() const { return given.empty() ? written : given; }
     };

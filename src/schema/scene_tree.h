@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,8 +63,9 @@ struct SceneTree {
     std::vector<Definition> definitions;
     std::filesystem::path directory; // files are looked up here
     std::shared_ptr<const Document> document;
-    NameIndex index;      // filled by resolve()
-    bool damaged = false; // a syntax error took something out of a node
+    std::optional<int> frame; // of an animation, whose moment is shown
+    NameIndex index;          // filled by resolve()
+    bool damaged = false;     // a syntax error took something out of a node
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
