@@ -5,6 +5,7 @@
 #include "rendering/render_params.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -19,6 +20,7 @@ using schema::Value;
 
 // Raised whenever the samples of any scene change.
 constexpr int kSampleEdition = 1;
+constexpr const char* kFrame = "frame";
 constexpr std::size_t kLongestValue = 120; // longer ones are told by their hash
 
 std::string hashText(std::string_view text) {
@@ -45,15 +47,23 @@ class SceneFactWriter {
     SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts)
         : directory_(loaded.tree.directory), facts_(facts) {}
 
+    // Of the settings alone.
+    void writeSettings(const schema::Document& document) {
+        for (const Node node : document.roots())
+            if (isSettings(node)) root(node);
+    }
+
     void write(const schema::Document& document) {
         // A scene of very many things is told thing by thing, not property by property.
         byProperty_ = document.nodes.size() <= 100000;
         for (const Node node : document.roots())
-            if (node.name() != "film" && node.name() != "render") root(node);
+            if (!isSettings(node)) root(node);
         for (const auto& [name, path] : files_) facts_.push_back({"file " + name, fileFingerprint(path)});
     }
 
   private:
+    static bool isSettings(const Node& node) { return node.name() == "film" || node.name() == "render"; }
+
     void root(const Node& node) {
         std::string name(node.name());
         std::string rest;
@@ -184,12 +194,31 @@ std::vector<Fact> renderIdentity(const IdentityInput& in) {
         {"max-depth", number(s.maxDepth)},
         {"camera", in.camera},
     };
+    if (const auto frame = in.loaded->tree.frame) {
+        facts.push_back({kFrame, number(*frame)});
+        facts.push_back({"fps", number(in.fps)});
+    }
     for (auto& [name, value] : properties(s.technique)) facts.push_back({name, value});
     // Strata are as many as a replicate has samples: with more of them, all samples are others.
     if (s.technique.numbers == Technique::Numbers::stratified)
         facts.push_back({"strata", number(s.samplesPerReplicate(in.replicates))});
     if (in.loaded->tree.document) SceneFactWriter(*in.loaded, facts).write(*in.loaded->tree.document);
     return facts;
+}
+
+std::vector<Fact> settingFacts(const LoadedScene& loaded) {
+    std::vector<Fact> facts;
+    if (loaded.tree.document) SceneFactWriter(loaded, facts).writeSettings(*loaded.tree.document);
+    return facts;
+}
+
+std::optional<int> frameOf(const std::vector<Fact>& identity) {
+    for (const Fact& fact : identity) {
+        int frame = 0;
+        const char* const end = fact.value.data() + fact.value.size();
+        if (fact.name == kFrame && std::from_chars(fact.value.data(), end, frame).ptr == end) return frame;
+    }
+    return std::nullopt;
 }
 
 std::vector<std::string> differences(const std::vector<Fact>& theirs, const std::vector<Fact>& ours,

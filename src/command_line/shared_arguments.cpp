@@ -3,6 +3,8 @@
 #include "command_line/arguments.h"
 #include "render/integrator.h"
 
+#include <limits>
+
 namespace abbe {
 
 void addJson(Arguments& a, const char* help) { a.flag("--json", &a.common().json, help); }
@@ -58,6 +60,11 @@ void addTechniques(Arguments& a, BuildOptions& b, const char* strategyHelp, cons
                    const char* heading) {
     a.choice("--strategy", b.strategy, wordChoices<Technique::Strategy>(), strategyHelp).under(heading);
     a.choice("--sampler", b.sampler, wordChoices<Technique::Numbers>(), samplerHelp).under(heading);
+}
+
+void addMoment(Arguments& a, std::optional<int>& frame) {
+    a.value("--frame", "N", &frame, "Frame of an animation; without it the scene's own moment")
+        .between(std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
 }
 
 void addOwnSize(Arguments& a, std::optional<Vec2i>& size, std::string help) {

@@ -25,6 +25,8 @@ void addPng(Arguments&, PngOptions&, const ViewOptions&);
 void addFrame(Arguments&, BuildOptions&);
 // `--strategy` and `--sampler`, by which a render is not as its scene asks for it.
 void addTechniques(Arguments&, BuildOptions&, const char* strategyHelp, const char* samplerHelp, const char* heading);
+// `--frame`, of commands that look at one moment of an animation.
+void addMoment(Arguments&, std::optional<int>& frame);
 // `--size` of pictures that a command makes itself.
 void addOwnSize(Arguments&, std::optional<Vec2i>& size, std::string help);
 inline constexpr double kLargestSeed = 9007199254740992; // 2^53

@@ -48,6 +48,7 @@ void addArguments(Arguments& a, CheckOptions& o) {
     a.flag(
         "--json", [&format] { format = MessageFormat::json; }, "The same as --format=json");
     addDefines(a, o.defines);
+    addMoment(a, o.frame);
     a.afterwards([&o] { return contradiction(o); });
 }
 
@@ -79,8 +80,8 @@ std::size_t fixScene(const SceneInput& input) {
 }
 
 SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
-    if (path != kStandardInput) return {path, options.defines};
-    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true};
+    if (path != kStandardInput) return {path, options.defines, false, options.frame};
+    return {options.standsFor.empty() ? "<stdin>" : options.standsFor, options.defines, true, options.frame};
 }
 
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {

@@ -70,6 +70,7 @@ struct CheckOptions {
     std::vector<std::string> paths; // "-": standard input
     std::string standsFor;          // the file that standard input is the text of
     std::vector<std::string> defines;
+    std::optional<int> frame;
     bool fix = false;
     bool strict = false;
     bool textures = false; // read to their ends
@@ -86,6 +87,7 @@ struct ExplainOptions {
     bool effects = false; // of the scene; without a topic: those that there are
     BuildOptions build;   // camera, size, seed and pilot of the render that is explained
     std::vector<std::string> defines;
+    std::optional<int> frame;
 };
 
 extern const char* const kExplainHelp;
@@ -96,6 +98,7 @@ ExitCode run(const ExplainOptions&, const CommonOptions&);
 struct InfoOptions {
     std::string path;
     std::vector<std::string> defines;
+    std::optional<int> frame;
 };
 
 extern const char* const kInfoHelp;

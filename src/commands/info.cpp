@@ -28,6 +28,7 @@ Examples:
 void addArguments(Arguments& a, InfoOptions& o) {
     a.argument("file", &o.path, "Scene (.scene) or image (.exr)").require();
     addDefines(a, o.defines);
+    addMoment(a, o.frame);
     addJson(a);
 }
 
@@ -158,7 +159,7 @@ std::string sceneText(const SceneInfo& info) {
 }
 
 ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
-    const SceneInput input{options.path, options.defines};
+    const SceneInput input{options.path, options.defines, false, options.frame};
     const auto loaded = loadScene(input);
     BuildOptions build;
     build.geometry = false;

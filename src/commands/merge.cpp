@@ -1,4 +1,5 @@
 #include "checkpoints/checkpoint_file.h"
+#include "checkpoints/render_identity.h"
 #include "command_line/parser.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
@@ -61,6 +62,8 @@ ExitCode run(const MergeOptions& options, const CommonOptions& common) {
         render.crop.reset();
         render.part.reset();
         render.skip = 0;
+        render.frames.clear();
+        render.input.frame = frameOf(first.header().identity);
         render.parts = options.parts;
         render.soFar = options.soFar;
         return run(render, common);

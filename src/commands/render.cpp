@@ -2,7 +2,10 @@
 #include "command_line/arguments.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
+#include "render_run/frame_run.h"
 #include "render_run/render_run.h"
+
+#include <fmt/format.h>
 
 namespace abbe {
 
@@ -16,6 +19,7 @@ Examples:
   abbe render room.scene --json                        progress as JSON lines on stdout
   abbe render room.scene --resume                      goes on where it was interrupted
   abbe render room.scene --part 2/4                    a quarter of the samples, for `abbe merge`
+  abbe render shot.scene --frames 1-240 -o shot.####.exr    an animation, frame after frame
 
 Ctrl-C writes the image and a checkpoint; a second one leaves at once.)";
 
@@ -71,11 +75,36 @@ void addPieces(Arguments& a, RenderOptions& o) {
     a.value("--skip", "N", &o.skip, "With --part: leave out the first N samples per pixel, which earlier parts have");
 }
 
+// What contradicts an animation.
+std::optional<ArgumentFault> contradiction(const RenderOptions& o) {
+    if (o.frames.empty()) return std::nullopt;
+    for (const std::string& pattern : {o.output, o.png.path})
+        if (std::string fault = framePatternFault(pattern); !fault.empty())
+            return ArgumentFault{pattern == o.output ? "--output" : "--png", std::move(fault)};
+    if (o.pixel && o.frames.size() > 1)
+        return ArgumentFault{"--pixel", fmt::format("it looks at one frame; write `--frames {}`", o.frames.front())};
+    for (const std::string& define : o.input.defines)
+        if (define.starts_with("frame="))
+            return ArgumentFault{"-D", "the parameter `frame` is set by `--frames`; leave one of them out"};
+    return std::nullopt;
+}
+
+void addFrames(Arguments& a, RenderOptions& o) {
+    const auto read = [&o](const std::string& text) {
+        std::string fault;
+        o.frames = readFrames(text, &fault);
+        return fault;
+    };
+    a.value("--frames", "LIST", read, "Render these frames of an animation: 7, 1-240, 1-240x2, 1-10,20");
+    a.afterwards([&o] { return contradiction(o); });
+}
+
 } // namespace
 
 void addArguments(Arguments& a, RenderOptions& o) {
     a.argument("scene", &o.input.path, "Scene file").require();
     a.value("-o,--output", "FILE", &o.output, "Image to write (EXR)");
+    addFrames(a, o);
     addFrame(a, o.build);
     addGoals(a, o);
     addPieces(a, o);
@@ -100,7 +129,7 @@ void addArguments(Arguments& a, RenderOptions& o) {
 
 ExitCode run(const RenderOptions& options, const CommonOptions& common) {
     if (options.memory) setMemoryLimit(*options.memory * (1 << 20)); // for all readers, too
-    return RenderRun(options, common).run();
+    return options.frames.empty() ? RenderRun(options, common).run() : runFrames(options, common);
 }
 
 } // namespace abbe

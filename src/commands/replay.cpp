@@ -32,6 +32,7 @@ void addArguments(Arguments& a, ReplayOptions& o) {
     a.value("--pilot", "N", &b.pilot, "Size of its pilots, `abbe.pilot` of the image's header; else by the work")
         .between(0, RenderSettings::kFullPilot);
     addDefines(a, o.render.input.defines, "A parameter of the scene; may be repeated");
+    addMoment(a, o.render.input.frame);
     addTechniques(a, b, "How light was found", "Where random numbers came from", "");
     addThreads(a);
     addJson(a);
@@ -65,8 +66,12 @@ std::optional<RenderOptions> renderOf(const std::string& path, const ExrInfo& in
     const auto* render = line ? optionsOf<RenderOptions>(*line->command) : nullptr;
     if (!render) return std::nullopt;
     RenderOptions options = *render;
-    for (const ImageAttribute& a : info.attributes)
-        if (const auto* size = std::get_if<int>(&a.value); size && a.name == "abbe.pilot") options.build.pilot = *size;
+    options.frames.clear();
+    for (const ImageAttribute& a : info.attributes) {
+        const auto* value = std::get_if<int>(&a.value);
+        if (value && a.name == "abbe.pilot") options.build.pilot = *value;
+        if (value && a.name == "abbe.frame") options.input.frame = *value;
+    }
     std::error_code error;
     if (!std::filesystem::exists(options.input.path,
                                  error)) // relative to where it was rendered; perhaps beside the image

@@ -116,6 +116,7 @@ void addArguments(Arguments& a, StudyOptions& o) {
     addJson(a, "Progress as JSON lines on stdout");
     a.flag("--quiet,-q", &o.quiet, "Say nothing but warnings and errors");
     addDefines(a, o.input.defines);
+    addMoment(a, o.input.frame);
     readVariants("all", o);
 }
 
@@ -259,8 +260,8 @@ bool StudyCommand::probe(InterruptGuard& interrupt) {
 std::vector<Fact> StudyCommand::identity() const {
     RenderSettings settings = subject_.settings;
     settings.seed = plan_.seed;
-    std::vector<Fact> facts =
-        renderIdentity({loaded_.get(), &subject_.film, &settings, subject_.replicates, options_.build.camera});
+    std::vector<Fact> facts = renderIdentity(
+        {loaded_.get(), &subject_.film, &settings, subject_.replicates, options_.build.camera, built_.render.fps});
     const auto ladder = StudyPlan::ladder(plan_.samples, subject_.replicates);
     facts.push_back({"rungs", fmt::format("{}", fmt::join(ladder, " "))});
     return facts;

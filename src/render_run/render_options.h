@@ -1,6 +1,7 @@
 // What a render was asked to do.
 #pragma once
 
+#include "app/frame_list.h"
 #include "app/load.h"
 #include "pictures/display_view.h"
 #include "pictures/image_output.h"
@@ -25,7 +26,6 @@ struct RenderOptions {
     std::vector<SampleId> replay; // these are taken again, and told
     SceneInput input;
     std::string output;      // EXR; empty: from the scene
-    std::vector<int> frames; // of an animation; empty: a still
     PngOptions png;
     ViewOptions view;
     BuildOptions build;
@@ -43,6 +43,8 @@ struct RenderOptions {
     std::uint32_t skip = 0;         // samples per pixel that parts of an earlier round have
     std::vector<std::string> parts; // nothing is rendered, but these are put together
     bool soFar = false;             // also where samples are missing
+    std::vector<int> frames;         // of an animation: each is rendered by itself, one after the other
+    std::optional<FrameOfRun> frame; // the one that is rendered, that of `input`; to a file of its own
 
     bool makesFiles() const { return !pixel; }
     // Whether parts become one part, not an image.

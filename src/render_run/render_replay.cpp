@@ -16,6 +16,7 @@ std::string RenderRun::replayCommand() const {
         command += fmt::format(" {} {}", flag, shellQuoted(value));
     };
     for (const std::string& define : options_.input.defines) add("-D", define);
+    if (options_.input.frame) command += fmt::format(" --frame {}", *options_.input.frame);
     if (!b.camera.empty()) add("--camera", b.camera);
     if (b.size) add("--size", fmt::format("{}x{}", b.size->x, b.size->y));
     if (b.seed) add("--seed", std::to_string(*b.seed));

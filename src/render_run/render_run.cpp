@@ -6,6 +6,7 @@
 #include "checkpoints/render_identity.h"
 #include "checkpoints/render_parts.h"
 #include "pictures/display_view.h"
+#include "render_run/frame_run.h"
 #include "rendering/path_tracer.h"
 #include "reports/image_header.h"
 #include "reports/render_text.h"
@@ -86,8 +87,12 @@ ExitCode RenderRun::checkFilm() {
 
 // Hours of rendering must not end in "permission denied" or "no such view".
 ExitCode RenderRun::checkOutputs() {
-    summary_.image = imagePath(options_.output, film_, options_.input.path);
-    if (options_.part) summary_.image = partPath(summary_.image, *options_.part);
+    const std::string asked = imagePath(options_.output, film_, options_.input.path);
+    if (std::string fault = framePatternFault(asked); options_.frame && !fault.empty())
+        return refuse("E0433", std::move(fault), "`####` stands for the frame's number with four digits",
+                      ExitCode::usage);
+    summary_.image = options_.frame ? frameImagePath(asked, options_.frame->number, options_.part) : asked;
+    if (options_.part && !options_.frame) summary_.image = partPath(asked, *options_.part);
     const bool makesPart = options_.part || options_.mergesToPart();
     if (options_.mergesToPart() && isForeignCheckpoint(summary_.image))
         return refuse("E0661", fmt::format("`{}` is there already, and was not made by this program", summary_.image),
@@ -130,6 +135,20 @@ ExitCode RenderRun::checkSkip() {
     return ExitCode::done;
 }
 
+// Once in an animation.
+void RenderRun::warnOfFrames() {
+    if (!options_.frame || options_.frame->count < 2 || options_.frame->position > 1) return;
+    if (!loaded_->changesWithFrames())
+        warn("W0698",
+             "all frames are alike but for their noise: nothing in this scene has keys, and it uses no parameter "
+             "`frame`",
+             "give keys to what shall move, `transform { at 0 s { … }; at 1 s { … } }`, or write `param frame 0` and "
+             "use `$frame`");
+    if (built_.cameraExposure.automatic && !options_.part)
+        warn("W0699", "`exposure auto` is found for each frame by itself: the picture may flicker",
+             "write the stops that one frame prints into the camera, `exposure 3 stops`");
+}
+
 ExitCode RenderRun::prepare() {
     settings_ = renderSettings(built_.render);
     settings_.pilot = options_.build.pilot.value_or(RenderSettings::kPilotByWork);
@@ -143,6 +162,7 @@ ExitCode RenderRun::prepare() {
         settings_.part = static_cast<std::uint32_t>(options_.part->x);
         settings_.parts = static_cast<std::uint32_t>(options_.part->y);
     }
+    warnOfFrames();
     meter();
     return ExitCode::done;
 }
@@ -226,7 +246,7 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
 
 void RenderRun::render(PixelFilm& film, RenderState& state, InterruptGuard& interrupt) {
     report_->start({options_.input.path, summary_.image, film_.crop.width(), film_.crop.height(), threadCount(),
-                    settings_.samples, settings_.noiseTarget, settings_.timeLimit});
+                    settings_.samples, settings_.noiseTarget, settings_.timeLimit, built_.shutter.open});
     watch_.lap();
     renderFrom(film, state, interrupt);
     summary_.partial = summary_.statistics.stopped || lostTexture_ || outOfMemory_;

@@ -29,8 +29,9 @@ class RenderRun {
   public:
     RenderRun(const RenderOptions& options, const CommonOptions& common)
         : options_(options), common_(common),
-          report_(common.json && options.replay.empty() ? makeJsonReport(common.console, options.progressEvery)
-                                                        : makeHumanReport(common.console, options.quiet || alone())) {}
+          report_(common.json && options.replay.empty()
+                      ? makeJsonReport(common.console, options.frame, options.progressEvery)
+                      : makeHumanReport(common.console, options.quiet || alone(), options.frame)) {}
 
     ExitCode run() {
         const WorkScope work(Work::preparing);
@@ -60,6 +61,7 @@ class RenderRun {
     void warnOfDeepMemory();
     ExitCode checkOutputs();
     ExitCode checkSkip();
+    void warnOfFrames();
     ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
     PixelFilm makeFilm(PixelBounds bounds) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),

@@ -2,6 +2,7 @@
 #include "base/path_lock.h"
 #include "checkpoints/render_identity.h"
 #include "pictures/display_view.h"
+#include "render_run/frame_run.h"
 #include "render_run/render_run.h"
 #include "reports/image_header.h"
 #include "reports/render_text.h"
@@ -51,8 +52,8 @@ template <typename Write> std::string savedElsewhere(const std::string& name, co
 } // namespace
 
 std::vector<Fact> RenderRun::identity() const {
-    return renderIdentity(
-        {loaded_.get(), &film_, &settings_, static_cast<int>(built_.render.replicates), options_.build.camera});
+    return renderIdentity({loaded_.get(), &film_, &settings_, static_cast<int>(built_.render.replicates),
+                           options_.build.camera, built_.render.fps});
 }
 
 CheckpointHeader RenderRun::checkpointHeader() const {
@@ -88,7 +89,7 @@ ExitCode RenderRun::openCheckpoint(PixelFilm& film, RenderState& state) {
         } catch (const CheckpointFault& fault) {
             return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);
         }
-    } else if (options.resume) {
+    } else if (options.resume && !options_.frame) { // most frames of an animation have none
         warn("W0664", fmt::format("there is no checkpoint `{}`; the render begins anew", path), {});
     } else if (!options_.part && checkpoint_->exists()) {
         warn("W0663", fmt::format("`{}` holds an earlier state of a render; this one will replace it", path),
@@ -192,6 +193,8 @@ std::vector<ImageAttribute> RenderRun::attributes(const PixelFilm& film) {
     if (!summary_.faults.empty()) list.push_back({"abbe.droppedSamples", listText(summary_.faults)});
     if (lookedAt_ > 0) list.push_back({"abbe.pixelsOfFirstLook", static_cast<int>(lookedAt_)});
     if (settings_.adaptive) list.push_back({"abbe.adaptive", std::string("frozen plan (unbiased)")});
+    if (options_.input.frame)
+        list.push_back({kFrameFingerprint, frameFingerprint(options_, {loaded_.get(), &built_, film_.crop})});
     if (!options_.parts.empty()) list.push_back({"abbe.parts", static_cast<int>(options_.parts.size())});
     return list;
 }

@@ -3,6 +3,7 @@
 #include "reports/render_report.h"
 #include "reports/render_text.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -12,13 +13,15 @@ namespace {
 
 class HumanReport final : public RenderReport {
   public:
-    HumanReport(const Console& console, bool quiet) : console_(console), quiet_(quiet) {}
+    HumanReport(const Console& console, bool quiet, const std::optional<FrameOfRun>& frame)
+        : console_(console), quiet_(quiet), frame_(frame) {}
     ~HumanReport() override { clearBar(); }
 
     void start(const RenderStart& s) override {
         started_ = true;
         noiseTarget_ = s.noiseTarget;
         if (quiet_) return;
+        if (frame_) console_.line(fmt::format("{}: number {}, at {:.6g} s", frame_->text(), frame_->number, s.time));
         console_.line(fmt::format("{}  {}×{}  {} thread{}  image {}", s.scene, s.width, s.height, s.threads,
                                   s.threads == 1 ? "" : "s", s.image));
     }
@@ -47,7 +50,7 @@ class HumanReport final : public RenderReport {
 
     void diagnostics(const Diagnostics& d, const SourceMap& sources) override {
         clearBar();
-        console_.report(d, sources);
+        console_.report(frame_ && frame_->told ? unheard(d) : d, sources);
     }
 
     void done(const RenderSummary&) override;
@@ -57,7 +60,9 @@ class HumanReport final : public RenderReport {
     void showBar(const Progress& p) {
         if (p.elapsed - lastShown_ < (p.elapsed < 60 ? 0.25 : 1.0)) return;
         lastShown_ = p.elapsed;
-        if (console_.status(progressBar(p, noiseTarget_, console_.width()))) barShown_ = true;
+        const std::string frame = ofFrame();
+        const int width = std::max(10, console_.width() - static_cast<int>(frame.size()));
+        if (console_.status(frame + progressBar(p, noiseTarget_, width))) barShown_ = true;
     }
 
     void showLine(const Progress& p) {
@@ -66,8 +71,20 @@ class HumanReport final : public RenderReport {
         if (since < 2 || (tenth <= lastTenth_ && since < 30)) return;
         lastTenth_ = tenth;
         lastShown_ = p.elapsed;
-        console_.line(progressLine(p, noiseTarget_));
+        console_.line(ofFrame() + progressLine(p, noiseTarget_));
     }
+
+    // Without warnings that an earlier frame gave.
+    Diagnostics unheard(const Diagnostics& list) const {
+        Diagnostics fresh;
+        for (const Diagnostic& d : list.all())
+            if (d.severity == Severity::error ||
+                frame_->told->insert(fmt::format("{} {} {} {}", d.code, d.span.begin, d.message, d.label)).second)
+                fresh.add(d);
+        return fresh;
+    }
+
+    std::string ofFrame() const { return frame_ ? frame_->text() + "  " : std::string(); }
 
     void clearBar() {
         if (!barShown_) return;
@@ -77,6 +94,7 @@ class HumanReport final : public RenderReport {
 
     Console console_;
     bool quiet_;
+    std::optional<FrameOfRun> frame_;
     double noiseTarget_ = 0;
     double lastShown_ = 0;
     int lastTenth_ = 0;
@@ -137,8 +155,9 @@ void HumanReport::done(const RenderSummary& s) {
 
 } // namespace
 
-std::unique_ptr<RenderReport> makeHumanReport(const Console& console, bool quiet) {
-    return std::make_unique<HumanReport>(console, quiet);
+std::unique_ptr<RenderReport> makeHumanReport(const Console& console, bool quiet,
+                                              const std::optional<FrameOfRun>& frame) {
+    return std::make_unique<HumanReport>(console, quiet, frame);
 }
 
 } // namespace abbe

@@ -33,6 +33,7 @@ std::string sceneHash(const LoadedScene& loaded, const SceneInput& input) {
     std::vector<std::string> defines = input.defines;
     std::sort(defines.begin(), defines.end());
     for (const std::string& define : defines) hash.addField(define);
+    if (input.frame) hash.addField(fmt::format("frame {}", *input.frame));
     return hash.digits();
 }
 
@@ -48,6 +49,11 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.scene", p.input->path);
     text("abbe.sceneHash", sceneHash(*p.loaded, *p.input));
     text("abbe.command", p.commandLine);
+    if (p.input->frame) {
+        list.push_back({"abbe.frame", *p.input->frame});
+        real("abbe.fps", p.built->render.fps);
+        real("abbe.time", p.built->shutter.open);
+    }
     text("abbe.seed", std::to_string(settings.seed));
     whole("abbe.samples", statistics.samplesPerPixel);
     whole("abbe.replicates", static_cast<std::uint64_t>(p.replicates));

@@ -18,18 +18,24 @@ Json faultsJson(const std::vector<FoundFault>& faults) {
 
 class JsonReport final : public RenderReport {
   public:
-    JsonReport(const Console& console, double every) : console_(console), every_(every) {}
+    JsonReport(const Console& console, const std::optional<FrameOfRun>& frame, double every)
+        : console_(console), frame_(frame), every_(every) {}
 
     void start(const RenderStart& s) override {
-        emit(Json::object({{"event", "start"},
-                           {"scene", s.scene},
-                           {"image", s.image},
-                           {"width", s.width},
-                           {"height", s.height},
-                           {"threads", s.threads},
-                           {"samples", s.samples},
-                           {"noise_goal", positiveOrNull(s.noiseTarget)},
-                           {"time_limit_s", positiveOrNull(s.timeLimit)}}));
+        Json event = Json::object({{"event", "start"},
+                                   {"scene", s.scene},
+                                   {"image", s.image},
+                                   {"width", s.width},
+                                   {"height", s.height},
+                                   {"threads", s.threads},
+                                   {"samples", s.samples},
+                                   {"noise_goal", positiveOrNull(s.noiseTarget)},
+                                   {"time_limit_s", positiveOrNull(s.timeLimit)}});
+        if (frame_)
+            event.set("frame_time_s", s.time)
+                .set("frame_position", static_cast<std::uint64_t>(frame_->position))
+                .set("frame_count", static_cast<std::uint64_t>(frame_->count));
+        emit(std::move(event));
     }
 
     void phase(const std::string& name, double seconds) override {
@@ -92,13 +98,17 @@ class JsonReport final : public RenderReport {
             event.set("light_path_plan", lightPathJson(r.caustics));
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
-        emit(event);
+        emit(std::move(event));
     }
 
   private:
-    void emit(const Json& event) const { console_.data(event.text() + "\n"); }
+    void emit(Json event) const {
+        if (frame_) event.set("frame", frame_->number);
+        console_.data(event.text() + "\n");
+    }
 
     Console console_;
+    std::optional<FrameOfRun> frame_;
     double every_; // s
     double lastShown_ = -1;
 };
@@ -112,14 +122,15 @@ void JsonReport::diagnostics(const Diagnostics& list, const SourceMap& sources) 
             event.set("path", sources.path(d.span.file)).set("line", at.line).set("column", at.column);
         }
         if (!d.help.empty()) event.set("help", d.help);
-        emit(event);
+        emit(std::move(event));
     }
 }
 
 } // namespace
 
-std::unique_ptr<RenderReport> makeJsonReport(const Console& console, double secondsBetweenProgress) {
-    return std::make_unique<JsonReport>(console, secondsBetweenProgress);
+std::unique_ptr<RenderReport> makeJsonReport(const Console& console, const std::optional<FrameOfRun>& frame,
+                                             double secondsBetweenProgress) {
+    return std::make_unique<JsonReport>(console, frame, secondsBetweenProgress);
 }
 
 } // namespace abbe

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/console.h"
+#include "app/frame_list.h"
 #include "app/program_end.h"
 #include "cameras/exposure.h"
 #include "film/error_certificate.h"
@@ -26,6 +27,7 @@ struct RenderStart {
     int threads = 0;
     std::uint32_t samples = 0;
     double noiseTarget = 0, timeLimit = 0; // 0: none
+    double time = 0;                       // s, when the shutter opens
 };
 
 // Known at the end.
@@ -63,8 +65,9 @@ class RenderReport {
 };
 
 // A bar on a terminal, else a line per tenth or half minute; a summary at the end. Quiet: diagnostics alone.
-std::unique_ptr<RenderReport> makeHumanReport(const Console&, bool quiet);
+std::unique_ptr<RenderReport> makeHumanReport(const Console&, bool quiet, const std::optional<FrameOfRun>& = {});
 // One JSON object a line on stdout; docs/command_line.md lists the events.
-std::unique_ptr<RenderReport> makeJsonReport(const Console&, double secondsBetweenProgress = 0.25);
+std::unique_ptr<RenderReport> makeJsonReport(const Console&, const std::optional<FrameOfRun>& = {},
+                                             double secondsBetweenProgress = 0.25);
 
 } // namespace abbe

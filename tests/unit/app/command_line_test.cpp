@@ -43,6 +43,19 @@ TEST_CASE("a scene alone is rendered") {
     CHECK(render({"--samples", "4", "a.scene"}).build.samples == 4);
 }
 
+TEST_CASE("frames of an animation") {
+    CHECK(render({"a.scene"}).frames.empty());
+    CHECK(render({"a.scene", "--frames", "1-5x2"}).frames == std::vector<int>{1, 3, 5});
+    CHECK(render({"a.scene", "--frames", "-2--1"}).frames == std::vector<int>{-2, -1});
+    CHECK(render({"a.scene", "--frames", "7", "--pixel", "1,2"}).pixel);
+    CHECK(contains(end({"render", "a.scene", "--frames", "5-1"}).text, "write `1-5`"));
+    CHECK(contains(end({"render", "a.scene", "--frames", "1-2", "--pixel", "1,2"}).text, "--frames 1"));
+    CHECK(contains(end({"render", "a.scene", "--frames", "1", "-D", "frame=2"}).text, "--frames"));
+    CHECK(contains(end({"render", "a.scene", "--frames", "1", "-o", "#.#.exr"}).text, "#._.exr"));
+    CHECK(optionsOf<InfoOptions>({"info", "a.scene", "--frame", "-3"}).frame == -3);
+    CHECK(optionsOf<VerifyOptions>({"verify", "a.scene", "--frame", "3"}).input.frame == 3);
+}
+
 TEST_CASE("options of render") {
     const RenderOptions o = render({"render",   "a.scene",  "-o",    "b.exr",    "--size", "640x480",    "--noise",
                                     "0.5%",     "--time",   "45min", "-D",       "x=1",    "-D",         "y=2 m",
