@@ -76,7 +76,7 @@ void addPieces(Arguments& a, RenderOptions& o) {
 }
 
 // What contradicts an animation.
-std::optional<ArgumentFault> contradiction(const RenderOptions& o) {
+std::optional<ArgumentFault> frameContradiction(const RenderOptions& o) {
     if (o.frames.empty()) return std::nullopt;
     for (const std::string& pattern : {o.output, o.png.path})
         if (std::string fault = framePatternFault(pattern); !fault.empty())
@@ -96,7 +96,7 @@ void addFrames(Arguments& a, RenderOptions& o) {
         return fault;
     };
     a.value("--frames", "LIST", read, "Render these frames of an animation: 7, 1-240, 1-240x2, 1-10,20");
-    a.afterwards([&o] { return contradiction(o); });
+    a.afterwards([&o] { return frameContradiction(o); });
 }
 
 } // namespace
