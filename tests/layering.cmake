@@ -37,7 +37,8 @@ set(allowed_scene ${allowed_rendering} rendering volumes geometry lights cameras
 set(allowed_study ${allowed_scene} scene denoise)
 set(allowed_verify ${allowed_scene} scene)
 set(allowed_doctor ${allowed_scene} parser scene)
-set(allowed_app ${allowed_scene} parser scene)
+set(allowed_packs base math spectrum schema io)
+set(allowed_app ${allowed_scene} parser scene packs)
 set(allowed_pictures ${allowed_app} app)
 set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
@@ -47,13 +48,13 @@ set(allowed_render_run ${allowed_reports} reports checkpoints)
 set(allowed_commands ${allowed_render_run} render_run command_line denoise doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
-            app pictures pages checkpoints reports command_line render_run commands)
+            packs app pictures pages checkpoints reports command_line render_run commands)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "nlohmann/=app|reports|io")
+    "CLI/=command_line" "nlohmann/=app|reports|io|packs" "zip\\.h=packs")
 
 set(faults 0)
 macro(fault text)

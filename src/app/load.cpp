@@ -7,7 +7,9 @@
 #include "scene/registry.h"
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
+#include <optional>
 
 namespace abbe {
 
@@ -29,14 +31,35 @@ bool LoadedScene::changesWithFrames() const {
            std::ranges::any_of(document.parameters, [](const auto& p) { return p.name == kFrameParameter && p.used; });
 }
 
+namespace {
+
+// Messages call a scene in a pack `shot.abz/shot.scene`.
+std::optional<FileId> readPackedScene(LoadedScene& loaded, const std::string& path) {
+    try {
+        loaded.pack = std::make_unique<const UnpackedPack>(path);
+    } catch (const PackFault& fault) {
+        loaded.diagnostics.error("E0414", {loaded.sources.add(path, {}), 0, 0}, fault.what()).help =
+            "copy it again, or make it again with `abbe pack`";
+        return std::nullopt;
+    }
+    std::ifstream text(loaded.pack->scenePath(), std::ios::binary);
+    return readSceneText(loaded.sources, path + "/" + loaded.pack->manifest().scene, text, loaded.diagnostics);
+}
+
+std::optional<FileId> readText(LoadedScene& loaded, const SceneInput& input) {
+    if (input.fromStandardInput) return readSceneText(loaded.sources, input.path, std::cin, loaded.diagnostics);
+    if (isPack(input.path)) return readPackedScene(loaded, input.path);
+    return readSceneFile(loaded.sources, input.path, loaded.diagnostics);
+}
+
+} // namespace
+
 std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     auto loaded = std::make_unique<LoadedScene>();
     Stopwatch watch;
     const WorkScope work(Work::reading);
     loaded->types = makeTypeTable();
-    const auto file = input.fromStandardInput
-                          ? readSceneText(loaded->sources, input.path, std::cin, loaded->diagnostics)
-                          : readSceneFile(loaded->sources, input.path, loaded->diagnostics);
+    const auto file = readText(*loaded, input);
     if (!file) return loaded;
     loaded->readable = true;
     ParseOptions options;
@@ -50,8 +73,8 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     addPresets(loaded->types, loaded->sources, loaded->diagnostics);
     loaded->parseSeconds = watch.lap();
     setWork(Work::checking);
-    loaded->tree =
-        schema::resolve(document, loaded->types, std::filesystem::path(input.path).parent_path(), loaded->diagnostics);
+    const auto scenePath = loaded->pack ? loaded->pack->scenePath() : std::filesystem::path(input.path);
+    loaded->tree = schema::resolve(document, loaded->types, scenePath.parent_path(), loaded->diagnostics);
     loaded->tree.frame = input.frame;
     loaded->resolveSeconds = watch.lap();
     return loaded;

@@ -4,6 +4,7 @@
 #include "app/program_end.h"
 #include "base/diagnostic.h"
 #include "base/source.h"
+#include "packs/unpacked.h"
 #include "schema/scene_tree.h"
 
 #include <memory>
@@ -34,6 +35,7 @@ struct LoadedScene {
     schema::TypeTable types;
     schema::SceneTree tree;
     Diagnostics diagnostics;
+    std::unique_ptr<const UnpackedPack> pack;    // that the scene is in, if it is in one
     bool readable = false;                       // the file itself could be read
     double parseSeconds = 0, resolveSeconds = 0; // wall clock
 
@@ -43,6 +45,7 @@ struct LoadedScene {
     bool changesWithFrames() const;
 };
 
+// The path may be that of a pack (docs/packing.md), which is unpacked into the cache.
 // Never null and never throws on bad input; what is wrong is in `diagnostics`.
 std::unique_ptr<LoadedScene> loadScene(const SceneInput&);
 

@@ -2,6 +2,7 @@
 
 #include "app/identity.h"
 #include "math/byte_hash.h"
+#include "packs/scene_files.h"
 #include "rendering/render_params.h"
 
 #include <algorithm>
@@ -41,11 +42,22 @@ std::string fileFingerprint(const std::filesystem::path& path) {
     return fmt::format("{} bytes #{:016x}", size, hash.value());
 }
 
+// A file counts by what is in it, with what it names in turn, and not by its name: a packed scene is the same.
+std::string contentsOf(const SceneFile& file) {
+    std::string text;
+    for (const SceneFile::Part& part : file.parts)
+        text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", part.role, part.role.empty() ? "" : ": ",
+                            fileFingerprint(part.path));
+    return text;
+}
+
 // Writes the scene down as facts, a fact for each property of what stands at the top.
 class SceneFactWriter {
   public:
-    SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts)
-        : directory_(loaded.tree.directory), facts_(facts) {}
+    SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts) : facts_(facts) {
+        for (const SceneFile& file : filesOf(loaded.tree))
+            files_[{file.named.span.file, file.named.span.begin}] = contentsOf(file);
+    }
 
     // Of the settings alone.
     void writeSettings(const schema::Document& document) {
@@ -58,7 +70,6 @@ class SceneFactWriter {
         byProperty_ = document.nodes.size() <= 100000;
         for (const Node node : document.roots())
             if (!isSettings(node)) root(node);
-        for (const auto& [name, path] : files_) facts_.push_back({"file " + name, fileFingerprint(path)});
     }
 
   private:
@@ -124,13 +135,14 @@ class SceneFactWriter {
     }
 
     void append(const Value& value, std::string& out) {
+        if (const auto file = files_.find({value.span.file, value.span.begin}); file != files_.end())
+            return word(file->second, out);
         switch (value.kind) {
         case schema::ValueKind::number:
             return word(fmt::format("{}", value.number), out);
         case schema::ValueKind::word:
             return word(value.text, out);
         case schema::ValueKind::string:
-            noteFiles(value.text);
             return word(fmt::format("\"{}\"", value.text), out);
         case schema::ValueKind::boolean:
             return word(value.boolean ? "on" : "off", out);
@@ -144,30 +156,10 @@ class SceneFactWriter {
         out += text;
     }
 
-    // Any text that names a file counts as one that the scene reads; `<UDIM>` stands for the files of all tiles.
-    void noteFiles(std::string_view text) {
-        std::error_code error;
-        const std::filesystem::path path = directory_ / std::filesystem::path(text);
-        const std::string name = path.filename().string();
-        const auto udim = name.find("<UDIM>");
-        if (udim == std::string::npos) {
-            if (std::filesystem::is_regular_file(path, error)) files_.emplace(text, path);
-            return;
-        }
-        for (const auto& entry :
-             std::filesystem::directory_iterator(path.parent_path().empty() ? "." : path.parent_path(), error)) {
-            const std::string other = entry.path().filename().string();
-            if (other.size() == name.size() - 2 && other.starts_with(name.substr(0, udim)) &&
-                other.ends_with(name.substr(udim + 6)))
-                files_.emplace(other, entry.path());
-        }
-    }
-
-    std::filesystem::path directory_;
     std::vector<Fact>& facts_;
     bool byProperty_ = true;
     std::map<std::string, int> counts_;
-    std::map<std::string, std::filesystem::path> files_;
+    std::map<std::pair<FileId, std::uint32_t>, std::string> files_; // by the place of their names
 };
 
 // A camera is fitted to the light that is balanced; for the observer the balance comes after the sums.

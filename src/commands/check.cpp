@@ -85,6 +85,12 @@ SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
 }
 
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
+    if (options.fix && !input.fromStandardInput && isPack(input.path)) {
+        console.error(fmt::format("`{0}` is a pack, which `--fix` does not change; `abbe pack {0} -o FOLDER/` makes a "
+                                  "folder of it",
+                                  input.path));
+        return ExitCode::usage;
+    }
     const std::size_t fixed = options.fix ? fixScene(input) : 0;
     const auto loaded = checkScene(input, options.textures);
     console.report(loaded->diagnostics, loaded->sources);

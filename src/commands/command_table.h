@@ -81,6 +81,19 @@ extern const char* const kCheckHelp;
 void addArguments(Arguments&, CheckOptions&);
 ExitCode run(const CheckOptions&, const CommonOptions&);
 
+// `abbe pack`: a scene with all that it reads.
+struct PackOptions {
+    std::string path;
+    std::string output; // a pack, or a folder with a slash at its end
+    std::vector<std::string> defines;
+
+    static bool makesFiles() { return true; }
+};
+
+extern const char* const kPackHelp;
+void addArguments(Arguments&, PackOptions&);
+ExitCode run(const PackOptions&, const CommonOptions&);
+
 // `abbe explain`: a scene, a word of the language, or a diagnostic.
 struct ExplainOptions {
     std::string topic;    // a scene file, or words of the language; empty: the language itself

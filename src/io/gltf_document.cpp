@@ -1,6 +1,9 @@
 #include "io/gltf_document.h"
 
+#include "base/enclosure.h"
+#include "base/memory_limit.h"
 #include "io/file.h"
+#include "io/gltf.h"
 
 #include <algorithm>
 #include <array>
@@ -91,7 +94,8 @@ bool beside(const std::string& path, void* folder) {
     const auto extension = std::filesystem::path(path).extension();
     for (const char* image : {".png", ".jpg", ".jpeg", ".ktx2", ".webp", ".dds"})
         if (extension == image) return false;
-    return path.starts_with(*static_cast<const std::string*>(folder)) && std::filesystem::is_regular_file(path);
+    const auto& from = *static_cast<const std::string*>(folder);
+    return path.starts_with(from) && mayName(from, path) && std::filesystem::is_regular_file(path);
 }
 
 std::string asItIs(const std::string& path, void*) { return path; }
@@ -266,6 +270,64 @@ std::vector<PlacedGltfNode> GltfDocument::nodes(const std::string& root) const {
         for (auto c = children.rbegin(); c != children.rend(); ++c) open.push_back({*c, placed.back().map});
     }
     return placed;
+}
+
+namespace {
+
+constexpr std::size_t kGlbHead = 20; // of the container and its first chunk
+
+// The JSON of a glTF file, without the buffers that a binary one has behind it.
+std::string gltfJsonOf(RegularFile& file) {
+    std::string head(kGlbHead, '\0');
+    head.resize(file.readAt(0, head));
+    std::uint64_t begin = 0, size = file.size();
+    if (isBinaryGltf(head)) {
+        if (head.size() < kGlbHead) return {};
+        begin = kGlbHead;
+        size = 0;
+        for (std::size_t i = 4; i-- > 0;) size = size << 8 | static_cast<unsigned char>(head[12 + i]);
+        size = std::min(size, file.size() - begin);
+    }
+    requireMemory(static_cast<double>(size));
+    std::string text(static_cast<std::size_t>(size), '\0');
+    text.resize(file.readAt(begin, text));
+    return text;
+}
+
+// A file's name out of a URI exactly as the library that reads glTF takes it: `+` is a space, too.
+std::string decodedUri(const std::string& uri) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        return c >= 'A' && c <= 'F' ? c - 'A' + 10 : 0;
+    };
+    std::string path;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const bool code = uri[i] == '%' && uri.size() > i + 2;
+        path += code ? static_cast<char>(digit(uri[i + 1]) << 4 | digit(uri[i + 2])) : uri[i] == '+' ? ' ' : uri[i];
+        if (code) i += 2;
+    }
+    return path;
+}
+
+} // namespace
+
+std::vector<std::string> gltfBufferFiles(const std::string& path) {
+    std::vector<std::string> files;
+    RegularFile file(path);
+    if (!file.good()) return files;
+    const std::string text = gltfJsonOf(file);
+    if (findContainerFault(text)) return files; // nested too deeply
+    const nlohmann::json tree = nlohmann::json::parse(text, nullptr, false);
+    if (!tree.is_object()) return files;
+    const auto buffers = tree.find("buffers");
+    if (buffers == tree.end() || !buffers->is_array()) return files;
+    for (const auto& buffer : *buffers) {
+        const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
+        if (uri == buffer.end() || !uri->is_string()) continue;
+        if (const auto name = uri->get<std::string>(); !name.starts_with("data:")) files.push_back(decodedUri(name));
+    }
+    return files;
 }
 
 } // namespace abbe

@@ -4,6 +4,7 @@
 #include "io/exr_deep.h"
 #include "io/file.h"
 #include "io/png_writer.h"
+#include "packs/unpacked.h"
 #include "spectrum/color_space.h"
 
 #include <algorithm>
@@ -37,6 +38,8 @@ void warnOfLosses(const ExrReport& report, const std::string& path, Diagnostics&
 
 std::string imagePath(const std::string& output, const FilmSettings& film, const std::string& scenePath) {
     if (!output.empty()) return output;
+    // A pack comes from elsewhere: its scene names a file, not a folder of this machine.
+    if (!film.output.empty() && isPack(scenePath)) return std::filesystem::path(film.output).filename().string();
     if (!film.output.empty()) return film.output;
     return std::filesystem::path(scenePath).filename().replace_extension(".exr").string();
 }

@@ -1,5 +1,6 @@
 #include "schema/files.h"
 
+#include "base/enclosure.h"
 #include "base/file.h"
 #include "schema/suggest.h"
 
@@ -44,6 +45,11 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
     const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
     const fs::path written(nameable ? value.text : std::string_view());
     const fs::path path = written.is_absolute() ? written : tree.directory / written;
+    if (nameable && !mayName(tree.directory, path)) {
+        reportAt(diagnostics, value, "E0415", fmt::format("`{}` is outside of the pack", value.text), "not in the pack")
+            .help = "unpack it with `abbe pack PACK -o FOLDER/` to render it with files of your own";
+        return std::nullopt;
+    }
     std::error_code error;
     const auto status = fs::status(path, error);
     if (nameable && fs::is_directory(status)) {
@@ -55,7 +61,10 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
                  "pipes and devices are not read");
         return std::nullopt;
     }
-    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) return path;
+    if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) {
+        if (tree.namedFiles) tree.namedFiles->push_back({value.span, std::string(value.text), path});
+        return path;
+    }
     const std::string folder = written.is_absolute() ? written.parent_path().string() : tree.directory.string();
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
                        fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));

@@ -241,6 +241,7 @@ SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& tab
                   Diagnostics& diagnostics) {
     SceneTree tree;
     tree.document = std::move(document);
+    tree.namedFiles = std::make_shared<std::vector<NamedFile>>();
     tree.damaged = std::ranges::any_of(tree.document->nodes, [](const auto& node) { return node.damaged; });
     tree.directory = std::move(directory);
     tree.header = readHeader(*tree.document, diagnostics);

@@ -57,6 +57,13 @@ struct NameIndex {
     mutable std::size_t compared = 0; // letters, by SceneTree::nearestName
 };
 
+// A file that a definition names, as it was found.
+struct NamedFile {
+    Span span;                  // of the name; that of a parameter's value where `$name` stood
+    std::string written;        // as it stands there
+    std::filesystem::path path; // with `<UDIM>` for its tiles
+};
+
 // Everything that one file defines. Holds views into `document`.
 struct SceneTree {
     Header header;
@@ -64,8 +71,10 @@ struct SceneTree {
     std::filesystem::path directory; // files are looked up here
     std::shared_ptr<const Document> document;
     std::optional<int> frame; // of an animation, whose moment is shown
-    NameIndex index;          // filled by resolve()
-    bool damaged = false;     // a syntax error took something out of a node
+    // Made by resolve(), filled by bind(): after a scene was built all that it names, some perhaps several times.
+    std::shared_ptr<std::vector<NamedFile>> namedFiles;
+    NameIndex index;      // filled by resolve()
+    bool damaged = false; // a syntax error took something out of a node
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;

@@ -1,0 +1,61 @@
+#include "packs/scene_files.h"
+
+#include "base/file.h"
+#include "io/gltf.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace abbe {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTilePattern = "<UDIM>";
+
+std::vector<SceneFile::Part> tilesOf(const fs::path& pattern, std::size_t at) {
+    std::vector<SceneFile::Part> tiles;
+    const std::string text = pattern.string();
+    std::error_code error;
+    for (int tile = 1001; tile < 2000; ++tile) {
+        const std::string number = std::to_string(tile);
+        const fs::path path = std::string(text).replace(at, kTilePattern.size(), number);
+        if (fs::is_regular_file(path, error)) tiles.push_back({number, path});
+    }
+    return tiles;
+}
+
+std::vector<SceneFile::Part> partsOf(const fs::path& path) {
+    std::error_code error;
+    if (!fs::exists(path, error))
+        if (const std::size_t at = path.string().find(kTilePattern); at != std::string::npos) return tilesOf(path, at);
+    std::vector<SceneFile::Part> parts{{{}, path}};
+    std::string head(256, '\0');
+    head.resize(RegularFile(path.string()).readAt(0, head));
+    if (!looksLikeGltf(head)) return parts;
+    std::vector<std::string> buffers = gltfBufferFiles(path.string());
+    std::ranges::sort(buffers);
+    buffers.erase(std::unique(buffers.begin(), buffers.end()), buffers.end());
+    for (std::string& buffer : buffers)
+        if (fs::path file = path.parent_path() / buffer; fs::is_regular_file(file, error))
+            parts.push_back({std::move(buffer), std::move(file)});
+    return parts;
+}
+
+} // namespace
+
+std::vector<SceneFile> filesOf(const schema::SceneTree& tree) {
+    std::vector<SceneFile> files;
+    if (!tree.namedFiles) return files;
+    std::set<std::pair<FileId, std::uint32_t>> seen;
+    for (const schema::NamedFile& named : *tree.namedFiles)
+        if (seen.emplace(named.span.file, named.span.begin).second) {
+            std::vector<SceneFile::Part> parts = partsOf(named.path);
+            if (!parts.empty()) files.push_back({named, std::move(parts)});
+        }
+    return files;
+}
+
+} // namespace abbe
