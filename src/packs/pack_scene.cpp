@@ -160,25 +160,45 @@ struct Edit {
     std::string text;
 };
 
-std::string edited(std::string_view text, std::uint32_t begin, std::uint32_t end, std::vector<Edit> edits) {
+std::string edited(std::string_view text, std::vector<Edit> edits) {
     std::ranges::sort(edits, {}, &Edit::begin);
     std::string result;
+    std::uint32_t done = 0;
     for (const Edit& edit : edits) {
-        if (edit.begin < begin || edit.end > end) continue; // within another one
-        result += text.substr(begin, edit.begin - begin);
+        result += text.substr(done, edit.begin - done);
         result += edit.text;
-        begin = edit.end;
+        done = edit.end;
     }
-    return result += text.substr(begin, end - begin);
+    return result += text.substr(done);
 }
 
-std::string quotedForScene(const std::string& name) {
+std::string quotedForScene(std::string_view name) {
     std::string text = "\"";
     for (const char c : name) {
         if (c == '"' || c == '\\') text += '\\';
-        text += c;
+        if (c >= 0 && c < 0x20)
+            text += fmt::format("\\u{{{:x}}}", static_cast<int>(c));
+        else
+            text += c;
     }
     return text + '"';
+}
+
+// The value of `-D`, whose texts need no quotes there. `files`: what the scene is to write for the names of files.
+std::string givenText(const std::vector<schema::Value>& values, const SourceMap& sources,
+                      const std::vector<Edit>& files) {
+    std::string text;
+    for (const schema::Value& value : values) {
+        if (!text.empty()) text += ' ';
+        const auto file = std::ranges::find(files, value.span.begin, &Edit::begin);
+        if (file != files.end())
+            text += file->text;
+        else if (value.kind == schema::ValueKind::string)
+            text += quotedForScene(value.text);
+        else
+            text += sources.text(value.span);
+    }
+    return text;
 }
 
 Span spanOfAll(const std::vector<schema::Value>& values) {
@@ -201,15 +221,14 @@ ScenePack packScene(const schema::SceneTree& tree, const SourceMap& sources) {
     }
     for (const schema::Document::Parameter& parameter : document.parameters) {
         if (parameter.given.empty() || parameter.written.empty()) continue;
-        const Span given = spanOfAll(parameter.given), written = spanOfAll(parameter.written);
+        const Span written = spanOfAll(parameter.written);
         // What the written value named is not read.
         std::erase_if(edits[document.file],
                       [&](const Edit& e) { return e.begin >= written.begin && e.end <= written.end; });
-        edits[document.file].push_back(
-            {written.begin, written.end, edited(sources.text(given.file), given.begin, given.end, edits[given.file])});
+        const std::vector<Edit>& files = edits[parameter.given.front().span.file];
+        edits[document.file].push_back({written.begin, written.end, givenText(parameter.given, sources, files)});
     }
-    const std::string_view text = sources.text(document.file);
-    pack.sceneText = edited(text, 0, static_cast<std::uint32_t>(text.size()), edits[document.file]);
+    pack.sceneText = edited(sources.text(document.file), edits[document.file]);
     pack.files = names.files();
     return pack;
 }

@@ -12,10 +12,10 @@ mkdir -p "$TMPDIR"
 # glTF file with its buffer; a volume, a lamp, spectra, an environment, parameters.
 mkdir -p artist/shot/tex artist/library/tex artist/models/buffers "artist/odd name"
 cp "$snippets/any.png" artist/shot/tex/wood.png
-"$program" convert "$snippets/any.exr" artist/library/tex/wood.png --bits 16 || cp "$snippets/any.png" artist/library/tex/wood.png
+cp "$snippets/any.tif" artist/library/tex/wood.png # by its contents a picture of another kind
 for tile in 1001 1002; do cp "$snippets/any.png" "artist/library/tex/skin.$tile.png"; done
 cp "$snippets/any.ies" artist/library/
-cp "$snippets/any.csv" artist/shot/paint.csv
+printf '400 0.2\n700 0.6\n' >artist/shot/paint.csv
 cp "$snippets/any.exr" "artist/odd name/sky \"1\".exr"
 cp "$snippets/any.ply" artist/library/any.ply
 expect 0 volume make smoke artist/library/smoke.vdb --resolution 24 -q
@@ -30,7 +30,7 @@ camera { from 0 2 6; look-at 0 0.5 0; exposure auto }
 film { size 40 24; output "$folder/artist/picture.exr" }
 render { samples 4; seed 3 }
 light environment { image "$folder/artist/odd name/sky \"1\".exr" }
-light ies "../library/any.ies" { from 0 3 0; look-at 0 0 0 }
+light ies "../library/any.ies" { position 0 3 0 }
 texture grain image "tex/./wood.png"
 texture other image \$picture
 material floor diffuse { reflectance \$shade }
@@ -43,7 +43,7 @@ shape quad { points -2 0 -1  2 0 -1  2 2 -1  -2 2 -1; material wall }
 shape mesh "$folder/artist/library/any.ply" { material wood }
 shape sphere { center 1 0.5 0; radius 0.5; material paint }
 shape quad { points 0 0 1  1 0 1  1 1 1  0 1 1; material skin }
-volume { medium vdb "../library/smoke.vdb" }
+volume vdb "../library/smoke.vdb" { scattering 1 per-m }
 S
 expect 0 check artist/shot/shot.scene || { cat out err; }
 expect 0 pack artist/shot/shot.scene -o shot.abz
@@ -88,19 +88,17 @@ cmp shot.abz again.abz || fault "a pack that is packed is another one"
 
 # One render is one render, packed or not: parts of both fit together.
 expect 0 render shot.abz -q -o split.exr --part 2/2
-expect 0 merge split.part1.abbe split.part2.abbe -o merged.exr --scene shot.abz -q 2>/dev/null ||
-    expect 0 merge split.part1.abbe split.part2.abbe -o merged.exr --scene shot.abz
+expect 0 merge split.part1.abbe split.part2.abbe -o merged.exr --scene shot.abz
 same_pixels plain.exr merged.exr
 
 # Every command that takes a scene takes a pack, and what they write is where they are run.
 expect 0 check shot.abz
 expect 0 info shot.abz
-says out "12 "
 expect 0 explain shot.abz
 expect 0 replay shot.abz --pixel 5,5 --sample 0:1
-expect 0 study shot.abz --samples 4 --seeds 2 -q --size 16x10
+expect 0 study shot.abz --samples 8 --seeds 2 --variants none -q --size 16x10
 [[ -e shot-study.html ]] || fault "no study beside the pack"
-expect 0 verify shot.abz --samples 4 -q --size 16x10
+expect 0 verify shot.abz --samples 32 -q --size 16x10
 mkdir run
 (cd run && "$program" render ../shot.abz -q --checkpoint keep) || fault "a render from elsewhere"
 [[ -e run/picture.exr && -e run/picture.exr.ckpt && ! -e gone/picture.exr ]] || fault "the picture is elsewhere: $(ls run)"
@@ -111,7 +109,7 @@ cmp shot.abz first.abz || fault "check --fix changed a pack"
 rm -r "$XDG_CACHE_HOME/abbe/packs"
 
 # Without a home the folder of temporary files has the cache.
-(unset XDG_CACHE_HOME HOME && expect 0 check shot.abz && ((faults == 0))) || fault "no pack without a home"
+(unset XDG_CACHE_HOME HOME && "$program" check -q shot.abz) || fault "no pack without a home"
 [[ $(stat -c %a "$TMPDIR/abbe-packs-$(id -u)") == 700 ]] || fault "the cache for want of a home is not private"
 
 # A faulty scene makes no pack; messages of a packed scene name pack and line.

@@ -75,7 +75,7 @@ const cases = {
     missing: [3, 'but not there', pack([scene], [scene, file('b')])],
     'other-bytes': [3, 'its SHA-256 is not', pack([scene, file('b', 'evil')], [scene, file('b', 'good')])],
     bomb: [3, 'E0414', pack([file('a.scene', Buffer.alloc(50_000_000, ' '), { deflate: true })], [scene])],
-    lies: [3, 'E0414', pack([file('a.scene', text + ' '.repeat(5_000_000), { deflate: true, promised: text.length })], [scene])],
+    lies: [3, 'E0414', pack([file('a.scene', '// lies\n' + ' '.repeat(5_000_000), { deflate: true, promised: 8 })], [file('a.scene', '// lies\n')])],
     'stored-lies': [3, 'E0414', pack([scene, file('b', 'more', { promised: 2 })], [scene, file('b', 'mo')])],
     'no-manifest': [3, 'without abz.json', archive([scene])],
     'no-json': [3, 'abz.json', archive([{ name: 'abz.json', bytes: '{' }, scene])],
