@@ -29,8 +29,8 @@ bool looksLikeGltf(std::string_view bytes);
 MeshFile parseGltf(std::string_view bytes, const std::string& name, const GltfSelection& = {});
 MeshFile readGltf(const std::string& path, const GltfSelection& = {});
 
-// The files beside a glTF file that its buffers are in, as paths relative to its folder; of those, a file that cannot be
-// read names none. Images are not among them: nothing reads them.
+// The files beside a glTF file that its buffers are in, as paths relative to its folder; of those, a file that cannot
+// be read names none. Images are not among them: nothing reads them.
 std::vector<std::string> gltfBufferFiles(const std::string& path);
 
 // A camera of the default scene: it looks along the -z axis of its placement, with +y up.

@@ -112,6 +112,30 @@ rm -r "$XDG_CACHE_HOME/abbe/packs"
 (unset XDG_CACHE_HOME HOME && "$program" check -q shot.abz) || fault "no pack without a home"
 [[ $(stat -c %a "$TMPDIR/abbe-packs-$(id -u)") == 700 ]] || fault "the cache for want of a home is not private"
 
+# Names that clash, on any system, and names that are none elsewhere.
+mkdir -p clash/{a,b,c,shot/files}
+number=1
+for file in a/x.csv b/x.csv c/X.csv shot/files/x.csv shot/abz.json 'shot/we\ird: "1".csv'; do
+    printf '400 0.%d\n700 0.2\n' $number >"clash/$file"
+    number=$((number + 1))
+done
+{
+    printf 'scene 1\ncamera { from 0 0 9; look-at 0 0 0; exposure auto }\nfilm { size 24 16 }\nrender { samples 2 }\nlight sky { luminance 5000 nits }\n'
+    x=-3
+    for name in ../a/x.csv ../b/x.csv ../c/X.csv files/x.csv abz.json 'we\\ird: \"1\".csv' "$folder/clash/a/../a/x.csv"; do
+        printf 'shape sphere { center %d 0 0; radius 0.5; material diffuse { reflectance table "%s" } }\n' $x "$name"
+        x=$((x + 1))
+    done
+} >clash/shot/clash.scene
+expect 0 render clash/shot/clash.scene -q -o plain.exr
+expect 0 pack clash/shot/clash.scene -o clash.abz
+expect 0 pack clash/shot/clash.scene -o clash-folder/
+mv clash clash-gone
+expect 0 render clash.abz -q -o packed.exr
+same_pixels plain.exr packed.exr
+[[ $(find clash-folder -type f | wc -l) -eq 8 ]] || fault "not each file once: $(find clash-folder -type f)"
+[[ $(find clash-folder -type f | tr '[:upper:]' '[:lower:]' | sort -u | wc -l) -eq 8 ]] || fault "names differ in case alone"
+
 # A faulty scene makes no pack; messages of a packed scene name pack and line.
 expect 1 pack "$bad/$(basename "$(find "$bad" -name '*.scene' | sort | head -1)")" -o bad.abz
 [[ ! -e bad.abz ]] || fault "a faulty scene was packed"
