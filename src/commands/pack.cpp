@@ -38,8 +38,8 @@ bool isSound(LoadedScene& loaded) {
 
 std::string resultText(const PackOptions& options, const ScenePack& pack, std::uint64_t bytes, bool json) {
     if (!json)
-        return fmt::format("{} files, {:.1f} MB in {}\n", pack.files.size() + 1, static_cast<double>(bytes) / 1e6,
-                           options.output);
+        return fmt::format("{} file{}, {:.1f} MB in {}\n", pack.files.size() + 1, pack.files.empty() ? "" : "s",
+                           static_cast<double>(bytes) / 1e6, options.output);
     Json files = Json::list();
     files.push(pack.sceneName);
     for (const ScenePack::File& file : pack.files) files.push(file.name);
