@@ -55,8 +55,12 @@ std::string contentsOf(const SceneFile& file) {
 class SceneFactWriter {
   public:
     SceneFactWriter(const LoadedScene& loaded, std::vector<Fact>& facts) : facts_(facts) {
-        for (const SceneFile& file : filesOf(loaded.tree))
-            files_[{file.named.span.file, file.named.span.begin}] = contentsOf(file);
+        std::map<std::filesystem::path, std::string> known; // each is read once
+        for (const SceneFile& file : filesOf(loaded.tree)) {
+            const auto [contents, fresh] = known.try_emplace(file.named.path);
+            if (fresh) contents->second = contentsOf(file);
+            files_[{file.named.span.file, file.named.span.begin}] = contents->second;
+        }
     }
 
     // Of the settings alone.

@@ -4,6 +4,7 @@
 #include "io/gltf.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -50,10 +51,12 @@ std::vector<SceneFile> filesOf(const schema::SceneTree& tree) {
     std::vector<SceneFile> files;
     if (!tree.namedFiles) return files;
     std::set<std::pair<FileId, std::uint32_t>> seen;
+    std::map<fs::path, std::vector<SceneFile::Part>> known; // a thousand shapes may name one file
     for (const schema::NamedFile& named : *tree.namedFiles)
         if (seen.emplace(named.span.file, named.span.begin).second) {
-            std::vector<SceneFile::Part> parts = partsOf(named.path);
-            if (!parts.empty()) files.push_back({named, std::move(parts)});
+            const auto [parts, fresh] = known.try_emplace(named.path);
+            if (fresh) parts->second = partsOf(named.path);
+            if (!parts->second.empty()) files.push_back({named, parts->second});
         }
     return files;
 }
