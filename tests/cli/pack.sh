@@ -127,12 +127,12 @@ done
         x=$((x + 1))
     done
 } >clash/shot/clash.scene
-expect 0 render clash/shot/clash.scene -q -o plain.exr
+expect 0 render clash/shot/clash.scene -q -o clash.exr
 expect 0 pack clash/shot/clash.scene -o clash.abz
 expect 0 pack clash/shot/clash.scene -o clash-folder/
 mv clash clash-gone
 expect 0 render clash.abz -q -o packed.exr
-same_pixels plain.exr packed.exr
+same_pixels clash.exr packed.exr
 [[ $(find clash-folder -type f | wc -l) -eq 8 ]] || fault "not each file once: $(find clash-folder -type f)"
 [[ $(find clash-folder -type f | tr '[:upper:]' '[:lower:]' | sort -u | wc -l) -eq 8 ]] || fault "names differ in case alone"
 
