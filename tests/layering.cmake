@@ -45,16 +45,17 @@ set(allowed_checkpoints ${allowed_app} app study)
 set(allowed_reports ${allowed_app} app pictures pages study verify)
 set(allowed_command_line ${allowed_app} app pictures)
 set(allowed_render_run ${allowed_reports} reports checkpoints)
-set(allowed_commands ${allowed_render_run} render_run command_line denoise doctor)
+set(allowed_farm ${allowed_app} app checkpoints study)
+set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
-            packs app pictures pages checkpoints reports command_line render_run commands)
+            packs app pictures pages checkpoints reports command_line render_run farm commands)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "nlohmann/=app|reports|io|packs" "zip\\.h=packs")
+    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs" "zip\\.h=packs")
 
 set(faults 0)
 macro(fault text)

@@ -2,6 +2,7 @@
 
 #include "app/identity.h"
 #include "checkpoints/render_identity.h"
+#include "checkpoints/render_parts.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
 #include "render_run/render_run.h"

@@ -25,7 +25,7 @@ struct CheckpointOptions {
 struct RenderOptions {
     std::vector<SampleId> replay; // these are taken again, and told
     SceneInput input;
-    std::string output;      // EXR; empty: from the scene
+    std::string output; // EXR; empty: from the scene
     PngOptions png;
     ViewOptions view;
     BuildOptions build;
@@ -39,10 +39,10 @@ struct RenderOptions {
     std::optional<double> memory; // MiB, the most that may be taken
     CheckpointOptions checkpoint;
     std::optional<PixelBounds> crop;
-    std::optional<Vec2i> part;      // x of y equal ranges of the samples; a file for `merge` is written
-    std::uint32_t skip = 0;         // samples per pixel that parts of an earlier round have
-    std::vector<std::string> parts; // nothing is rendered, but these are put together
-    bool soFar = false;             // also where samples are missing
+    std::optional<Vec2i> part;       // x of y equal ranges of the samples; a file for `merge` is written
+    std::uint32_t skip = 0;          // samples per pixel that parts of an earlier round have
+    std::vector<std::string> parts;  // nothing is rendered, but these are put together
+    bool soFar = false;              // also where samples are missing
     std::vector<int> frames;         // of an animation: each is rendered by itself, one after the other
     std::optional<FrameOfRun> frame; // the one that is rendered, that of `input`; to a file of its own
 

@@ -16,7 +16,7 @@ expect 0 "${submit[@]}" --samples 64 --parts 26 --at-once 2 -o many.exr
 [[ $(pixels many.exr) == "$(pixels whole.exr)" ]] || fault "26 parts have other pixels"
 [[ -s many.farm/parts/r1.g1.abbe ]] || fault "26 parts were not gathered"
 expect 0 farm status four.farm
-tells out done 100
+tells out "done:" 100
 expect 0 farm status four.farm --json
 [[ $("$json_lines" out 2>/dev/null | wc -l) -ge 0 ]] && says out '"state": "done"'
 

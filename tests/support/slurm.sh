@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # A cluster of four nodes on this machine, with Debian's Slurm: munged, slurmctld and four slurmd with names of their own,
 # all of them in one scratch folder and on loopback. Needs root, as Debian's packages are built. To be sourced.
 #   start_slurm FOLDER      afterwards SLURM_CONF is exported, and sinfo, sbatch, … speak to it
