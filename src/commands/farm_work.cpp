@@ -29,6 +29,8 @@ void addArguments(Arguments& a, FarmWorkOptions& o) {
 
 namespace {
 
+constexpr double kPatienceChunks = 2; // in the time that a part should take
+
 FarmTask taskOf(const FarmPlan& plan, const FarmWorkOptions& o) {
     if (o.round >= 1 && o.round <= static_cast<int>(plan.rounds.size())) {
         const auto all = tasksOf(plan, o.round - 1, o.kind);
@@ -67,13 +69,15 @@ ExitCode run(const FarmWorkOptions& options, const CommonOptions& common) {
         const FarmPlan plan = folder.readPlan();
         std::filesystem::current_path(plan.folder); // where the words of its tasks were given
         const FarmTask task = taskOf(plan, options);
+        // A run of it that the engine thinks is lost may go on, on a node that cannot be reached: it is waited for,
+        // since it ends or dies, and then this one has nothing to do, or goes on where that one came to.
+        const PathLock lock(folder.resultFile(plan, task), kPatienceChunks * plan.chunkSeconds);
         const TaskRecord record = readTaskRecord(plan, folder, task);
-        if (record.done()) return ExitCode::done; // by a run of it that the engine thought was lost
+        if (record.done()) return ExitCode::done;
         if (plan.cancelled) return ExitCode::terminated;
-        const PathLock lock(folder.resultFile(plan, task), 0);
         if (lock.refused())
             throw FarmFault("E0765", fmt::format("another process does {}", folder.nameOf(plan, task)),
-                            "the engine thought it lost; the shot goes on when it ends");
+                            "the engine thought that one lost; the shot goes on when it ends");
         std::error_code ignored;
         std::filesystem::remove(folder.resultFile(plan, task), ignored);
         redirectOutput(folder.eventsFile(plan, task));

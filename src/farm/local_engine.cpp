@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fmt/format.h>
 #include <thread>
 
@@ -37,8 +38,9 @@ class LocalEngine final : public FarmEngine {
         std::vector<ChildProcess> running;
         std::size_t next = 0;
         bool told = false;
+        std::error_code unreadable;
         while (next < tasks.size() || !running.empty()) {
-            const bool stop = interrupt.stop() || folder_.readPlan().cancelled;
+            const bool stop = interrupt.stop() || std::filesystem::exists(folder_.cancelFile(), unreadable);
             if (stop) next = tasks.size();
             while (next < tasks.size() && static_cast<int>(running.size()) < atOnce)
                 running.push_back(start(plan, tasks[next++]));

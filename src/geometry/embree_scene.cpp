@@ -19,8 +19,8 @@ namespace abbe {
 namespace {
 
 void remember(void* user, RTCError code, const char* text) {
-    auto& first = *static_cast<std::string*>(user);
-    if (first.empty()) first = fmt::format("Embree error {}: {}", static_cast<int>(code), text ? text : "no text");
+    auto& first = *static_cast<EmbreeDevice::Fault*>(user);
+    if (first.code == RTC_ERROR_NONE) first = {code, text ? text : "no text"};
 }
 
 #ifdef __SANITIZE_THREAD__
@@ -33,8 +33,7 @@ int buildThreads() { return threadCount(); }
 } // namespace
 
 EmbreeDevice::EmbreeDevice()
-    : firstError_(std::make_unique<std::string>()),
-      device_(rtcNewDevice(fmt::format("threads={}", buildThreads()).c_str())) {
+    : firstError_(std::make_unique<Fault>()), device_(rtcNewDevice(fmt::format("threads={}", buildThreads()).c_str())) {
     if (!device_) {
         const RTCError error = rtcGetDeviceError(nullptr);
         if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -45,7 +44,10 @@ EmbreeDevice::EmbreeDevice()
 }
 
 void EmbreeDevice::throwIfFailed() const {
-    if (!firstError_->empty()) throw std::runtime_error(*firstError_);
+    if (firstError_->code == RTC_ERROR_NONE) return;
+    if (firstError_->code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(
+        fmt::format("Embree error {}: {}", static_cast<int>(firstError_->code), firstError_->text));
 }
 
 namespace {

@@ -32,11 +32,16 @@ class EmbreeDevice {
   public:
     EmbreeDevice();
     RTCDevice get() const { return device_.get(); }
-    // Throws std::runtime_error with the first error that Embree reported since the device was made.
+    // Throws std::runtime_error with the first error that Embree reported since the device was made, or std::bad_alloc.
     void throwIfFailed() const;
 
+    struct Fault {
+        RTCError code = RTC_ERROR_NONE;
+        std::string text;
+    };
+
   private:
-    std::unique_ptr<std::string> firstError_; // a stable address for the callback
+    std::unique_ptr<Fault> firstError_; // a stable address for the callback
     EmbreeHandle<RTCDevice, rtcReleaseDevice> device_;
 };
 

@@ -36,6 +36,7 @@ struct EmbreeSceneBuilder::Impl {
     std::uint64_t instanceCount = 0;
 
     static EmbreeHandle<RTCScene, rtcReleaseScene> newScene(const EmbreeScene&);
+    void fill(EmbreeScene&);
     void addShapes(EmbreeScene&, const Shapes&, BuiltObject&) const;
     void addTables(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
     void addMoving(EmbreeScene&, std::uint32_t inside, std::size_t geometryId, BuiltObject&);
@@ -147,28 +148,37 @@ void EmbreeSceneBuilder::addMoving(std::uint32_t object, const Motion& motion, s
     impl_->moving[{inside, object, visible.bits()}].push_back(motion);
 }
 
-std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
-    auto result = std::make_unique<EmbreeScene>();
-    EmbreeScene& s = *result;
-    s.scene = Impl::newScene(s);
-    Impl::BuiltObject top;
+void EmbreeSceneBuilder::Impl::fill(EmbreeScene& s) {
+    s.scene = newScene(s);
+    BuiltObject top;
     top.scene = s.scene.get();
-    impl_->addShapes(s, impl_->shapes, top); // first: its records stand at its geometry ids
+    addShapes(s, shapes, top); // first: its records stand at its geometry ids
     const std::size_t firstTable = s.records.size();
-    for (std::uint32_t i = 0; i < impl_->objects.size(); ++i) {
-        Impl::BuiltObject object;
-        object.scene = s.objectScenes.emplace_back(Impl::newScene(s)).get();
-        impl_->addShapes(s, impl_->objects[i], object);
-        impl_->addTables(s, i, s.records.size() - object.firstRecord, object);
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+        BuiltObject object;
+        object.scene = s.objectScenes.emplace_back(newScene(s)).get();
+        addShapes(s, objects[i], object);
+        addTables(s, i, s.records.size() - object.firstRecord, object);
         rtcCommitScene(object.scene);
-        impl_->built.push_back(object);
+        built.push_back(object);
     }
-    impl_->addTables(s, kScene, firstTable, top);
+    addTables(s, kScene, firstTable, top);
     s.bounds_ = top.bounds;
     s.moving = std::ranges::any_of(s.records, [](const GeometryRecord& r) { return r.steps > 1; }) ||
                std::ranges::any_of(s.tables, [](const auto& table) { return table->moves(); });
     rtcCommitScene(s.scene.get());
     s.device.throwIfFailed();
+}
+
+std::unique_ptr<Intersector> EmbreeSceneBuilder::build() {
+    auto result = std::make_unique<EmbreeScene>();
+    try {
+        impl_->fill(*result);
+    } catch (...) {
+        // Embree 3 ends the process when it releases a scene whose threads did not get their memory: that one stays.
+        (void)result.release();
+        throw;
+    }
     return result;
 }
 

@@ -4,6 +4,8 @@
 #include "reports/render_text.h"
 #include "reports/sample_report.h"
 
+#include <limits>
+
 namespace abbe {
 
 namespace {
@@ -109,8 +111,8 @@ class JsonReport final : public RenderReport {
 
     Console console_;
     std::optional<FrameOfRun> frame_;
-    double every_; // s
-    double lastShown_ = -1;
+    double every_;                                                // s
+    double lastShown_ = -std::numeric_limits<double>::infinity(); // s
 };
 
 void JsonReport::diagnostics(const Diagnostics& list, const SourceMap& sources) {

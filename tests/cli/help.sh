@@ -110,7 +110,7 @@ completes "" abbe render --samples ""
 for command in $(sed -n 's/^  \([a-z]*\)  .*/\1/p' list | grep -v abbe); do
     complete_words abbe "$command"
     [[ " ${COMPREPLY[*]} " == *" $command "* ]] || fault "the command $command is not completed"
-    [[ $command == volume ]] && continue
+    [[ $command == volume || $command == farm ]] && continue
     for flag in $("$program" help "$command" | grep -oE '^  (-[A-Za-z],)?--[a-z-]+' | grep -oE -e '--[a-z-]+'); do
         complete_words abbe "$command" "$flag"
         [[ " ${COMPREPLY[*]} " == *" $flag "* ]] || fault "$command $flag is not completed"
