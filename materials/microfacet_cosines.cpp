@@ -82,11 +82,11 @@ void MetCosines::addInterval(float from, float to, bool critical, int blocks) {
 namespace {
 
 // Gauss's points and weights on [0, 1].
-constexpr int kPoints = 6;
-constexpr float kPoint[kPoints] = {0.0337652429f, 0.1693953068f, 0.3806904070f,
-                                   0.6193095930f, 0.8306046932f, 0.9662347571f};
-constexpr float kWeight[kPoints] = {0.0856622462f, 0.1803807865f, 0.2339569673f,
-                                    0.2339569673f, 0.1803807865f, 0.0856622462f};
+constexpr int kQuadraturePoints = 6;
+constexpr float kPoint[kQuadraturePoints] = {0.0337652429f, 0.1693953068f, 0.3806904070f,
+                                             0.6193095930f, 0.8306046932f, 0.9662347571f};
+constexpr float kWeight[kQuadraturePoints] = {0.0856622462f, 0.1803807865f, 0.2339569673f,
+                                              0.2339569673f, 0.1803807865f, 0.0856622462f};
 
 constexpr Spectrum kTiny(1e-12f);
 
@@ -129,10 +129,11 @@ MicrofacetEscape::Shares MicrofacetEscape::operator()(Spectrum c) const {
     const Spectrum x(wo_.x), y(wo_.y), z(wo_.z), twice = c + c;
     const int panels = round_ ? 2 : 4; // light that just leaves, and normals that crowd, make kinks
     Shares sum{kNone, kNone};
-    for (int i = 0; i < kPoints * panels; ++i) {
-        const float p = (kPoint[i % kPoints] + static_cast<float>(i / kPoints)) / static_cast<float>(panels);
+    for (int i = 0; i < kQuadraturePoints * panels; ++i) {
+        const float p =
+            (kPoint[i % kQuadraturePoints] + static_cast<float>(i / kQuadraturePoints)) / static_cast<float>(panels);
         const Spectrum rest = kOne / (kOne - kappa * p), t = w * p * rest, per = kOne / fma(t, t, kOne);
-        const Spectrum arc = kWeight[i % kPoints] * w * rest * rest * per;
+        const Spectrum arc = kWeight[i % kQuadraturePoints] * w * rest * rest * per;
         for (int sign = round_ ? 1 : -1; sign <= 1; sign += 2) {
             const Spectrum u = s * (kOne - t * t) * per, v = s * t * per * static_cast<float>(2 * sign);
             const Direction m{fma(c, x, u * up_.x + v * side_.x), fma(c, y, u * up_.y + v * side_.y),

@@ -11,7 +11,7 @@ namespace {
 constexpr float kBase = 60;    // height of the lower boundary, m
 constexpr float kWidth = 1000; // of the whole, m
 
-struct Sphere {
+struct CloudSphere {
     Vec3 centre;
     float radius = 0;
 };
@@ -33,9 +33,9 @@ class Draw {
 };
 
 // Turrets along the middle, highest there; on each smaller ones, three generations.
-std::vector<Sphere> billows(std::uint32_t seed) {
+std::vector<CloudSphere> billows(std::uint32_t seed) {
     Draw draw(seed);
-    std::vector<Sphere> all;
+    std::vector<CloudSphere> all;
     for (int i = 0; i < 11; ++i) {
         const float along = (static_cast<float>(i) + draw.within(-0.3f, 0.3f)) / 10 * 2 - 1; // -1 … 1
         const float height = 1 - along * along;
@@ -52,20 +52,20 @@ std::vector<Sphere> billows(std::uint32_t seed) {
         const std::size_t last = all.size();
         for (std::size_t parent = first; parent < last; ++parent)
             for (int i = 0; i < count; ++i) {
-                const Sphere p = all[parent];
+                const CloudSphere p = all[parent];
                 const float radius = p.radius * draw.within(0.3f, 0.52f);
                 all.push_back({p.centre + draw.direction(-0.35f) * (p.radius * draw.within(0.82f, 1.f)), radius});
             }
         first = last;
     }
-    std::erase_if(all, [](const Sphere& s) { return s.centre.y + s.radius < kBase; });
+    std::erase_if(all, [](const CloudSphere& s) { return s.centre.y + s.radius < kBase; });
     return all;
 }
 
 class Cumulus final : public VolumeRecipe {
   public:
     explicit Cumulus(std::uint32_t seed) : seed_(mix32(seed ^ 0xc10d5u)), spheres_(billows(seed_)) {
-        for (const Sphere& s : spheres_) {
+        for (const CloudSphere& s : spheres_) {
             bounds_.add(s.centre - Vec3(1, 1, 1) * (s.radius + kReach));
             bounds_.add(s.centre + Vec3(1, 1, 1) * (s.radius + kReach));
         }
@@ -106,7 +106,7 @@ class Cumulus final : public VolumeRecipe {
     static constexpr float kBin = 40;
 
     struct Near {
-        std::vector<Sphere> spheres;
+        std::vector<CloudSphere> spheres;
         bool inside = false; // all of the leaf is deep in a sphere
     };
 
@@ -151,7 +151,7 @@ class Cumulus final : public VolumeRecipe {
     // Signed distance to the union of spheres, below 0 inside; rounded where they meet.
     static float distance(Vec3 p, const Near& near) {
         float d = 1e9f;
-        for (const Sphere& s : near.spheres) {
+        for (const CloudSphere& s : near.spheres) {
             const float next = length(p - s.centre) - s.radius;
             const float k = 0.12f * s.radius, h = std::max(k - std::abs(d - next), 0.f);
             d = std::min(d, next) - h * h / (4 * k);
@@ -181,7 +181,7 @@ class Cumulus final : public VolumeRecipe {
     }
 
     std::uint32_t seed_;
-    std::vector<Sphere> spheres_;
+    std::vector<CloudSphere> spheres_;
     Bounds3 bounds_;
     float scale_ = 1;
     int count_[3] = {};
