@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/memory_limit.h"
+#include "base/parallel.h"
 #include "checkpoints/checkpoint_bytes.h"
 #include "checkpoints/packed_bytes.h"
 #include "io/file.h"
@@ -295,20 +296,41 @@ bool CheckpointReader::read(void* to, std::size_t size) {
     return got == size;
 }
 
-const CheckpointReader::Block& CheckpointReader::next() {
-    block_.begin = position_;
+void CheckpointReader::readBlock(Block& block) {
+    block.begin = position_;
     BlockHead head;
-    std::uint64_t hash = 0;
-    if (!read(&head, sizeof head) || file_.size() - position_ < sizeof hash ||
-        head.size > file_.size() - position_ - sizeof hash)
-        damaged(block_.begin, "the file ends within a block");
+    if (!read(&head, sizeof head) || file_.size() - position_ < sizeof block.hash ||
+        head.size > file_.size() - position_ - sizeof block.hash)
+        damaged(block.begin, "the file ends within a block");
     requireMemory(static_cast<double>(head.size));
-    block_.kind = head.kind;
-    block_.bytes.resize(head.size);
-    if (!read(block_.bytes.data(), block_.bytes.size()) || !read(&hash, sizeof hash))
-        damaged(block_.begin, "the file ends within a block");
-    if (hash != hashOfBlock(head, block_.bytes)) damaged(block_.begin, "the checksum of a block is wrong");
+    block.kind = head.kind;
+    block.reserved = head.reserved;
+    block.bytes.resize(head.size);
+    if (!read(block.bytes.data(), block.bytes.size()) || !read(&block.hash, sizeof block.hash))
+        damaged(block.begin, "the file ends within a block");
+}
+
+void CheckpointReader::verify(const Block& block) const {
+    if (block.hash != hashOfBlock({block.kind, block.reserved, block.bytes.size()}, block.bytes))
+        damaged(block.begin, "the checksum of a block is wrong");
+}
+
+const CheckpointReader::Block& CheckpointReader::next() {
+    readBlock(block_);
+    verify(block_);
     return block_;
+}
+
+// Some of the blocks that are still to come, read one after the other and checked by many threads.
+std::vector<CheckpointReader::Block> CheckpointReader::nextBatch(std::size_t most) {
+    constexpr std::size_t kMostBlocks = 256, kMostBytes = std::size_t{64} << 20;
+    std::vector<Block> batch;
+    for (std::size_t bytes = 0; batch.size() < std::min(most, kMostBlocks) && bytes < kMostBytes;) {
+        readBlock(batch.emplace_back());
+        bytes += batch.back().bytes.size();
+    }
+    parallelFor(batch.size(), [&](std::size_t i) { verify(batch[i]); });
+    return batch;
 }
 
 void CheckpointReader::readHeader() {
@@ -333,12 +355,15 @@ void CheckpointReader::readHeader() {
 
 // The rest of the block.
 void CheckpointReader::addPlanes(ByteReader& in, const Block& block, const FilmPlanes& planes, bool ofLightPaths,
-                                 PixelBounds pixels) {
+                                 PixelBounds pixels) const {
+    constexpr std::uint64_t kMuch = 1 << 20; // of a tile; packed bytes may stand for eight times as many
+    std::vector<std::byte> unpacked;
     for (const auto& plane : planes) {
         if (plane->ofLightPaths() != ofLightPaths) continue;
         const auto size = in.number<std::uint64_t>();
         const auto packed = in.take(in.number<std::uint64_t>());
-        if (!in.sound() || !unpack(packed, size, unpacked_) || !plane->add(pixels, unpacked_))
+        if (size > kMuch) requireMemory(static_cast<double>(std::min<std::uint64_t>(size, 8 * packed.size())));
+        if (!in.sound() || !unpack(packed, size, unpacked) || !plane->add(pixels, unpacked))
             damaged(block.begin, "a tile of another size");
     }
     if (!in.atEnd()) damaged(block.begin, "a tile of another size");
@@ -353,18 +378,30 @@ bool CheckpointReader::hasExamples(const TileState& tile) const {
     });
 }
 
-void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, RenderState& state,
-                               std::vector<bool>& seen) {
+void CheckpointReader::addTile(const Block& block, const FilmPlanes& planes, RenderState& state) const {
     ByteReader in(block.bytes);
     const auto i = in.number<std::uint64_t>();
-    if (block.kind != tileBlock || i >= state.pixelTileCount() || seen[i]) damaged(block.begin, "an unexpected block");
-    seen[i] = true;
     if (!readTile(in, state.tile(i)) || !hasExamples(state.tile(i))) damaged(block.begin, "a tile of another size");
     const TileState& tile = state.tile(i);
     if (tile.reached < header_.first) damaged(block.begin, "a tile before its first sample");
     const auto units = static_cast<std::uint64_t>(state.pixels(i).area() * header_.replicates);
     if (tile.cut && tile.cut->at.unit >= units) damaged(block.begin, "a portion that was cut behind its end");
     addPlanes(in, block, planes, false, state.pixels(i));
+}
+
+// Tiles come in any order, each once; threads add to different ones.
+void CheckpointReader::addTiles(const FilmPlanes& planes, RenderState& state) {
+    std::vector<bool> seen(state.pixelTileCount());
+    for (std::size_t done = 0; done < seen.size();) {
+        const std::vector<Block> batch = nextBatch(seen.size() - done);
+        for (const Block& block : batch) {
+            const auto i = ByteReader(block.bytes).number<std::uint64_t>();
+            if (block.kind != tileBlock || i >= seen.size() || seen[i]) damaged(block.begin, "an unexpected block");
+            seen[i] = true;
+        }
+        parallelFor(batch.size(), [&](std::size_t i) { addTile(batch[i], planes, state); });
+        done += batch.size();
+    }
 }
 
 // In the order of writeLight().
@@ -378,18 +415,22 @@ void CheckpointReader::addLight(const FilmPlanes& planes, RenderState& state) {
         if (state.tile(i).reached < header_.first) damaged(block.begin, "light paths before their first sample");
     }
     if (!hasPlanesOfLight(planes)) return;
-    for (std::size_t i = 0; i < state.pixelTileCount(); ++i) {
-        const Block& block = next();
-        ByteReader in(block.bytes);
-        if (block.kind != splatBlock || in.number<std::uint64_t>() != i) damaged(block.begin, "an unexpected block");
-        addPlanes(in, block, planes, true, state.pixels(i));
+    for (std::size_t done = 0; done < state.pixelTileCount();) {
+        const std::vector<Block> batch = nextBatch(state.pixelTileCount() - done);
+        parallelFor(batch.size(), [&](std::size_t i) {
+            const Block& block = batch[i];
+            ByteReader in(block.bytes);
+            if (block.kind != splatBlock || in.number<std::uint64_t>() != done + i)
+                damaged(block.begin, "an unexpected block");
+            addPlanes(in, block, planes, true, state.pixels(done + i));
+        });
+        done += batch.size();
     }
 }
 
 RenderState CheckpointReader::addTo(const FilmPlanes& planes) {
     RenderState state(header_.bounds, header_.first, header_.lightBlocks);
-    std::vector<bool> seen(state.pixelTileCount());
-    for (std::size_t i = 0; i < state.pixelTileCount(); ++i) addTile(next(), planes, state, seen);
+    addTiles(planes, state);
     addLight(planes, state);
     if (const Block& end = next(); end.kind != endBlock || position_ != file_.size()) damaged(end.begin, "no end");
     state.seconds = header_.seconds;

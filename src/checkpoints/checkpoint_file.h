@@ -56,7 +56,7 @@ bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const Fil
 // Whether a file is there that was never a checkpoint or part, of any version, and must not be lost unasked.
 bool isForeignCheckpoint(const std::string& path);
 
-// Reads without holding more than a tile in memory.
+// Reads without holding more than some megabytes in memory; adds with as many threads as there are.
 class CheckpointReader {
   public:
     // Throws IoError if the file cannot be read and CheckpointFault if it is no sound checkpoint as far as its header.
@@ -70,17 +70,22 @@ class CheckpointReader {
 
   private:
     struct Block {
-        std::uint32_t kind = 0;
+        std::uint32_t kind = 0, reserved = 0;
         std::uint64_t begin = 0; // in the file
         std::vector<std::byte> bytes;
+        std::uint64_t hash = 0; // as it is stated
     };
+    void readBlock(Block&);
+    void verify(const Block&) const;
+    std::vector<Block> nextBatch(std::size_t most);
     const Block& next();
     [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
     void readHeader();
-    void addTile(const Block&, const FilmPlanes&, RenderState&, std::vector<bool>& seen);
+    void addTiles(const FilmPlanes&, RenderState&);
+    void addTile(const Block&, const FilmPlanes&, RenderState&) const;
     bool hasExamples(const TileState&) const;
     void addLight(const FilmPlanes&, RenderState&);
-    void addPlanes(ByteReader&, const Block&, const FilmPlanes&, bool ofLightPaths, PixelBounds);
+    void addPlanes(ByteReader&, const Block&, const FilmPlanes&, bool ofLightPaths, PixelBounds) const;
 
     // False at the end of the file.
     bool read(void* to, std::size_t size);
@@ -89,7 +94,6 @@ class CheckpointReader {
     RegularFile file_;
     std::uint64_t position_ = 0;
     Block block_;
-    std::vector<std::byte> unpacked_; // of a plane
     CheckpointHeader header_;
 };
 

@@ -44,9 +44,9 @@ RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
     double worst = 0;
     for (const FarmTask& task : tasksOf(plan, round, FarmTask::Kind::merge)) {
         const double noise = readTaskRecord(plan, folder, task).noise;
-        if (noise > 0 && noise <= plan.noise) continue;
+        if (noise <= plan.noise) continue; // 0: nothing differs between samples, as in a black frame
         next.frames.push_back(task.frame);
-        worst = std::max(worst, noise > 0 ? noise : plan.noise * 2);
+        worst = std::max(worst, noise);
     }
     if (next.frames.empty()) {
         end.said = fmt::format("the noise goal of {:.3g} % is met", 100 * plan.noise);

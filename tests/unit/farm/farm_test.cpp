@@ -142,6 +142,8 @@ TEST_CASE("a noise goal asks for as many samples as error needs that falls by th
     shot.plan.parts = 2;
     shot.finishRound(0, 0.04);
     CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::done);
+    shot.finish({FarmTask::Kind::merge, 0, 1, 1}, 0); // a black frame
+    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::done);
     shot.finish({FarmTask::Kind::merge, 0, 2, 1}, 0.07); // (7/5)² × 1.1 × 32 = 68.99
     const RoundEnd end = closeRound(shot.plan, shot.folder, 0);
     CHECK(end.kind == RoundEnd::Kind::more);
