@@ -16,6 +16,10 @@ struct ProcessEnd {
 // Runs a program, found on the PATH, to its end. Reads nothing from stdin.
 ProcessEnd runProcess(const std::vector<std::string>& words);
 
+// Starts a program, found on the PATH if its name has no slash, with these descriptors for stdout and stderr; it reads
+// nothing from stdin and has the signals of a fresh program. Returns errno, 0 when it runs.
+int spawnProcess(const std::vector<std::string>& words, int out, int err, pid_t& process);
+
 // A program that goes on beside this one. Its output is appended to a file.
 class ChildProcess {
   public:

@@ -370,4 +370,11 @@ std::variant<CommandLine, EarlyEnd> readCommandLine(const CommandTable& table, s
     return Parser(table).read(words);
 }
 
+std::variant<CommandLine, EarlyEnd> readCommandLine(const CommandTable& table,
+                                                    const std::vector<std::string>& arguments) {
+    std::vector<const char*> words;
+    for (const std::string& argument : arguments) words.push_back(argument.c_str());
+    return readCommandLine(table, words);
+}
+
 } // namespace abbe

@@ -27,6 +27,7 @@ struct EarlyEnd {
 
 // `arguments` without the program's name. Without the name of a command they are those of `render`.
 std::variant<CommandLine, EarlyEnd> readCommandLine(const CommandTable&, std::span<const char* const> arguments);
+std::variant<CommandLine, EarlyEnd> readCommandLine(const CommandTable&, const std::vector<std::string>& arguments);
 
 // The root is "abbe" itself. Made anew by each call.
 CommandInfo commandTree(const CommandTable&);

@@ -87,15 +87,6 @@ constexpr CommandEntry kFarmActions[] = {{"submit", "", kSubmitHelp, makeCommand
 
 constexpr double kPlanPatience = 120; // s, for another process that changes the plan
 
-// Faults of a shot become diagnostics.
-template <typename Action> ExitCode reporting(const CommonOptions& common, const Action& action) {
-    try {
-        return action();
-    } catch (const FarmFault& fault) {
-        return reportFarmFault(fault, common.console);
-    }
-}
-
 void lockPlan(const PathLock& lock, const FarmFolder& folder) {
     if (lock.refused())
         throw FarmFault("E0765", fmt::format("another process changes the plan of `{}`", folder.path()),
@@ -103,7 +94,7 @@ void lockPlan(const PathLock& lock, const FarmFolder& folder) {
 }
 
 ShotStatus statusNow(const FarmPlan& plan, const FarmFolder& folder) {
-    const auto engine = makeEngine(plan.engine, folder, {});
+    const auto engine = makeEngine(plan.engine, folder);
     return statusOf(plan, folder, plan.outcome.empty() ? engine->queue(plan) : std::vector<QueuedTask>());
 }
 
@@ -135,7 +126,7 @@ ExitCode reportFarmFault(const FarmFault& fault, const Console& console) {
 }
 
 ExitCode goOn(FarmPlan& plan, const FarmFolder& folder, int round, const CommonOptions& common) {
-    const auto engine = makeEngine(plan.engine, folder, [] {});
+    const auto engine = makeEngine(plan.engine, folder);
     for (;;) {
         const RoundEnd end = closeRound(plan, folder, round);
         if (!common.json) common.console.line(fmt::format("round {}: {}", round + 1, end.said));
@@ -147,7 +138,7 @@ ExitCode goOn(FarmPlan& plan, const FarmFolder& folder, int round, const CommonO
             engine->submit(plan, end.work);
             if (engine->closesItself()) return ExitCode::done;
             if (engine->signal() != 0) return static_cast<ExitCode>(128 + engine->signal());
-            plan.cancelled = folder.readPlan().cancelled;
+            plan.cancelled = folder.isCancelled();
             continue;
         case RoundEnd::Kind::cancelled:
             return ExitCode::done;
@@ -187,7 +178,7 @@ void addArguments(Arguments& a, FarmPictureOptions& o) {
 }
 
 ExitCode run(const FarmStatusOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const FarmPlan plan = folder.readPlan();
         const ShotStatus status = statusNow(plan, folder);
@@ -198,7 +189,7 @@ ExitCode run(const FarmStatusOptions& options, const CommonOptions& common) {
 }
 
 ExitCode run(const FarmWatchOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         std::size_t lines = 0;
         for (;;) {
@@ -222,11 +213,11 @@ ExitCode run(const FarmWatchOptions& options, const CommonOptions& common) {
 }
 
 ExitCode run(const FarmCancelOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const FarmPlan plan = folder.readPlan();
         folder.setCancelled(true);
-        makeEngine(plan.engine, folder, {})->cancel(plan);
+        makeEngine(plan.engine, folder)->cancel(plan);
         common.console.line(
             fmt::format("cancelled; `abbe farm resume {}` goes on with what there is", shellQuoted(options.folder)));
         return ExitCode::done;
@@ -234,12 +225,12 @@ ExitCode run(const FarmCancelOptions& options, const CommonOptions& common) {
 }
 
 ExitCode run(const FarmResumeOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const PathLock lock(folder.planFile(), 1);
         lockPlan(lock, folder);
         FarmPlan plan = folder.readPlan();
-        if (const auto waiting = makeEngine(plan.engine, folder, {})->queue(plan); !waiting.empty() && !plan.cancelled)
+        if (const auto waiting = makeEngine(plan.engine, folder)->queue(plan); !waiting.empty() && !plan.cancelled)
             throw FarmFault(
                 "E0765",
                 fmt::format("`{}` goes on by itself: {} tasks are in the queue", folder.path(), waiting.size()),
@@ -255,7 +246,7 @@ ExitCode run(const FarmResumeOptions& options, const CommonOptions& common) {
 }
 
 ExitCode run(const FarmPictureOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const FarmPlan plan = folder.readPlan();
         std::error_code error;
@@ -271,12 +262,7 @@ ExitCode run(const FarmPictureOptions& options, const CommonOptions& common) {
                     if (task.frame == frame && std::filesystem::exists(folder.outputOf(plan, task), error))
                         words.push_back(folder.outputOf(plan, task));
             if (words.size() == before) continue;
-            const std::vector<const char*> pointers = [&] {
-                std::vector<const char*> list;
-                for (const std::string& word : words) list.push_back(word.c_str());
-                return list;
-            }();
-            const auto line = readCommandLine(commandTable(), pointers);
+            const auto line = readCommandLine(commandTable(), words);
             return std::get<CommandLine>(line).command->execute(common);
         }
         throw FarmFault("E0766", "there is nothing to see yet: no part has saved anything",
@@ -291,7 +277,7 @@ void addArguments(Arguments& a, FarmCloseOptions& o) {
 }
 
 ExitCode run(const FarmCloseOptions& options, const CommonOptions& common) {
-    return reporting(common, [&] {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const PathLock lock(folder.planFile(), kPlanPatience);
         lockPlan(lock, folder);

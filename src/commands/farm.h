@@ -83,6 +83,15 @@ ExitCode run(const FarmCloseOptions&, const CommonOptions&);
 // A fault as a diagnostic; its exit code.
 ExitCode reportFarmFault(const FarmFault&, const Console&);
 
+// What the action returns, or the code of the fault that it met.
+template <typename Action> ExitCode reportingFaults(const Console& console, const Action& action) {
+    try {
+        return action();
+    } catch (const FarmFault& fault) {
+        return reportFarmFault(fault, console);
+    }
+}
+
 // Runs rounds from this one on, as far as the engine lets this process do it: Slurm's jobs go on by themselves. Says
 // what becomes of them. Requires the lock of the plan.
 ExitCode goOn(FarmPlan&, const FarmFolder&, int round, const CommonOptions&);

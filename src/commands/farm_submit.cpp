@@ -237,7 +237,7 @@ ExitCode submit(const FarmSubmitOptions& options, const CommonOptions& common) {
         return ExitCode::done;
     }
     folder.writePlan(*plan);
-    const auto engine = makeEngine(plan->engine, folder, {});
+    const auto engine = makeEngine(plan->engine, folder);
     try {
         engine->submit(*plan, work);
     } catch (const FarmFault&) {
@@ -275,9 +275,7 @@ void addArguments(Arguments& a, FarmSubmitOptions& o) {
 
 ExitCode run(const FarmSubmitOptions& options, const CommonOptions& common) {
     try {
-        return submit(options, common);
-    } catch (const FarmFault& fault) {
-        return reportFarmFault(fault, common.console);
+        return reportingFaults(common.console, [&] { return submit(options, common); });
     } catch (const fs::filesystem_error& e) {
         common.console.error(e.what());
         return ExitCode::system;

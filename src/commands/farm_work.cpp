@@ -50,9 +50,7 @@ void redirectOutput(const std::string& file) {
 }
 
 ExitCode execute(const std::vector<std::string>& words, const CommonOptions& common) {
-    std::vector<const char*> pointers;
-    for (const std::string& word : words) pointers.push_back(word.c_str());
-    const auto result = readCommandLine(commandTable(), pointers);
+    const auto result = readCommandLine(commandTable(), words);
     if (const auto* end = std::get_if<EarlyEnd>(&result)) {
         common.console.error(end->text);
         return end->code;
@@ -64,7 +62,7 @@ ExitCode execute(const std::vector<std::string>& words, const CommonOptions& com
 } // namespace
 
 ExitCode run(const FarmWorkOptions& options, const CommonOptions& common) {
-    try {
+    return reportingFaults(common.console, [&] {
         const FarmFolder folder(std::filesystem::absolute(options.folder).string());
         const FarmPlan plan = folder.readPlan();
         std::filesystem::current_path(plan.folder); // where the words of its tasks were given
@@ -86,9 +84,7 @@ ExitCode run(const FarmWorkOptions& options, const CommonOptions& common) {
         const ExitCode code = execute(words, common);
         writeTaskResult(plan, folder, task, static_cast<int>(code));
         return code;
-    } catch (const FarmFault& fault) {
-        return reportFarmFault(fault, common.console);
-    }
+    });
 }
 
 } // namespace abbe

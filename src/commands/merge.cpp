@@ -32,9 +32,7 @@ namespace {
 
 // The command that made a part, as it would read the words now.
 RenderOptions commandOf(const CheckpointReader& reader) {
-    std::vector<const char*> words;
-    for (const std::string& word : reader.header().words) words.push_back(word.c_str());
-    const auto result = readCommandLine(commandTable(), words);
+    const auto result = readCommandLine(commandTable(), reader.header().words);
     if (const auto* line = std::get_if<CommandLine>(&result))
         if (const auto* render = optionsOf<RenderOptions>(*line->command)) return *render;
     throw CheckpointFault("E0661",

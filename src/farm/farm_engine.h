@@ -3,7 +3,6 @@
 
 #include "farm/farm_plan.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,9 +42,8 @@ class FarmEngine {
 };
 
 std::unique_ptr<FarmEngine> makeSlurm(const FarmFolder&);
-// `tick` is called some fifty times a second while tasks run.
-std::unique_ptr<FarmEngine> makeLocalEngine(const FarmFolder&, std::function<void()> tick);
-std::unique_ptr<FarmEngine> makeEngine(FarmEngineKind, const FarmFolder&, std::function<void()> tick);
+std::unique_ptr<FarmEngine> makeLocalEngine(const FarmFolder&);
+std::unique_ptr<FarmEngine> makeEngine(FarmEngineKind, const FarmFolder&);
 
 // The scripts that Slurm would be given, for reading and for other engines. Written to FOLDER/slurm.
 std::vector<std::string> writeSlurmScripts(const FarmFolder&, const FarmPlan&, const RoundWork&);

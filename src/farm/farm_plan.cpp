@@ -27,13 +27,38 @@ int partsOf(const FarmPlan& plan, std::uint32_t from, std::uint32_t to) {
     return static_cast<int>(std::clamp(wanted, 1.0, std::max(1.0, most)));
 }
 
+const char* wordOf(FarmTask::Kind kind) {
+    switch (kind) {
+    case FarmTask::Kind::part:
+        return "part";
+    case FarmTask::Kind::gather:
+        return "gather";
+    case FarmTask::Kind::merge:
+        return "merge";
+    }
+    return "";
+}
+
+namespace {
+
+int piecesOf(const FarmRound& round, FarmTask::Kind kind) {
+    return kind == FarmTask::Kind::part ? round.parts : kind == FarmTask::Kind::gather ? groupCount(round) : 1;
+}
+
+} // namespace
+
 std::vector<FarmTask> tasksOf(const FarmPlan& plan, int round, FarmTask::Kind kind) {
     const FarmRound& r = plan.rounds[static_cast<std::size_t>(round)];
-    const int pieces = kind == FarmTask::Kind::part ? r.parts : kind == FarmTask::Kind::gather ? groupCount(r) : 1;
     std::vector<FarmTask> tasks;
     for (const int frame : r.frames)
-        for (int piece = 1; piece <= pieces; ++piece) tasks.push_back({kind, round, frame, piece});
+        for (int piece = 1; piece <= piecesOf(r, kind); ++piece) tasks.push_back({kind, round, frame, piece});
     return tasks;
+}
+
+int numberOf(const FarmPlan& plan, const FarmTask& task) {
+    const FarmRound& round = plan.rounds[static_cast<std::size_t>(task.round)];
+    const auto frame = std::ranges::find(round.frames, task.frame) - round.frames.begin();
+    return static_cast<int>(frame) * piecesOf(round, task.kind) + task.piece;
 }
 
 std::string FarmFolder::nameOf(const FarmPlan& plan, const FarmTask& task) const {

@@ -62,6 +62,7 @@ struct FarmTask {
     int frame = 0;
     int piece = 0; // of the frame, from 1: which part, or which group of parts
 };
+const char* wordOf(FarmTask::Kind); // "part", "gather", "merge"
 
 // More parts of a frame than this are first gathered into groups, so that no merge reads more files than the square
 // root.
@@ -75,6 +76,8 @@ int partsOf(const FarmPlan&, std::uint32_t from, std::uint32_t to);
 
 // All of one kind in a round, in the order of their numbers, which begin at 1.
 std::vector<FarmTask> tasksOf(const FarmPlan&, int round, FarmTask::Kind);
+// The number of one of them.
+int numberOf(const FarmPlan&, const FarmTask&);
 
 // The folder of a shot.
 class FarmFolder {
@@ -84,6 +87,7 @@ class FarmFolder {
     const std::string& path() const { return path_; }
     std::string planFile() const { return path_ + "/plan.json"; }
     std::string cancelFile() const { return path_ + "/cancelled"; }
+    bool isCancelled() const;
     // "r1.0012.p3", "r1.0012.g2", "r1.0012": of a round, a frame and a piece.
     std::string nameOf(const FarmPlan&, const FarmTask&) const;
     // What the task has to say as it goes on, line by line, and how it ended.

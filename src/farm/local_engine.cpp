@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fmt/format.h>
 #include <thread>
 
@@ -17,8 +16,7 @@ constexpr auto kLook = std::chrono::milliseconds(20); // at processes that may h
 
 class LocalEngine final : public FarmEngine {
   public:
-    explicit LocalEngine(const FarmFolder& folder, std::function<void()> tick)
-        : folder_(folder), tick_(std::move(tick)) {}
+    explicit LocalEngine(const FarmFolder& folder) : folder_(folder) {}
 
     void submit(FarmPlan& plan, const RoundWork& work) override {
         InterruptGuard interrupt;
@@ -38,9 +36,8 @@ class LocalEngine final : public FarmEngine {
         std::vector<ChildProcess> running;
         std::size_t next = 0;
         bool told = false;
-        std::error_code unreadable;
         while (next < tasks.size() || !running.empty()) {
-            const bool stop = interrupt.stop() || std::filesystem::exists(folder_.cancelFile(), unreadable);
+            const bool stop = interrupt.stop() || folder_.isCancelled();
             if (stop) next = tasks.size();
             while (next < tasks.size() && static_cast<int>(running.size()) < atOnce)
                 running.push_back(start(plan, tasks[next++]));
@@ -53,35 +50,25 @@ class LocalEngine final : public FarmEngine {
             for (ChildProcess& child : running)
                 if (child.running()) still.push_back(std::move(child));
             running.swap(still);
-            if (tick_) tick_();
         }
     }
 
     ChildProcess start(const FarmPlan& plan, const FarmTask& task) const {
-        const std::vector<FarmTask> all = tasksOf(plan, task.round, task.kind);
-        const auto same = [&](const FarmTask& t) { return t.frame == task.frame && t.piece == task.piece; };
-        const auto number = std::ranges::find_if(all, same) - all.begin() + 1;
-        const char* kind = task.kind == FarmTask::Kind::part     ? "part"
-                           : task.kind == FarmTask::Kind::gather ? "gather"
-                                                                 : "merge";
-        return {{plan.executable, "farm", "work", folder_.path(), fmt::format("{}", task.round + 1), kind,
-                 fmt::format("{}", number), "-t", fmt::format("{}", plan.cores)},
+        return {{plan.executable, "farm", "work", folder_.path(), fmt::format("{}", task.round + 1), wordOf(task.kind),
+                 fmt::format("{}", numberOf(plan, task)), "-t", fmt::format("{}", plan.cores)},
                 folder_.logFile(plan, task)};
     }
 
     const FarmFolder& folder_;
-    std::function<void()> tick_;
     int signal_ = 0;
 };
 
 } // namespace
 
-std::unique_ptr<FarmEngine> makeLocalEngine(const FarmFolder& folder, std::function<void()> tick) {
-    return std::make_unique<LocalEngine>(folder, std::move(tick));
-}
+std::unique_ptr<FarmEngine> makeLocalEngine(const FarmFolder& folder) { return std::make_unique<LocalEngine>(folder); }
 
-std::unique_ptr<FarmEngine> makeEngine(FarmEngineKind kind, const FarmFolder& folder, std::function<void()> tick) {
-    return kind == FarmEngineKind::slurm ? makeSlurm(folder) : makeLocalEngine(folder, std::move(tick));
+std::unique_ptr<FarmEngine> makeEngine(FarmEngineKind kind, const FarmFolder& folder) {
+    return kind == FarmEngineKind::slurm ? makeSlurm(folder) : makeLocalEngine(folder);
 }
 
 } // namespace abbe

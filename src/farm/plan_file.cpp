@@ -85,8 +85,13 @@ FarmPlan FarmFolder::readPlan() const {
                         fmt::format("`{}` was planned by another program: `{}`, and this is `{}`", path_, plan.program,
                                     thisProgram()),
                         "samples may differ between versions: go on with that one, or submit the shot anew");
-    plan.cancelled = std::filesystem::exists(cancelFile(), error);
+    plan.cancelled = isCancelled();
     return plan;
+}
+
+bool FarmFolder::isCancelled() const {
+    std::error_code unreadable;
+    return std::filesystem::exists(cancelFile(), unreadable);
 }
 
 void FarmFolder::setCancelled(bool cancelled) const {

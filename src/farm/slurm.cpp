@@ -27,10 +27,6 @@ struct SlurmJob {
     int cores = 1;
 };
 
-const char* wordOf(FarmTask::Kind kind) {
-    return kind == FarmTask::Kind::part ? "part" : kind == FarmTask::Kind::gather ? "gather" : "merge";
-}
-
 // "1-4,7,9-12": as sbatch reads it.
 std::string arrayText(const std::vector<int>& indices) {
     std::string text;
@@ -74,12 +70,9 @@ std::string writeScript(const FarmPlan& plan, const FarmFolder& folder, const Sl
 std::vector<SlurmJob> arraysOf(const FarmPlan& plan, const FarmFolder& folder, int round,
                                const std::vector<FarmTask>& tasks, int most) {
     const FarmTask::Kind kind = tasks[0].kind;
-    const std::vector<FarmTask> all = tasksOf(plan, round, kind);
-    std::map<std::string, int> numbers;
-    for (std::size_t i = 0; i < all.size(); ++i) numbers[folder.nameOf(plan, all[i])] = static_cast<int>(i) + 1;
     std::map<int, SlurmJob> arrays; // by offset
     for (const FarmTask& task : tasks) {
-        const int number = numbers.at(folder.nameOf(plan, task));
+        const int number = numberOf(plan, task);
         const int offset = (number - 1) / most * most;
         SlurmJob& job = arrays[offset];
         // Those that gather wait for the parts of their frame alone, so each frame has arrays of its own.
@@ -99,9 +92,9 @@ std::vector<SlurmJob> arraysOf(const FarmPlan& plan, const FarmFolder& folder, i
     return list;
 }
 
-SlurmJob mergeJob(const FarmPlan& plan, const FarmFolder& folder, const FarmTask& task, int number) {
+SlurmJob mergeJob(const FarmPlan& plan, const FarmFolder& folder, const FarmTask& task) {
     return {folder.nameOf(plan, task),
-            fmt::format("farm work {} {} merge {}", shellQuoted(folder.path()), task.round + 1, number),
+            fmt::format("farm work {} {} merge {}", shellQuoted(folder.path()), task.round + 1, numberOf(plan, task)),
             {},
             0,
             1};
@@ -145,13 +138,10 @@ class Slurm final : public FarmEngine {
             submitArrays(ofFrame(work.gatherings, merge.frame),
                          jobsOf(plan, ofFrame(work.parts, merge.frame), jobOfTask));
         std::vector<std::string> merged;
-        const std::vector<FarmTask> all = tasksOf(plan, work.round, FarmTask::Kind::merge);
         for (const FarmTask& merge : work.merges) {
             const auto gathered = ofFrame(work.gatherings, merge.frame);
             const auto before = jobsOf(plan, gathered.empty() ? ofFrame(work.parts, merge.frame) : gathered, jobOfTask);
-            const auto at = std::ranges::find(all, merge.frame, &FarmTask::frame);
-            merged.push_back(
-                submitJob(plan, mergeJob(plan, folder_, merge, static_cast<int>(at - all.begin()) + 1), before));
+            merged.push_back(submitJob(plan, mergeJob(plan, folder_, merge), before));
         }
         submitJob(plan, closingJob(folder_, work.round), merged);
     }
@@ -268,9 +258,7 @@ std::vector<std::string> writeSlurmScripts(const FarmFolder& folder, const FarmP
         if (!tasks->empty())
             for (const SlurmJob& job : arraysOf(plan, folder, work.round, *tasks, kUsualMost))
                 files.push_back(writeScript(plan, folder, job));
-    int number = 0;
-    for (const FarmTask& merge : work.merges)
-        files.push_back(writeScript(plan, folder, mergeJob(plan, folder, merge, ++number)));
+    for (const FarmTask& merge : work.merges) files.push_back(writeScript(plan, folder, mergeJob(plan, folder, merge)));
     files.push_back(writeScript(plan, folder, closingJob(folder, work.round)));
     return files;
 }

@@ -163,25 +163,33 @@ struct ZipWork {
     }
 };
 
-struct ErrorState {
-    ErrorState() { zip_error_init(&error); }
-    ~ErrorState() { zip_error_fini(&error); }
-    ErrorState(const ErrorState&) = delete;
-    ErrorState& operator=(const ErrorState&) = delete;
+// What libzip calls for the bytes of a file, and its error: `Self` has answer(data, size, command).
+template <typename Self> class Source {
+  public:
+    explicit Source(ZipWork& work) : work_(work) { zip_error_init(&error); }
+    ~Source() { zip_error_fini(&error); }
+    Source(const Source&) = delete;
+    Source& operator=(const Source&) = delete;
+
+    static zip_int64_t callback(void* user, void* data, zip_uint64_t size, zip_source_cmd_t command) {
+        auto& self = *static_cast<Self*>(user);
+        return static_cast<Source&>(self).work_.guarded(self.error, [&] { return self.answer(data, size, command); });
+    }
+
+  protected:
     zip_error_t error;
+
+  private:
+    ZipWork& work_;
 };
 
 // A file that is read once, from its beginning to its end.
-class FileSource : ErrorState {
+class FileSource : public Source<FileSource> {
   public:
-    FileSource(const ZipSource& source, ZipWork& work) : source_(source), work_(work) {}
-
-    static zip_int64_t callback(void* user, void* data, zip_uint64_t size, zip_source_cmd_t command) {
-        auto& self = *static_cast<FileSource*>(user);
-        return self.work_.guarded(self.error, [&] { return self.answer(data, size, command); });
-    }
+    FileSource(const ZipSource& source, ZipWork& work) : Source(work), source_(source) {}
 
   private:
+    friend class Source<FileSource>;
     zip_int64_t answer(void* data, zip_uint64_t size, zip_source_cmd_t command) {
         switch (command) {
         case ZIP_SOURCE_OPEN:
@@ -227,23 +235,18 @@ class FileSource : ErrorState {
     }
 
     const ZipSource& source_;
-    ZipWork& work_;
     std::optional<RegularFile> file_;
     Sha256 hash_;
     std::uint64_t at_ = 0;
 };
 
 // The archive that is written: a new file, so there is nothing to read.
-class ArchiveTarget : ErrorState {
+class ArchiveTarget : public Source<ArchiveTarget> {
   public:
-    ArchiveTarget(AtomicFile& file, ZipWork& work) : file_(file), work_(work) {}
-
-    static zip_int64_t callback(void* user, void* data, zip_uint64_t size, zip_source_cmd_t command) {
-        auto& self = *static_cast<ArchiveTarget*>(user);
-        return self.work_.guarded(self.error, [&] { return self.answer(data, size, command); });
-    }
+    ArchiveTarget(AtomicFile& file, ZipWork& work) : Source(work), file_(file) {}
 
   private:
+    friend class Source<ArchiveTarget>;
     zip_int64_t answer(void* data, zip_uint64_t size, zip_source_cmd_t command) {
         switch (command) {
         case ZIP_SOURCE_BEGIN_WRITE:
@@ -276,7 +279,6 @@ class ArchiveTarget : ErrorState {
     }
 
     AtomicFile& file_;
-    ZipWork& work_;
     std::uint64_t at_ = 0, length_ = 0;
 };
 

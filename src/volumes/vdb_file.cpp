@@ -1,6 +1,7 @@
 #include "volumes/vdb_file.h"
 
 #include "base/memory_limit.h"
+#include "base/process.h"
 #include "volumes/vdb_message.h"
 
 #include <cerrno>
@@ -11,7 +12,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <optional>
-#include <spawn.h>
 #include <string>
 #include <sys/stat.h>
 #include <sys/types.h>
@@ -63,34 +63,6 @@ std::string helperPath() {
     return {};
 }
 
-// Output to our pipe, no input, no messages of libraries; the signals of a fresh program.
-struct SpawnSetup {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-
-    explicit SpawnSetup(int output) {
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-        posix_spawnattr_init(&attributes);
-        sigset_t defaults;
-        sigemptyset(&defaults);
-        for (const int s : {SIGINT, SIGTERM, SIGPIPE, SIGABRT}) sigaddset(&defaults, s);
-        posix_spawnattr_setsigdefault(&attributes, &defaults);
-        sigset_t none;
-        sigemptyset(&none);
-        posix_spawnattr_setsigmask(&attributes, &none);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-    }
-    ~SpawnSetup() {
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&attributes);
-    }
-    SpawnSetup(const SpawnSetup&) = delete;
-    SpawnSetup& operator=(const SpawnSetup&) = delete;
-};
-
 VdbProcess::VdbProcess(const std::vector<std::string>& arguments) {
     const std::string path = helperPath();
     if (path.empty()) {
@@ -102,12 +74,11 @@ VdbProcess::VdbProcess(const std::vector<std::string>& arguments) {
         error_ = fmt::format("cannot start `{}`: {}", path, std::strerror(errno));
         return;
     }
-    const std::string memory = fmt::format("{:.0f}", memoryLimit());
-    std::vector<char*> argv{const_cast<char*>(path.c_str()), const_cast<char*>(memory.c_str())};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    const SpawnSetup setup(ends[1]);
-    const int failed = ::posix_spawn(&pid_, path.c_str(), &setup.actions, &setup.attributes, argv.data(), environ);
+    std::vector<std::string> words{path, fmt::format("{:.0f}", memoryLimit())};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); // for messages of libraries
+    const int failed = spawnProcess(words, ends[1], nowhere, pid_);
+    if (nowhere >= 0) ::close(nowhere);
     ::close(ends[1]);
     output_ = ends[0];
     if (failed == 0) return;

@@ -30,18 +30,9 @@ wait_for() { # COMMAND…: at most half a minute
 }
 
 # Four frames of four parts, with everything of a frame: motion, its parameter, its seed.
-cat >shot.scene <<'SCENE'
-scene 1
-param frame 0 deg
-film { size 24 16 }
-render { samples 64; fps 10 }
-camera { from 0 1 4; look-at 0 0.5 0; shutter 0.05 s; exposure 2 stops }
-light sky { luminance 5000 nits; color illuminant D65 }
-shape sphere { radius 0.5; material diffuse; transform { at 0 s { translate -1 0.5 0 }; at 1 s { translate 1 0.5 0 } } }
-shape box { size 1 1 1; material diffuse; transform { rotate y $frame; translate 0 0 -2 } }
-SCENE
-expect 0 render shot.scene --frames 1-7x2 -t 1 -q -o whole.####.exr
-expect 0 farm submit shot.scene --frames 1-7x2 --parts 4 -o shot.####.exr
+animated=("$scenes/shot.scene" "${small[@]:0:2}" --samples 64)
+expect 0 render "${animated[@]}" --frames 1-7x2 -t 1 -q -o whole.####.exr
+expect 0 farm submit "${animated[@]}" --frames 1-7x2 --parts 4 -o shot.####.exr
 says err "farm watch"
 watch_shot shot
 for n in 1 3 5 7; do

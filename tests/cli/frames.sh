@@ -4,16 +4,7 @@
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 
-cat >shot.scene <<'SCENE'
-scene 1
-param frame 0 deg
-film { size 32 32 }
-render { samples 16; fps 10 }
-camera { from 0 1 4; look-at 0 0.5 0; shutter 0.05 s; exposure 2 stops }
-light sky { luminance 5000 nits; color illuminant D65 }
-shape sphere { radius 0.5; material diffuse; transform { at 0 s { translate -1 0.5 0 }; at 1 s { translate 1 0.5 0 } } }
-shape box { size 1 1 1; material diffuse; transform { rotate y $frame; translate 0 0 -2 } }
-SCENE
+cp "$scenes/shot.scene" .
 sed -e '/^param/d' -e 's/\$frame/7 deg/' -e 's/shutter/time 0.7 s; shutter/' -e 's/fps 10/seed 7/' shot.scene >still.scene
 fast=(-q --png off)
 
