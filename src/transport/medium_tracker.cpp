@@ -3,6 +3,7 @@
 #include "base/work.h"
 
 #include <limits>
+#include <numbers>
 
 namespace abbe {
 
@@ -16,7 +17,7 @@ constexpr std::uint32_t kLookUpEvery = 1024;
 
 // Products of weights along a ray leave the range of float long before the exponential that compensates them is
 // applied. Lanes beyond this give it up, which loses no digit, and note its logarithm.
-constexpr float kFactor = 0x1p64f, kLogFactor = 44.3614196f;
+constexpr float kFactor = 0x1p64f, kLogFactor = 64 * std::numbers::ln2_v<float>;
 
 bool any(Int8 lanes) { return _mm256_movemask_ps(reinterpret_cast<__m256>(lanes)) != 0; }
 
