@@ -20,6 +20,14 @@ std::string readFileBytes(const std::string& path) {
     return bytes;
 }
 
+LargeFile::LargeFile(const std::string& path) {
+    RegularFile file(path);
+    requireMemory(static_cast<double>(file.size()));
+    bytes_ = std::make_unique_for_overwrite<char[]>(file.size());
+    size_ = file.readAt(0, {bytes_.get(), file.size()});
+    if (!file.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file.why()));
+}
+
 namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 16;

@@ -4,9 +4,11 @@
 #include "base/file.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace abbe {
@@ -20,6 +22,18 @@ class IoError : public std::runtime_error {
 // A whole file in memory.
 // Of a regular file. Throws IoError, and MemoryLimitExceeded before it reads more than may be taken.
 std::string readFileBytes(const std::string& path);
+
+// The same for files of gigabytes: memory that is not cleared before it is read into. Not mapped: a mapped file that
+// somebody cuts off while it is read kills the process.
+class LargeFile {
+  public:
+    explicit LargeFile(const std::string& path);
+    std::string_view bytes() const { return {bytes_.get(), size_}; }
+
+  private:
+    std::unique_ptr<char[]> bytes_;
+    std::size_t size_;
+};
 
 // A file that appears under its name only when it is complete.
 // Writes to a temporary file in the same folder, which no other program writes to or reads; commit() flushes it to disk

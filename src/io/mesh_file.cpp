@@ -17,13 +17,15 @@ bool isPly(std::string_view bytes) {
 } // namespace
 
 MeshFile readMesh(const std::string& path) {
-    const std::string bytes = readFileBytes(path);
+    const LargeFile file(path);
+    const std::string_view bytes = file.bytes();
     if (looksLikeGltf(bytes)) return parseGltf(bytes, path);
     return isPly(bytes) ? parsePly(bytes, path) : parseObj(bytes, path);
 }
 
 CageFile readCage(const std::string& path) {
-    const std::string bytes = readFileBytes(path);
+    const LargeFile file(path);
+    const std::string_view bytes = file.bytes();
     if (looksLikeGltf(bytes))
         throw IoError("cannot read `" + path + "`: glTF files hold triangles, no cages; `shape mesh` takes them");
     return isPly(bytes) ? parsePlyCage(bytes, path) : parseObjCage(bytes, path);

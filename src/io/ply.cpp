@@ -4,7 +4,9 @@
 #include "io/ply_format.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <string_view>
 
@@ -23,7 +25,9 @@ class PlyParser {
   private:
     void read();
     void vertices(const PlyElement&);
+    bool packedVertices(const PlyElement&);
     void faces(const PlyElement&);
+    bool packedFaces(const PlyElement&);
     void store(PlyRole, float);
     void findAttributes(const PlyElement&);
     void keepAttributes();
@@ -33,13 +37,14 @@ class PlyParser {
     PlyCursor cursor_;
 
     MeshFile file_;
-    std::vector<std::uint32_t> corners_, faceSizes_;
+    std::vector<std::uint32_t> corners_, faceSizes_; // where the polygons are not in the mesh yet
     struct Column {
         std::size_t property; // of the vertices
         MeshAttribute attribute;
         double scale;
     };
     std::vector<Column> columns_; // properties without a role, in their order
+    bool asCage_ = false;         // polygons stay as they are
 };
 
 // 8 and 16 bits without sign are shares of the largest value, as colours are written.
@@ -102,6 +107,48 @@ void PlyParser::store(PlyRole role, float value) {
     }
 }
 
+// What nearly all large files have: x y z, perhaps nx ny nz and u v, as single precision in the byte order of the
+// machine. False, with nothing read, for others, and where a number is not finite: the usual way says which one.
+bool PlyParser::packedVertices(const PlyElement& e) {
+    const bool usual = std::ranges::all_of(e.properties, [](const PlyProperty& p) {
+        return !p.listCount && p.type == PlyScalar::float32 && p.role != PlyRole::none;
+    });
+    const std::size_t stride = e.properties.size() * sizeof(float);
+    const char* p = usual ? cursor_.packed(e.count, stride) : nullptr;
+    if (!p) return false;
+    MeshData& m = file_.mesh;
+    std::array<std::size_t, kPlyRoles> at{}; // bytes behind p
+    for (std::size_t i = 0; i < e.properties.size(); ++i)
+        at[static_cast<std::size_t>(e.properties[i].role)] = i * sizeof(float);
+    const auto number = [&](PlyRole role) {
+        float value;
+        std::memcpy(&value, p + at[static_cast<std::size_t>(role)], sizeof value);
+        return value;
+    };
+    float sum = 0; // of products with 0: not 0 if one of them is not finite
+    for (std::uint64_t i = 0; i < e.count; ++i, p += stride) {
+        const Vec3 position{number(PlyRole::x), number(PlyRole::y), number(PlyRole::z)};
+        m.positions.push_back(position);
+        sum += 0 * position.x + 0 * position.y + 0 * position.z;
+        if (header_.normals) {
+            const Vec3 normal{number(PlyRole::nx), number(PlyRole::ny), number(PlyRole::nz)};
+            m.normals.push_back(normal);
+            sum += 0 * normal.x + 0 * normal.y + 0 * normal.z;
+        }
+        if (header_.uvs) {
+            const Vec2 uv{number(PlyRole::u), number(PlyRole::v)};
+            m.uvs.push_back(uv);
+            sum += 0 * uv.x + 0 * uv.y;
+        }
+    }
+    if (sum == 0) {
+        cursor_.pass(p);
+        return true;
+    }
+    m.positions.clear(), m.normals.clear(), m.uvs.clear();
+    return false;
+}
+
 void PlyParser::vertices(const PlyElement& e) {
     MeshData& m = file_.mesh;
     findAttributes(e);
@@ -112,6 +159,7 @@ void PlyParser::vertices(const PlyElement& e) {
     m.positions.reserve(e.count + 2);
     if (header_.normals) m.normals.reserve(e.count);
     if (header_.uvs) m.uvs.reserve(e.count);
+    if (packedVertices(e)) return;
     for (std::uint64_t i = 0; i < e.count; ++i) {
         m.positions.emplace_back();
         if (header_.normals) m.normals.emplace_back();
@@ -154,12 +202,45 @@ void PlyParser::corners(const PlyProperty& p) {
     }
 }
 
+// The same for faces: a length of one byte and 32-bit numbers of vertices that were read before, straight into the
+// mesh. Whatever is wrong is found again by the usual way, which says where.
+bool PlyParser::packedFaces(const PlyElement& e) {
+    if (asCage_ || e.properties.size() != 1 || file_.mesh.positions.size() != header_.vertexCount) return false;
+    const PlyProperty& list = e.properties[0];
+    if (*list.listCount != PlyScalar::uint8 || (list.type != PlyScalar::int32 && list.type != PlyScalar::uint32))
+        return false;
+    const char* p = cursor_.packed(e.count, 1);
+    if (!p) return false;
+    MeshData& m = file_.mesh;
+    m.triangles.reserve(e.count);
+    std::array<std::uint32_t, 255> corners;
+    bool right = true;
+    for (std::uint64_t i = 0; i < e.count && right; ++i) {
+        const std::size_t n = p < cursor_.end() ? static_cast<unsigned char>(*p++) : 256;
+        right = n <= corners.size() && static_cast<std::size_t>(cursor_.end() - p) >= n * sizeof(std::uint32_t);
+        if (!right) break;
+        std::memcpy(corners.data(), p, n * sizeof(std::uint32_t));
+        p += n * sizeof(std::uint32_t);
+        for (std::size_t k = 0; k < n; ++k) right &= corners[k] < header_.vertexCount; // a negative one is too large
+        if (n < 3)
+            ++file_.ignoredFaces;
+        else
+            right = right && addPolygon(m, std::span(corners).first(n));
+    }
+    if (right)
+        cursor_.pass(p);
+    else
+        m.triangles.clear(), m.quads.clear(), file_.ignoredFaces = 0;
+    return right;
+}
+
 void PlyParser::faces(const PlyElement& e) {
     const PlyProperty* cornerList = nullptr;
     for (const PlyProperty& p : e.properties)
         if (!cornerList && p.listCount && (p.name == "vertex_indices" || p.name == "vertex_index")) cornerList = &p;
     if (!cornerList) cursor_.failHere("the faces have no `vertex_indices`");
     requireMemory(static_cast<double>(e.count) * 4 * sizeof(std::uint32_t));
+    if (packedFaces(e)) return;
     faceSizes_.reserve(e.count);
     corners_.reserve(3 * e.count);
     for (std::uint64_t i = 0; i < e.count; ++i)
@@ -180,10 +261,12 @@ void PlyParser::read() {
         else
             cursor_.skip(e);
     }
-    if (faceSizes_.empty()) cursor_.failHere("there are no faces");
+    if (faceSizes_.empty() && file_.mesh.triangles.empty() && file_.mesh.quads.empty())
+        cursor_.failHere("there are no faces");
 }
 
 CageFile PlyParser::parseCage() {
+    asCage_ = true;
     read();
     keepAttributes();
     CageFile file;
@@ -216,8 +299,8 @@ MeshFile parsePly(std::string_view bytes, const std::string& name) { return PlyP
 
 CageFile parsePlyCage(std::string_view bytes, const std::string& name) { return PlyParser(bytes, name).parseCage(); }
 
-CageFile readPlyCage(const std::string& path) { return parsePlyCage(readFileBytes(path), path); }
+CageFile readPlyCage(const std::string& path) { return parsePlyCage(LargeFile(path).bytes(), path); }
 
-MeshFile readPly(const std::string& path) { return parsePly(readFileBytes(path), path); }
+MeshFile readPly(const std::string& path) { return parsePly(LargeFile(path).bytes(), path); }
 
 } // namespace abbe

@@ -19,7 +19,6 @@ std::size_t sizeOf(PlyScalar s) {
 
 namespace {
 
-constexpr std::size_t kRoles = 9;
 constexpr std::size_t kMaxElements = 1000;
 
 std::optional<PlyScalar> scalarNamed(std::string_view name) {
@@ -196,7 +195,7 @@ std::uint64_t HeaderParser::smallestSize(const PlyElement& e) const {
 }
 
 void HeaderParser::checkVertices(PlyElement& e) {
-    std::array<bool, kRoles> seen{};
+    std::array<bool, kPlyRoles> seen{};
     for (PlyProperty& p : e.properties) {
         const PlyRole role = p.listCount ? PlyRole::none : roleNamed(p.name);
         if (!std::exchange(seen[static_cast<std::size_t>(role)], true)) p.role = role;

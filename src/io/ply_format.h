@@ -18,6 +18,7 @@ std::size_t sizeOf(PlyScalar);
 
 // Where a vertex property goes.
 enum class PlyRole : std::uint8_t { none, x, y, z, nx, ny, nz, u, v };
+inline constexpr std::size_t kPlyRoles = 9;
 struct PlyProperty {
     std::string name;
     PlyScalar type = PlyScalar::float32;
@@ -61,6 +62,14 @@ class PlyCursor {
     std::uint64_t listLength(const PlyProperty&);
     void skip(const PlyProperty&);
     void skip(const PlyElement&);
+
+    // Where so many entries of a fixed size lie as this machine has numbers in memory, or null: text, the other byte
+    // order, or fewer. pass() goes on behind what was read there, up to end().
+    const char* packed(std::uint64_t count, std::size_t size) const {
+        return text_ || swap_ || count > left() / size ? nullptr : p_;
+    }
+    void pass(const char* to) { last_ = p_ = to; }
+    const char* end() const { return end_; }
 
   private:
     [[noreturn]] void failAt(const char*, const std::string& what) const;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 #include <doctest/doctest.h>
+#include <limits>
 
 using namespace abbe;
 using test::Random;
@@ -210,4 +211,68 @@ TEST_CASE("ply: files, told from OBJ by content") {
     CHECK(readPly(path).mesh.triangles.size() == 1);
     CHECK(readMesh(path).mesh.triangles.size() == 1);
     CHECK_THROWS_AS(readPly(folder / "absent.ply"), IoError);
+}
+
+namespace {
+
+void appendNumber(std::string& out, auto value, bool big) {
+    std::array<char, sizeof value> bytes;
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (big) std::ranges::reverse(bytes);
+    out.append(bytes.data(), bytes.size());
+}
+
+// A strip of triangles, quads and pentagons, as this machine has numbers in memory or in the other byte order, which is
+// read number by number. `faces`: their number. `corner`: the last vertex of the last face.
+std::string stripPly(bool big, std::uint32_t faces, bool whole, float last = 1, std::uint32_t corner = 0) {
+    Random random(7);
+    const std::uint32_t points = faces + 5;
+    std::string out = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\nelement vertex " +
+                      std::to_string(points) + "\nproperty float x\nproperty float y\nproperty float z\n" +
+                      (whole ? "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
+                               "property float t\n"
+                             : "property float nx\n") +
+                      "element face " + std::to_string(faces) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (std::uint32_t i = 0; i < points; ++i)
+        for (int k = 0; k < (whole ? 8 : 4); ++k)
+            appendNumber(out, i + 1 == points && k == 0 ? last : random.uniform(), big);
+    for (std::uint32_t i = 0; i < faces; ++i) {
+        const std::uint32_t n = i % 7 == 3 ? 2 : 3 + i % 3;
+        out += static_cast<char>(n);
+        for (std::uint32_t k = 0; k < n; ++k)
+            appendNumber(out, i + 1 == faces && k + 1 == n && corner ? corner : i + k, big);
+    }
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("ply: what is read at once is what is read number by number") {
+    for (const bool whole : {false, true}) {
+        const MeshFile fast = meshOfPly(stripPly(false, 100, whole)), slow = meshOfPly(stripPly(true, 100, whole));
+        CHECK(fast.mesh.positions == slow.mesh.positions);
+        CHECK(fast.mesh.normals == slow.mesh.normals);
+        CHECK(fast.mesh.uvs == slow.mesh.uvs);
+        CHECK(fast.mesh.triangles == slow.mesh.triangles);
+        CHECK(fast.mesh.quads == slow.mesh.quads);
+        CHECK(fast.mesh.quads.size() > 20);
+        CHECK(fast.mesh.triangles.size() > 80);
+        CHECK(fast.ignoredFaces == slow.ignoredFaces);
+        CHECK(fast.ignoredFaces == 14);
+        CHECK(fast.groups.at(0).triangleCount == fast.mesh.triangles.size());
+    }
+}
+
+TEST_CASE("ply: faults that are found at once have the messages of those that are found number by number") {
+    const float infinite = std::numeric_limits<float>::infinity();
+    for (const bool whole : {false, true}) {
+        const std::string number = plyError(stripPly(false, 100, whole, infinite));
+        CHECK(number.find("`x` of vertex 104 is not finite") != std::string::npos);
+        for (const std::uint32_t corner : {105u, 0xffffffffu})
+            CHECK(plyError(stripPly(false, 100, whole, 1, corner)).find("of only 105") != std::string::npos);
+        std::string cut = stripPly(false, 100, whole);
+        cut.resize(cut.size() - 1);
+        CHECK(plyError(cut).find("the file ends too early") != std::string::npos);
+    }
 }
