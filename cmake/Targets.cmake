@@ -14,13 +14,14 @@ function(abbe_compiled name result)
     endif()
 endfunction()
 
-# abbe_rarely_run(target…): code that takes longer to compile than it ever runs: commands, reports, tables of fields.
-function(abbe_rarely_run)
+# abbe_rarely_run(level target…): code that takes longer to compile than it ever runs. Level 1: tables of fields, the
+# parser, scene building; two thirds to compile of -O2. Level g: commands, reports, quick tests; two thirds of that.
+function(abbe_rarely_run level)
     foreach(target IN LISTS ARGN)
         if(ABBE_SANITIZE)
             target_compile_options(${target} PRIVATE -O0) # two thirds to compile of -O1
         else()
-            target_compile_options(${target} PRIVATE -O1) # two thirds to compile of -O2
+            target_compile_options(${target} PRIVATE -O${level})
         endif()
     endforeach()
 endfunction()
@@ -85,7 +86,7 @@ function(abbe_test name folders)
     target_compile_definitions(test_${name} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     abbe_unity(test_${name})
     if(NOT A_LABEL STREQUAL statistical OR ABBE_SANITIZE)
-        abbe_rarely_run(test_${name})
+        abbe_rarely_run(g test_${name})
     endif()
     add_test(NAME ${name} COMMAND test_${name})
     if(NOT A_LABEL STREQUAL statistical)
