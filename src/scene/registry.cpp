@@ -47,9 +47,11 @@
 #include "scene/shape_subdivision.h"
 #include "scene/texture_builder.h"
 #include "textures/attribute_texture.h"
+#include "textures/channel_texture.h"
 #include "textures/checker_texture.h"
 #include "textures/image_texture.h"
 #include "textures/noise_texture.h"
+#include "textures/placed_texture.h"
 #include "textures/product_texture.h"
 #include "textures/ramp_texture.h"
 #include "textures/triplanar_texture.h"
@@ -246,6 +248,8 @@ void addMaterials(std::vector<RegistryEntry>& list) {
         texture<TriplanarTextureParams, pattern<TriplanarTexture, TriplanarTextureParams>>(triplanarTextureType()));
     list.push_back(
         texture<AttributeTextureParams, pattern<AttributeTexture, AttributeTextureParams>>(attributeTextureType()));
+    list.push_back(texture<PlacedTextureParams, pattern<PlacedTexture, PlacedTextureParams>>(placedTextureType()));
+    list.push_back(texture<ChannelTextureParams, makeChannelTexture>(channelTextureType()));
     list.push_back(texture<ProductTextureParams, pattern<ProductTexture, ProductTextureParams>>(productTextureType()));
 }
 

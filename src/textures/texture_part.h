@@ -27,6 +27,7 @@ class TexturePart {
     }
     TextureJet jet(const TexturePoint& point, int channels) const noexcept;
     bool needsUv() const { return texture_ && texture_->needsUv(); }
+    bool covers(Vec2 uv) const noexcept { return !texture_ || texture_->covers(uv); }
     const RgbSpace* rgbSpace() const { return texture_ ? texture_->rgbSpace() : nullptr; }
     // Warns at `user` if this is a coloured spectrum and not asked for as one.
     void prepare(TextureUse, Span user, Diagnostics&) const;

@@ -2,8 +2,10 @@
 #include "math/frame.h"
 #include "spectrum/curve.h"
 #include "support/statistics.h"
+#include "textures/channel_texture.h"
 #include "textures/checker_texture.h"
 #include "textures/noise_texture.h"
+#include "textures/placed_texture.h"
 #include "textures/product_texture.h"
 #include "textures/ramp_texture.h"
 #include "textures/triplanar_texture.h"
@@ -253,4 +255,89 @@ TEST_CASE("a coloured spectrum that is asked for a number is taken at 550 nm, wi
     CHECK(t.prepare(TextureUse::number, {}, diagnostics));
     CHECK(diagnostics.all().at(0).code == "W0730");
     CHECK(t.value(at({0.01f, 0.01f})).x == doctest::Approx(green.at(550.0)));
+}
+
+namespace {
+
+// Three linear functions of u and v, which change with the place as well.
+class Ramps final : public Texture {
+  public:
+    int channels() const override { return 3; }
+    bool needsUv() const override { return true; }
+    TextureJet jet(const TexturePoint& p, int) const noexcept override {
+        TextureJet j;
+        j.value = {p.uv.x, 2 * p.uv.y, static_cast<float>(3 * p.position.x)};
+        j.byUv = {Vec3(1, 0, 0), Vec3(0, 2, 0)};
+        j.byPosition[0] = {0, 0, 3};
+        return j;
+    }
+};
+
+} // namespace
+
+TEST_CASE("placed: coordinates are scaled, turned and moved, slopes by the chain rule") {
+    const Ramps ramps;
+    PlacedTextureParams p;
+    p.map = of(ramps);
+    p.scale = {2, 3};
+    p.rotate = kPiD / 6;
+    p.offset = {0.25, -0.5};
+    const PlacedTexture texture(p);
+    const double c = std::cos(p.rotate), s = std::sin(p.rotate), u = 0.3, v = 0.7;
+    const double x = c * 2 * u - s * 3 * v + 0.25, y = s * 2 * u + c * 3 * v - 0.5;
+    const Vec3 value = texture.value(at({0.3f, 0.7f}, {5, 0, 0}));
+    CHECK(value.x == doctest::Approx(x));
+    CHECK(value.y == doctest::Approx(2 * y));
+    CHECK(value.z == doctest::Approx(15));
+    const TextureJet j = texture.jet({{5, 0, 0}, {0.3f, 0.7f}, {}}, 3);
+    CHECK(j.value == value);
+    CHECK(j.byUv[0].x == doctest::Approx(2 * c));
+    CHECK(j.byUv[0].y == doctest::Approx(2 * 2 * s));
+    CHECK(j.byUv[1].x == doctest::Approx(-3 * s));
+    CHECK(j.byUv[1].y == doctest::Approx(2 * 3 * c));
+    CHECK(j.byPosition[0] == Vec3(0, 0, 3));
+}
+
+TEST_CASE("placed: the mean over a footprint is that of the texture over the footprint's image") {
+    const CheckerTexture squares = checker(1);
+    PlacedTextureParams p;
+    p.map = of(squares);
+    p.scale = {3, 0.5};
+    p.rotate = 0.4;
+    const PlacedTexture texture(p);
+    // Of a circle: an ellipse with half axes 3 r and 0.5 r, turned like the picture.
+    TextureQuery q = at({0.37f, 0.81f}), image = q;
+    q.du = {0.2f, 0};
+    q.dv = {0, 0.2f};
+    const double c = std::cos(0.4), s = std::sin(0.4);
+    const auto single = [](double a, double b) { return Vec2{static_cast<float>(a), static_cast<float>(b)}; };
+    image.uv = single(c * 3 * 0.37 - s * 0.5 * 0.81, s * 3 * 0.37 + c * 0.5 * 0.81);
+    image.du = single(c * 0.6, s * 0.6);
+    image.dv = single(-s * 0.1, c * 0.1);
+    CHECK(texture.value(q).x == doctest::Approx(squares.value(image).x).epsilon(1e-4));
+    // Conjugate half diameters that are not at right angles span the same ellipse.
+    TextureQuery slanted = q;
+    slanted.du = {0.2f * std::cos(1.f), 0.2f * std::sin(1.f)};
+    slanted.dv = {-0.2f * std::sin(1.f), 0.2f * std::cos(1.f)};
+    CHECK(texture.value(slanted).x == doctest::Approx(texture.value(q).x).epsilon(1e-4));
+}
+
+TEST_CASE("channel: one of three, with its slopes; of a single channel that one") {
+    const Ramps ramps;
+    const TextureQuery q = at({0.3f, 0.7f}, {0.1f, 0, 0});
+    const float expected[] = {0.3f, 1.4f, 0.3f};
+    for (const ColorChannel taken : {ColorChannel::red, ColorChannel::green, ColorChannel::blue}) {
+        const ChannelTexture texture(ramps, taken);
+        const auto i = static_cast<std::size_t>(taken);
+        CHECK(texture.channels() == 1);
+        CHECK(texture.value(q).x == doctest::Approx(expected[i]));
+        const TextureJet j = texture.jet({{0.1, 0, 0}, {0.3f, 0.7f}, {}}, 1);
+        CHECK(j.value.x == doctest::Approx(expected[i]));
+        CHECK(j.byUv[0].x == (i == 0 ? 1.f : 0.f));
+        CHECK(j.byUv[1].x == (i == 1 ? 2.f : 0.f));
+        CHECK(j.byPosition[0].x == (i == 2 ? 3.f : 0.f));
+        const ChannelTexture again(texture, ColorChannel::blue);
+        CHECK(again.value(q).x == texture.value(q).x);
+        CHECK(again.jet({{0.1, 0, 0}, {0.3f, 0.7f}, {}}, 1).value.x == j.value.x);
+    }
 }
