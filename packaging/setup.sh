@@ -40,6 +40,18 @@ install_packages() {
     fi
 }
 
+# Other renderers that tests compare with, from PyPI, in build/peers. Without them those tests are skipped.
+install_peers() {
+    local place=$root/build/peers list=$root/tests/exchange/requirements.txt log=$root/build/install.log
+    mkdir -p "$root/build"
+    if { [[ -x $place/bin/python ]] || /usr/bin/python3 -m venv "$place"; } >"$log" 2>&1 </dev/null &&
+        "$place/bin/python" -m pip install --disable-pip-version-check -q -r "$list" >>"$log" 2>&1 </dev/null; then
+        return 0
+    fi
+    tail -n 3 "$log" >&2
+    say "other renderers could not be installed; tests that compare with them are skipped"
+}
+
 # build_preset PRESET TARGET…: configures and builds below build/PRESET, output in build.log there.
 build_preset() {
     local preset=$1 directory=$root/build/$1
