@@ -30,7 +30,7 @@ MovedTriangle moved(const std::vector<Vec3>& from, const std::vector<Vec3>& to, 
 } // namespace
 
 DeformingMesh::DeformingMesh(MeshData faces, std::vector<MeshStep> steps)
-    : faces_(std::move(faces)), steps_(std::move(steps)) {
+    : Shape({.hasTextureCoordinates = !faces.uvs.empty()}), faces_(std::move(faces)), steps_(std::move(steps)) {
     ABBE_CHECK(steps_.size() >= 2 && steps_.size() <= kMaxTimeSteps);
     faces_.positions = {};
     faces_.normals = {};

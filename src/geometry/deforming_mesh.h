@@ -34,7 +34,6 @@ class DeformingMesh final : public Shape, public VertexAttributes {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     Vec3 carried(const RawHit&, const Ray&, const SurfaceHit&, float time) const override;
-    bool hasTextureCoordinates() const override { return !faces_.uvs.empty(); }
     const VertexAttributes* attributes() const override { return this; }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
     std::vector<std::string_view> attributeNames() const override;

@@ -11,7 +11,7 @@
 
 namespace abbe {
 
-Plane::Plane(Vec3d point, Vec3d normal) : point_(point), z_(normalize(normal)) {
+Plane::Plane(Vec3d point, Vec3d normal) : Shape({.relief = Relief::smooth}), point_(point), z_(normalize(normal)) {
     const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
     x_ = normalize(guess - z_ * dot(guess, z_));
     y_ = cross(z_, x_);
@@ -132,7 +132,7 @@ template <typename Rectangle> std::optional<BilinearDensity> cosineDensity(const
 } // namespace
 
 Quad::Quad(Vec3 p00, Vec3 p10, Vec3 p11, Vec3 p01, bool mirrored)
-    : corners_{p00, p10, p11, p01, p00}, mirrored_(mirrored) {
+    : Shape({.relief = Relief::facets}), corners_{p00, p10, p11, p01, p00}, mirrored_(mirrored) {
     const std::array<std::array<Vec3, 3>, 2> triangles{{{p00, p10, p01}, {p11, p01, p10}}};
     std::array<double, 2> areas{};
     Vec3 magnitude, extent;

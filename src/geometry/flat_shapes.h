@@ -26,7 +26,6 @@ class Plane final : public Shape {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::smooth; }
     double area() const override;
 
   private:
@@ -55,7 +54,6 @@ class Quad final : public Shape, public SurfaceSampling {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::facets; }
     const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return area_; }
     EmitterPart emitterPart(std::uint32_t) const override;

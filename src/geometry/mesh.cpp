@@ -136,7 +136,10 @@ std::optional<NearPolygon> nearPolygon(const MeshData& data, std::uint32_t part,
 
 } // namespace
 
-Mesh::Mesh(MeshData data, bool mirrored) : data_(std::move(data)), mirrored_(mirrored) {
+Mesh::Mesh(MeshData data, bool mirrored)
+    : Shape({.relief = data.normals.empty() ? Relief::facets : Relief::smooth,
+             .hasTextureCoordinates = !data.uvs.empty()}),
+      data_(std::move(data)), mirrored_(mirrored) {
     ABBE_CHECK(data_.normals.empty() || data_.normals.size() == data_.positions.size());
     ABBE_CHECK(data_.uvs.empty() || data_.uvs.size() == data_.positions.size());
     for (const MeshAttribute& a : data_.attributes)
@@ -425,9 +428,21 @@ std::optional<SurfacePatch> Mesh::patch(const SurfaceHit& hit, Vec3d origin, Vec
     return patch;
 }
 
+namespace {
+
+// Nothing is said of the relief: chains are not followed through materials that change from face to face.
+ShapeTraits traitsWith(const Shape& shape, const std::vector<const Material*>& materials) {
+    const auto looksAtTextures = [](const Material* m) { return m && m->usesTextures(); };
+    return {.hasTextureCoordinates = shape.hasTextureCoordinates(),
+            .usesTextures = std::ranges::any_of(materials, looksAtTextures)};
+}
+
+} // namespace
+
 FaceMaterials::FaceMaterials(std::unique_ptr<const Shape> shape, std::vector<const Material*> materials,
                              std::vector<std::uint16_t> choice)
-    : shape_(std::move(shape)), materials_(std::move(materials)), choice_(std::move(choice)) {
+    : Shape(traitsWith(*shape, materials)), shape_(std::move(shape)), materials_(std::move(materials)),
+      choice_(std::move(choice)) {
     for (const std::uint16_t c : choice_) ABBE_CHECK(c < materials_.size());
 }
 
@@ -435,10 +450,6 @@ void FaceMaterials::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) 
     shape_->surface(raw, ray, hit);
     ABBE_DCHECK(hit.primitive < choice_.size());
     if (const Material* own = materials_[choice_[hit.primitive]]) hit.material = own;
-}
-
-bool FaceMaterials::usesTextures() const {
-    return std::ranges::any_of(materials_, [](const Material* m) { return m && m->usesTextures(); });
 }
 
 } // namespace abbe

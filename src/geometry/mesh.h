@@ -55,10 +55,8 @@ class Mesh final : public Shape, public SurfaceSampling, public VertexAttributes
     // Primitives are numbered triangles first, then quads.
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
-    bool hasTextureCoordinates() const override { return !data_.uvs.empty(); }
     float meanCurvature(const SurfaceHit&) const override; // of its triangle; 0 without vertex normals
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return data_.normals.empty() ? Relief::facets : Relief::smooth; }
     const SurfaceSampling* sampling() const override { return this; }
     const VertexAttributes* attributes() const override { return this; }
     std::optional<Vec3> attribute(std::string_view, const SurfaceHit&) const override;
@@ -118,11 +116,9 @@ class FaceMaterials final : public Shape {
     Vec3 carried(const RawHit& raw, const Ray& ray, const SurfaceHit& hit, float time) const override {
         return shape_->carried(raw, ray, hit, time);
     }
-    bool hasTextureCoordinates() const override { return shape_->hasTextureCoordinates(); }
     const SurfaceSampling* sampling() const override { return shape_->sampling(); }
     const VertexAttributes* attributes() const override { return shape_->attributes(); }
     float meanCurvature(const SurfaceHit& hit) const override { return shape_->meanCurvature(hit); }
-    bool usesTextures() const override;
     double area() const override { return shape_->area(); }
 
   private:

@@ -6,7 +6,7 @@
 namespace abbe {
 
 ParametricShape::ParametricShape(const Transform& toRender)
-    : map_(toRender), determinant_(std::abs(toRender.determinant())) {
+    : Shape({.relief = Relief::smooth}), map_(toRender), determinant_(std::abs(toRender.determinant())) {
     const auto inverse = toRender.inverse();
     ABBE_CHECK(inverse.has_value());
     inverse_ = *inverse;

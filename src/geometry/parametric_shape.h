@@ -17,7 +17,6 @@ class ParametricShape : public Shape, public SurfaceSampling {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::smooth; }
     const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return area_; }
     // Uniform per area of the shape in its own space.

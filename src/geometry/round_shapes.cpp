@@ -21,7 +21,8 @@ double coneOneMinusCos(double d2, double r2) {
 } // namespace
 
 Sphere::Sphere(Vec3d centre, double radius)
-    : centre_(centre), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {}
+    : Shape({.relief = Relief::smooth}), centre_(centre), radius_(radius),
+      magnitude_(maxComponent(abs(centre)) + radius) {}
 
 Sphere::Sphere(Vec3d centre, double radius, const Transform& place) : Sphere(centre, radius) {
     x_ = Vec3(normalize(place.vector({1, 0, 0})));
@@ -198,7 +199,8 @@ std::pair<Vec3d, Vec3d> axesAfter(const Transform& place, Vec3d normal) {
 }
 
 Disk::Disk(Vec3d centre, Vec3d normal, double radius)
-    : centre_(centre), z_(normalize(normal)), radius_(radius), magnitude_(maxComponent(abs(centre)) + radius) {
+    : Shape({.relief = Relief::smooth}), centre_(centre), z_(normalize(normal)), radius_(radius),
+      magnitude_(maxComponent(abs(centre)) + radius) {
     // The float frame only picks a direction; the double one is orthonormal to double precision.
     const Vec3d guess(Frame::fromNormal(Vec3(z_)).x);
     x_ = normalize(guess - z_ * dot(guess, z_));
@@ -334,7 +336,8 @@ double ellipsoidArea(const Transform& m) {
 } // namespace
 
 Transformed::Transformed(std::unique_ptr<const Sphere> sphere, const Transform& toRender)
-    : map_(toRender), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
+    : Shape({.relief = Relief::smooth}), map_(toRender), inverse_(*map_.map().inverse()),
+      determinant_(std::abs(map_.map().determinant())) {
     const Transform& m = map_.map();
     const double r = sphere->radius();
     const auto row = [&m, r](int i) { return r * length(Vec3d(m.a[i][0], m.a[i][1], m.a[i][2])); };
@@ -344,7 +347,8 @@ Transformed::Transformed(std::unique_ptr<const Sphere> sphere, const Transform& 
 }
 
 Transformed::Transformed(std::unique_ptr<const Disk> disk, const Transform& toRender)
-    : map_(toRender), inverse_(*map_.map().inverse()), determinant_(std::abs(map_.map().determinant())) {
+    : Shape({.relief = Relief::smooth}), map_(toRender), inverse_(*map_.map().inverse()),
+      determinant_(std::abs(map_.map().determinant())) {
     const Transform& m = map_.map();
     const Vec3d n = disk->normal();
     const double r = disk->radius();

@@ -30,7 +30,6 @@ class Sphere final : public Shape, public SurfaceSampling {
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     float meanCurvature(const SurfaceHit&) const override { return static_cast<float>(1 / radius_); }
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::smooth; }
     const SurfaceSampling* sampling() const override { return this; }
     double area() const override;
     // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
@@ -83,7 +82,6 @@ class Disk final : public Shape, public SurfaceSampling {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::smooth; }
     EmitterPart emitterPart(std::uint32_t) const override {
         return {.box = bounds(), .area = area(), .axis = Vec3(z_), .cosNormals = 1};
     }
@@ -135,7 +133,6 @@ class Transformed final : public Shape, public SurfaceSampling {
     void surface(const RawHit&, const Ray&, SurfaceHit&) const override;
     void parametrize(const RawHit&, const Ray&, SurfaceHit&) const override;
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
-    Relief relief() const override { return Relief::smooth; }
     const SurfaceSampling* sampling() const override { return this; }
     double area() const override { return area_; }
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;

@@ -88,7 +88,13 @@ enum class Relief : std::uint8_t {
     facets,  // flat pieces with edges between them; emitterParts() tells how many
 };
 
-class Shape;
+// What holds all over a shape: fixed when it is made.
+struct ShapeTraits {
+    Relief relief = Relief::unknown;
+    bool hasTextureCoordinates = true; // uv are texture coordinates of the whole shape
+    bool usesTextures = false;         // some of its faces have a material of their own that looks at textures
+};
+
 class SurfaceSampling;
 class VertexAttributes;
 
@@ -140,8 +146,6 @@ class Shape {
     virtual void parametrize(const RawHit&, const Ray&, SurfaceHit&) const {}
     // Where the point of a hit that surface() has filled is at another time (Ray::time), in the shape's coordinates.
     virtual Vec3 carried(const RawHit&, const Ray&, const SurfaceHit& hit, float /*time*/) const { return hit.p; }
-    // Whether uv are texture coordinates of the whole shape.
-    virtual bool hasTextureCoordinates() const { return true; }
     // The mean of the two curvatures of the shading normals at a hit of this shape, 1/m; positive where it bulges
     // outwards, 0 where it is not known. For the width of paths beyond mirrors and lenses.
     virtual float meanCurvature(const SurfaceHit&) const { return 0; }
@@ -151,15 +155,21 @@ class Shape {
     virtual std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d /*origin*/, Vec3d /*direction*/) const noexcept {
         return std::nullopt;
     }
-    virtual Relief relief() const { return Relief::unknown; }
-    // Whether some of its faces have a material of their own that looks at textures.
-    virtual bool usesTextures() const { return false; }
-
     // m²; infinite for planes.
     virtual double area() const = 0;
     // What some shapes can besides; null for those that cannot.
     virtual const SurfaceSampling* sampling() const { return nullptr; }
     virtual const VertexAttributes* attributes() const { return nullptr; }
+
+    Relief relief() const { return traits_.relief; }
+    bool hasTextureCoordinates() const { return traits_.hasTextureCoordinates; }
+    bool usesTextures() const { return traits_.usesTextures; }
+
+  protected:
+    explicit Shape(ShapeTraits traits = {}) : traits_(traits) {}
+
+  private:
+    ShapeTraits traits_;
 };
 
 // Of a shape on which points can be drawn: for lights, and for chains of refractions that lead through it.
