@@ -116,9 +116,10 @@ function facts(entry) {
     return {...entry, info, attributes: info.attributes, study: measured, fit: (measured.curves[0] || {}).fit || {}};
 }
 function costRows(f) {
-    const rows = ((f.info.bill || f.study.bill || {}).rows || []).filter(r => r.seconds > 0 || r.elsewhere > 0).sort((a, b) => b.seconds - a.seconds);
+    const cost = f.info.cost || f.study.cost || f.info.bill || f.study.bill || {}; // `bill` in files of before November 2026
+    const rows = (cost.rows || []).filter(r => r.seconds > 0 || r.elsewhere > 0).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return [];
-    const total = f.info.bill ? f.info.bill.seconds : rows.reduce((sum, r) => sum + r.seconds, 0);
+    const total = cost.seconds > 0 ? cost.seconds : rows.reduce((sum, r) => sum + r.seconds, 0);
     const small = rows.filter(r => r.seconds < 0.005 * total && !(r.elsewhere > 0));
     if (small.length > 1) rows.splice(0, rows.length, ...rows.filter(r => !small.includes(r)), {label: `${small.length} smaller rows`, seconds: small.reduce((sum, r) => sum + r.seconds, 0)});
     return ["", "| cost | seconds | share | in other rows | rays |", "|---|--:|--:|--:|--:|",

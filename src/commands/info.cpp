@@ -243,7 +243,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
         Json channels = Json::list(), attributes = Json::object();
         for (const auto& c : info.channels) channels.push(Json::object({{"name", c.name}, {"type", c.type}}));
         for (const ImageAttribute& a : info.attributes)
-            if (!cost || a.name != kCostAttribute) attributes.set(a.name, json(a));
+            if (!cost || !isCostAttribute(a)) attributes.set(a.name, json(a));
         Json faults = Json::list();
         if (aces.claimed)
             for (const std::string& fault : aces.faults) faults.push(fault);
@@ -258,7 +258,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"aces_faults", std::move(faults)},
                                           {"pixels", hash},
                                           {"error", certificate ? certificateJson(*certificate) : Json()},
-                                          {"bill", cost ? costJson(*cost) : Json()},
+                                          {"cost", cost ? costJson(*cost) : Json()},
                                           {"attributes", std::move(attributes)}});
         common.console.data(object.text(true) + "\n");
         return ExitCode::done;
@@ -273,7 +273,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     if (certificate && certificate->merged) s += fmt::format("bias         {}\n", mergedLine(*certificate->merged));
     if (cost) s += costTable(*cost);
     for (const ImageAttribute& a : info.attributes)
-        if (!cost || a.name != kCostAttribute) s += fmt::format("{} = {}\n", a.name, text(a));
+        if (!cost || !isCostAttribute(a)) s += fmt::format("{} = {}\n", a.name, text(a));
     common.console.data(s);
     return ExitCode::done;
 }

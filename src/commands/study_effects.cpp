@@ -79,7 +79,7 @@ std::string effectsJson(const EffectStudy& study, const StudyOptions& options, c
                          {"measure", kEffectMeasure},
                          {"curves", Json::list()},
                          {"effects", std::move(effects)},
-                         {"bill", costJson(study.cost)},
+                         {"cost", costJson(study.cost)},
                          {"referencePng", png(study.image)}})
                .text() +
            "\n";

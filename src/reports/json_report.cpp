@@ -92,7 +92,7 @@ class JsonReport final : public RenderReport {
                                    {"dropped", dropped},
                                    {"dropped_samples", faultsJson(s.faults)},
                                    {"densities_above_bound", r.excess.above},
-                                   {"bill", s.cost ? costJson(*s.cost) : Json()},
+                                   {"cost", s.cost ? costJson(*s.cost) : Json()},
                                    {"warnings", static_cast<std::uint64_t>(s.warnings)}});
         for (const auto& c : countersOf(r))
             if (c.reported != Reported::always && isReported(c, r)) event.set(c.name, *c.place);

@@ -122,10 +122,13 @@ std::string costTable(const CostReport& cost) {
     return text;
 }
 
-ImageAttribute costAttribute(const CostReport& cost) { return {kCostAttribute, costJson(cost).text()}; }
+ImageAttribute costAttribute(const CostReport& cost) { return {"abbe.cost", costJson(cost).text()}; }
+
+// Under either name: images of before November 2026 have the second.
+bool isCostAttribute(const ImageAttribute& a) { return a.name == "abbe.cost" || a.name == "abbe.bill"; }
 
 std::optional<CostReport> readCost(std::span<const ImageAttribute> attributes) {
-    const auto found = std::ranges::find(attributes, kCostAttribute, &ImageAttribute::name);
+    const auto found = std::ranges::find_if(attributes, isCostAttribute);
     const auto* text = found == attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
     if (!text) return std::nullopt;
     try {

@@ -32,8 +32,8 @@ Json costJson(const CostReport&);
 std::string costTable(const CostReport&);
 
 // Of an image's header.
-inline constexpr const char* kCostAttribute = "abbe.bill";
 ImageAttribute costAttribute(const CostReport&);
+bool isCostAttribute(const ImageAttribute&);
 // Nothing if the image has none, or none that can be read.
 std::optional<CostReport> readCost(std::span<const ImageAttribute>);
 

@@ -5,8 +5,8 @@
 source "$(dirname -- "$0")/lib.sh" "$@"
 
 # Of the last event of a render.
-report() { grep '"event":"done"' out | grep -o '"bill":{.*}]}'; }
-member() { report | grep -o "^\"bill\":{[^[]*" | grep -o "\"$1\":[^,]*" | cut -d: -f2; } # NAME
+report() { grep '"event":"done"' out | grep -o '"cost":{.*}]}'; }
+member() { report | grep -o "^\"cost\":{[^[]*" | grep -o "\"$1\":[^,]*" | cut -d: -f2; } # NAME
 row() { report | grep -o "{\"id\":\"$1\"[^}]*}"; }                                         # ID
 figure() { row "$1" | grep -o "\"$2\":[^,}]*" | cut -d: -f2; }                           # ID MEMBER
 event() { grep '"event":"done"' out | grep -o "\"$1\":[^,}]*" | head -n 1 | cut -d: -f2; }
@@ -37,11 +37,11 @@ adds_up() { # SCENE OPTION…
     within "$1: rows of rendering and its clock" "$rendering" "$(event render_seconds)" 25
 }
 adds_up "$scenes/room.scene" --samples 3000
-adds_up "$scenes/bill.scene" --samples 1000
+adds_up "$scenes/rows.scene" --samples 1000
 adds_up "$scenes/glass.scene" --samples 1500
 
 # What the scene has, and nothing else.
-expect 0 "$scenes/bill.scene" --json --checkpoint off -o bill.exr -t 1
+expect 0 "$scenes/rows.scene" --json --checkpoint off -o rows.exr -t 1
 counts >one
 for id in camera embree surface lights textures 'subsurface milk' 'volume homogeneous-1' motion dispersion film; do
     [[ -n $(row "$id") ]] || fault "no row \`$id\`"
@@ -60,32 +60,32 @@ done
     fault "rays do not add up"
 
 # The same for any threads, in parts, and when continued.
-expect 0 "$scenes/bill.scene" --json --checkpoint off -o bill.exr -t 8
+expect 0 "$scenes/rows.scene" --json --checkpoint off -o rows.exr -t 8
 counts >eight
 cmp one eight || fault "threads change counts"
-expect 0 "$scenes/bill.scene" --json --checkpoint off -o bill.exr --kernel all
+expect 0 "$scenes/rows.scene" --json --checkpoint off -o rows.exr --kernel all
 counts >all
 cmp one all || fault "the largest kernel counts otherwise"
 parts=0
 for k in 2 1 3; do
-    expect 0 "$scenes/bill.scene" --json -o bill.exr --part $k/3
+    expect 0 "$scenes/rows.scene" --json -o rows.exr --part $k/3
     parts=$(awk -v a="$parts" -v b="$(member seconds)" 'BEGIN { print a + b }')
 done
-expect 0 merge bill.part{1,2,3}.abbe -o merged.exr --json
+expect 0 merge rows.part{1,2,3}.abbe -o merged.exr --json
 counts >merged
 cmp one merged || fault "parts put together have other counts"
 awk -v a="$parts" -v b="$(member seconds)" 'BEGIN { exit !(b > 0.5 * a) }' || fault "the time of the parts is lost"
 within "merged: rows" "$(sum_of_rows)" "$(member seconds)" 5
-expect 0 "$scenes/bill.scene" --json --samples 8 --checkpoint keep -o go.exr
+expect 0 "$scenes/rows.scene" --json --samples 8 --checkpoint keep -o go.exr
 before=$(member seconds)
-expect 0 "$scenes/bill.scene" --json --resume -o go.exr
+expect 0 "$scenes/rows.scene" --json --resume -o go.exr
 counts >resumed
 cmp one resumed || fault "a render that was continued has other counts"
 awk -v a="$before" -v b="$(member seconds)" 'BEGIN { exit !(b > 0.5 * a) }' || fault "the time before is lost"
 within "continued: rows" "$(sum_of_rows)" "$(member seconds)" 5
 
 # On paper.
-expect 0 "$scenes/bill.scene" -q --cost --checkpoint off -o bill.exr
+expect 0 "$scenes/rows.scene" -q --cost --checkpoint off -o rows.exr
 says out "Embree"
 says out "inside solids: milk"
 says out "in other rows"
@@ -96,7 +96,7 @@ expect 0 "$scenes/room.scene" -q --checkpoint off -o room.exr
 is_empty out
 expect 0 info room.exr
 says out "light sampling"
-says_not out "abbe.bill"
+says_not out "abbe.cost"
 expect 0 info room.exr --json
 says out '"uncertainty"'
 

@@ -3,7 +3,7 @@
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
 
-expect 0 study "$scenes/bill.scene" --effects --seeds 2 --samples 16 -o found
+expect 0 study "$scenes/rows.scene" --effects --seeds 2 --samples 16 -o found
 for name in dispersion motion 'volume milk' 'volume homogeneous-1'; do says out "$name"; done
 says_not out "absorption"
 says_not out "displacement"
@@ -12,8 +12,8 @@ for name in dispersion motion 'volume milk'; do
     says found.csv "$name,"
     says found.json "\"name\":\"$name\""
 done
-says found.json '"place":"bill.scene:'
-says found.json '"bill":{"seconds"'
+says found.json '"place":"rows.scene:'
+says found.json '"cost":{"seconds"'
 "$json_lines" --whole <found.json || fault "found.json is no JSON"
 says found.html "abbe-study/1"
 lines=$(grep -vc '^#' found.csv)

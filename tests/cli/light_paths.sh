@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Paths of light are under the same contracts as those of the camera: the same bits for any threads, crops, parts and
-# interruptions; the same picture as without them; told, billed and explained.
+# interruptions; the same picture as without them; reported, with their cost, and explained.
 #   light_paths.sh PROGRAM JSON_LINES
 # shellcheck source=tests/cli/lib.sh
 source "$(dirname -- "$0")/lib.sh" "$@"
@@ -118,24 +118,24 @@ tells out "Light paths: none" focuses
 expect 0 "$scenes/room.scene" -o room.exr
 says_not err "light paths"
 
-# Billed: a row of its own, no time without a row, the same counts for any threads.
+# The cost report: a row of its own, no time without a row, the same counts for any threads.
 row() { grep '"event":"done"' out | grep -o '{"id":"light-paths"[^}]*}'; }
 counts() { row | grep -o -e '"rays":[0-9]*' -e '"count":[0-9]*'; }
-expect 0 "$scene" --json --samples 1024 -o bill.exr -t 1
+expect 0 "$scene" --json --samples 1024 -o cost.exr -t 1
 grep '"event":"done"' out | grep -o '"accounted":[0-9.]*' | awk -F: '{ exit !($2 > 0.95 && $2 < 1.05) }' ||
     fault "the rows do not add up"
 row | grep -o '"share":[0-9.e-]*' | awk -F: '{ exit !($2 > 0.02 && $2 < 0.95) }' || fault "light paths have $(row)"
 grep '"event":"done"' out | grep -o '{"id":"waiting"[^}]*}' | grep -o '"share":[0-9.e-]*' |
     awk -F: '{ exit !($2 < 0.1) }' || fault "time of light paths counts as waiting"
 counts >one
-expect 0 "$scene" --json --samples 1024 -o bill.exr -t 2
+expect 0 "$scene" --json --samples 1024 -o cost.exr -t 2
 counts >two
 cmp -s one two || fault "threads change counts: $(cat one two)"
 for part in 1 2; do expect 0 "$scene" --json --samples 1024 -o part.exr --part $part/2; done
 expect 0 merge part.part{1,2}.abbe -o merged.exr --json
 counts >merged
 cmp -s one merged || fault "parts put together have other counts"
-expect 0 off.scene --json -o bill.exr
+expect 0 off.scene --json -o cost.exr
 [[ $(row) == *'"rays":0'* ]] || fault "light paths have $(row) without any"
 
 finish

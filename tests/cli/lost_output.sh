@@ -17,7 +17,7 @@ lost=("${small[@]}" -o lost.exr)
 "$program" "${lost[@]}" 2>&-; after $? "stderr is closed"
 "$program" "${lost[@]}" --json >/dev/full; after $? "stdout is full"
 "$program" "${lost[@]}" --json >&-; after $? "stdout is closed"
-"$program" "${lost[@]}" --json --bill <&- >&- 2>&-; after $? "all streams are closed"
+"$program" "${lost[@]}" --json --cost <&- >&- 2>&-; after $? "all streams are closed"
 "$program" "${lost[@]}" 2>&1 | head -n 1 >/dev/null; after "${PIPESTATUS[0]}" "a reader of one line"
 "$program" "${lost[@]}" --json | head -c 1 >/dev/null; after "${PIPESTATUS[0]}" "a reader of one byte"
 "$program" "${lost[@]}" 2> >(exec true) ; after $? "nobody reads"

@@ -75,8 +75,8 @@ same_certificate haze.exr threads.exr
 expect 0 unmerged.scene -q -o off.exr --samples 8
 [[ $(pixels haze.exr) != $(pixels off.exr) ]] || fault "merging in haze brings nothing"
 
-# Billed with light paths.
-expect 0 "$scene" --json --samples 192 -o bill.exr -t 1
+# The cost report with light paths.
+expect 0 "$scene" --json --samples 192 -o cost.exr -t 1
 grep '"event":"done"' out | grep -o '"accounted":[0-9.]*' | awk -F: '{ exit !($2 > 0.95 && $2 < 1.05) }' ||
     fault "the rows do not add up"
 

@@ -12,14 +12,14 @@ let faults = 0;
 const check = (what, right, more = "") => { if (!right) { ++faults; console.log(`FAULT: ${what}${more ? `: ${more}` : ""}`); } };
 const make = (...words) => spawnSync(process.execPath, [tool, "--work", "work", "--out", "gallery", "--only", "index", ...words], {encoding: "utf8"});
 
-function prepare(name, seed, bill, side = 64) {
+function prepare(name, seed, cost, side = 64) {
     const study = ordinary(seed), random = generator(seed);
     study.curves = study.curves.slice(0, 5);
     Object.assign(study.scene, {name, path: `scenes/${name}/${name}.scene`});
     writeFileSync(`work/${name}.study.json`, JSON.stringify(study));
     execFileSync(studyPageOf, [`work/${name}.study.json`, `work/${name}.study.html`]);
     writeFileSync(`work/${name}.png`, Buffer.from(png(side, side, () => [random(), random(), random()]), "base64"));
-    writeFileSync(`work/${name}.info.json`, JSON.stringify({bill, error: {relative: {value: 0.0213}},
+    writeFileSync(`work/${name}.info.json`, JSON.stringify({cost, error: {relative: {value: 0.0213}},
         attributes: {"abbe.seconds": 12.3, "abbe.samples": 256, "abbe.command": `abbe render scenes/${name}/${name}.scene -o x.exr`}}));
     return study;
 }
@@ -30,7 +30,7 @@ check("an unknown scene is a fault", make("no-such-scene").status !== 0 && make(
 check("an unknown option is a fault", make("--sizes", "3").status !== 0);
 prepare("prism", 1, {seconds: 10, rows: [{id: "embree", label: "Embree | rays", seconds: 6, rays: 123456}, {id: "film", label: "film", seconds: 4, rays: 0}, {id: "motion", label: "motion", seconds: 0, rays: 0}]});
 const study = prepare("cornell-box", 2, null);
-delete study.bill;
+delete study.cost;
 const {status, stderr} = make();
 check("the gallery is made", status === 0, stderr);
 const index = readFileSync("gallery/README.md", "utf8"), once = readdirSync("gallery").map(name => [name, readFileSync(`gallery/${name}`, "utf8")]);

@@ -67,8 +67,8 @@ async function studyPage(browser, name, study, sizes) {
         check(`${what}: background`, scheme === "dark" ? r + g + b < 120 : r + g + b > 690, `${r} ${g} ${b}`);
         if (study.curves.length) await plotsAre(page, what, shownAtFirst(study));
         check(`${what}: findings`, await page.evaluate("document.querySelectorAll('.findings li').length") >= 1);
-        const sections = ["convergence", "time", "efficiency", "strips", "bill", "effects", "data"].filter(id => ({convergence: study.curves.length, time: study.curves.length, efficiency: study.curves.filter(c => c.efficiency.ratio > 0).length > 1,
-            strips: (study.strips || []).some(s => s.images.length), bill: study.bill, effects: study.effects, data: true})[id]);
+        const sections = ["convergence", "time", "efficiency", "strips", "cost", "effects", "data"].filter(id => ({convergence: study.curves.length, time: study.curves.length, efficiency: study.curves.filter(c => c.efficiency.ratio > 0).length > 1,
+            strips: (study.strips || []).some(s => s.images.length), cost: study.cost, effects: study.effects, data: true})[id]);
         same(`${what}: sections`, await page.evaluate("[...document.querySelectorAll('section')].map(s => s.id)"), sections);
         await clean(page, what);
         await keep(page, `${name}-${width}-${scheme}`);
@@ -153,11 +153,11 @@ async function unknownFigures(browser) {
     await page.close();
 }
 
-// Rows of the bill in which nothing was spent or counted are left out; what is spent elsewhere is no time of the row.
-async function billOf(browser) {
-    const page = await browser.open("ordinary.html"), rows = await page.evaluate("[...document.querySelectorAll('#bill tbody tr')].map(r => [...r.cells].map(c => c.textContent))");
-    same("rows of the bill", rows.length, 9);
-    same("a row of the bill", rows[5], ["volume haze", "80 ms± 6 ms".replace("80", "80.0"), "4.00\u00a0%", "0.500 s", "300\u202f000", "400\u202f000 densities"]);
+// Rows of the cost report in which nothing was spent or counted are left out; what is spent elsewhere is no time of the row.
+async function costOf(browser) {
+    const page = await browser.open("ordinary.html"), rows = await page.evaluate("[...document.querySelectorAll('#cost tbody tr')].map(r => [...r.cells].map(c => c.textContent))");
+    same("rows of the cost report", rows.length, 9);
+    same("a row of the cost report", rows[5], ["volume haze", "80 ms± 6 ms".replace("80", "80.0"), "4.00\u00a0%", "0.500 s", "300\u202f000", "400\u202f000 densities"]);
     await page.close();
 }
 
@@ -204,7 +204,7 @@ try {
     await hostileText(browser, odd.hostile);
     await unknownFigures(browser);
     await withoutBounds(browser);
-    await billOf(browser);
+    await costOf(browser);
     await warnings(browser);
     await compare(browser);
 } finally {

@@ -115,7 +115,7 @@ export function ordinary(seed = 1, chosen = changes) {
             {name: "subsurface", place: "prism.scene:44:9", secondsOn: 1.2, secondsOff: 1.19, deltaTime: 0.008, low: -0.01, high: 0.02, flip: 0.021, relMse: 4e-4, png: noisy(0.05, random), note: "", reason: null},
             {name: "depth of field", place: "prism.scene:3:9", secondsOn: 1.2, secondsOff: 1.18, deltaTime: 0.016, low: 0.0, high: 0.03, flip: 0.019, relMse: 5e-4, png: noisy(0.05, random), note: "", reason: null},
             {name: "textures", place: "prism.scene:50:1", secondsOn: null, secondsOff: null, deltaTime: null, low: null, high: null, flip: null, relMse: null, png: null, note: "", reason: "without its texture the lamp has no power"}],
-        bill: {seconds: 2.0, threads: 2, accounted: 0.985, rows: [["embree", "Embree", 0.9, 5.1e6, {note: "all rays of the rows below and above"}], ["surface", "surfaces", 0.42, 2.2e6, {}], ["lights", "light sampling", 0.31, 2.9e6, {}],
+        cost: {seconds: 2.0, threads: 2, accounted: 0.985, rows: [["embree", "Embree", 0.9, 5.1e6, {note: "all rays of the rows below and above"}], ["surface", "surfaces", 0.42, 2.2e6, {}], ["lights", "light sampling", 0.31, 2.9e6, {}],
             ["camera", "camera", 0.11, 6e5, {}], ["film", "film", 0.09, 0, {count: 64000, counted: "samples"}], ["volume-haze", "volume haze", 0.08, 3e5, {elsewhere: 0.5, count: 4e5, counted: "densities"}],
             ["textures", "textures", 0.04, 0, {count: 198000, counted: "lookups"}], ["dispersion", "dispersion", 0, 48000, {elsewhere: 0.12}], ["motion", "motion", 0, 0, {count: 0, counted: "hits of what moves"}],
             ["rest", "the rest", 0.02, 0, {}]].map(([id, label, seconds, rays, more]) => ({id, label, seconds, uncertainty: 0.07 * seconds, share: seconds / 2, elsewhere: 0, rays, ...more}))},
@@ -125,7 +125,7 @@ export function ordinary(seed = 1, chosen = changes) {
 // Every odd study that a page has to bear, by name.
 export function oddities() {
     const one = ordinary(2, []), twenty = ordinary(3, [...changes, ...Array.from({length: 4}, (_, i) => ({...changes[1], id: `more${i}`, label: `variation ${i + 1} of the light sampling`, variance: 2 + i}))]);
-    for (const key of ["effects", "bill", "errorScale", "referencePng"]) delete one[key];
+    for (const key of ["effects", "cost", "errorScale", "referencePng"]) delete one[key];
     one.strips = [];
     const empty = {format: "abbe-study/1", program: null, machine: null, scene: {}, replicates: null, seed: null, measure: null, reference: null, curves: [], strips: null, errorScale: null, referencePng: null};
     const nulls = ordinary(4, changes.slice(0, 4));
@@ -137,7 +137,7 @@ export function oddities() {
     nulls.curves[0].fit = {slope: -1.02, low: null, high: null, halfNoiseCost: 3.9, halfNoiseCostLow: null, halfNoiseCostHigh: null};
     nulls.curves[1].efficiency.ratio = 0.1; // without an interval
     Object.assign(nulls.curves[0].timeTo[0], {seconds: 1e9, extrapolated: true});
-    Object.assign(nulls, {machine: {}, effects: null, bill: null, strips: [{seconds: null, images: []}, {seconds: 1, images: [{curve: "abbe", samples: null, relMse: null, png: nulls.referencePng, error: null}]}]});
+    Object.assign(nulls, {machine: {}, effects: null, cost: null, strips: [{seconds: null, images: []}, {seconds: 1, images: [{curve: "abbe", samples: null, relMse: null, png: nulls.referencePng, error: null}]}]});
     const noise = ordinary(5, changes.slice(0, 3)); // negative: below the noise of the reference
     for (const c of noise.curves) c.points.slice(-2).forEach(p => Object.assign(p, {relMse: -1e-8, low: -9e-8, high: 6e-8}));
     noise.curves[1].points.forEach(p => Object.assign(p, {relMse: -1e-9, low: -2e-9, high: -1e-10}));
@@ -149,7 +149,7 @@ export function oddities() {
     hostile.curves[0].label = "as <b>rendered</b>";
     hostile.effects[0].name = evil;
     hostile.effects[0].place = evil;
-    hostile.bill.rows[0].label = evil;
+    hostile.cost.rows[0].label = evil;
     hostile.program.command = `abbe study ${evil}`;
     hostile.measure = evil;
     hostile.leftOut[0].reason = evil;

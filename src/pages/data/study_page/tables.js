@@ -54,12 +54,12 @@ function efficiencies() {
 
 const costColours = ["c0", "c1", "c2", "c4", "c3", "c5", "c6"];
 function costReport() {
-    const rows = (study.bill && study.bill.rows || []).filter(r => isNumber(r.seconds) && (r.seconds > 0 || r.elsewhere > 0 || r.rays > 0 || r.count > 0)).sort((a, b) => b.seconds - a.seconds);
+    const rows = (study.cost && study.cost.rows || []).filter(r => isNumber(r.seconds) && (r.seconds > 0 || r.elsewhere > 0 || r.rays > 0 || r.count > 0)).sort((a, b) => b.seconds - a.seconds);
     if (!rows.length) return;
     const total = rows.reduce((sum, r) => sum + Math.max(0, r.seconds), 0) || 1, share = r => isNumber(r.share) ? r.share : r.seconds / total;
     const colour = i => i < 7 ? `var(--${costColours[i]})` : "var(--soft)";
-    const accounted = study.bill.accounted, elsewhere = rows.some(r => r.elsewhere > 0), counts = rows.some(r => r.count > 0);
-    section("bill", "Cost", "Cost report", `Where the time goes${isNumber(study.bill.seconds) ? `: ${timeText(study.bill.seconds, 3)} on ${study.bill.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.${elsewhere ? " What was spent because of an effect, but counted in the rows of others, is in a column of its own; these seconds overlap." : ""}`,
+    const accounted = study.cost.accounted, elsewhere = rows.some(r => r.elsewhere > 0), counts = rows.some(r => r.count > 0);
+    section("cost", "Cost", "Cost report", `Where the time goes${isNumber(study.cost.seconds) ? `: ${timeText(study.cost.seconds, 3)} on ${study.cost.threads ?? "?"} threads` : ""}${isNumber(accounted) ? `; ${percent(accounted, 3)} of it is accounted for` : ""}.${elsewhere ? " What was spent because of an effect, but counted in the rows of others, is in a column of its own; these seconds overlap." : ""}`,
         make("div", {class: "stack", role: "img", "aria-label": rows.map(r => `${r.label} ${percent(share(r), 2)}`).join(", ")},
              rows.map((r, i) => make("div", {style: `flex:${Math.max(0, r.seconds) / total} 0 0;background:${colour(i)}`, title: `${r.label}: ${percent(share(r), 2)}`}, share(r) > 0.09 ? r.label : ""))),
         table(["", "seconds", "share", ...(elsewhere ? ["in other rows"] : []), "rays", ...(counts ? ["counted"] : [])], rows.map((r, i) => make("tr", {},
