@@ -42,8 +42,12 @@ class Injection {
   public:
     static constexpr int kLane = 5;
 
-    Injection(Site site, DropCause fault) : site_(site), fault_(fault) {}
-
+    // From now on this one, and none so far.
+    void inject(Site site, DropCause fault) {
+        site_ = site;
+        fault_ = fault;
+        asked_ = injected_ = 0;
+    }
     Site site() const { return site_; }
     DropCause fault() const { return fault_; }
     // Off at first; pilots stay sound, so that they do not differ.
@@ -79,8 +83,8 @@ class Injection {
         return fault_ == DropCause::infinite ? kInfinity : -std::max(0.1f * sound, 1e-6f);
     }
 
-    Site site_;
-    DropCause fault_;
+    Site site_{};
+    DropCause fault_{};
     std::atomic<bool> armed_{false};
     mutable std::atomic<std::uint64_t> asked_{0}, injected_{0};
 };

@@ -147,10 +147,11 @@ class StandIns {
     std::map<std::string, std::string> definitions_;
 };
 
-// The text as a scene of its own.
+// The text as a scene of its own: of a small picture, as surfaces are diced by its pixels.
 std::string wholeText(const DocumentedSnippet& s) {
     std::string text = s.text;
     if (s.mark.starts_with("in ")) text = s.mark.substr(3) + " {\n" + text + "}\n";
+    if (text.find("film") == std::string::npos) text += "\nfilm { size 64 36 }\n";
     return text.find("scene 1") == std::string::npos ? "scene 1\n" + text : text;
 }
 
@@ -171,16 +172,20 @@ Verdict check(const DocumentedSnippet& snippet, const fs::path& folder, StandIns
     for (int round = 0;; ++round) {
         std::ofstream(folder / "snippet.scene") << text;
         const auto loaded = loadScene({(folder / "snippet.scene").string(), {}});
+        const auto supplied = [&] {
+            bool any = false;
+            for (const Diagnostic& d : complaints(loaded->diagnostics))
+                any = any || (round < 20 && standIns.supply(d, folder, text));
+            return any;
+        };
+        if (supplied()) continue; // before the scene is built in vain
         BuildOptions options;
         options.geometry = false;
         buildScene(loaded->tree, loaded->types, options, loaded->diagnostics);
+        if (supplied()) continue;
         std::string codes;
-        bool supplied = false;
-        for (const Diagnostic& d : complaints(loaded->diagnostics)) {
-            codes += (codes.empty() ? "" : " ") + d.code;
-            supplied = supplied || (round < 20 && standIns.supply(d, folder, text));
-        }
-        if (!supplied) return {codes, formatHuman(loaded->diagnostics, loaded->sources)};
+        for (const Diagnostic& d : complaints(loaded->diagnostics)) codes += (codes.empty() ? "" : " ") + d.code;
+        return {codes, formatHuman(loaded->diagnostics, loaded->sources)};
     }
 }
 

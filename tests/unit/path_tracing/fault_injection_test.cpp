@@ -47,11 +47,10 @@ class LogFilm final : public Film {
     PixelBounds bounds_;
 };
 
-// A scene of which something is faulty.
+// A scene of which something is faulty: made once, and then tried with one fault after the other.
 class FaultyScene {
   public:
-    FaultyScene(const std::string& text, Site site, DropCause fault)
-        : injection_(site, fault), scene_(TestScene::parse(text)) {
+    explicit FaultyScene(const std::string& text) : scene_(TestScene::parse(text)) {
         scene_.scene(); // without errors
         auto intersector = std::make_unique<FaultyIntersector>(std::move(scene().intersector));
         intersector_ = intersector.get();
@@ -102,8 +101,12 @@ class FaultyScene {
         return std::ranges::any_of(culprits_, [&](const auto& c) { return c.first == who; });
     }
 
-    // Every sample by itself.
-    std::vector<Value> values(bool faulty) {
+    // Every sample by itself, without a fault.
+    const std::vector<Value>& soundValues() {
+        if (sound_.empty()) sound_ = values(false);
+        return sound_;
+    }
+    std::vector<Value> values(bool faulty = true) {
         LogFilm log(scene_.built().scene.frame);
         repeat(log, ids(), faulty);
         return log.values;
@@ -150,6 +153,7 @@ class FaultyScene {
     TestScene scene_;
     FaultyIntersector* intersector_ = nullptr;
     std::vector<std::pair<const void*, std::string>> culprits_;
+    std::vector<Value> sound_;
 };
 
 struct Expected {
@@ -189,7 +193,8 @@ Expected expectedOf(Site site) {
 // Samples that were dropped; 0 also if the function was never asked.
 std::uint64_t tryFault(FaultyScene& faulty) {
     const Injection& injection = faulty.injection();
-    const std::vector<Value> sound = faulty.values(false), values = faulty.values(true);
+    const std::vector<Value>& sound = faulty.soundValues();
+    const std::vector<Value> values = faulty.values();
     const std::uint64_t injected = injection.injected();
     const std::vector<SampleId> ids = faulty.ids();
     REQUIRE(values.size() == ids.size() * kReplicates);
@@ -254,14 +259,15 @@ bool mayBe(Site site, DropCause fault) {
 
 // All faults of some sites; how many of the sites were found at least once.
 template <typename Break> int tryAll(const std::string& text, std::initializer_list<Site> sites, Break breakIt) {
+    FaultyScene faulty(text);
+    breakIt(faulty);
+    REQUIRE(faulty.broken());
     int found = 0;
     for (const Site site : sites) {
         std::uint64_t dropped = 0;
         for (const DropCause fault : kFaults) {
             if (!mayBe(site, fault)) continue;
-            FaultyScene faulty(text, site, fault);
-            breakIt(faulty);
-            REQUIRE(faulty.broken());
+            faulty.injection().inject(site, fault);
             INFO("site ", static_cast<int>(site), " ", std::string(kFaultNames[static_cast<int>(fault)]));
             dropped += tryFault(faulty);
         }

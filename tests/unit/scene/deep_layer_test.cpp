@@ -184,7 +184,7 @@ TEST_CASE("how much of a patchy medium is seen through does not depend on what i
         const std::string text =
             "scene 1\nfilm { size 8 8; filter box 0.5; layers { deep 64 } }\n"
             "camera { from 0 0 0; look-at 0 0 -1; fov 20 deg }\nlight sky { luminance 100 nits }\n"
-            "volume slab noise { min -9 -9 -6; max 9 9 -2; extinction 1.5 per-m; scale 70 cm; coverage 0.5; albedo " +
+            "volume slab noise { min -1.5 -1.5 -6; max 1.5 1.5 -2; extinction 1.5 per-m; scale 70 cm; coverage 0.5; albedo " +
             std::string(albedo) + " }\n";
         const LayeredFilm image(text, 512);
         return passing(image.deep(), 20);

@@ -13,6 +13,12 @@ struct Files {
     std::string fire = folder.make("fire", 32), smoke = folder.make("smoke", 32), candle = folder.make("candle", 32);
 };
 
+// Made once for all tests, which takes half a second.
+const Files& madeFiles() {
+    static const Files files;
+    return files;
+}
+
 std::string volume(const std::string& file, const std::string& properties) {
     return "volume vdb " + file + " { " + properties + " }\n";
 }
@@ -25,7 +31,7 @@ const GridMedium& only(const TestScene& scene) {
 } // namespace
 
 TEST_CASE("volumes: grids by their usual names, by `grid=` and by name, with factors") {
-    const Files files;
+    const Files& files = madeFiles();
     for (const char* text :
          {"temperature; flame; emissivity 2 per-m",
           "temperature grid=temperature; flame grid=flame; emissivity 2 per-m",
@@ -49,7 +55,7 @@ TEST_CASE("volumes: grids by their usual names, by `grid=` and by name, with fac
 }
 
 TEST_CASE("volumes: velocity drifts while the shutter is open, from the moment of the file") {
-    const Files files;
+    const Files& files = madeFiles();
     const auto drift = [&](const std::string& shutter, const std::string& properties) {
         const auto scene = TestScene::parse("scene 1\ncamera { from 0 0 5; look-at 0 0 0; shutter " + shutter + " }\n" +
                                             kSky + volume(files.smoke, properties));
@@ -68,7 +74,7 @@ TEST_CASE("volumes: velocity drifts while the shutter is open, from the moment o
 }
 
 TEST_CASE("volumes: colour is clamped aloud") {
-    const Files files;
+    const Files& files = madeFiles();
     const auto scene = build(volume(files.smoke, "color velocity"));
     CHECK(codes(scene) == "W0692");
     CHECK(only(scene).albedoVaries());
@@ -76,7 +82,7 @@ TEST_CASE("volumes: colour is clamped aloud") {
 }
 
 TEST_CASE("volumes: wrong names, kinds and combinations are located and explained") {
-    const Files files;
+    const Files& files = madeFiles();
     const auto says = [&](const std::string& file, const std::string& text, const std::string& code,
                           const std::string& advice) {
         const auto scene = build(volume(file, text));
