@@ -95,19 +95,12 @@ void lockPlan(const PathLock& lock, const FarmFolder& folder) {
 
 ShotStatus statusNow(const FarmPlan& plan, const FarmFolder& folder) {
     const auto engine = makeEngine(plan.engine, folder);
-    return statusOf(plan, folder, plan.outcome.empty() ? engine->queue(plan) : std::vector<QueuedTask>());
+    return statusOf(plan, folder, plan.outcome ? std::vector<QueuedTask>() : engine->queue(plan));
 }
 
-ExitCode codeOf(const ShotStatus& status) {
-    using State = ShotStatus::State;
-    switch (status.state) {
-    case State::failed:
-        return ExitCode::faulty;
-    case State::limit:
-        return ExitCode::threshold;
-    default:
-        return ExitCode::done;
-    }
+ExitCode codeOf(std::optional<ShotOutcome> outcome) {
+    if (outcome == ShotOutcome::failed) return ExitCode::faulty;
+    return outcome == ShotOutcome::limit ? ExitCode::threshold : ExitCode::done;
 }
 
 void folderArgument(Arguments& a, std::string& folder) {
@@ -130,30 +123,19 @@ ExitCode goOn(FarmPlan& plan, const FarmFolder& folder, int round, const CommonO
     for (;;) {
         const RoundEnd end = closeRound(plan, folder, round);
         if (!common.json) common.console.line(fmt::format("round {}: {}", round + 1, end.said));
-        switch (end.kind) {
-        case RoundEnd::Kind::again:
-        case RoundEnd::Kind::more:
-            round = end.work.round;
-            folder.writePlan(plan);
-            engine->submit(plan, end.work);
-            if (engine->closesItself()) return ExitCode::done;
-            if (engine->signal() != 0) return static_cast<ExitCode>(128 + engine->signal());
-            plan.cancelled = folder.isCancelled();
-            continue;
-        case RoundEnd::Kind::cancelled:
-            return ExitCode::done;
-        case RoundEnd::Kind::done:
-        case RoundEnd::Kind::limit:
-        case RoundEnd::Kind::failed:
-            plan.outcome = end.kind == RoundEnd::Kind::done    ? "done"
-                           : end.kind == RoundEnd::Kind::limit ? "limit"
-                                                               : "failed";
+        if (end.outcome) {
+            if (end.outcome == ShotOutcome::cancelled) return ExitCode::done; // which is in a file of its own
+            plan.outcome = end.outcome;
             plan.said = end.said;
             folder.writePlan(plan);
-            return end.kind == RoundEnd::Kind::done    ? ExitCode::done
-                   : end.kind == RoundEnd::Kind::limit ? ExitCode::threshold
-                                                       : ExitCode::faulty;
+            return codeOf(end.outcome);
         }
+        round = end.work.round;
+        folder.writePlan(plan);
+        engine->submit(plan, end.work);
+        if (engine->closesItself()) return ExitCode::done;
+        if (engine->signal() != 0) return static_cast<ExitCode>(128 + engine->signal());
+        plan.cancelled = folder.isCancelled();
     }
 }
 
@@ -184,7 +166,7 @@ ExitCode run(const FarmStatusOptions& options, const CommonOptions& common) {
         const ShotStatus status = statusNow(plan, folder);
         common.console.data(common.json ? statusJson(plan, folder, status).text(true) + "\n"
                                         : statusTable(plan, folder, status));
-        return codeOf(status);
+        return codeOf(status.outcome);
     });
 }
 
@@ -205,8 +187,7 @@ ExitCode run(const FarmWatchOptions& options, const CommonOptions& common) {
                 common.console.data(table);
             }
             lines = static_cast<std::size_t>(std::ranges::count(table, '\n'));
-            using State = ShotStatus::State;
-            if (status.state != State::going && status.state != State::idle) return codeOf(status);
+            if (status.outcome) return codeOf(status.outcome);
             std::this_thread::sleep_for(std::chrono::duration<double>(options.every));
         }
     });
@@ -237,7 +218,7 @@ ExitCode run(const FarmResumeOptions& options, const CommonOptions& common) {
                 fmt::format("`abbe farm cancel {}` ends them", folder.path()));
         folder.setCancelled(false);
         plan.cancelled = false;
-        plan.outcome.clear();
+        plan.outcome.reset();
         plan.said.clear();
         plan.rounds.back().tries = -1; // all over again
         folder.writePlan(plan);

@@ -4,9 +4,11 @@
 #include "checkpoints/render_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -25,6 +27,24 @@ int partsOf(const FarmPlan& plan, std::uint32_t from, std::uint32_t to) {
     const double seconds = plan.sampleSeconds * plan.width * plan.height * (to - from) / plan.cores;
     const double wanted = plan.parts > 0 ? plan.parts : std::ceil(seconds / plan.chunkSeconds);
     return static_cast<int>(std::clamp(wanted, 1.0, std::max(1.0, most)));
+}
+
+namespace {
+
+constexpr std::array kOutcomes{std::pair{ShotOutcome::done, "done"}, std::pair{ShotOutcome::limit, "limit"},
+                               std::pair{ShotOutcome::failed, "failed"},
+                               std::pair{ShotOutcome::cancelled, "cancelled"}};
+
+} // namespace
+
+const char* wordOf(ShotOutcome outcome) {
+    return std::ranges::find(kOutcomes, outcome, &decltype(kOutcomes)::value_type::first)->second;
+}
+
+std::optional<ShotOutcome> outcomeNamed(std::string_view word) {
+    for (const auto& [outcome, name] : kOutcomes)
+        if (name == word) return outcome;
+    return std::nullopt;
 }
 
 const char* wordOf(FarmTask::Kind kind) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace abbe {
@@ -19,6 +20,16 @@ struct FarmFault : std::runtime_error {
 };
 
 enum class FarmEngineKind : std::uint8_t { slurm, local };
+
+// How a shot can end.
+enum class ShotOutcome : std::uint8_t {
+    done,   // all images are there, and as good as they were to be
+    limit,  // all images are there; of some the noise goal was not met by the most samples that they may have
+    failed, // some tasks cannot be done, or were tried often enough
+    cancelled,
+};
+const char* wordOf(ShotOutcome); // "done", "limit", "failed", "cancelled"
+std::optional<ShotOutcome> outcomeNamed(std::string_view word);
 
 // Samples of some frames that are rendered at once: [from, to) per pixel, all replicates together.
 struct FarmRound {
@@ -47,8 +58,9 @@ struct FarmPlan {
     int atOnce = 1;                       // tasks of the local engine
     int mostTries = 2;                    // FarmRound::tries
     std::vector<std::string> sbatchWords; // further options of every job
-    bool cancelled = false;    // that is in a file of its own, which whoever holds the plan does not overwrite
-    std::string outcome, said; // "done", "limit", "failed" and a sentence, once it is over
+    bool cancelled = false;             // that is in a file of its own, which whoever holds the plan does not overwrite
+    std::optional<ShotOutcome> outcome; // once it is over
+    std::string said;                   // a sentence about that
     std::vector<FarmRound> rounds;
     std::vector<std::string> jobs;      // of the engine, in the order in which they were submitted
     std::map<std::string, int> offsets; // of array jobs: what their indices have to be added to

@@ -54,7 +54,6 @@ template <typename Field> void planFields(FarmPlan& p, const Field& field) {
     field("at_once", p.atOnce);
     field("most_tries", p.mostTries);
     field("sbatch_words", p.sbatchWords);
-    field("outcome", p.outcome);
     field("said", p.said);
     field("jobs", p.jobs);
     field("offsets", p.offsets);
@@ -73,6 +72,7 @@ FarmPlan FarmFolder::readPlan() const {
         const PlanJson json = PlanJson::parse(text);
         if (json.at("format").get<int>() != kPlanFormat) throw std::invalid_argument("another format");
         planFields(plan, [&](const char* name, auto& value) { json.at(name).get_to(value); });
+        plan.outcome = outcomeNamed(json.at("outcome").get<std::string>());
         plan.engine = json.at("engine") == "slurm" ? FarmEngineKind::slurm : FarmEngineKind::local;
         for (const PlanJson& round : json.at("rounds")) plan.rounds.push_back(roundOf(round));
         if (plan.rounds.empty() || plan.replicates < 1) throw std::invalid_argument("no rounds");
@@ -107,6 +107,7 @@ void FarmFolder::writePlan(const FarmPlan& plan) const {
     FarmPlan copy = plan;
     if (copy.program.empty()) copy.program = thisProgram();
     planFields(copy, [&](const char* name, const auto& value) { json[name] = value; });
+    json["outcome"] = plan.outcome ? wordOf(*plan.outcome) : "";
     json["engine"] = plan.engine == FarmEngineKind::slurm ? "slurm" : "local";
     json["rounds"] = PlanJson::array();
     for (const FarmRound& round : plan.rounds) json["rounds"].push_back(jsonOfRound(round));

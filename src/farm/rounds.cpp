@@ -49,11 +49,12 @@ RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
         worst = std::max(worst, noise);
     }
     if (next.frames.empty()) {
+        end.outcome = ShotOutcome::done;
         end.said = fmt::format("the noise goal of {:.3g} % is met", 100 * plan.noise);
         return end;
     }
     if (last.to >= plan.samples) {
-        end.kind = RoundEnd::Kind::limit;
+        end.outcome = ShotOutcome::limit;
         end.said = fmt::format("{} of {} have more noise than {:.3g} % after {} samples, the most that they may have; "
                                "the worst has {:.3g} %",
                                next.frames.size(), last.frames.size(), 100 * plan.noise, last.to, 100 * worst);
@@ -66,7 +67,6 @@ RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
     next.to = static_cast<std::uint32_t>(std::clamp<double>(wanted, last.to + replicates, plan.samples));
     plan.sampleSeconds = measuredSampleSeconds(plan, folder, round);
     next.parts = partsOf(plan, next.from, next.to);
-    end.kind = RoundEnd::Kind::more;
     end.said = fmt::format("{} of {} have up to {:.3g} % noise; a round to {} samples is next", next.frames.size(),
                            last.frames.size(), 100 * worst, next.to);
     plan.rounds.push_back(std::move(next));
@@ -104,10 +104,11 @@ RoundWork missingOf(const FarmPlan& plan, const FarmFolder& folder, int round) {
 
 RoundEnd closeRound(FarmPlan& plan, const FarmFolder& folder, int round) {
     RoundEnd end;
-    if (plan.cancelled) return {RoundEnd::Kind::cancelled, {}, "the shot was cancelled"};
+    if (plan.cancelled) return {ShotOutcome::cancelled, {}, "the shot was cancelled"};
     end.work = missingOf(plan, folder, round);
     if (end.work.empty()) {
         if (plan.noise > 0) return planMore(plan, folder, round);
+        end.outcome = ShotOutcome::done;
         end.said = plan.animation ? fmt::format("all {} frames are done", plan.rounds[0].frames.size())
                                   : std::string("the image is done");
         return end;
@@ -115,7 +116,7 @@ RoundEnd closeRound(FarmPlan& plan, const FarmFolder& folder, int round) {
     FarmRound& r = plan.rounds[static_cast<std::size_t>(round)];
     const std::string hopeless = hopelessTask(plan, folder, end.work);
     if (!hopeless.empty() || r.tries >= plan.mostTries) {
-        end.kind = RoundEnd::Kind::failed;
+        end.outcome = ShotOutcome::failed;
         const FarmTask& first = !end.work.parts.empty()        ? end.work.parts[0]
                                 : !end.work.gatherings.empty() ? end.work.gatherings[0]
                                                                : end.work.merges[0];
@@ -128,7 +129,6 @@ RoundEnd closeRound(FarmPlan& plan, const FarmFolder& folder, int round) {
     std::error_code ignored;
     for (const auto* tasks : {&end.work.parts, &end.work.gatherings, &end.work.merges})
         for (const FarmTask& task : *tasks) std::filesystem::remove(folder.resultFile(plan, task), ignored);
-    end.kind = RoundEnd::Kind::again;
     end.said = fmt::format("{} parts and {} images are missing; try {} of {}", end.work.parts.size(),
                            end.work.merges.size(), r.tries + 1, plan.mostTries + 1);
     return end;

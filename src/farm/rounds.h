@@ -4,6 +4,7 @@
 #include "farm/farm_engine.h"
 #include "farm/farm_plan.h"
 
+#include <optional>
 #include <string>
 
 namespace abbe {
@@ -15,17 +16,9 @@ RoundWork workOf(const FarmPlan&, int round);
 RoundWork missingOf(const FarmPlan&, const FarmFolder&, int round);
 
 struct RoundEnd {
-    enum class Kind : std::uint8_t {
-        done,   // all images are there, and as good as they were to be
-        limit,  // all images are there; of some the noise goal was not met by the most samples that they may have
-        again,  // `work` is what is missing of the round
-        more,   // `work` is a new round, of the frames that are not good enough
-        failed, // some tasks cannot be done, or were tried often enough
-        cancelled,
-    };
-    Kind kind = Kind::done;
-    RoundWork work;
-    std::string said; // a sentence
+    std::optional<ShotOutcome> outcome; // of the shot; nothing: there is more to do
+    RoundWork work;                     // what is missing of the round, or a new one, of the frames that need it
+    std::string said;                   // a sentence
 };
 
 // Looks at a round whose tasks have ended, and plans what is next: changes the plan's rounds, not its file.

@@ -54,22 +54,8 @@ struct NoiseSum {
     double all = 0, known = 0, squares = 0;
 };
 
-const char* wordOfState(ShotStatus::State state) {
-    switch (state) {
-    case ShotStatus::State::going:
-        return "going";
-    case ShotStatus::State::idle:
-        return "idle";
-    case ShotStatus::State::done:
-        return "done";
-    case ShotStatus::State::limit:
-        return "limit";
-    case ShotStatus::State::failed:
-        return "failed";
-    case ShotStatus::State::cancelled:
-        return "cancelled";
-    }
-    return "";
+const char* stateOf(const ShotStatus& status) {
+    return status.outcome ? wordOf(*status.outcome) : status.idle ? "idle" : "going";
 }
 
 std::string timeText(double seconds) {
@@ -77,19 +63,6 @@ std::string timeText(double seconds) {
     if (s < 60) return fmt::format("{} s", s);
     if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
     return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
-}
-
-void judge(const FarmPlan& plan, ShotStatus& status) {
-    using State = ShotStatus::State;
-    status.said = plan.said;
-    if (plan.cancelled)
-        status.state = State::cancelled;
-    else if (plan.outcome == "done")
-        status.state = State::done;
-    else if (plan.outcome == "limit")
-        status.state = State::limit;
-    else if (plan.outcome == "failed")
-        status.state = State::failed;
 }
 
 } // namespace
@@ -132,8 +105,9 @@ ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, const std::v
     status.fraction = all > 0 ? 1 - left / all : 0;
     if (status.running > 0)
         status.secondsLeft = left * plan.width * plan.height * plan.sampleSeconds / (plan.cores * status.running);
-    if (queued.empty() && status.running == 0) status.state = ShotStatus::State::idle;
-    judge(plan, status);
+    if (queued.empty() && status.running == 0) status.idle = true;
+    status.outcome = plan.cancelled ? ShotOutcome::cancelled : plan.outcome;
+    status.said = plan.said;
     return status;
 }
 
@@ -159,7 +133,7 @@ std::string statusTable(const FarmPlan& plan, const FarmFolder& folder, const Sh
                          f.merged ? "yes" : "no");
     }
     if (left > 0) s += fmt::format("and {} frames that are done or have not begun\n", left);
-    s += fmt::format("{}: {:.3g} % of the samples", wordOfState(status.state), 100 * status.fraction);
+    s += fmt::format("{}: {:.3g} % of the samples", stateOf(status), 100 * status.fraction);
     if (status.secondsLeft > 0) s += fmt::format(", {} left on {} tasks", timeText(status.secondsLeft), status.running);
     if (!status.said.empty()) s += "; " + status.said;
     return s + "\n";
@@ -184,7 +158,7 @@ Json statusJson(const FarmPlan& plan, const FarmFolder& folder, const ShotStatus
     return Json::object({{"folder", folder.path()},
                          {"scene", plan.scene},
                          {"engine", plan.engine == FarmEngineKind::slurm ? "slurm" : "local"},
-                         {"state", wordOfState(status.state)},
+                         {"state", stateOf(status)},
                          {"said", status.said},
                          {"rounds", static_cast<std::uint64_t>(plan.rounds.size())},
                          {"samples_planned", plan.rounds.back().to},

@@ -5,6 +5,7 @@
 #include "farm/farm_engine.h"
 #include "farm/farm_plan.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,9 @@ struct FrameStatus {
 };
 
 struct ShotStatus {
-    enum class State : std::uint8_t { going, idle, done, limit, failed, cancelled };
-    State state = State::going;
-    std::string said; // why it is over, or waits
+    std::optional<ShotOutcome> outcome; // if it is over
+    bool idle = false;                  // nothing runs, and nothing waits for its turn
+    std::string said;                   // why it is over, or waits
     std::vector<FrameStatus> frames;
     double fraction = 0;    // of the samples of all rounds that are planned
     double secondsLeft = 0; // with as many tasks at once as now; 0: unknown

@@ -94,6 +94,7 @@ TEST_CASE("a plan is what was written, and another program's is refused") {
     shot.plan.rounds.push_back({32, 64, 3, {2}, 1});
     shot.plan.jobs = {"12", "13"};
     shot.plan.offsets["13"] = 1000;
+    shot.plan.outcome = ShotOutcome::limit;
     shot.folder.writePlan(shot.plan);
     FarmPlan back = shot.folder.readPlan();
     CHECK(back.renderWords == shot.plan.renderWords);
@@ -101,7 +102,11 @@ TEST_CASE("a plan is what was written, and another program's is refused") {
     CHECK(back.rounds[1].from == 32);
     CHECK(back.rounds[1].frames == std::vector<int>{2});
     CHECK(back.offsets == shot.plan.offsets);
+    CHECK(back.outcome == shot.plan.outcome);
     CHECK(!back.cancelled);
+    CHECK(!outcomeNamed(""));
+    for (const auto outcome : {ShotOutcome::done, ShotOutcome::limit, ShotOutcome::failed, ShotOutcome::cancelled})
+        CHECK(outcomeNamed(wordOf(outcome)) == outcome);
     shot.folder.setCancelled(true);
     CHECK(shot.folder.readPlan().cancelled);
     back.program = "abbe 0.0.1";
@@ -120,20 +125,21 @@ TEST_CASE("a round ends with what is missing, as often as it may be tried, and w
     fs::remove(shot.folder.outputOf(shot.plan, lost));
     fs::remove(shot.folder.resultFile(shot.plan, {FarmTask::Kind::merge, 0, 2, 1}));
     RoundEnd end = closeRound(shot.plan, shot.folder, 0);
-    CHECK(end.kind == RoundEnd::Kind::again);
+    CHECK(!end.outcome);
+    CHECK(end.work.round == 0);
     REQUIRE(end.work.parts.size() == 1);
     CHECK(end.work.parts[0].frame == 2);
     CHECK(end.work.merges.size() == 1);
-    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::again);
-    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::failed);
+    CHECK(!closeRound(shot.plan, shot.folder, 0).outcome);
+    CHECK(closeRound(shot.plan, shot.folder, 0).outcome == ShotOutcome::failed);
     shot.plan.rounds[0].tries = 0;
     shot.finish(lost, 0.1, 1);
     end = closeRound(shot.plan, shot.folder, 0);
-    CHECK(end.kind == RoundEnd::Kind::failed);
+    CHECK(end.outcome == ShotOutcome::failed);
     CHECK(end.said.find("r1.0002.p1") != std::string::npos);
     shot.finish(lost, 0.1);
     shot.finish({FarmTask::Kind::merge, 0, 2, 1}, 0.1);
-    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::done);
+    CHECK(closeRound(shot.plan, shot.folder, 0).outcome == ShotOutcome::done);
 }
 
 TEST_CASE("a noise goal asks for as many samples as error needs that falls by the root of them") {
@@ -141,12 +147,13 @@ TEST_CASE("a noise goal asks for as many samples as error needs that falls by th
     shot.plan.noise = 0.05;
     shot.plan.parts = 2;
     shot.finishRound(0, 0.04);
-    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::done);
+    CHECK(closeRound(shot.plan, shot.folder, 0).outcome == ShotOutcome::done);
     shot.finish({FarmTask::Kind::merge, 0, 1, 1}, 0); // a black frame
-    CHECK(closeRound(shot.plan, shot.folder, 0).kind == RoundEnd::Kind::done);
+    CHECK(closeRound(shot.plan, shot.folder, 0).outcome == ShotOutcome::done);
     shot.finish({FarmTask::Kind::merge, 0, 2, 1}, 0.07); // (7/5)² × 1.1 × 32 = 68.99
     const RoundEnd end = closeRound(shot.plan, shot.folder, 0);
-    CHECK(end.kind == RoundEnd::Kind::more);
+    CHECK(!end.outcome);
+    CHECK(end.work.round == 1);
     REQUIRE(shot.plan.rounds.size() == 2);
     CHECK(shot.plan.rounds[1].frames == std::vector<int>{2});
     CHECK(shot.plan.rounds[1].from == 32);
@@ -154,25 +161,26 @@ TEST_CASE("a noise goal asks for as many samples as error needs that falls by th
     // Only what that frame has of both rounds is merged.
     CHECK(shot.folder.inputsOf(shot.plan, end.work.merges[0]).size() == 4);
     shot.finishRound(1, 0.3); // four times as many at most,
-    CHECK(closeRound(shot.plan, shot.folder, 1).kind == RoundEnd::Kind::more);
+    CHECK(!closeRound(shot.plan, shot.folder, 1).outcome);
     CHECK(shot.plan.rounds[2].to == 280);
     shot.finishRound(2, 0.3); // and no more than there may be
-    CHECK(closeRound(shot.plan, shot.folder, 2).kind == RoundEnd::Kind::more);
+    CHECK(!closeRound(shot.plan, shot.folder, 2).outcome);
     CHECK(shot.plan.rounds[3].to == 1000);
     shot.finishRound(3, 0.3);
-    CHECK(closeRound(shot.plan, shot.folder, 3).kind == RoundEnd::Kind::limit);
+    CHECK(closeRound(shot.plan, shot.folder, 3).outcome == ShotOutcome::limit);
 }
 
 TEST_CASE("the status counts parts, and the noise of their mean") {
     Shot shot;
     ShotStatus status = statusOf(shot.plan, shot.folder, {});
-    CHECK(status.state == ShotStatus::State::idle);
+    CHECK(status.idle);
+    CHECK(!status.outcome);
     CHECK(status.fraction == 0);
     shot.finish({FarmTask::Kind::part, 0, 1, 1}, 0.1);
     shot.finish({FarmTask::Kind::part, 0, 1, 2}, 0.1);
     shot.finish({FarmTask::Kind::part, 0, 2, 1}, 0.1, 3);
     status = statusOf(shot.plan, shot.folder, {{"r1.0002.p2", "running", "n1"}});
-    CHECK(status.state == ShotStatus::State::going);
+    CHECK(!status.idle);
     CHECK(status.frames[0].done == 2);
     CHECK(status.frames[0].noise == doctest::Approx(0.1 / std::sqrt(2)));
     CHECK(status.frames[0].samples == 32);
