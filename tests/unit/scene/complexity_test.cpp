@@ -24,8 +24,8 @@ BuildOptions withoutGeometry() {
     return options;
 }
 
-// All that `abbe check` does, in each format, and `--fix`. Processor seconds; the less of two where one took longer than
-// `allowed`.
+// All that `abbe check` does, in each format, and `--fix`. Processor seconds; the less of two where one took longer
+// than `allowed`.
 double checkSeconds(const std::string& scene, double allowed) {
     double least = 1e9;
     for (int run = 0; run < 2 && least > allowed; ++run) {

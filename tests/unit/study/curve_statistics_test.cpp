@@ -1,68 +1,13 @@
 #include "study/curve_fits.h"
 #include "study/curve_statistics.h"
-#include "support/statistics.h"
+#include "support/made_curve.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
 
 using namespace abbe;
-
-namespace {
-
-const std::vector<std::uint32_t> kLadder{4, 8, 16, 32, 64, 128};
-
-// Errors that fall by a known law. Each rung takes half of its deviation from the rung before, as renders that go on
-// do.
-struct MadeCurve {
-    double scale = 0.1, power = -1, floor = 0, sigma = 0.1, secondsPerSample = 0.01, fixedSeconds = 0;
-
-    double errorAt(double n) const { return floor + scale * std::pow(n, power); }
-    CurveStatistics make(std::uint64_t study, std::size_t seeds = 8, std::uint64_t firstSeed = 1) const {
-        std::vector<SeedRun> runs;
-        for (std::size_t s = 0; s < seeds; ++s) {
-            test::Random random(1000 * study + s + firstSeed);
-            SeedRun run{firstSeed + s, {}};
-            double deviation = normal(random);
-            for (const std::uint32_t n : kLadder) {
-                deviation = 0.5 * deviation + std::sqrt(0.75) * normal(random);
-                const double falling = scale * std::pow(n, power) * std::exp(sigma * deviation - sigma * sigma / 2);
-                const double seconds = fixedSeconds + secondsPerSample * n;
-                run.rungs.push_back(
-                    {floor + falling, 0.9 * falling, seconds, 2 * seconds, n, 2 * secondsPerSample * n});
-            }
-            runs.push_back(run);
-        }
-        return CurveStatistics(kLadder, runs);
-    }
-    static double normal(test::Random& random) {
-        return std::sqrt(-2 * std::log(random.uniformDouble())) * std::cos(6.283185307179586 * random.uniformDouble());
-    }
-};
-
-template <typename Interval> int covered(const MadeCurve& curve, double truth, Interval interval, int studies = 500) {
-    int inside = 0;
-    for (int study = 0; study < studies; ++study) {
-        const Estimate e = interval(curve.make(static_cast<std::uint64_t>(study)));
-        inside += e.low <= truth && truth <= e.high;
-    }
-    return inside;
-}
-
-} // namespace
-
-TEST_CASE("slopes of 500 made studies lie within their intervals") {
-    for (const double power : {-1.0, -1.4})
-        for (const double sigma : {0.02, 0.2}) {
-            CAPTURE(power);
-            CAPTURE(sigma);
-            MadeCurve curve;
-            curve.power = power;
-            curve.sigma = sigma;
-            const int inside = covered(curve, power, [](const CurveStatistics& s) { return s.slope(); });
-            CHECK(inside >= 450);
-            CHECK(inside <= 495);
-        }
-}
+using test::kLadder;
+using test::MadeCurve;
 
 TEST_CASE("slope and cost of halving the noise without any noise") {
     MadeCurve curve;
@@ -71,22 +16,6 @@ TEST_CASE("slope and cost of halving the noise without any noise") {
     CHECK(curve.make(1).halfNoiseCost().value == doctest::Approx(4));
     curve.power = -2;
     CHECK(curve.make(1).halfNoiseCost().value == doctest::Approx(2));
-}
-
-TEST_CASE("a floor is found where there is one and nowhere else") {
-    MadeCurve curve;
-    curve.sigma = 0.05;
-    curve.scale = 0.01;
-    const auto floor = [](const CurveStatistics& s) { return s.floor(); };
-    // The error of 128 samples is 8e-5. Without a floor:
-    const int none = covered(curve, 0, floor, 100);
-    CHECK(none >= 90);
-    // A bias of 1 %:
-    curve.floor = 1e-4;
-    const int right = covered(curve, 1e-4, floor, 100);
-    CHECK(right >= 90);
-    const int found = 100 - covered(curve, 0, floor, 100);
-    CHECK(found >= 95);
 }
 
 TEST_CASE("the fit with a floor recovers what made the figures") {
@@ -128,18 +57,6 @@ TEST_CASE("the time to an error, within the ladder and beyond") {
     CHECK_FALSE(s.timeTo(1e-6, {}).seconds.known()); // 10^11 samples
 }
 
-TEST_CASE("times to an error lie within their intervals") {
-    MadeCurve curve;
-    curve.sigma = 0.2;
-    for (const double n : {50.0, 1000.0}) {
-        CAPTURE(n);
-        const auto seconds = [&](const CurveStatistics& s) { return s.timeTo(std::sqrt(0.1 / n), {}).seconds; };
-        const int inside = covered(curve, 0.01 * n, seconds);
-        CHECK(inside >= 450);
-        CHECK(inside <= 495);
-    }
-}
-
 TEST_CASE("efficiency against another curve at equal time") {
     MadeCurve main, slow; // of twice the error in three times the time
     slow.scale = 0.2;
@@ -147,16 +64,7 @@ TEST_CASE("efficiency against another curve at equal time") {
     main.sigma = slow.sigma = 0;
     CHECK(slow.make(2).efficiencyAgainst(main.make(1), TimeBasis::sampling).value == doctest::Approx(1.0 / 6));
     CHECK(main.make(1).efficiencyAgainst(slow.make(2), TimeBasis::sampling).value == doctest::Approx(6));
-    main.sigma = slow.sigma = 0.1;
-    int inside = 0;
-    for (std::uint64_t study = 0; study < 500; ++study) {
-        const Estimate e = slow.make(2 * study + 1).efficiencyAgainst(main.make(2 * study + 2), TimeBasis::sampling);
-        inside += e.low <= 1.0 / 6 && 1.0 / 6 <= e.high;
-    }
-    CHECK(inside >= 450);
-    CHECK(inside <= 495);
     // One that begins only when the other is done: that one is continued by its slope.
-    main.sigma = slow.sigma = 0;
     slow.secondsPerSample = 1;
     CHECK(slow.make(1).efficiencyAgainst(main.make(1), TimeBasis::sampling).value == doctest::Approx(0.005));
     // One that rises is not continued.
@@ -165,31 +73,6 @@ TEST_CASE("efficiency against another curve at equal time") {
     main.power = -1;
     // No seed in common.
     CHECK_FALSE(slow.make(1, 8, 101).efficiencyAgainst(main.make(1), TimeBasis::sampling).known());
-}
-
-TEST_CASE("times that vary count in the intervals of what is told in time") {
-    // Every third seed met a machine that was busy: half as long again. The median does not see it.
-    MadeCurve curve;
-    curve.sigma = 0.05;
-    int inside = 0;
-    double width = 0, quietWidth = 0;
-    for (std::uint64_t study = 0; study < 300; ++study) {
-        const CurveStatistics quiet = curve.make(study);
-        std::vector<SeedRun> runs(quiet.runs().begin(), quiet.runs().end());
-        test::Random random(study + 1);
-        for (SeedRun& run : runs) {
-            const double busy = random.uniformDouble() < 0.33 ? 1.5 : 1 + 0.02 * random.uniformDouble();
-            for (RungRun& rung : run.rungs) rung.seconds *= busy;
-        }
-        const CurveStatistics noisy(kLadder, runs);
-        const Estimate time = noisy.timeTo(std::sqrt(0.1 / 50), {}).seconds;
-        inside += time.low <= 0.505 && 0.505 <= time.high;
-        width += time.high - time.low;
-        const Estimate before = quiet.timeTo(std::sqrt(0.1 / 50), {}).seconds;
-        quietWidth += before.high - before.low;
-    }
-    CHECK(inside >= 276);
-    CHECK(width > 1.5 * quietWidth);
 }
 
 TEST_CASE("time: what is fixed is told from what samples take") {
