@@ -79,7 +79,7 @@ class RoughDielectricBsdf final : public Bsdf {
     struct LaneEval {
         Spectrum fcos, pdf;
     };
-    // Factors of both parts, and what they make of a microfacet met at cosine c.
+    // Factors of both parts, and what they make of a microfacet hit at cosine c.
     struct Scale {
         Spectrum reflection, transmission;
     };

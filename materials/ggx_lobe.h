@@ -61,7 +61,7 @@ class GgxLobe {
         if (!(sine2 > 0)) return std::min(1.f, std::sqrt(0.5f * (square(ggx_.alphaX()) + square(ggx_.alphaY()))));
         return std::min(1.f, std::sqrt((square(ggx_.alphaX() * wo.x) + square(ggx_.alphaY() * wo.y)) / sine2));
     }
-    // Of the cosines at which its microfacets are met, about.
+    // Of the cosines at which its microfacets are hit, about.
     float spread(Vec3 wo) const { return width(wo) * std::sqrt(wo.x * wo.x + wo.y * wo.y); }
 
   private:

@@ -51,7 +51,7 @@ class Hair final : public Material {
         if (const float c = pheomelanin_.at(hit); c > 0) fibre.absorption += pheomelaninAbsorption(lambda) * c;
         return arena.make<HairBsdf>(fibre);
     }
-    // All that happens in a fibre has happened where light met it from outside: on its way out of a tube it goes on.
+    // All that happens in a fibre has happened where light hit it from outside: on its way out of a tube it goes on.
     float opacity(const SurfaceHit& hit) const noexcept override { return dot(hit.arrival, hit.ng) > 0 ? 0.f : 1.f; }
 
     static constexpr float kMostMelanin = 100;

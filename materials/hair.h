@@ -24,12 +24,12 @@ float hairAzimuthalWidth(float azimuthalRoughness);
 
 // A clear, absorbing cylinder of dielectric with tilted scales [Chiang2016]: light is reflected (p = 0), passes (1),
 // is reflected inside once (2) and, all together, more often. Locally +x runs along the fibre from root to tip and +z
-// is the normal where the ray met it. Light arrives from all around and leaves all around. Lossless without absorption.
+// is the normal where the ray hit it. Light arrives from all around and leaves all around. Lossless without absorption.
 // Not reciprocal: h belongs to wo.
 class HairBsdf final : public Bsdf {
   public:
     struct Fibre {
-        float h = 0;        // where across the fibre wo meets it, -1 … 1: minus its share of the radius along
+        float h = 0;        // where across the fibre wo hits it, -1 … 1: minus its share of the radius along
                             // x × wo
         float eta = 1.55f;  // index of the inside
         float variance = 0; // hairVariance()

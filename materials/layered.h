@@ -21,7 +21,7 @@ struct LayeredParams {
 
 schema::TypeInfo layeredType();
 // Refers to the base, which must outlive it, as must curves and textures. Requires that the base has no inside, is no
-// boundary and does not shine.
+// boundary and does not emit.
 std::unique_ptr<const Material> makeLayered(const LayeredParams&, const Material& base);
 
 } // namespace abbe

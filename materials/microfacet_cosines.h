@@ -37,14 +37,14 @@ struct MicrofacetCosineGrid {
 // How light that one microfacet of a GGX surface turns fares among the others: what it takes to find the share that an
 // interface with *any* reflectance loses, from what a bare one loses.
 
-// For one direction of view and one index. The microfacets that are met at a given cosine lie on a circle around wo;
+// For one direction of view and one index. The microfacets that are hit at a given cosine lie on a circle around wo;
 // the means are taken over it, as much of each as wo sees [Heitz2014].
 class MicrofacetEscape {
   public:
     // wo unit, wo.z >= 0; eta: far side over near side.
     MicrofacetEscape(const Ggx& ggx, Vec3 wo, Spectrum eta);
 
-    // Of the light that meets microfacets at cosine c in [0, 1], per unit of c: the share that leaves the surface if
+    // Of the light that hits microfacets at cosine c in [0, 1], per unit of c: the share that leaves the surface if
     // they reflect all of it, and the share that leaves it if they refract all of it. 0 where they cannot refract.
     struct Shares {
         Spectrum reflected, refracted;
@@ -68,7 +68,7 @@ class MicrofacetEscape {
     Spectrum eta_;
 };
 
-// Integrals over the cosines at which light meets the microfacets of a lobe, for reflectances with critical angles.
+// Integrals over the cosines at which light hits the microfacets of a lobe, for reflectances with critical angles.
 
 // Cosine up to which an interface reflects totally, the lowest of all lanes; 0 if it does not. eta: far side over near
 // side.

@@ -34,7 +34,7 @@ class Mix final : public Material {
 
     const Bsdf* bsdf(const SurfaceHit& hit, const Wavelengths& lambda, Arena& arena) const noexcept override {
         const Shares s = shares(hit);
-        // Of what meets the surface at all.
+        // Of what hits the surface at all.
         const float sum = s.first + s.second, amount = sum > 0 ? s.second / sum : 0;
         if (!(amount > 0)) return &partBsdf(first_, hit, lambda, arena);
         if (!(amount < 1)) return &partBsdf(second_, hit, lambda, arena);
@@ -104,7 +104,7 @@ std::unique_ptr<const Material> makeMix(const MixParams& params, const Material&
 
 namespace {
 
-// The sum of two shares; densities of lanes other than the hero's are told relative to the hero's.
+// The sum of two shares; densities of lanes other than the hero's are stated relative to the hero's.
 BsdfEval sum(const BsdfEval& a, float shareA, const BsdfEval& b, float shareB) {
     const float pdfA = a.pdfSolidAngle * shareA, pdfB = b.pdfSolidAngle * shareB, pdf = pdfA + pdfB;
     if (!(pdf > 0)) return {};

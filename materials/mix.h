@@ -16,7 +16,7 @@ struct MixParams {
 
 schema::TypeInfo mixMaterialType();
 // Refers to both, which must outlive it. Requires that at most one of them has an inside, or that their insides are the
-// same (sameInside), and that neither is a boundary or shines.
+// same (sameInside), and that neither is a boundary or emits.
 std::unique_ptr<const Material> makeMix(const MixParams&, const Material& first, const Material& second);
 
 // Whether light may enter closed shapes of the material.

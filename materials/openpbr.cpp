@@ -43,7 +43,7 @@ class OpenPbrCoatFrame {
     bool baseTurned_; // the axes of the hit are those of the base, which has a tangent of its own
 };
 
-// What covers the light of an OpenPBR surface that shines: its coat and its fuzz [Andersson2024].
+// What covers the light of an OpenPBR surface that emits: its coat and its fuzz [Andersson2024].
 
 // The coat absorbs along the refracted way; fuzz lets through what it does not throw back. Refers to the coat's colour.
 // Requires coats and fuzz without textures.

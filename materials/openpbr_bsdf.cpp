@@ -188,7 +188,7 @@ OpenPbrBsdf::LaneEval OpenPbrBsdf::refraction(const View& v, Vec3 wi, Transport 
     const Spectrum cosine = max(min(Spectrum(halves.cosO), kOne), kNone);
     const Facet at = facet(v, cosine);
     Spectrum chosen(1 - reflectionShare(at));
-    if (disperses_) // each lane meets another microfacet, whose choice is a mean over all lanes
+    if (disperses_) // each lane hits another microfacet, whose choice is a mean over all lanes
         for (int i = 0; i < kLanes; ++i) chosen.v[i] = 1 - reflectionShare(facet(v, Spectrum(cosine[i])));
     const Spectrum common = halves.density(ggx.alphaX(), ggx.alphaY(), eta);
     const Passing pass = passing(v, 1, false);
@@ -280,7 +280,7 @@ std::optional<Vec3> OpenPbrBsdf::direction(const View& v, Choice choice, float r
     return choice == kSheet || choice == kDiffuseThrough ? flipped(wi) : wi;
 }
 
-// The hero's direction through the microfacet m, met at cosine c.
+// The hero's direction through the microfacet m, hit at cosine c.
 std::optional<Vec3> OpenPbrBsdf::refracted(const View& v, Vec3 m, float c) const {
     const float n = point_.dielectric.eta()[0], eta = v.within ? 1 / n : n;
     const float g2 = (eta - 1) * (eta + 1) + c * c;

@@ -117,7 +117,7 @@ class OpenPbrBsdf final : public Bsdf {
         Spectrum opaque, clear;
     };
     Passing passing(const View&, float cosI, bool entering) const;
-    // At a microfacet that light meets at cosine c: factor of the mirror's value, and the part that goes through.
+    // At a microfacet that light hits at cosine c: factor of the mirror's value, and the part that goes through.
     struct Facet {
         Spectrum opaque, clear, transmitted;
     };

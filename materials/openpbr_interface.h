@@ -1,7 +1,7 @@
 // What the base of an OpenPBR surface reflects at a microfacet, under its film and coat [Andersson2024].
 //
 // Part of the surface carries a coat and part a film: reflectances are means over the parts, which is what "coverage"
-// means there. Under the coat, light meets the base at the angle to which the coat has refracted it; the
+// means there. Under the coat, light hits the base at the angle to which the coat has refracted it; the
 // specification's one averaged index would reflect totally at angles that the coat never lets through.
 #pragma once
 
@@ -160,7 +160,7 @@ class OpenPbrMetal {
     }
 
   private:
-    // c at the outside, where the colours are stated; within: the angle that the metal is met at.
+    // c at the outside, where the colours are stated; within: the angle that the metal is hit at.
     Spectrum under(Spectrum c, Spectrum within, Spectrum above) const {
         const Spectrum bare = measured_ ? fresnelConductor(within, n_ / above, k_ / above) : byColor(c);
         if (cover_.film == 0) return bare;

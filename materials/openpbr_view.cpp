@@ -125,7 +125,7 @@ void OpenPbrBsdf::setInterface(View& v, Spectrum eta, Covered&& covered, Bare&& 
     v.through = shares.transmission();
 }
 
-// Seen from the back of a sheet, what leans to the right there leans to the right here: of directions told as if both
+// Seen from the back of a sheet, what leans to the right there leans to the right here: of directions stated as if both
 // sides were the front, the normal changes its slope. Where the coat turns its back on wo, it is seen edge-on.
 void OpenPbrBsdf::turnCoat(View& v, bool back) const {
     constexpr float edge = 1e-3f;
@@ -135,7 +135,7 @@ void OpenPbrBsdf::turnCoat(View& v, bool back) const {
     if (v.coatWo.z < edge) v.coatWo = normalize(Vec3{v.coatWo.x, v.coatWo.y, edge});
 }
 
-// The coat reflects, absorbs and darkens: what returns from an opaque base meets the coat's surface from below and is
+// The coat reflects, absorbs and darkens: what returns from an opaque base hits the coat's surface from below and is
 // partly sent back, (1 - K)/(1 - E K) of it gets out in the end.
 void OpenPbrBsdf::viewCoat(View& v) const {
     const OpenPbrCover& cover = point_.cover;

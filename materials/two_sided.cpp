@@ -5,7 +5,7 @@
 namespace abbe {
 namespace {
 
-// Which side is met is known by the geometric normal where the hit says how it was met, else by wo.
+// Which side is hit is known by the geometric normal where the hit says how it was hit, else by wo.
 class TwoSidedBsdf final : public Bsdf {
   public:
     TwoSidedBsdf(const Bsdf& front, const Bsdf& back) : front_(front), back_(back) {}

@@ -13,7 +13,7 @@ struct TwoSidedParams {
 };
 
 schema::TypeInfo twoSidedType();
-// Refers to both, which must outlive it. Requires that neither has an inside (hasInside), is a boundary or shines. To
+// Refers to both, which must outlive it. Requires that neither has an inside (hasInside), is a boundary or emits. To
 // the back's material the back is the outside.
 std::unique_ptr<const Material> makeTwoSided(const Material& front, const Material& back);
 

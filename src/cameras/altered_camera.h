@@ -56,7 +56,7 @@ class ReducedCamera final : public Camera {
         return inner_->project(p, still_ ? 0.5 : time, near);
     }
     float rayTime(float u) const noexcept override { return still_ ? 0 : inner_->rayTime(u); }
-    // The middle of a lens whose points ray() finds otherwise than connect() is met by no connection.
+    // The middle of a lens whose points ray() finds otherwise than connect() is hit by no connection.
     std::optional<LensConnection> connect(const LensQuery& query) const noexcept override {
         return reachable() ? inner_->connect(held(query)) : std::nullopt;
     }

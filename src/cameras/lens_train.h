@@ -28,7 +28,7 @@ class LensTrain {
     // A ray that comes from the film, through all surfaces and the stop, into the scene: replaced by the ray in front
     // of the lens. False if it is lost: at a rim, at the stop's opening, or by total reflection.
     bool toScene(LensRay&, double nm, const Aperture& opening) const noexcept;
-    // The other way; `entry` is told where the ray met the first surface.
+    // The other way; `entry` becomes where the ray hit the first surface.
     bool toFilm(LensRay&, double nm, const Aperture& opening, Vec3d* entry = nullptr) const noexcept;
 
     CardinalPoints cardinalPoints(double nm) const;

@@ -190,7 +190,7 @@ extern const char* const kStudyHelp;
 void addArguments(Arguments&, StudyOptions&);
 ExitCode run(const StudyOptions&, const CommonOptions&);
 
-// `abbe replay`: samples of a render that are taken again and told vertex by vertex.
+// `abbe replay`: samples of a render that are taken again and reported vertex by vertex.
 struct ReplayOptions {
     RenderOptions render;           // how the samples were taken; its input is a scene or an image
     std::optional<Vec2i> pixel;     // absent, of an image: all that its header lists

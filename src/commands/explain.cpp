@@ -160,7 +160,7 @@ CausticFindings causticsOf(const LoadedScene& loaded, const BuiltScene& describe
     auto& verdict = found.of<LightPathFindings>().verdict;
     verdict = lightPathVerdict(described.scene, settings.technique);
     if (verdict != LightPathVerdict::undecided) return found;
-    Diagnostics faults; // those of the scene's text have been told
+    Diagnostics faults; // those of the scene's text have been reported
     const BuiltScene built = buildScene(loaded.tree, loaded.types, build, faults);
     if (faults.hasErrors()) return found;
     const FilmSettings film = filmSettings(built.film);

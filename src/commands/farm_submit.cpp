@@ -121,7 +121,8 @@ int usualCores(const FarmSubmitOptions& options) {
     return std::max(1, least);
 }
 
-// All but the measured cost and the rounds. Throws FarmFault; what is wrong with the scene was told, and there is none.
+// All but the measured cost and the rounds. Throws FarmFault; what is wrong with the scene was reported, and there is
+// none.
 std::optional<FarmPlan> planOf(const FarmSubmitOptions& options, const CommonOptions& common) {
     refuseContradictions(options.render);
     const auto loaded = loadScene(options.render.input);

@@ -6,7 +6,7 @@
 namespace abbe {
 
 // Runs the command that the words name, without the program's own name before them. The exit code
-// (docs/command_line.md); every fault has been told on stderr. Sets the signals of the process: once, from the main
+// (docs/command_line.md); every fault has been reported on stderr. Sets the signals of the process: once, from the main
 // thread.
 int runProgram(std::span<const char* const> words);
 

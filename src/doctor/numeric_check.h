@@ -15,9 +15,9 @@ double wrongRoundings();
 // Products that are left denormal in a worker of parallelFor (docs/hard_cases.md, case 59).
 double denormalsLeft();
 
-// Rays against meshes: none meets the surface that it leaves, none gets through a closed one.
+// Rays against meshes: none hits the surface that it leaves, none gets through a closed one.
 
-// Of `rays` that leave a convex mesh of 32 000 triangles at all angles, half of them grazing, the share that meets it
+// Of `rays` that leave a convex mesh of 32 000 triangles at all angles, half of them grazing, the share that hits it
 // again. The mesh lies `offset` m from the origin. Docs: hard_cases.md, cases 1 and 2. Requires rays > 0.
 double selfIntersections(int rays, double offset);
 // Of `rays` from inside a closed mesh, all of them aimed at its edges, the number that escapes (case 5).

@@ -150,7 +150,7 @@ CurvePoint conePoint(const SizedPoint& first, const SizedPoint& second, Vec3d o,
     return {c + n * radius, n, axis, l > 0 ? along / l : 0, acrossOf(n, d, axis)};
 }
 
-std::optional<Vec2d> meetCone(const SizedPoint& first, const SizedPoint& second, Vec3d o, Vec3d d) {
+std::optional<Vec2d> intersectCone(const SizedPoint& first, const SizedPoint& second, Vec3d o, Vec3d d) {
     const Vec3d a(first.position), b(second.position);
     const auto ra = static_cast<double>(first.radius), rb = static_cast<double>(second.radius);
     double enter = std::numeric_limits<double>::infinity(), leave = -enter;
@@ -188,7 +188,7 @@ std::optional<Vec2d> meetCone(const SizedPoint& first, const SizedPoint& second,
 
 namespace {
 
-// Embree meets a row of flat quadrilaterals, whose u is off by their skew. The point meant is where the curve comes
+// Embree hits a row of flat quadrilaterals, whose u is off by their skew. The point meant is where the curve comes
 // nearest to the ray's line, found by Newton's method on half the squared distance.
 double nearestToLine(const CurveSegment& s, double u, Vec3d o, Vec3d d) {
     constexpr int steps = 4;
@@ -317,14 +317,14 @@ bool Curves::confirms(const RawHit& raw, const Ray& ray) const {
     const Vec3d o(ray.origin), direction(ray.direction);
     const double l = length(direction), reported = static_cast<double>(raw.distance) * l;
     const Vec3d d = direction * (1 / l);
-    const auto met = meetCone(p[0], p[1], o, d);
-    if (!met) return false;
-    const double t = reported - met->x < met->y - reported ? met->x : met->y;
+    const auto cone = intersectCone(p[0], p[1], o, d);
+    if (!cone) return false;
+    const double t = reported - cone->x < cone->y - reported ? cone->x : cone->y;
     if (!(t > 0)) return false;
     const auto buried = [&](std::uint32_t neighbour) {
         const SizedPoint* q = pointsAt(neighbour, 2, ray.time, room.data());
         const double slack = 1e-6 * static_cast<double>(std::max(q[0].radius, q[1].radius));
-        const auto inside = meetCone(q[0], q[1], o, d);
+        const auto inside = intersectCone(q[0], q[1], o, d);
         return inside && inside->x < t - slack && t + slack < inside->y;
     };
     const std::uint8_t neighbours = neighbours_[raw.primitive];

@@ -1,5 +1,5 @@
 // Hair, fur, wires, grass: thin curves with a width; one segment of them as a polynomial, in double, and where exactly
-// a ray meets it.
+// a ray hits it.
 #pragma once
 
 #include "render/shape.h"
@@ -47,7 +47,7 @@ CurvePoint tubePoint(const CurveSegment&, double u, Vec3d o, Vec3d d, double t);
 // Of two spheres and the cone that touches both.
 CurvePoint conePoint(const SizedPoint& a, const SizedPoint& b, Vec3d o, Vec3d d, double t);
 // Distances at which a ray enters and leaves that body, which may lie behind it.
-std::optional<Vec2d> meetCone(const SizedPoint& a, const SizedPoint& b, Vec3d o, Vec3d d);
+std::optional<Vec2d> intersectCone(const SizedPoint& a, const SizedPoint& b, Vec3d o, Vec3d d);
 CurvePoint ribbonPoint(const CurveSegment&, double u, Vec3d o, Vec3d d);
 
 // Strands one after the other: strand i has the next `strandSizes[i]` control points.

@@ -423,7 +423,7 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     return std::isfinite(best) && best <= static_cast<double>(ray.tMax);
 }
 
-// Met again, because hits do not keep the way to their object: of this shape, nothing else lies so near to the point.
+// Hit again, because hits do not keep the way to their object: of this shape, nothing else lies so near to the point.
 std::optional<Passage> EmbreeScene::passage(const Ray& ray, const SurfaceHit& hit, float distance) const noexcept {
     const float cosine = std::max(std::abs(dot(ray.direction, hit.ng)), 0.01f);
     const float rounding = (4 * dot(abs(hit.ng), hit.pError) + 0x1p-20f * distance) / cosine;
@@ -480,7 +480,7 @@ std::size_t EmbreeScene::coincident(const Ray& ray, const SurfaceHit& hit,
         surface(rayHit.hit, context.path(rayHit.hit), rayHit.ray.tfar, ray, other);
         other.distance = rayHit.ray.tfar;
         context.skipped[context.skippedCount++] = other.shape;
-        // Only those of the same layer of other dielectrics: an opaque surface ends the path when it is met.
+        // Only those of the same layer of other dielectrics: an opaque surface ends the path when it is hit.
         if (other.material->ior()) ++count;
         if (context.skippedCount == RayContext::kMaxSkipped) break;
     }

@@ -65,7 +65,7 @@ struct GeometryRecord {
 static_assert(sizeof(GeometryRecord) == 32);
 
 // Embree accepts hits at the near end itself: without this a ray that starts on a plane through the origin, where the
-// error bound is 0, would meet it again at distance 0.
+// error bound is 0, would hit it again at distance 0.
 inline constexpr float kNearestHit = std::numeric_limits<float>::min();
 // Turns the primitives of shapes into geometries of one Embree scene, numbered in order, with a record for each at the
 // end of `records`. Refers to the shapes and their data (see EmbreeSceneBuilder).
@@ -102,7 +102,7 @@ class EmbreeSink final : public GeometrySink {
 // Sets the mask, commits and hands the geometry over to the scene under the given number.
 void attachGeometry(RTCScene, RTCGeometry, std::size_t id, Visibility);
 
-// Where a segment ends for occlusion: the surface that its end point belongs to is met at 1 give or take the rounding
+// Where a segment ends for occlusion: the surface that its end point belongs to is hit at 1 give or take the rounding
 // of Embree's distance, a few ulp.
 inline constexpr float kBeforeEnd = 1 - 0x1p-20f;
 

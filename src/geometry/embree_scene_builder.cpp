@@ -70,7 +70,7 @@ void EmbreeSceneBuilder::Impl::addShapes(EmbreeScene& target, const Shapes& adde
     }
 }
 
-// Adds what is placed inside, with geometry ids from the given one on, which no record needs: hits name what they met
+// Adds what is placed inside, with geometry ids from the given one on, which no record needs: hits name what they hit
 // in the innermost object.
 void EmbreeSceneBuilder::Impl::addTables(EmbreeScene& target, std::uint32_t inside, std::size_t geometryId,
                                          BuiltObject& object) {

@@ -100,7 +100,7 @@ double Frustum::radiusAt(double y) const {
     return y < 0 ? bottom_ + slope_ * (y + halfHeight_) : top_ + slope_ * (y - halfHeight_);
 }
 
-std::optional<ParametricShape::LocalHit> Frustum::meet(Vec3d origin, Vec3d d, double tMax) const {
+std::optional<ParametricShape::LocalHit> Frustum::intersectLocal(Vec3d origin, Vec3d d, double tMax) const {
     // From the point of the line nearest to the centre all numbers are of the size of the shape.
     const double shift = -dot(origin, d);
     const Vec3d o = origin + d * shift;

@@ -386,7 +386,7 @@ struct PlanePoint {
     Vec3d p;
 };
 
-PlanePoint meet(Vec3d corner, Vec3d e1, Vec3d e2, Vec3d origin, Vec3d direction) {
+PlanePoint intersectPlane(Vec3d corner, Vec3d e1, Vec3d e2, Vec3d origin, Vec3d direction) {
     const Vec3d across = cross(e1, e2);
     const double area2 = lengthSquared(across), distance = dot(corner - origin, across) / dot(direction, across);
     if (!(area2 > 0) || !std::isfinite(distance)) return {};
@@ -408,7 +408,8 @@ std::optional<SurfacePatch> Mesh::patch(const SurfaceHit& hit, Vec3d origin, Vec
     PlanePoint at;
     for (std::uint64_t i = first; i < first + static_cast<std::uint64_t>(count); ++i) {
         const auto [a, b, c] = triangle(i);
-        const PlanePoint q = meet(Vec3d(p[a]), Vec3d(p[b]) - Vec3d(p[a]), Vec3d(p[c]) - Vec3d(p[a]), origin, direction);
+        const PlanePoint q =
+            intersectPlane(Vec3d(p[a]), Vec3d(p[b]) - Vec3d(p[a]), Vec3d(p[c]) - Vec3d(p[a]), origin, direction);
         if (q.outside < at.outside) at = q, chosen = i;
     }
     if (!std::isfinite(at.outside)) return std::nullopt;

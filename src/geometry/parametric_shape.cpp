@@ -43,7 +43,7 @@ std::optional<RawHit> ParametricShape::intersect(const Ray& ray) const {
     const Vec3d d = inverse_.vector(Vec3d(ray.direction));
     const double l = length(d);
     if (!(l > 0)) return std::nullopt;
-    const auto hit = meet(inverse_.point(Vec3d(ray.origin)), d * (1 / l), l * static_cast<double>(ray.tMax));
+    const auto hit = intersectLocal(inverse_.point(Vec3d(ray.origin)), d * (1 / l), l * static_cast<double>(ray.tMax));
     if (!hit) return std::nullopt;
     return RawHit{.u = static_cast<float>(hit->part), .distance = static_cast<float>(hit->t / l)};
 }

@@ -56,7 +56,7 @@ class ParametricShape : public Shape, public SurfaceSampling {
     std::optional<double> uniformStretch() const;
 
     // Nearest hit in (0, tMax]. `d` is of unit length.
-    virtual std::optional<LocalHit> meet(Vec3d o, Vec3d d, double tMax) const = 0;
+    virtual std::optional<LocalHit> intersectLocal(Vec3d o, Vec3d d, double tMax) const = 0;
     // The point of the part that is nearest to p, which is off by rounding only.
     virtual LocalPoint project(Vec3d p, int part) const = 0;
     virtual LocalDerivatives derivatives(const LocalPoint&, int part) const = 0;

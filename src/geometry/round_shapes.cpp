@@ -116,7 +116,7 @@ std::optional<ShapeSample> Sphere::sample(const Receiver& from, std::uint32_t, V
         if (!(s.pdfSolidAngle > 0)) return std::nullopt;
         return s;
     }
-    // Uniform in the cone. A direction at angle θ in it meets the sphere first at the point whose normal is at angle α
+    // Uniform in the cone. A direction at angle θ in it hits the sphere first at the point whose normal is at angle α
     // from the axis back to `from`: cos α = sin²θ / sin θmax + cos θ sqrt(1 - sin²θ / sin²θmax) [Pharr2023, ch. 6].
     const double oneMinusCosMax = coneOneMinusCos(d2, r2);
     const double h = static_cast<double>(u.x) * oneMinusCosMax;

@@ -32,7 +32,7 @@ class Sphere final : public Shape, public SurfaceSampling {
     std::optional<SurfacePatch> patch(const SurfaceHit&, Vec3d origin, Vec3d direction) const noexcept override;
     const SurfaceSampling* sampling() const override { return this; }
     double area() const override;
-    // From outside: uniform in the cone of directions that meet the sphere. From inside: uniform per area.
+    // From outside: uniform in the cone of directions that hit the sphere. From inside: uniform per area.
     std::optional<ShapeSample> sample(const Receiver&, std::uint32_t part, Vec2 u) const override;
     float pdfSolidAngle(const Receiver&, const SurfaceHit&) const override;
     std::optional<ShapePoint> samplePoint(std::uint32_t part, Vec2 u) const override;

@@ -81,7 +81,7 @@ Vec2 SphericalRectangle::sample(Vec2 u) const {
     const SinCos angle = sinCosTurn(std::fma(u.x, solidAngle_, k_));
     const float f = angle.cos * b0_ - b1_, s = sine0_ * angle.sin;
     const float along = std::sqrt(std::max(0.f, (f - s) * (f + s)));
-    // along = 0 is x at infinity: the clamp settles it; 0 / 0 is only met when the rectangle has no width.
+    // along = 0 is x at infinity: the clamp settles it; 0 / 0 only occurs when the rectangle has no width.
     float x = std::copysign(z_, f) * angle.sin / along;
     if (!(x == x)) x = 0;
     x = std::clamp(x, x0_, x1_);

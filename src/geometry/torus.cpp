@@ -125,7 +125,7 @@ double Torus::areaUnderMap() const {
     return own * sum / (steps * steps);
 }
 
-std::optional<ParametricShape::LocalHit> Torus::meet(Vec3d origin, Vec3d d, double tMax) const {
+std::optional<ParametricShape::LocalHit> Torus::intersectLocal(Vec3d origin, Vec3d d, double tMax) const {
     // From the point of the line nearest to the centre the quartic has no cubic term, and its other coefficients do not
     // grow with the distance of the origin.
     const double shift = -dot(origin, d), outer2 = square(major_ + minor_) * (1 + 1e-9);

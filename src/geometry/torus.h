@@ -14,7 +14,7 @@ class Torus final : public ParametricShape {
     Torus(double major, double minor, const Transform& toRender);
 
   private:
-    std::optional<LocalHit> meet(Vec3d o, Vec3d d, double tMax) const override;
+    std::optional<LocalHit> intersectLocal(Vec3d o, Vec3d d, double tMax) const override;
     LocalPoint project(Vec3d p, int part) const override;
     LocalDerivatives derivatives(const LocalPoint&, int part) const override;
     LocalPoint sampleLocal(Vec2d u) const override;

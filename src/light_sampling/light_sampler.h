@@ -46,7 +46,7 @@ class LightSampler {
     // The same for light that scatters somewhere on a piece of a ray: lights far away only where there are no others.
     PickedLight pickAlong(float u, const Ray&, RayExtent) const noexcept;
     float probabilityAlong(const Light* light, std::uint32_t part, const Ray&, RayExtent) const noexcept;
-    // Lights that rays which leave the scene meet.
+    // Lights that rays which leave the scene hit.
     const std::vector<const DistantLight*>& infinite() const { return infinite_; }
 
   private:

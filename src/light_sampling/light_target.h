@@ -45,7 +45,7 @@ struct EmittedRay {
     Spectrum beta; // W·nm⁻¹: radiance cos θ / density. Its mean over rays is the power of all lights
     EmissionDensity density;
     bool deltaPosition = false, deltaDirection = false;
-    bool neverHit = false; // a camera path cannot meet the light, as it is one of these or has no body
+    bool neverHit = false; // a camera path cannot hit the light, as it is one of these or has no body
 };
 
 // A point of a light, or a direction to one far away, that chains of delta interfaces are to lead to. Render space.
@@ -56,7 +56,7 @@ struct LightTarget {
     bool distant = false;                // otherwise what follows:
     Vec3 direction;                      // unit, towards the light
     Spectrum radiance{0.f};              // from there; irradiance if the light is a single direction
-    bool delta = false;                  // of a single point or direction, or of a beam: no path meets it by chance
+    bool delta = false;                  // of a single point or direction, or of a beam: no path hits it by chance
     // 1/m² of origin.p or 1/sr of the direction, with the probability of the light's part; deltas count as 1.
     float pdf = 0;
     float pick = 1; // probability of the light
@@ -86,15 +86,15 @@ struct LightTarget {
         if (!(target.pdf > 0) || !std::isfinite(target.pdf)) return std::nullopt;
         return target;
     }
-    // The same for a point of an area light that a path has met, without what it gives off.
-    static LightTarget met(const SurfaceHit& hit, float time) noexcept {
+    // The same for a point of an area light that a path has hit, without what it gives off.
+    static LightTarget ofHit(const SurfaceHit& hit, float time) noexcept {
         LightTarget target;
         target.light = target.placed = hit.light;
         target.takeOrigin(hit.light->originAt(hit.light->partOf(hit), hit.p, hit.ng, time));
         return target;
     }
     // And for a direction in which a path left the scene.
-    static LightTarget met(const DistantLight& light, Vec3 w, float time) noexcept {
+    static LightTarget ofHit(const DistantLight& light, Vec3 w, float time) noexcept {
         LightTarget target;
         target.light = &light;
         target.distant = true;
@@ -105,7 +105,7 @@ struct LightTarget {
 
     // And for where a light path began, of a light that has an extent.
     static LightTarget begun(const EmittedRay& start, float time) noexcept {
-        if (start.density.distant) return met(*start.light->asDistant(), -start.ray.direction, time);
+        if (start.density.distant) return ofHit(*start.light->asDistant(), -start.ray.direction, time);
         LightTarget target;
         target.light = start.light;
         target.placed = start.light->asPlaced();

@@ -161,7 +161,7 @@ float LightTree::probability(std::uint32_t light, const Ray& ray, RayExtent exte
     return probabilityAt(light, Along{ray, extent});
 }
 
-// Between a light that shines all around, 1/4π, and one that faces the receiver, 1/π.
+// Between a light that emits all around, 1/4π, and one that faces the receiver, 1/π.
 float LightTree::irradiance(const Receiver& at) const noexcept {
     return std::min(sum(importance(nodes_[0], at)), kMostImportance) * (0.5f * kInvPi);
 }

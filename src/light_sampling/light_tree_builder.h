@@ -13,7 +13,7 @@ namespace abbe::light_tree {
 // Of both: the box, the narrowest cones that hold both, and all their power.
 LightBounds merged(const LightBounds&, const LightBounds&);
 
-// Cost of looking into a node, relative to others: power × surface × solid angle that it may shine into
+// Cost of looking into a node, relative to others: power × surface × solid angle that it may emit into
 // [ContyEstevez2018, eq. 1].
 double cost(const LightBounds&);
 

@@ -59,8 +59,8 @@ double visibleIntegral(const Curve&);
 std::optional<double> scaleFor(const schema::Quantity&, const Curve& shape, double factor);
 
 // What there may be of light at any wavelength, if there is any. Sums of pixels resolve 2e-22 and hold samples up to
-// 4e12 (math/exact_sum.h), and nothing is seen brighter than what shines: so much for what fills the view. What is
-// small may be brighter, as it is hardly ever met but lights other things; there single precision sets the bounds.
+// 4e12 (math/exact_sum.h), and nothing is seen brighter than what emits: so much for what fills the view. What is
+// small may be brighter, as it is hardly ever hit but lights other things; there single precision sets the bounds.
 struct LightRange {
     double least, most;
     std::string_view unit;

@@ -22,8 +22,8 @@ struct BeamLightParams : AmountParams {
 
 schema::TypeInfo beamLightType();
 
-// Every point of the opening shines evenly into a cone about the axis: what a lens makes of a small round source at its
-// focus. No ray meets the opening.
+// Every point of the opening emits evenly into a cone about the axis: what a lens makes of a small round source at its
+// focus. No ray hits the opening.
 class BeamLight final : public PlacedLight {
   public:
     // `axis` is a unit vector, the radius in m, the half angle in rad. Radiance in W·m⁻²·sr⁻¹·nm⁻¹; the curve outlives

@@ -18,7 +18,7 @@ struct DaylightParams : SunPlace, VisibleParams {
     double turbidity = 3;
     double ozone = 300;                  // Dobson units
     const Curve* groundAlbedo = nullptr; // null: 0.2
-    bool sun = true;                     // whether the disk shines; the sky is the same without
+    bool sun = true;                     // whether the disk emits; the sky is the same without
     KeyedTransform transform;            // light to parent; only its rotation matters
 };
 

@@ -177,7 +177,7 @@ void LightTexture::surveyParts(Survey& survey) {
         shares_[part] = total > 0 ? (1 - kLeast) * visible[part] / total + kLeast * shares_[part] : 0;
 }
 
-// The visible light of a part. Seen from far away, from all directions alike, every point of a surface is met in
+// The visible light of a part. Seen from far away, from all directions alike, every point of a surface is hit in
 // proportion to a quarter of its area if it is convex, or a half; a flat part may as well be seen from its front.
 double LightTexture::surveyPart(Survey& survey, std::uint32_t part, int points) const {
     constexpr std::array<double, 4> kSteps{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,

@@ -56,7 +56,7 @@ class MovingDistantLight final : public DistantLight {
     LightMotion motion_;
 };
 
-// A shape that emits; rays meet it as an instance with the same motion. Radiance stays when the scale changes.
+// A shape that emits; rays hit it as an instance with the same motion. Radiance stays when the scale changes.
 class MovingAreaLight final : public AreaLight {
   public:
     // `atRest`: as AreaLight has it, at rest.

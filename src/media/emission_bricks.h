@@ -68,7 +68,7 @@ class EmissionAlong {
 };
 
 // Bricks of the amount's grid in which there may be emission at some time, with `mean` about proportional to what is
-// seen of it: never 0 where anything shines. Runs in parallel, the same on any number of threads.
+// seen of it: never 0 where anything emits. Runs in parallel, the same on any number of threads.
 BrickBounds emissionBricks(const EmissionFields&, const GlowTable&);
 // The highest temperature there is, K; 0 without temperatures.
 double hottest(const EmissionFields&);

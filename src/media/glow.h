@@ -63,10 +63,10 @@ struct GlowParams {
     const Curve* emissivity = nullptr; // 1/m at amount 1
 };
 
-// What cannot be: shining twice, by what is not absorbed, by nothing; or an empty text. `color`: albedo varies in
+// What cannot be: emitting twice, by what is not absorbed, by nothing; or an empty text. `color`: albedo varies in
 // space.
 std::string_view findContradiction(const GlowParams&, const MediumOptics&, bool temperature, bool color = false);
-// Nothing for media that do not shine. Requires no contradiction.
+// Nothing for media that do not emit. Requires no contradiction.
 std::optional<Glow> makeGlow(const GlowParams&, const MediumOptics&, bool temperature);
 
 template <typename P> void addGlowFields(std::vector<schema::FieldInfo>& fields) {

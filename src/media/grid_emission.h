@@ -14,7 +14,7 @@ class GridEmission final : public MediumEmission {
     // The fields must outlive it.
     explicit GridEmission(const EmissionFields&);
 
-    bool dark() const { return !sampler_; } // nothing shines; it must not be asked for anything else
+    bool dark() const { return !sampler_; } // nothing emits; it must not be asked for anything else
     EmissionWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     float pdfSolidAngle(Vec3 from, Vec3 p) const noexcept override;
 

@@ -34,7 +34,7 @@ struct GridExtras {
     };
     std::optional<Color> color;                   // factor of the albedo
     std::optional<GridVelocity> velocity;         // carries all other grids along
-    std::optional<Glow> glow;                     // shines, by ...
+    std::optional<Glow> glow;                     // emits, by ...
     std::optional<ScaledGrid> flame, temperature; // ... the first as its amount, else the density; 1/m or so and K
 };
 
@@ -52,7 +52,7 @@ class GridMedium final : public OpticalMedium {
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     bool albedoVaries() const override { return color_.has_value(); }
     const MediumEmission* emission() const override { return emission_.get(); }
-    const GridEmission* gridEmission() const { return emission_.get(); } // null: nothing shines
+    const GridEmission* gridEmission() const { return emission_.get(); } // null: nothing emits
 
     // How far in voxels of the density anything moves while the shutter is open, along any axis.
     double drift() const { return motion_ ? driftInVoxels(*motion_, density_) : 0; }

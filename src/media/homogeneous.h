@@ -11,10 +11,10 @@ namespace abbe {
 // only: no light samples it.
 class HomogeneousMedium final : public OpticalMedium {
   public:
-    // Shines with a glow; `kelvin` is its temperature, if the glow asks for one. Its curves must outlive the medium.
+    // Emits with a glow; `kelvin` is its temperature, if the glow asks for one. Its curves must outlive the medium.
     explicit HomogeneousMedium(MediumOptics, std::optional<Glow> = {}, double kelvin = 0);
 
-    // Before anyone looks: it is to be no denser than this, 1/m. Requires that it does not shine.
+    // Before anyone looks: it is to be no denser than this, 1/m. Requires that it does not emit.
     void limitExtinction(double most);
 
     Bounds3 bounds() const override;
@@ -38,7 +38,7 @@ class HomogeneousMedium final : public OpticalMedium {
 };
 
 struct HomogeneousParams : MediumParams, GlowParams {
-    double temperature = 0; // K; 0: does not shine by it
+    double temperature = 0; // K; 0: does not emit by it
 };
 schema::TypeInfo homogeneousType();
 

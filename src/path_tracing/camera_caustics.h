@@ -25,7 +25,7 @@ struct CausticStart {
 class MergingExclusion {
   public:
     // At a surface or in a medium, before the path goes on. `reversible`: light paths end at what is not. `spreads`:
-    // light that arrives there, and not by deltas alone; `specular`: the path has met nothing but deltas so far.
+    // light that arrives there, and not by deltas alone; `specular`: the path has hit nothing but deltas so far.
     void arrive(const MergePlan* plan, bool reversible, bool spreads, std::uint32_t depth, bool specular) {
         if (!plan) return;
         gathers_ = reversible && depth > 0 && specular && spreads;
@@ -33,7 +33,7 @@ class MergingExclusion {
     }
     // The path has gone on.
     void scatter(bool delta) { gathered_ |= gathers_ && !delta; }
-    // Whether the light that is met is left to merging. `delta`: the path came to it from one.
+    // Whether the light that is hit is left to merging. `delta`: the path came to it from one.
     bool has(const MergePlan* plan, const Light* light, bool delta) const {
         return gathered_ && delta && plan->lights.contains(light);
     }
@@ -48,13 +48,13 @@ class GlintExclusion {
   public:
     GlintExclusion(std::span<const std::uint32_t> glintsOfRow, Vec2 film) : glintsOfRow_(glintsOfRow), film_(film) {}
 
-    // At a surface, before the path goes on. `specular`: it has met nothing but deltas so far.
+    // At a surface, before the path goes on. `specular`: it has hit nothing but deltas so far.
     void arrive(const Bsdf& bsdf, Vec3 wo, const BsdfSample& next, bool specular) {
         if (glintsOfRow_.empty() || !specular || !next.lobe.has(Lobe::delta)) return;
         events_.add(chainEvent(next.lobe.has(Lobe::transmission)));
         forced_ = forced_ && isForced(bsdf, wo, next);
     }
-    // Whether the light that is met is left to probes.
+    // Whether the light that is hit is left to probes.
     bool have(const GlintPlan* plan, const Light* light, bool specular) const {
         if (glintsOfRow_.empty() || !specular || !forced_ || events_.length() == 0) return false;
         return plan->has(light) && plan->covers(glintsOfRow_, events_, film_);
@@ -96,13 +96,13 @@ template <EffectBits E> class CameraCaustics<E, true> {
         manifold_.scatterInMedium();
         lightPaths.scatterInMedium();
     }
-    // Whether the light that is met is found in another way: an area light's,
+    // Whether the light that is hit is found in another way: an area light's,
     bool leaveOut(const SurfaceHit& hit) const {
-        return leaveOut(hit.light, [&] { return LightTarget::met(hit, walk_.path.time); });
+        return leaveOut(hit.light, [&] { return LightTarget::ofHit(hit, walk_.path.time); });
     }
     // or that of one far away, in the direction.
     bool leaveOut(const DistantLight& light, Vec3 direction) const {
-        return leaveOut(&light, [&] { return LightTarget::met(light, direction, walk_.path.time); });
+        return leaveOut(&light, [&] { return LightTarget::ofHit(light, direction, walk_.path.time); });
     }
 
     LightPathWeights<E> lightPaths;

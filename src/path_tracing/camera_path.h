@@ -37,7 +37,7 @@ template <EffectBits E> class CameraPath {
     // light, its radiance tells.
     const Spectrum& least() const requires(kMedia) { return walk_.estimate.least; }
 
-    // To be told where it starts.
+    // Whose start is set from outside.
     Walk& walk() { return walk_; }
 
   private:
@@ -133,7 +133,7 @@ void CameraPath<E>::meetSurface(SurfaceHit& hit, Vec3 direction, [[maybe_unused]
         walk_.estimate.observer->arrives(hit, walk_.path.beta);
     if (hit.light) {
         const WorkScope work(Work::lights);
-        emission_.meet(hit, direction);
+        emission_.addSurface(hit, direction);
     }
     if constexpr (kTextures) hit.footprint = walk_.path.cone.radius;
     if constexpr (kLightPaths) caustics_.lightPaths.arrive(hit, direction, depth);

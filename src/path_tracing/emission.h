@@ -1,4 +1,4 @@
-// Light that camera paths meet: of surfaces, of media on the way, and from where there is nothing more.
+// Light that camera paths hit: of surfaces, of media on the way, and from where there is nothing more.
 #pragma once
 
 #include "light_sampling/light_sampler.h"
@@ -15,16 +15,16 @@ template <EffectBits E> class Emission {
     Emission(PathWalk<E>& walk, const CameraVertex& last, CameraCaustics<E>& caustics)
         : walk_(walk), last_(last), caustics_(caustics) {}
 
-    void meet(const SurfaceHit&, Vec3 direction);
+    void addSurface(const SurfaceHit&, Vec3 direction);
     void leaveScene(const Ray&);
     // Adds up what media give off along a ray.
     class OfMedia;
 
   private:
-    // `met`: as LightPathWeights::emissionWeight() takes it.
-    template <typename... Met> float weight(float lightPdf, [[maybe_unused]] const Met&... met) const {
+    // `hit`: as LightPathWeights::emissionWeight() takes it.
+    template <typename... Hit> float weight(float lightPdf, [[maybe_unused]] const Hit&... hit) const {
         if constexpr (kLightPaths)
-            if (caustics_.lightPaths.weighs()) return caustics_.lightPaths.emissionWeight(lightPdf, met...);
+            if (caustics_.lightPaths.weighs()) return caustics_.lightPaths.emissionWeight(lightPdf, hit...);
         return walk_.path.delta ? scatteringWeight(walk_, 0) : scatteringWeight(walk_, lightPdf);
     }
 
@@ -33,7 +33,7 @@ template <EffectBits E> class Emission {
     CameraCaustics<E>& caustics_;
 };
 
-template <EffectBits E> void Emission<E>::meet(const SurfaceHit& hit, Vec3 direction) {
+template <EffectBits E> void Emission<E>::addSurface(const SurfaceHit& hit, Vec3 direction) {
     const PathContext& context = walk_.context;
     const auto& path = walk_.path;
     RadianceEstimate& estimate = walk_.estimate;
@@ -49,7 +49,7 @@ template <EffectBits E> void Emission<E>::meet(const SurfaceHit& hit, Vec3 direc
         if (caustics_.leaveOut(hit)) return;
     const float w = weight(lightPdf, hit, direction);
     estimate.add(path.beta * w * emitted, hit.light, false,
-                 [&] { estimate.observer->meets(hit.light, emitted, lightPdf); });
+                 [&] { estimate.observer->hits(hit.light, emitted, lightPdf); });
 }
 
 template <EffectBits E> void Emission<E>::leaveScene(const Ray& ray) {
@@ -75,7 +75,7 @@ template <EffectBits E> void Emission<E>::leaveScene(const Ray& ray) {
             if (caustics_.leaveOut(*light, direction)) continue;
         const float w = weight(lightPdf, *light, last_.receiver.p, direction);
         estimate.add(path.beta * w * arriving, light, false,
-                     [&] { estimate.observer->meets(light, arriving, lightPdf); });
+                     [&] { estimate.observer->hits(light, arriving, lightPdf); });
     }
 }
 
@@ -89,8 +89,8 @@ template <EffectBits E> class Emission<E>::OfMedia final : public EmissionListen
         walk_.estimate.observer->absorbs(ray_.origin + ray_.direction * t, share);
     }
 
-    void shines(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
-                const Spectrum& density) override {
+    void emits(const MediumEmission& emission, float t, const Spectrum& amount, const Spectrum& beta,
+               const Spectrum& density) override {
         const PathContext& context = walk_.context;
         RadianceEstimate& estimate = walk_.estimate;
         if (context.scene.hidden.splits && !reachedByShadowRays(walk_, last_.origin, ray_, t)) [[unlikely]]
@@ -104,7 +104,7 @@ template <EffectBits E> class Emission<E>::OfMedia final : public EmissionListen
         arriving *= walk_.clearness(walk_.path.nested.here, t);
         estimate.add(arriving, &emission, false, [&] {
             estimate.observer->lightsUp(ray_.origin + ray_.direction * t);
-            estimate.observer->meets(&emission, amount, lightPdf);
+            estimate.observer->hits(&emission, amount, lightPdf);
         });
     }
 

@@ -78,7 +78,7 @@ void NextEvent<E>::atSurface(const SurfaceHit& hit, const Bsdf& bsdf, const EyeD
     const auto& path = walk_.path;
     RadianceEstimate& estimate = walk_.estimate;
     if (!context.how.nextEvent || context.lights.empty()) return;
-    if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // delta lobes meet no sampled direction
+    if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas have no value for a light's direction
     const PickedLight picked = context.lights.pick(sample.pick, last_.receiver, last_.scatters);
     auto light = picked.light->sample(last_.receiver, picked.part, sample.light, path.lambda, path.time);
     if (!light) return;

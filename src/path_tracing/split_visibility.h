@@ -2,13 +2,13 @@
 //
 // Light arrives directly where shadow rays reach its source, whichever way it is found:
 //
-//   * What scattering meets counts only if no shape stands between that shadow rays alone see.
-//   * What next-event estimation finds is weighed against scattering only where that could have met it: if the source
+//   * What scattering hits counts only if no shape stands between that shadow rays alone see.
+//   * What next-event estimation finds is weighed against scattering only where that could have hit it: if the source
 //     is visible to scattered rays, and no shape stands between that they alone see. Otherwise its weight is 1, as a
 //     point's.
 //
 // So the weights of both sum to 1 wherever shadow rays see the source, and to 0 elsewhere. Mirrors and clear glass show
-// what scattered rays meet, as they have no next-event estimation. Shapes with openings, boundaries and dielectrics are
+// what scattered rays hit, as they have no next-event estimation. Shapes with openings, boundaries and dielectrics are
 // seen by both kinds alike (Placer::noteVisible): what stands between is solid.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace abbe {
 
-// How far a ray of this kind goes before it meets anything solid; at least tMax if it meets nothing.
+// How far a ray of this kind goes before it hits anything solid; at least tMax if it hits nothing.
 template <EffectBits E> float clearWay(const PathWalk<E>& walk, Vec3 origin, Vec3 direction, float tMax, RayKind kind) {
     Ray ray{origin, direction, tMax, walk.path.time, kind};
     SurfaceHit hit;
@@ -33,7 +33,7 @@ template <EffectBits E> float clearWay(const PathWalk<E>& walk, Vec3 origin, Vec
     return tMax;
 }
 
-// Whether shadow rays from `origin`, where the path's last ray started, reach the emitter that it has met.
+// Whether shadow rays from `origin`, where the path's last ray started, reach the emitter that it has hit.
 template <EffectBits E>
 bool reachedByShadowRays(const PathWalk<E>& walk, Vec3 origin, const SurfaceHit& hit, Vec3 direction) {
     if (walk.path.delta) return true;
@@ -52,7 +52,7 @@ template <EffectBits E> bool reachedByShadowRays(const PathWalk<E>& walk, Vec3 o
     return clearWay(walk, origin, ray.direction, before + t, RayKind::shadow) >= before + t;
 }
 
-// Marks what scattering from there cannot meet.
+// Marks what scattering from there cannot hit.
 template <EffectBits E>
 void hideFromScattering(const PathWalk<E>& walk, LightSample& light, const Light& source, Vec3 origin) {
     if (!source.visible().has(RayKind::scattered)) light.delta = true;

@@ -201,7 +201,7 @@ template <EffectBits E> class TileKernel {
                     if (!anyNonZero(found)) return;
                     sum += found;
                     if (!recorder_) return;
-                    recorder_->meets(light, emitted, 0);
+                    recorder_->hits(light, emitted, 0);
                     recorder_->gathers(found, light, false);
                 };
                 if (view.hit && view.hit->light) see(view.hit->light);

@@ -12,7 +12,7 @@
 
 namespace abbe {
 
-// Which part of a picture a path belongs to. By what it meets between the light and the eye; D scatters diffusely or in
+// Which part of a picture a path belongs to. By what it hits between the light and the eye; D scatters diffusely or in
 // a medium, S does not.
 enum class PathComponent : std::uint8_t {
     direct,   // E S* D? L: at most one D, and no S between it and the light

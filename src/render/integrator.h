@@ -49,7 +49,7 @@ class Shape;
 struct EndlessPaths {
     double share = 0; // of the paths where they are the longest
     std::vector<const Shape*>
-        shapes; // between which they go, those that are met most often first; empty: there are none
+        shapes; // between which they go, those that are hit most often first; empty: there are none
 };
 
 // A rough picture of the frame before the first sample. The frame in square cells, row by row, of a few samples each.

@@ -28,7 +28,7 @@ class Intersector {
         static_cast<void>(hit), static_cast<void>(others);
         return 0;
     }
-    // Of the point of `hit`, which the ray meets at the end of `distance`; nothing if it is not found again.
+    // Of the point of `hit`, which the ray hits at the end of `distance`; nothing if it is not found again.
     virtual std::optional<Passage> passage(const Ray&, const SurfaceHit& hit, float distance) const noexcept {
         static_cast<void>(hit), static_cast<void>(distance);
         return std::nullopt;

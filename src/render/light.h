@@ -44,7 +44,7 @@ struct LightOrigin {
     float cosine(Vec3 w) const { return point() ? 1.f : std::abs(dot(n, w)); }
 };
 
-// Where a light is and where it shines, for choosing among many lights. Holds whatever the light, or one part of it,
+// Where a light is and where it emits, for choosing among many lights. Holds whatever the light, or one part of it,
 // gives off while the shutter is open: light leaves points of the box, in directions within acos(cosEmission) of a
 // normal that is within acos(cosNormals) of the axis. Wider is never wrong, only slower to converge; what is narrower
 // than the light loses light.
@@ -69,13 +69,13 @@ struct LightSample {
     float distance;      // to that point; infinite for distant lights
     Spectrum radiance;   // W·m⁻²·sr⁻¹·nm⁻¹
     float pdfSolidAngle; // > 0
-    bool delta;          // cannot be met by chance, as points and beams: MIS weight 1
+    bool delta;          // cannot be hit by chance, as points and beams: MIS weight 1
     Vec3 n;              // unit normal of the light's surface at that point, outside; 0 where it has none
 };
 
 // How paths of light can start at a light.
 enum class LightPaths : std::uint8_t {
-    none,    // not at all: it is dark, or a medium that shines, which is found along rays alone
+    none,    // not at all: it is dark, or a medium that emits, which is found along rays alone
     placed,  // at points of it: a PlacedLight
     distant, // in a direction, from infinitely far away, all across the scene alike: a DistantLight
 };
@@ -97,7 +97,7 @@ struct LightOutput {
     static constexpr double kDaylightShare = 0.4;
 };
 
-// Where a light shines along a ray, and what point it shines from, more or less: distances drawn around it find more of
+// Where a light emits along a ray, and what point it emits from, more or less: distances drawn around it find more of
 // the light. Depends on nothing but the light and the ray.
 struct LightReach {
     Vec3 centre;
@@ -108,11 +108,11 @@ class DistantLight;
 class PlacedLight;
 
 // What every light has. It is also a DistantLight, a PlacedLight (perhaps a
-// SurfaceLight), or a medium that shines. Immutable once the scene is committed, thread-safe, render space.
+// SurfaceLight), or a medium that emits. Immutable once the scene is committed, thread-safe, render space.
 class Light {
   public:
     virtual ~Light() = default;
-    // Which rays meet it; whatever this says, next-event estimation samples it. Set before the scene is committed.
+    // Which rays hit it; whatever this says, next-event estimation samples it. Set before the scene is committed.
     Visibility visible() const { return visible_; }
     void setVisible(Visibility v) { visible_ = v; }
     // Called once, after the bounds of all finite geometry are known and before anything else.
@@ -134,19 +134,19 @@ class Light {
                                               float time) const noexcept = 0;
     // Where along a ray this light can arrive, up to tMax; nothing for lights without a place or out of reach.
     virtual std::optional<LightReach> reach(const Ray&, float) const noexcept { return std::nullopt; }
-    // True if it has an extent, but nothing that rays could meet: found by sampling alone, and its samples are deltas
+    // True if it has an extent, but nothing that rays could hit: found by sampling alone, and its samples are deltas
     // whose density counts.
     virtual bool hasNoSurface() const { return false; }
-    // Whether nothing that was scattered meets it, whatever its extent.
+    // Whether nothing that was scattered hits it, whatever its extent.
     bool neverHit() const { return hasNoSurface() || !visible_.has(RayKind::scattered); }
 
     // What some lights are besides; null if this is none.
     virtual const DistantLight* asDistant() const { return nullptr; }
     virtual const PlacedLight* asPlaced() const { return nullptr; }
-    // What this light samples, if it is a medium that shines: found along rays, never as a surface.
+    // What this light samples, if it is a medium that emits: found along rays, never as a surface.
     virtual const MediumEmission* emission() const { return nullptr; }
 
-    // True if rays that leave the scene meet it.
+    // True if rays that leave the scene hit it.
     bool infinite() const;
     LightPaths paths() const {
         if (!(power() > 0)) return LightPaths::none;
@@ -202,7 +202,7 @@ class PlacedLight : public Light {
     }
 };
 
-// A surface that rays meet: what SurfaceHit::light is.
+// A surface that rays hit: what SurfaceHit::light is.
 class SurfaceLight : public PlacedLight {
   public:
     // Radiance that leaves `hit` in the unit direction `w`, and the density with which sample(from, partOf(hit), ·)

@@ -33,11 +33,11 @@ struct LightVertexSample {
 // have all of it.
 class LightVertex {
   public:
-    // `met`: as the intersector made it, before Material::bend(); its arrival is the direction of travel of the light.
+    // `hit`: as the intersector made it, before Material::bend(); its arrival is the direction of travel of the light.
     // Requires Material::reversible().
     // Both arenas outlive this; `eye` is emptied for every question.
-    LightVertex(const SurfaceHit& met, const Wavelengths& lambda, Arena& own, Arena& eye)
-        : met_(met), lambda_(lambda), eye_(eye), own_(seenAlong(met.arrival, own)) {}
+    LightVertex(const SurfaceHit& hit, const Wavelengths& lambda, Arena& own, Arena& eye)
+        : hit_(hit), lambda_(lambda), eye_(eye), own_(seenAlong(hit.arrival, own)) {}
 
     // What a path sees that arrives in a direction.
     struct View {
@@ -57,7 +57,7 @@ class LightVertex {
     LightScattering towards(Vec3 away) const noexcept {
         LightScattering result{Spectrum(0.f)};
         const View eye = seen(away);
-        const Vec3 from = -met_.arrival, a = eye.frame.toLocal(away), f = eye.frame.toLocal(from);
+        const Vec3 from = -hit_.arrival, a = eye.frame.toLocal(away), f = eye.frame.toLocal(from);
         if (!sidesAgree(a, f, away)) return result;
         const BsdfEval back = eye.bsdf->eval(a, f, Transport::radiance);
         const BsdfEval ahead =
@@ -76,7 +76,7 @@ class LightVertex {
     LightScattering deltaTowards(Vec3 away, float eta) const noexcept {
         LightScattering result{Spectrum(0.f)};
         const View eye = seen(away);
-        const Vec3 from = -met_.arrival, a = eye.frame.toLocal(away), f = eye.frame.toLocal(from);
+        const Vec3 from = -hit_.arrival, a = eye.frame.toLocal(away), f = eye.frame.toLocal(from);
         if (!sidesAgree(a, f, away)) return result;
         const DeltaEval back = eye.bsdf->evalDelta(a, f);
         const DeltaEval ahead = own_.bsdf->evalDelta(own_.frame.toLocal(from), own_.frame.toLocal(away));
@@ -94,7 +94,7 @@ class LightVertex {
 
     // uLobe, u in [0, 1). Nothing: the path ends here.
     std::optional<LightVertexSample> sample(float uLobe, Vec2 u) const noexcept {
-        const auto s = own_.bsdf->sample(own_.frame.toLocal(-met_.arrival), uLobe, u, Transport::importance);
+        const auto s = own_.bsdf->sample(own_.frame.toLocal(-hit_.arrival), uLobe, u, Transport::importance);
         if (!s) return std::nullopt;
         LightVertexSample result{own_.frame.toWorld(s->wi), {Spectrum(0.f)}, s->lobe, s->eta};
         if (s->lobe.has(Lobe::delta)) {
@@ -110,19 +110,19 @@ class LightVertex {
 
   private:
     View seenAlong(Vec3 arrival, Arena& arena) const {
-        SurfaceHit hit = met_;
+        SurfaceHit hit = hit_;
         hit.arrival = arrival;
         if (hit.material->bends()) hit.material->bend(hit);
         return {hit.shading, hit.material->bsdf(hit, lambda_, arena)};
     }
     // As for camera paths: shading normals neither open a surface nor close it.
     bool sidesAgree(Vec3 a, Vec3 f, Vec3 away) const {
-        const float geometrically = -dot(away, met_.ng) * dot(met_.arrival, met_.ng);
+        const float geometrically = -dot(away, hit_.ng) * dot(hit_.arrival, hit_.ng);
         return a.z * f.z > 0 ? geometrically > 0 : geometrically <= 0;
     }
-    float projected(Vec3 away) const { return std::abs(dot(away, met_.ng) / dot(met_.arrival, met_.ng)); }
+    float projected(Vec3 away) const { return std::abs(dot(away, hit_.ng) / dot(hit_.arrival, hit_.ng)); }
 
-    SurfaceHit met_;
+    SurfaceHit hit_;
     const Wavelengths& lambda_;
     Arena& eye_;
     View own_;

@@ -31,7 +31,7 @@ struct SurfaceEmission {
     const EmissionVeil* veil = nullptr; // not in the luminance; null: none
 };
 
-// How light meets a material: fixed when it is made, and the same all over the surface.
+// How light hits a material: fixed when it is made, and the same all over the surface.
 struct MaterialTraits {
     // Read once, when the scene is built. Effect::textures need not be named: it follows from usesTextures.
     Effects needs = {};
@@ -41,7 +41,7 @@ struct MaterialTraits {
     bool isBoundary = false;
     // True if no light gets through the surface, from either side.
     bool isOpaque = false;
-    // False if light and eye meet it in different places: hair, whose fibres are met on the near side, whatever goes
+    // False if light and eye hit it in different places: hair, whose fibres are hit on the near side, whatever goes
     // through them. Light paths end there, and camera paths have all that it scatters.
     bool reversible = true;
     // False if light of a narrow beam is spread over all directions by whatever scatters it here: what cannot focus it
@@ -78,7 +78,7 @@ class Material {
     // Changes nothing unless bends(). Called before bsdf(), to turn hit.shading; hit.shading.z stays in the hemisphere
     // of ng.
     virtual void bend(SurfaceHit&) const noexcept {}
-    // Share of the light that meets the surface, 1 unless mayBeOpen(); the rest goes straight on.
+    // Share of the light that hits the surface, 1 unless mayBeOpen(); the rest goes straight on.
     virtual float opacity(const SurfaceHit&) const noexcept { return 1; }
     // Read once, when the scene is built.
     virtual SurfaceEmission emission() const { return {}; }

@@ -31,7 +31,7 @@ struct WalkSpace {
     }
 };
 
-// One ray through what shines.
+// One ray through what emits.
 class EmissionWalk {
   public:
     // The next segment in which there may be emission, as MediumWalk::next(); `mean` is that of a relative amount.
@@ -48,7 +48,7 @@ class EmissionWalk {
 class MediumEmission {
   public:
     virtual ~MediumEmission() = default;
-    // Null if the ray meets nothing that shines before tMax (which may be infinite).
+    // Null if the ray hits nothing that emits before tMax (which may be infinite).
     virtual EmissionWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept = 0;
     // LightSample::pdfSolidAngle of the sample that its light makes of point `p` seen from `from`; 0 if it has no
     // light. Volumes have a density per m³, p_V; with a characteristic length ℓ, the same for all points, a sample
@@ -99,14 +99,14 @@ class Medium {
     virtual ~Medium() = default;
     // Of the density's support; infinite for media without an end of their own.
     virtual Bounds3 bounds() const = 0;
-    // Null if the ray does not meet it before tMax (which may be infinite).
+    // Null if the ray does not hit it before tMax (which may be infinite).
     virtual MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept = 0;
     virtual const Curve& extinction() const = 0; // 1/m at density 1
     virtual const Curve& albedo() const = 0;     // share of the extinction that is scattering, in [0, 1]
     virtual const PhaseFunction& phase() const = 0;
     // True where the walk's albedo() tells more than albedo(), which then bounds it.
     virtual bool albedoVaries() const { return false; }
-    // Null for media that do not shine.
+    // Null for media that do not emit.
     virtual const MediumEmission* emission() const { return nullptr; }
 
     Effects needs() const {

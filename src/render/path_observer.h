@@ -10,13 +10,13 @@
 
 namespace abbe {
 
-// Is told what a path does. Called by the path loop in the order of events. Watching changes nothing of the path. All
-// spectra are per lane of the wavelengths that the path started with, over their density: as the radiance that the path
-// returns.
+// Receives the events of a path. Called by the path loop in the order of events. Watching changes nothing of the path.
+// All spectra are per lane of the wavelengths that the path started with, over their density: as the radiance that the
+// path returns.
 class PathObserver {
   public:
     virtual ~PathObserver() = default;
-    // The path met a surface that scatters, or that shines. `beta`: its throughput until there.
+    // The path hit a surface that scatters, or that emits. `beta`: its throughput until there.
     virtual void arrives(const SurfaceHit&, const Spectrum& beta) noexcept = 0;
     // Light of `source`, a Light or a MediumEmission, reaches the eye by this path: part of its radiance.
     // `passing`: after one more scattering in a medium, which the path itself does not make.
@@ -31,11 +31,11 @@ class PathObserver {
     // It is scattered in a medium.
     virtual void collides(Vec3 p, const Spectrum& beta) noexcept = 0;
 
-    // What light is made of, before gathers() is told. Sampled on a light and scattered here; `pdf`: of the sample,
+    // What light is made of, before gathers() is called. Sampled on a light and scattered here; `pdf`: of the sample,
     // with the choice of the light.
     virtual void samples(const void* /*source*/, const LightSample&, const BsdfEval&, float /*pdf*/) noexcept {}
-    // Met by chance; `pdf`: with which it would have been sampled, 0 if that is not possible.
-    virtual void meets(const void* /*source*/, const Spectrum& /*emitted*/, float /*pdf*/) noexcept {}
+    // Hit by chance; `pdf`: with which it would have been sampled, 0 if that is not possible.
+    virtual void hits(const void* /*source*/, const Spectrum& /*emitted*/, float /*pdf*/) noexcept {}
     // Came over mirrors and lenses that the path itself does not go on to, from the direction wi.
     virtual void chains(const Light*, Vec3 /*wi*/) noexcept {}
     // A number of `who`, a Material or a Medium, is at fault that the other events do not tell: its `what`.

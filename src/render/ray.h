@@ -19,7 +19,7 @@ using Visibility = Flags<RayKind>;
 
 inline constexpr Visibility kVisibleToAll = Visibility(RayKind::camera) | RayKind::shadow | RayKind::scattered;
 
-// Whether next-event estimation and scattering meet the same things: shapes that differ here make light arrive
+// Whether next-event estimation and scattering hit the same things: shapes that differ here make light arrive
 // otherwise by one than by the other, which weights between the two have to know.
 constexpr bool seenAlike(Visibility v) { return v.has(RayKind::shadow) == v.has(RayKind::scattered); }
 

@@ -69,7 +69,7 @@ struct Scene {
     Effects effects;
     std::vector<EffectReason> reasons;
     Vec3d origin; // world position of the origin of render space
-    // What the file calls shapes, materials, lights and media that shine: their names or, for those without one, type
+    // What the file calls shapes, materials, lights and media that emit: their names or, for those without one, type
     // and number.
     std::unordered_map<const void*, std::string> names;
 };

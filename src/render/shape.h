@@ -1,4 +1,4 @@
-// The interfaces of shapes: geometry that rays can meet and, if it emits, that can be sampled.
+// The interfaces of shapes: geometry that rays can hit and, if it emits, that can be sampled.
 #pragma once
 
 #include "math/bounds.h"
@@ -247,7 +247,7 @@ class VertexAttributes {
     ~VertexAttributes() = default; // owned as shapes
 };
 
-// The ray that meets a point of a shape from its outer side, from so near that nothing else is in between, as a rule.
+// The ray that hits a point of a shape from its outer side, from so near that nothing else is in between, as a rule.
 inline Ray rayOnto(Vec3 p, Vec3 ng, float nearness) {
     Ray ray;
     ray.origin = p + ng * nearness;

@@ -1,4 +1,4 @@
-// Where a ray met a surface, with all that shading needs.
+// Where a ray hit a surface, with all that shading needs.
 #pragma once
 
 #include "math/frame.h"
@@ -61,14 +61,14 @@ struct SurfaceHit {
     std::uint32_t part = 0, element = 0; // as in RawHit: the sink's call, and the primitive in it
     Vec2 barycentric;
 
-    // Of the path that met the surface.
+    // Of the path that hit the surface.
     Vec3 arrival;                   // unit direction in which it came; set for materials that bend, are open or use
                                     // textures
     float footprint = 0;            // radius of its cone here, m; 0: a point
     const Curve* outside = nullptr; // index of what lies on the outer side; null: air, 1
 };
 
-// An origin on the side of the surface towards which `w` leaves, so far that no ray meets the surface again and no
+// An origin on the side of the surface towards which `w` leaves, so far that no ray hits the surface again and no
 // farther, because the next surface may be a sheet of paper: the error bound of the point along the normal
 // [Pharr2023, ch. 6.8]. It scales with the coordinates, so there is no smallest offset (docs/hard_cases.md, cases
 // 1-3 and 8).

@@ -53,8 +53,8 @@ void PathRecorder::samples(const void* source, const LightSample& light, const B
     add(e);
 }
 
-void PathRecorder::meets(const void* source, const Spectrum& emitted, float pdf) noexcept {
-    PathEvent e = event(EventKind::met);
+void PathRecorder::hits(const void* source, const Spectrum& emitted, float pdf) noexcept {
+    PathEvent e = event(EventKind::hitLight);
     e.source = source;
     e.radiance = emitted;
     e.pdf = pdf;
@@ -130,7 +130,7 @@ class Search {
                    direction(e, e.direction, Culprit::light) || spectrum(e, e.value.fcos, scatterer(e), "value") ||
                    density(e, e.value.pdfSolidAngle, scatterer(e)) ||
                    spectrum(e, e.value.pdfRatio, scatterer(e), "ratio of densities");
-        case EventKind::met:
+        case EventKind::hitLight:
             return spectrum(e, e.radiance, Culprit::light, "radiance") || density(e, e.pdf, Culprit::light);
         case EventKind::gathers:
             return spectrum(e, e.light, Culprit::medium, "transmission");
@@ -154,7 +154,7 @@ class Search {
         return culprit == Culprit::material ? e.hit.material : nullptr;
     }
 
-    // What a medium did to the light on the way shows before its density is told.
+    // What a medium did to the light on the way shows before its density.
     SampleFault namedFault() {
         for (const PathEvent& e : record_.events())
             if (e.kind == EventKind::fault) look(e);

@@ -17,7 +17,7 @@ struct PathEvent {
     enum class Kind : std::uint8_t {
         surface,  // arrived at `hit` with `beta`
         sampled,  // next-event estimation, which `light` answers: `radiance` of it, scattered by `value`
-        met,      // found a light by chance, which gives `radiance`
+        hitLight, // found a light by chance, which gives `radiance`
         gathers,  // `light` of it reaches the eye
         scatters, // in direction `next`, if there is one
         collides, // in a medium, at hit.p with `beta`
@@ -25,7 +25,7 @@ struct PathEvent {
         leaves    // the scene, towards `direction`
     };
     Kind kind = Kind::surface;
-    int vertex = 0; // from 1, the first that the camera ray meets
+    int vertex = 0; // from 1, the first that the camera ray hits
     SurfaceHit hit;
     Spectrum beta{0.f};           // throughput
     const void* source = nullptr; // a Light or a MediumEmission
@@ -88,7 +88,7 @@ class PathRecorder final : public SampleRecorder {
     void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept override;
     void collides(Vec3 p, const Spectrum& beta) noexcept override;
     void samples(const void* source, const LightSample&, const BsdfEval&, float pdf) noexcept override;
-    void meets(const void* source, const Spectrum& emitted, float pdf) noexcept override;
+    void hits(const void* source, const Spectrum& emitted, float pdf) noexcept override;
     void findsFault(const void* who, const char* what, float number) noexcept override;
     void leaves(Vec3 direction) noexcept override;
     void keep(const Spectrum&, const Sensor&, double) noexcept override {}

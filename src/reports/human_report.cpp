@@ -28,7 +28,7 @@ class HumanReport final : public RenderReport {
 
     void phase(const std::string& name, double seconds) override {
         clearBar();
-        if (quiet_ || started_ || seconds < 1) return; // short ones are told in the summary alone
+        if (quiet_ || started_ || seconds < 1) return; // short ones are in the summary alone
         console_.line(fmt::format("{} {:.1f} s", name, seconds));
     }
 

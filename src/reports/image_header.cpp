@@ -214,7 +214,7 @@ std::vector<ImageAttribute> certificateAttributes(const ErrorCertificate& c, con
     list.push_back({"abbe.samplesMean", c.samples});
     list.push_back({"abbe.samplesMost", std::to_string(c.most)});
     for (const auto& counter : countersOf(s))
-        if (counter.reported != Reported::withRounds && isReported(counter, s)) // those are told with the bias
+        if (counter.reported != Reported::withRounds && isReported(counter, s)) // those are reported with the bias
             list.push_back({attributeName(counter.name), std::to_string(*counter.place)});
     if (c.merged) {
         list.push_back({"abbe.estimator", "consistent"}); // and not unbiased

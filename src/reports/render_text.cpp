@@ -152,7 +152,7 @@ namespace {
 
 using enum LightPathVerdict;
 
-// In a line; more are told where there is room.
+// In a line; more are listed where there is room.
 constexpr std::size_t kInLine = 3;
 
 constexpr std::string_view wordOf(LightPathVerdict v) {

@@ -219,8 +219,8 @@ std::string eventText(const PathEvent& e, const Scene& scene) {
                    "   samples the light `{}` (next-event estimation), density {:.6g}; that of the material {:.6g}\n",
                    light, e.pdf, e.value.pdfSolidAngle) +
                line("radiance", e.radiance) + line("value", e.value.fcos);
-    case Kind::met:
-        return fmt::format("   meets the light `{}`, density of next-event estimation {:.6g}\n", light, e.pdf) +
+    case Kind::hitLight:
+        return fmt::format("   hits the light `{}`, density of next-event estimation {:.6g}\n", light, e.pdf) +
                line("radiance", e.radiance);
     case Kind::gathers:
         return line("gives the eye", e.light);
@@ -261,7 +261,7 @@ Json eventJson(const PathEvent& e, const Scene& scene) {
         json.set("density", static_cast<double>(e.value.pdfSolidAngle))
             .set("light_density", static_cast<double>(e.pdf));
         break;
-    case Kind::met:
+    case Kind::hitLight:
         light();
         json.set("radiance", lanesJson(e.radiance)).set("light_density", static_cast<double>(e.pdf));
         break;

@@ -1,5 +1,5 @@
 // A dropped sample with the place where it went wrong, in the words of the scene; for people and for programs. What
-// happened in one sample, told vertex by vertex.
+// happened in one sample, vertex by vertex.
 #pragma once
 
 #include "app/json.h"

@@ -62,7 +62,7 @@ const SurfaceLight* LightBuilder::emitterOf(const LoadedShape& shape, const Shap
     if (!checkLightRange(emission.radiance, kSurfaceRadiance, emission.span.valid() ? emission.span : d.span,
                          context_.diagnostics))
         return nullptr;
-    // A light that is sampled would shine from its holes, too.
+    // A light that is sampled would emit from its holes, too.
     if (const Material* material = shapes_.materials.ofShape(shape.common); material && material->mayBeOpen()) {
         context_.diagnostics
             .error("E0754", d.span, "a shape that emits has a material with holes", "its `opacity` is below 1")

@@ -1,4 +1,4 @@
-// Lights, and shapes that shine.
+// Lights, and shapes that emit.
 #pragma once
 
 #include "geometry/shape_params.h"

@@ -210,7 +210,7 @@ std::vector<std::unique_ptr<const Material>> MaterialBuilder::release() {
 
 namespace {
 
-// Boundaries are no surface to scatter at, and what shines would have to be a light.
+// Boundaries are no surface to scatter at, and what emits would have to be a light.
 bool canBePart(schema::Reference reference, std::string_view property, const MaterialContext& parts) {
     const Material& part = parts[reference];
     const bool boundary = part.isBoundary();

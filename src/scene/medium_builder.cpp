@@ -96,11 +96,11 @@ bool MediumBuilder::mayLieInDielectric(bool dielectrics) const {
         if (isDielectric == dielectrics && shape.material->seesOutside()) inner.push_back(&shape);
     }
     if (outer.size() * inner.size() > kManyPairs) return true;
-    const auto meet = [](const PlacedShape* a, const PlacedShape* b) {
+    const auto touch = [](const PlacedShape* a, const PlacedShape* b) {
         return a == b ? a->repeated : a->box.overlaps(b->box);
     };
     for (const PlacedShape* a : outer)
-        if (std::ranges::any_of(inner, [&](const PlacedShape* b) { return meet(a, b); })) return true;
+        if (std::ranges::any_of(inner, [&](const PlacedShape* b) { return touch(a, b); })) return true;
     return false;
 }
 
@@ -146,7 +146,7 @@ void MediumBuilder::finish(const Bounds3* extent) {
 // Media in which light goes less far between two collisions than positions can be told apart.
 // How far light spreads in such a medium nobody can see: it is less than an eightieth of a pixel of a picture 2000
 // pixels wide. What a deep medium sends back does not depend on the unit of length, so that another free path gives the
-// same picture, but for that spread, and for what shines through sheets that are not many free paths thick.
+// same picture, but for that spread, and for light that comes through sheets that are not many free paths thick.
 void MediumBuilder::limitDense(const Bounds3* extent) {
     const double all = extent ? farthest(*extent) : 0;
     for (HomogeneousMedium* medium : even_) {

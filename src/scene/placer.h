@@ -98,7 +98,7 @@ class Placer {
     // What groups, objects and instances state of their own.
     Placing ownPlacing(const Definition&);
     Passing passingOf(const ShapeParams&);
-    // Notes what the scene asks of those who trace rays. What light goes through it meets on its way in and out,
+    // Notes what the scene asks of those who trace rays. What light goes through it, it meets on its way in and out,
     // whatever ray it is: such a shape is seen by all.
     void noteVisible(Visibility, Passing, const Definition& definition);
     void checkLightPathsSeeAll();

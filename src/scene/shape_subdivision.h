@@ -111,7 +111,7 @@ std::optional<Dicing> dicingOf(const schema::Quantity&, Diagnostics&);
 
 // The size of a pixel in the middle of the film, as a function of the distance to the camera, in the space that the
 // camera's rays are in. Outside of the picture it grows with the angle to it, up to `offscreen` times: what is not seen
-// is still met by reflections and shadows.
+// is still hit by reflections and shadows.
 std::function<double(Vec3)> pixelSizeOf(const Camera&, Vec2d filmSize, double offscreen);
 
 // How much a plan makes, in words.

@@ -1,4 +1,4 @@
-// Volumes from OpenVDB files: their grids, what they shine with, how they drift.
+// Volumes from OpenVDB files: their grids, what they emit with, how they drift.
 #include "media/grid_emission.h"
 #include "media/grid_medium.h"
 #include "scene/medium_builder.h"

@@ -35,7 +35,7 @@ class Binding {
     Binding(const Definition& definition, const BindContext& context, void* params)
         : definition_(definition), type_(*definition.type), context_(context), params_(params) {}
 
-    // False if a value is missing, be it for an error that was told when another definition was bound.
+    // False if a value is missing, be it for an error that was reported when another definition was bound.
     bool run() {
         arguments();
         for (const Node& property : definition_.properties) this->property(property);

@@ -51,7 +51,7 @@ std::string fieldText(const FieldInfo& field) {
     return text + labelled("note", field.note);
 }
 
-// Types that share a field, such as `exposure` of all cameras, are told together.
+// Types that share a field, such as `exposure` of all cameras, are described together.
 class FieldTexts {
   public:
     void add(const TypeInfo& type, const FieldInfo& field) {

@@ -79,7 +79,7 @@ struct SceneTree {
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
 
-    // What is compared with names for suggestions, in all: about a second. More unknown names are told without one.
+    // What is compared with names for suggestions, in all: about a second. More unknown names are reported without one.
     static constexpr std::size_t kMostCompared = 10'000'000;
     // The nearest name (see nearest) of a definition of one of the kinds; nothing once kMostCompared is spent.
     // Requires: the index is filled.

@@ -46,7 +46,7 @@ Floored withPower(double power, std::span<const double> x, std::span<const doubl
     const auto height = [&](std::size_t i) { return y[i]; };
     const auto weight = [&](std::size_t i) { return 1 / (errors[i] * errors[i]); };
     Line line = fitLine(x.size(), fallen, height, weight);
-    if (line.b < 0) { // an error that rises with samples is told as a flat one
+    if (line.b < 0) { // an error that rises with samples is reported as a flat one
         double sw = 0, sy = 0;
         for (std::size_t i = 0; i < x.size(); ++i) {
             sw += weight(i);

@@ -1,5 +1,5 @@
 // What each effect of a scene costs and shows: renders with and without it, in pairs of one seed; and what a render
-// would take without an effect, told from its cost report.
+// would take without an effect, estimated from its cost report.
 #pragma once
 
 #include "base/diagnostic.h"

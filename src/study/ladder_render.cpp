@@ -98,7 +98,7 @@ std::optional<LadderRung> LadderRender::advance(std::uint32_t samplesPerReplicat
 }
 
 // Each step looks ahead again, though a render that did not stop would have done so once. What later looks took is
-// told from their share of the rays, and taken off.
+// estimated from their share of the rays, and taken off.
 void LadderRender::account(const RenderStatistics& s, double seconds) {
     const bool first = cost_.rays == 0;
     const std::uint64_t before = first ? 0 : cost_.rays - firstPilot_;

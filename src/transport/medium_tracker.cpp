@@ -96,7 +96,7 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
     for (std::uint32_t missed = 1;;) {
         Active* a = earliest(active_);
         if (Glow* glow = earliest(glows_); glow && (!a || glow->next < a->next)) {
-            shine(*glow, lambda, weights, *listener);
+            emit(*glow, lambda, weights, *listener);
             if (!advance(*glow, random)) glow->walk = nullptr;
             continue;
         }
@@ -140,13 +140,13 @@ bool MediumTracker::advance(Glow& glow, RandomStream& random) {
 }
 
 // One place drawn evenly stands for its segment. Whether the path gets there is what its collisions decided.
-void MediumTracker::shine(const Glow& glow, const Wavelengths& lambda, TrackedWeights weights,
-                          EmissionListener& listener) const {
+void MediumTracker::emit(const Glow& glow, const Wavelengths& lambda, TrackedWeights weights,
+                         EmissionListener& listener) const {
     const Spectrum amount = glow.walk->emitted(glow.next, lambda) * (glow.segment.tFar - glow.segment.tNear);
     if (!anyNonZero(amount)) return;
     Spectrum beta = *weights.beta, density = weights.density ? *weights.density : Spectrum(1.f);
     shareDistance(glow.next, {&beta, weights.density ? &density : nullptr});
-    listener.shines(*glow.emission, glow.next, amount, beta, density);
+    listener.emits(*glow.emission, glow.next, amount, beta, density);
 }
 
 // A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that

@@ -24,7 +24,7 @@ struct MediumCollision {
     float t = 0;
 };
 
-// Is told what shines along a ray: estimates whose sum over the ray is the light that its media add to it.
+// Receives what emits along a ray: estimates whose sum over the ray is the light that its media add to it.
 class EmissionListener {
   public:
     // Whether to tell it what media absorb, too:
@@ -32,8 +32,8 @@ class EmissionListener {
     // Of the weight of the path this share, in the mean over its wavelengths, is absorbed at `t`.
     virtual void absorbs(float /*t*/, float /*share*/) {}
     // `amount`: radiance given off around the distance `t`, not yet weighed; the weights are those of the path at `t`.
-    virtual void shines(const MediumEmission&, float t, const Spectrum& amount, const Spectrum& beta,
-                        const Spectrum& density) = 0;
+    virtual void emits(const MediumEmission&, float t, const Spectrum& amount, const Spectrum& beta,
+                       const Spectrum& density) = 0;
 
   protected:
     ~EmissionListener() = default;
@@ -45,7 +45,7 @@ struct InScattering {
     Spectrum coefficient; // 1/m
 };
 
-// What a ray has met so far.
+// What a ray has come across so far.
 struct MediumCounters {
     std::uint64_t collisions = 0;                     // tentative ones
     std::uint64_t lookups = 0;                        // of density, for transmittance
@@ -70,7 +70,7 @@ class MediumTracker {
 
     // Follows a ray to tMax or to where it is scattered, whichever comes first. Absorption is never an event: it is a
     // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
-    // the way, at one place in every segment that shines.
+    // the way, at one place in every segment that emits.
     MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
                            TrackedWeights, EmissionListener* = nullptr);
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
@@ -136,7 +136,7 @@ class MediumTracker {
     void start(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&);
     void startGlows(const Ray&, float tMax, const MediumStack& inside, RandomStream&);
     bool advance(Glow&, RandomStream&);
-    void shine(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
+    void emit(const Glow&, const Wavelengths&, TrackedWeights, EmissionListener&) const;
     static void schedule(Active&, float from);
     static bool advance(Active&);
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);

@@ -37,7 +37,7 @@ struct AbsorbingInterior {
     const Curve* absorption = nullptr;
 };
 
-// What the path is in, and what it will be in once it has gone through the surface that it met.
+// What the path is in, and what it will be in once it has gone through the surface that it hit.
 struct NestedDielectrics {
     Surroundings here, beyond;
     // Where a ray starts that leaves the surface.

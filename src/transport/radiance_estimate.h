@@ -34,7 +34,7 @@ struct RadianceEstimate {
     void add(const Spectrum& light, const void* source, bool passing = false) {
         add(light, source, passing, [] {});
     }
-    // `tell` is what an observer is told before.
+    // `tell` makes the calls of the observer that come before.
     template <typename Tell> void add(const Spectrum& light, const void* source, bool passing, Tell tell) {
         radiance += light;
         least = min(light, least); // in this order NaN leaves it alone

@@ -28,7 +28,7 @@ class PilotFilm final : public Film {
     bool seen(int column, int row) const { return samples_[cell(column, row)] > 0; }
     // Y of a cell.
     float luminance(int column, int row) const;
-    // What all samples of a cell took. Different cells may be told of from different threads at once.
+    // What all samples of a cell took. Different cells may be recorded from different threads at once.
     void noteRays(int column, int row, std::uint64_t rays) { rays_[cell(column, row)] = static_cast<float>(rays); }
     // Of one sample, on average over the cells that a rectangle touches; beyond the frame, over those next to it.
     double rays(PixelBounds) const;

@@ -59,7 +59,7 @@ class Sampler final {
     float time() const { return joint_[15]; }
     Vec2 lens() const { return {joint_[16], joint_[17]}; }
 
-    // Vertex 0 is the first that the camera ray meets.
+    // Vertex 0 is the first that the camera ray hits.
     VertexSample vertex(std::uint32_t depth) {
         if (depth < kJointVertices) {
             constexpr int lights[] = {4, 2, 11}, bsdfs[] = {0, 9, 13};

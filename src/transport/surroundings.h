@@ -119,8 +119,8 @@ class Surroundings {
 Surroundings surroundingsAt(const Scene&, Vec3 point, float time);
 
 // Faces of dielectrics that separate nothing, because they lie within others [Schmidt2002]. Whether the surface of a
-// dielectric, met along the ray from `here`, separates nothing: the same dielectric fills the space on both sides.
-// `beyond` becomes what lies behind it, and hit.outside is set. Faces of several shapes that coincide are met as one:
+// dielectric, hit along the ray from `here`, separates nothing: the same dielectric fills the space on both sides.
+// `beyond` becomes what lies behind it, and hit.outside is set. Faces of several shapes that coincide are hit as one:
 // `hit` becomes the face of the dielectric that is entered or, if none is, left.
 inline bool isHiddenFace(const Scene& scene, SurfaceHit& hit, const Ray& ray, const Surroundings& here,
                          Surroundings& beyond) {

@@ -37,7 +37,7 @@ struct EyeDirection {
 struct IgnoreMedia {
     class IgnoredEmission final : public EmissionListener {
       public:
-        void shines(const MediumEmission&, float, const Spectrum&, const Spectrum&, const Spectrum&) override {}
+        void emits(const MediumEmission&, float, const Spectrum&, const Spectrum&, const Spectrum&) override {}
     };
     template <typename Follow>
     MediumCollision operator()(const Ray&, float /*tMax*/, std::uint32_t /*crossings*/, Follow follow) const {
@@ -256,13 +256,13 @@ Arrival PathWalk<E>::arriveThrough(Ray& ray, SurfaceHit& hit, std::uint32_t dept
                                    [[maybe_unused]] OnTheWay& onTheWay) {
     RandomStream random = sampler.stream(2 * depth);
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        const bool met = context.scene.intersector->intersect(ray, hit);
+        const bool found = context.scene.intersector->intersect(ray, hit);
         if constexpr (kMedia) {
-            if (collides(ray, met ? &hit : nullptr, random, crossings, onTheWay)) return Arrival::collision;
+            if (collides(ray, found ? &hit : nullptr, random, crossings, onTheWay)) return Arrival::collision;
         } else if constexpr (kAbsorption) {
-            if (met) absorb(hit, ray.direction, hit.distance);
+            if (found) absorb(hit, ray.direction, hit.distance);
         }
-        if (!met) return Arrival::nowhere;
+        if (!found) return Arrival::nowhere;
         if constexpr (kTextures) path.cone.advance(hit.distance);
         const float share = straightOn(hit, ray, path.nested);
         if (share < 1 && !(share > 0 && random.uniform() < share)) return Arrival::surface;
@@ -367,8 +367,8 @@ Spectrum PathWalk<E>::transmittance(Vec3 origin, const LightSample& light, Neste
             if (!(ray.tMax > 0)) return result;
             ray.direction = way / ray.tMax;
         }
-        const bool met = context.scene.intersector->intersect(ray, hit) && hit.distance < ray.tMax;
-        if (!met) return result * along(ray, nested.here, ray.tMax, crossings == 0 ? light.distance : ray.tMax);
+        const bool found = context.scene.intersector->intersect(ray, hit) && hit.distance < ray.tMax;
+        if (!found) return result * along(ray, nested.here, ray.tMax, crossings == 0 ? light.distance : ray.tMax);
         const Surroundings before = nested.here;
         const float share = straightOn(hit, ray, nested);
         if (share == 0) return Spectrum(0.f);
@@ -408,7 +408,7 @@ template <EffectBits E> void PathWalk<E>::endSecondaryWavelengths() {
 }
 
 // Beer–Lambert along `distance` of the segment towards `hit`. A camera inside a dielectric is known by its first hit: a
-// boundary met from behind while no interior was entered.
+// boundary hit from behind while no interior was entered.
 template <EffectBits E> void PathWalk<E>::absorb(const SurfaceHit& hit, Vec3 direction, float distance) {
     if constexpr (kInterfaces) {
         if (const Curve* clear = path.nested.here.absorption()) path.beta *= exp(clear->at(path.lambda) * -distance);

@@ -38,7 +38,7 @@ class Fire final : public VolumeRecipe {
         const float column = smoothStep(0, 0.3f, 0.24f - distance + 0.8f * tongues);
         const float soot = column * smoothStep(0.9f, 1.9f, p.y) * (1 - smoothStep(1.9f, 2.18f, p.y)) * 0.3f;
         if (!(flame > 1e-3f) && !(soot > 1e-3f)) return false;
-        // Sheets burn at about 1800 K and lose heat, by shining above all, on their way up and at the edges.
+        // Sheets burn at about 1800 K and lose heat, by radiation above all, on their way up and at the edges.
         const float cooled =
             0.28f * smoothStep(0.1f, 1.8f, p.y) + 0.16f * (1 - smoothStep(0, 0.5f, body)) - 0.05f * sheet;
         values[0] = std::max(soot * (1 - 0.6f * body), 0.25f * flame);

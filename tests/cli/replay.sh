@@ -24,7 +24,7 @@ says_not err "the time"
 
 # The image tells what to repeat, and the command of the warning repeats the first of them.
 expect 0 replay flare.exr
-says out "meets the light \`flare\`"
+says out "hits the light \`flare\`"
 says out "dropped: vertex 1, object \`flare\`"
 cp out all
 # shellcheck disable=SC2086

@@ -19,7 +19,7 @@
 namespace abbe::test {
 
 struct EmissionCase {
-    std::string text; // of the light, near the origin, shining about towards kAhead if it is at a place
+    std::string text; // of the light, near the origin, emitting about towards kAhead if it is at a place
     bool distant = false;
     double powerError = 1e-4; // relative, of Light::power() itself: some are sums over grids
     double powerFactor = 1;   // what power() takes for 1: a sun's is its irradiance times the disk, as if from one

@@ -42,7 +42,7 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
                 for (const auto& light : scene.lights) {
                     const DistantLight* const distant = light->asDistant();
                     if (!distant || !distant->hasExtent()) continue;
-                    const LightTarget met = LightTarget::met(*distant, ray.direction, 0);
+                    const LightTarget met = LightTarget::ofHit(*distant, ray.direction, 0);
                     const bool covered = test.sampler->covers(chain, start, direction, met, lambda);
                     const Spectrum arriving = distant->escaped(ray.direction, lambda, 0) * beta;
                     if (length > 0 && covered == (wanted == Found::covered))
@@ -54,7 +54,7 @@ inline Moments walkTo(const ManifoldCase& test, Vec3 world, int paths, bool spec
             if (inside) beta *= exp(inside->at(lambda) * -hit.distance);
             if (hit.light) {
                 const Spectrum arriving = hit.light->emitted(hit, -ray.direction, lambda) * beta;
-                const bool covered = test.sampler->covers(chain, start, direction, LightTarget::met(hit, 0), lambda);
+                const bool covered = test.sampler->covers(chain, start, direction, LightTarget::ofHit(hit, 0), lambda);
                 if (length > 0 && covered == (wanted == Found::covered))
                     sum = static_cast<double>(mean(spectral ? arriving / lambda.pdf : arriving));
                 break;

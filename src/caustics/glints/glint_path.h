@@ -24,7 +24,7 @@ template <EffectBits E> class GlintPath {
     GlintPath(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
         : walk_(context, sampler, arena, counters, media) {}
 
-    // To be told where it starts.
+    // Whose start is set from outside.
     Walk& walk() { return walk_; }
 
     // `heroOnly`: the ray is that of the hero alone. choose(chain, reflects, transmits): whether light is let through
@@ -67,15 +67,15 @@ void GlintPath<E>::trace(Ray ray, const Wavelengths& lambda, bool heroOnly, Choo
         const Vec3 from = ray.origin, direction = ray.direction;
         const auto arrival = walk_.arrive(ray, hit, depth);
         if (arrival == Arrival::collision || !anyNonZero(path.beta)) return;
-        const bool met = arrival == Arrival::surface;
-        if (met) {
+        const bool found = arrival == Arrival::surface;
+        if (found) {
             hit.arrival = direction;
             hit.footprint = path.cone.radius;
         }
         if (depth > 0)
             tell(GlintView{chain, from, direction, path.beta * (1 / mean(path.densities.unidirectional)), probability,
-                           met ? &hit : nullptr, path.time});
-        if (!met || depth == kLongest) return;
+                           found ? &hit : nullptr, path.time});
+        if (!found || depth == kLongest) return;
         if (hit.material->bends()) hit.material->bend(hit);
         walk_.arena.reset();
         const Bsdf& bsdf = *hit.material->bsdf(hit, path.lambda, walk_.arena);

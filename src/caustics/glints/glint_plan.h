@@ -36,7 +36,7 @@ struct GlintLight {
     float sine(Vec3 p) const { return distant ? size : size / length(place - p); }
 };
 
-// The brightest of those that rays can meet, at most so many.
+// The brightest of those that rays can hit, at most so many.
 std::vector<GlintLight> glintLights(const Scene&, std::size_t most);
 
 class Light;
@@ -69,7 +69,7 @@ struct Glint {
 };
 
 // The glints of a render. Frozen before light is gathered. Which light that is: a camera path whose place on the film
-// is in a glint's box has met delta interfaces alone, with exactly the glint's events, and then one of the lights.
+// is in a glint's box has hit delta interfaces alone, with exactly the glint's events, and then one of the lights.
 // Camera paths leave it out; instead samples of the pixels that see a box send probes into it, which take exactly these
 // events and so need not find them by chance (glint_path.h). How well the boxes fit decides on the noise alone.
 class GlintPlan {
@@ -84,7 +84,7 @@ class GlintPlan {
     bool has(const Light* light) const { return lights_.contains(light); }
     // Those that pixels of a row of the frame may see, by their places in glints().
     std::span<const std::uint32_t> ofRow(int y) const;
-    // Whether light of one of the plan's lights that was met by `chain` from there is left to probes. `row`: ofRow() of
+    // Whether light of one of the plan's lights that was hit by `chain` from there is left to probes. `row`: ofRow() of
     // a pixel that has that place within reach.
     bool covers(std::span<const std::uint32_t> row, const ChainSignature& chain, Vec2 film) const {
         for (const std::uint32_t i : row)

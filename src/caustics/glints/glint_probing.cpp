@@ -169,7 +169,7 @@ class GlintPlanner {
         std::array<Vec2, 5> miss;
         bool known() const { return std::ranges::all_of(seen, std::identity()); }
         Vec3 p;
-        bool met = false;
+        bool hitsLight = false;
         double luminance = 0, probability = 0;
     };
     Look look(const Candidate& c, float hero, float difference, std::uint64_t& rays) const {
@@ -187,7 +187,7 @@ class GlintPlanner {
                 about = Frame::fromNormal(light.from(view.p));
                 look.p = view.p;
                 const Spectrum emitted = view.emitted(*light.source, lambda);
-                look.met = anyNonZero(emitted);
+                look.hitsLight = anyNonZero(emitted);
                 look.luminance =
                     context_.scene.sensor(view.throughput * emitted, context_.scene.wavelengths.sample(hero)).y;
                 look.probability = view.probability;
@@ -247,7 +247,7 @@ class GlintPlanner {
             if (!(std::abs(slope.determinant) > 0)) return std::nullopt;
             const float radius = lights_[c.light].sine(at.p);
             before = c.film;
-            if (at.met && off < 0.5f * radius) {
+            if (at.hitsLight && off < 0.5f * radius) {
                 const Image image = slope.image(c.film, radius, at);
                 const float own = std::clamp(std::min(image.half.x, image.half.y), kFinestStep, kDifference);
                 if (!(own < 0.5f * difference)) return image;

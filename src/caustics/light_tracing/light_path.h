@@ -12,7 +12,7 @@
 namespace abbe {
 
 // One path from a light through the scene, weighed against camera paths as light_path_weights.h states. It is walked as
-// paths from the camera are, through the same media and boundaries; light that it brings to media that shine or to
+// paths from the camera are, through the same media and boundaries; light that it brings to media that emit or to
 // other lights is not its own.
 template <EffectBits E> class LightPath {
     using Walk = PathWalk<E>;
@@ -26,7 +26,7 @@ template <EffectBits E> class LightPath {
               PathCounters& counters, Media& media)
         : walk_(context, sampler, arena, counters, media), arenas_(vertexArenas) {}
 
-    // To be told where it starts.
+    // Whose start is set from outside.
     Walk& walk() { return walk_; }
     // Of all, those after the path was spread for the first time.
     std::uint64_t raysAfterSpread() const { return raysAtSpread_ ? rays() - *raysAtSpread_ : 0; }
@@ -34,11 +34,11 @@ template <EffectBits E> class LightPath {
     template <typename Tell> void trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
     // Instead of what the lens sees: calls onSurface(hit, vertex, sample, depth) and onCollision(place, direction,
     // sample, depth) at every vertex before the path goes on from there; but for collisions at the first.
-    // `mirroredFirst`: the path ends unless a mirror or clear glass is the first thing that it meets.
+    // `mirroredFirst`: the path ends unless a mirror or clear glass is the first thing that it hits.
     template <typename Surface, typename Collision>
     void follow(const EmittedRay&, const Wavelengths&, bool mirroredFirst, Surface onSurface, Collision onCollision);
 
-    // While it is followed. At a vertex: density of camera paths that meet the light by scattering, without the
+    // While it is followed. At a vertex: density of camera paths that hit the light by scattering, without the
     // scattering there, over that of light paths.
     double cameraOdds() const;
     // A delta that it has gone by.
@@ -46,7 +46,7 @@ template <EffectBits E> class LightPath {
         const Shape* shape = nullptr;
         Lobes lobe;
     };
-    // All so far; nothing where it has met anything else, or more than a chain may have.
+    // All so far; nothing where it has hit anything else, or more than a chain may have.
     std::optional<std::span<const Link>> links() const {
         if (linkCount_ > kMostLinks) return std::nullopt;
         return std::span(links_).first(linkCount_);
@@ -55,7 +55,7 @@ template <EffectBits E> class LightPath {
   private:
     // Camera paths over light paths, up to the last vertex, as in light_path_weights.h the other way round.
     struct Rivals {
-        double bsdf = 0;                               // those that meet the light by scattering
+        double bsdf = 0;                               // those that hit the light by scattering
         double nee = 0;                                // by next-event estimation, from the second vertex on
         Spectrum ahead{1.f}, back{1.f}, neeAhead{1.f}; // densities over the hero's: of camera paths, light paths
         double of(double scattering, const Spectrum& ratio, bool hero) const {
@@ -223,7 +223,7 @@ Spectrum LightPath<E>::passing(Vec3 origin, const LensConnection& c, bool throug
                                RayKind::camera);
 }
 
-// Rays of light have met what the camera may not see: then nothing that it sees lies there, to within rounding.
+// Rays of light have hit what the camera may not see: then nothing that it sees lies there, to within rounding.
 template <EffectBits E> bool LightPath<E>::hiddenFromCamera(const SurfaceHit& hit, Vec3 towardsLens) const {
     const float cosine = std::max(std::abs(dot(towardsLens, hit.ng)), 0.01f);
     const float near = (8 * dot(abs(hit.ng), hit.pError) + 0x1p-21f * hit.distance) / cosine;
@@ -244,7 +244,7 @@ template <EffectBits E>
 template <typename Tell>
 void LightPath<E>::show(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex, Vec2 lens,
                         std::uint32_t depth, Tell&& tell) {
-    if (!vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas meet no lens
+    if (!vertex.bsdf().lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas hit no lens
     const auto c = connect(hit.p, lens);
     if (!c) return;
     const LightScattering s = vertex.towards(c->wi);

@@ -62,7 +62,7 @@ struct Probe {
     std::uint64_t rays = 0;
 };
 
-// One call for each sample: a film is told sums alone.
+// One call for each sample: a film gets sums alone.
 Probe probe(const PathContext& context, TileFunction render, const RouletteReference& roulette, PixelBounds pixel) {
     Probe result;
     PilotPixel film(pixel, kReplicates);
@@ -146,7 +146,7 @@ LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, Pix
     std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::firefly);
 }
 
-// A few deposits that camera paths would meet once in millions would say all of a second moment, and next to nothing of
+// A few deposits that camera paths would hit once in millions would say all of a second moment, and next to nothing of
 // what renders show: the largest count as the ninth.
 void LightPathForecast::limitOutliers() {
     constexpr std::size_t kFew = 8;

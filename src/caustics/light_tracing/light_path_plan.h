@@ -25,7 +25,7 @@ struct LightPathPlan {
 // Light paths of one light towards one target.
 struct LightPathShare {
     std::string light;  // as in Scene::names; empty: all others together
-    std::string target; // what focuses; empty: elsewhere, where the light itself shines
+    std::string target; // what focuses; empty: elsewhere, where the light itself arrives
     double share = 0;   // of all light paths
     // Relative second moments of what these paths find, as LightPathFindings::before and ::after, which are variances
     // and so less than their sums.

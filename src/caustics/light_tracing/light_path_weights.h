@@ -8,7 +8,7 @@
 //
 //     s e Ck' / m · Π_(j=1)^(k-1) Cj bj / (cj fj)        with b1 = 1,   Ck' = 1 / ck
 //
-// times as likely as the camera path that met the light by scattering [Veach1997, sec. 10.2]: squared distances cancel
+// times as likely as the camera path that hit the light by scattering [Veach1997, sec. 10.2]: squared distances cancel
 // edge by edge. For lights far away ck is 1, for those that are a point 1 / d². The densities at each vertex are those
 // that LightVertex tells, seen with the wavelengths that the path started with and as a point, without a footprint:
 // from either side the same numbers, so that the weights of all ways to find a path sum to 1. What lies in media and
@@ -57,9 +57,9 @@ template <EffectBits E> class LightPathWeights {
     // Light scattered in a medium: its phase functions look alike from both sides.
     void scatterInMedium();
 
-    // Whether light that is met now could come by light paths.
+    // Whether light that is hit now could come by light paths.
     bool weighs() const { return weighs_; }
-    // Of light that is met, against next-event estimation of density `lightPdf`: of an area light in the direction,
+    // Of light that is hit, against next-event estimation of density `lightPdf`: of an area light in the direction,
     float emissionWeight(float lightPdf, const SurfaceHit&, Vec3 direction) const;
     // or of one far away by a path that left `p` in the direction.
     float emissionWeight(float lightPdf, const Light&, Vec3 p, Vec3 direction) const;
@@ -182,7 +182,7 @@ double LightPathWeights<E>::lightEnds(const LightSample& light, const PickedLigh
     return cosine > 0 ? e / cosine : e / square(static_cast<double>(light.distance));
 }
 
-// Densities of next-event estimation, of meeting the same light by scattering, and of light paths.
+// Densities of next-event estimation, of hitting the same light by scattering, and of light paths.
 template <EffectBits E> float LightPathWeights<E>::neeShare(double nee, double bsdf, double lightPaths) const {
     if (walk_.context.lightPaths->alone && lightPaths > 0) return 0;
     return static_cast<float>(nee / (nee + bsdf + lightPaths)) / mean(walk_.path.densities.unidirectional);

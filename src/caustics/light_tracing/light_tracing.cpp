@@ -27,7 +27,7 @@ constexpr std::uint32_t kBlock = 1024, kLeastPilotPaths = 8 * kBlock, kMostPilot
 constexpr std::uint64_t kLearnLightPaths = 0x6c6561726e, kJudgeLightPaths = 0x6a75646765; // "learn", "judge"
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
 constexpr double kLightCost = 2.5;
-// Of all that a picture takes, what is spent against light that comes too seldom for a pilot to see it, and shines the
+// Of all that a picture takes, what is spent against light that comes too seldom for a pilot to see it, and is the
 // brighter for it.
 constexpr double kInsurance = 0.1;
 constexpr double kLeastFireflies = 0.02; // second moment of what light paths could bring better
@@ -188,8 +188,7 @@ class LightPathPlanner {
     // going on with probability p costs (m1 + m2/p) (c1 + p c2), which is least at √(m2 c1 / (m1 c2)) [Veach1997, sec.
     // 10.4].
     float afterSpread(const Listened& heard) const {
-        constexpr double kLeastSurvival =
-            0.1; // a pilot sees little of what comes seldom, and it would shine the brighter
+        constexpr double kLeastSurvival = 0.1; // a pilot sees little of what comes seldom, and it would be the brighter
         double before = 0, after = 0;
         for (const LightDeposit& d : heard.deposits)
             (d.spread ? after : before) +=

@@ -38,7 +38,7 @@ float ChainTracer::straightOn(SurfaceHit& hit, const Ray& ray, Surroundings& her
     return 0;
 }
 
-bool ChainTracer::meet(Vec3 spawn, Vec3d direction, Surroundings& here, Surroundings& beyond, ChainVertex& v) {
+bool ChainTracer::intersect(Vec3 spawn, Vec3d direction, Surroundings& here, Surroundings& beyond, ChainVertex& v) {
     Ray ray{spawn, normalize(Vec3(direction)), kInfinity, start_.time};
     v.clearness = Spectrum(1.f);
     for (int crossings = 0; crossings < kMaxCrossings; ++crossings) {
@@ -133,7 +133,7 @@ bool ChainTracer::trace(Vec3d direction, ChainSignature signature, const Shape* 
     Surroundings here = start_.around, beyond;
     for (int i = 0; i < chain.length; ++i) {
         ChainVertex& v = chain.vertices[static_cast<std::size_t>(i)];
-        if (!meet(spawn, d, here, beyond, v) || (i == 0 && v.hit.shape != first)) return false;
+        if (!intersect(spawn, d, here, beyond, v) || (i == 0 && v.hit.shape != first)) return false;
         const auto patch = v.hit.shape->patch(v.hit, p, d);
         if (!patch) return false;
         const double distance = dot(patch->p - p, d);

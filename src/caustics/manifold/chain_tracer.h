@@ -54,8 +54,8 @@ class ChainTracer {
                 const LightTarget& target, const Wavelengths& lambda)
         : scene_(scene), followed_(followed), start_(start), target_(target), lambda_(lambda) {}
 
-    // The chain whose first direction is this, with these events; `first`: the shape that it must meet first. False if
-    // there is none: it meets something else, or cannot reflect or refract like that. It does not matter what lies
+    // The chain whose first direction is this, with these events; `first`: the shape that it must hit first. False if
+    // there is none: it hits something else, or cannot reflect or refract like that. It does not matter what lies
     // between its end and the light, nor about how much light it carries.
     bool trace(Vec3d direction, ChainSignature signature, const Shape* first, SpecularChain& chain);
     // Whether anything lies between the end of a solution and the light; sets chain.clearness.
@@ -71,7 +71,7 @@ class ChainTracer {
         std::array<Vec3d, 2> p, d;
     };
 
-    bool meet(Vec3 spawn, Vec3d direction, Surroundings& here, Surroundings& beyond, ChainVertex&);
+    bool intersect(Vec3 spawn, Vec3d direction, Surroundings& here, Surroundings& beyond, ChainVertex&);
     float straightOn(SurfaceHit&, const Ray&, Surroundings& here, Surroundings& beyond) const;
     // `end`: the surface there, if any.
     Spectrum clearness(const Surroundings& here, const SurfaceHit* end, const Ray&, float distance) const;

@@ -8,17 +8,17 @@ namespace abbe {
 
 // For light that such chains bring to the first vertex behind others of them. No light path can show it to the lens,
 // and a path from the camera finds a small light by luck alone. It is found by manifold sampling, and left out where a
-// path has met such a light by such a chain. The walk outlives it.
+// path has hit such a light by such a chain. The walk outlives it.
 template <EffectBits E> class ManifoldNee {
   public:
     explicit ManifoldNee(PathWalk<E>& walk) : walk_(walk) {}
 
-    // At a surface. `specular`: the path has met nothing but deltas so far.
+    // At a surface. `specular`: the path has hit nothing but deltas so far.
     void sample(const SurfaceHit&, const Bsdf&, const EyeDirection&, std::uint32_t depth, bool specular);
     // The path has gone on from there in the direction.
     void follow(const SurfaceHit&, const BsdfSample&, Vec3 direction);
     void scatterInMedium() { chain_.stop(); }
-    // Whether the light that is met has been found already; target() makes its LightTarget.
+    // Whether the light that is hit has been found already; target() makes its LightTarget.
     template <typename Target> bool covers(Target target) const {
         const ManifoldSampler* const manifold = walk_.context.manifold;
         return chain_.following && manifold &&

@@ -223,13 +223,13 @@ bool ManifoldSampler::coversKind(const CoveredChain& chain, const Light* light) 
            plan_.casters[chain.caster].weights[ManifoldKinds::indexOf(chain.signature)] > 0;
 }
 
-bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
+bool ManifoldSampler::covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& hit,
                              const Wavelengths& lambda) const noexcept {
-    if (!coversKind(chain, met.light) || !(met.pdf > 0)) return false;
+    if (!coversKind(chain, hit.light) || !(hit.pdf > 0)) return false;
     const SpecularCaster& caster = plan_.casters[chain.caster];
-    ChainTracer tracer(scene_, followed_, start, met, lambda);
+    ChainTracer tracer(scene_, followed_, start, hit, lambda);
     SpecularChain again;
-    return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) && isSmall(again, met);
+    return tracer.trace(normalize(Vec3d(direction)), chain.signature, caster.shape, again) && isSmall(again, hit);
 }
 
 } // namespace abbe

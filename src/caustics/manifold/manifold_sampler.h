@@ -26,8 +26,8 @@ struct ManifoldSample {
     // W·m⁻²·nm⁻¹ on a surface that faces wi: what f(wo, wi) |cos θ| or a phase function is to be multiplied with. All
     // densities are divided out.
     Spectrum irradiance{0.f};
-    // Of the chain, by the light as a path that meets it would see it: with the irradiance above the second moment that
-    // chance would have in place of this. 0 for lights that nobody meets by chance.
+    // Of the chain, by the light as a path that hits it would see it: with the irradiance above the second moment that
+    // chance would have in place of this. 0 for lights that nobody hits by chance.
     Spectrum radiance{0.f};
     const Light* light = nullptr;
     int length = 0; // interfaces on the way
@@ -45,7 +45,7 @@ struct ManifoldChoice {
     float probability = 0;
 };
 
-// What a camera path has met since the last vertex at which manifold sampling was tried. Plain data of a path;
+// What a camera path has hit since the last vertex at which manifold sampling was tried. Plain data of a path;
 // ManifoldSampler::follow() and covers() look after it.
 struct CoveredChain {
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -96,9 +96,9 @@ class ManifoldSampler {
     void follow(CoveredChain& chain, const Shape*, Lobes lobe) const noexcept;
     // Whether this light by such a chain is covered, as far as its shapes and events tell.
     bool coversKind(const CoveredChain& chain, const Light*) const noexcept;
-    // Whether light that the path meets next is covered: manifold sampling at the start of the chain has it already.
-    // `start` and `direction` as there; `met`: LightTarget::met(). Cheap where no such light can be covered.
-    bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& met,
+    // Whether light that the path hits next is covered: manifold sampling at the start of the chain has it already.
+    // `start` and `direction` as there; `hit`: LightTarget::ofHit(). Cheap where no such light can be covered.
+    bool covers(const CoveredChain& chain, const ChainStart& start, Vec3 direction, const LightTarget& hit,
                 const Wavelengths&) const noexcept;
 
   private:
@@ -118,7 +118,7 @@ class ManifoldSampler {
 class ManifoldListener {
   public:
     virtual ~ManifoldListener() = default;
-    // For a path of throughput `beta` an estimate at `start` came to `light` at the eye; a path that meets the same
+    // For a path of throughput `beta` an estimate at `start` came to `light` at the eye; a path that hits the same
     // light by chance would bring `chance`. Both 0 if nothing was found. Called for each of the plan's estimates;
     // `light` is that of one, not its share of the mean.
     virtual void sampled(const ChainStart& start, const Spectrum& beta, const Wavelengths&, const Spectrum& light,

@@ -30,7 +30,7 @@ template <EffectBits E> class GatherPath {
     GatherPath(const PathContext& context, Sampler& sampler, Arena& arena, PathCounters& counters, Media& media)
         : walk_(context, sampler, arena, counters, media) {}
 
-    // To be told where it starts.
+    // Whose start is set from outside.
     Walk& walk() { return walk_; }
 
     // `heroOnly`: the ray is that of the hero alone. Of photons of the same wavelengths and time, `radius` over that of

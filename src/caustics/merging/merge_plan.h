@@ -14,9 +14,9 @@ namespace abbe {
 // How light paths are merged with camera paths. Frozen before light is gathered. A round has `photons` light paths and
 // a camera path through every pixel, which all have the same wavelengths and the same time.
 //
-// Which light that is: the camera path meets mirrors and clear glass alone, then, at least one of them behind it, a
-// vertex that spreads light; the light path meets a mirror or clear glass first, and anything after it. What manifold
-// sampling covers is left out. The path tracer leaves out exactly that: what these lights send that it meets by way of
+// Which light that is: the camera path hits mirrors and clear glass alone, then, at least one of them behind it, a
+// vertex that spreads light; the light path hits a mirror or clear glass first, and anything after it. What manifold
+// sampling covers is left out. The path tracer leaves out exactly that: what these lights send that it hits by way of
 // a delta, behind such a vertex (MergingExclusion).
 struct MergePlan {
     AimedEmission emission;

@@ -1,4 +1,4 @@
-// The photons of one round of merging, by place: vertices of light paths that wait to be met by camera paths.
+// The photons of one round of merging, by place: vertices of light paths that wait to be hit by camera paths.
 #pragma once
 
 #include "math/bounds.h"
@@ -16,7 +16,7 @@ namespace abbe {
 class Medium;
 
 // Light that arrives at a surface, or is scattered in a medium, after a mirror or clear glass was the first thing it
-// met [Jensen1996].
+// hit [Jensen1996].
 struct Photon {
     Vec3 p;                         // render space
     Vec3 wi;                        // unit, against its flight

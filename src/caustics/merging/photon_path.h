@@ -15,7 +15,7 @@ template <EffectBits E> class PhotonPath {
                PathCounters& counters, typename PathWalk<E>::Media& media)
         : path_(context, sampler, arena, vertexArenas, counters, media) {}
 
-    // To be told where it starts.
+    // Whose start is set from outside.
     PathWalk<E>& walk() { return path_.walk(); }
     // Vertex 0 of the sampler has started the path. Light that no mirror or clear glass has sent is not merged.
     template <typename Tell> void leavePhotons(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
@@ -63,7 +63,7 @@ Photon PhotonPath<E>::photonOf(const EmittedRay& start, Vec3 p, Vec3 direction, 
     return photon;
 }
 
-// Camera paths would meet the links the other way round, on the side that the light came from.
+// Camera paths would hit the links the other way round, on the side that the light came from.
 template <EffectBits E> bool PhotonPath<E>::followedFrom(const EmittedRay& start, const SurfaceHit& hit) {
     const ManifoldSampler* const sampler = walk().context.manifold;
     const auto links = path_.links();

@@ -15,7 +15,7 @@ constexpr ChainEvent chainEvent(bool transmits) {
 // Events of the longest chains that manifold sampling follows (ManifoldKinds).
 inline constexpr int kLongestManifoldChain = 3;
 
-// Events in the order in which a camera path meets them.
+// Events in the order in which a camera path hits them.
 class ChainSignature {
   public:
     static constexpr int kMaxLength = 16;

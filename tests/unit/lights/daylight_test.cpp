@@ -68,7 +68,7 @@ TEST_CASE("a clear day has 100 klx on the ground") {
     CHECK(diffuse + direct < 120e3);
     CHECK(diffuse > 15e3);
     CHECK(diffuse < 25e3);
-    // The ground shines as an even reflector of both.
+    // The ground is an even reflector of both.
     const Wavelengths at = Wavelengths::single(555);
     const SampledCurve ground([&](double nm) {
         return static_cast<double>(sky.escaped({0, -1, 0}, Wavelengths::single(static_cast<float>(nm)), 0)[0]);

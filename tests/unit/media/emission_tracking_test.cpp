@@ -34,7 +34,7 @@ struct RampWalk final : EmissionWalk { // gives off 1 + t
     Pieces pieces;
 };
 
-constexpr double kThick = 4, kBright = 5.5; // shines further than it absorbs
+constexpr double kThick = 4, kBright = 5.5; // emits further than it absorbs
 
 struct RampEmission final : MediumEmission {
     EmissionWalk* walk(const Ray&, float tMax, WalkSpace& space) const noexcept override {
@@ -58,8 +58,8 @@ class Glowing final : public OpticalMedium {
 
 // Sums what a ray is told, with the balance heuristic over the wavelengths.
 struct Sum final : EmissionListener {
-    void shines(const MediumEmission&, float, const Spectrum& amount, const Spectrum& beta,
-                const Spectrum& density) override {
+    void emits(const MediumEmission&, float, const Spectrum& amount, const Spectrum& beta,
+               const Spectrum& density) override {
         light += beta * amount * (1 / mean(density));
     }
     Spectrum light{0.f};

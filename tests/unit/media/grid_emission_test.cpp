@@ -90,7 +90,7 @@ TEST_CASE("emission along a ray is that of the grids, each in its own lattice") 
         while (walk && walk->next(s)) {
             REQUIRE(s.tNear >= end);
             REQUIRE(s.tFar <= ray.tMax);
-            // nothing shines between the segments
+            // nothing emits between the segments
             for (int k = 0; k < 4 && s.tNear > end; ++k) {
                 const float t = end + (s.tNear - end) * (static_cast<float>(k) + 0.5f) / 4;
                 REQUIRE(expected(Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(t), 610) == 0);
@@ -127,7 +127,7 @@ TEST_CASE("the light's points follow the density that the emission states") {
         ++counts[static_cast<std::size_t>((bin.x * kSide + bin.y) * kSide + bin.z)];
         const auto s = light.sample(from, 0, u, Wavelengths::single(kNm), 0);
         if (!s) {
-            ++missing; // nothing shines there
+            ++missing; // nothing is there
             continue;
         }
         if (i > 1000) continue;

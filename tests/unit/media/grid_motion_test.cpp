@@ -122,7 +122,7 @@ TEST_CASE("emission drifts along") {
         while (glow->next(s)) {
             const float t = s.tNear + (s.tFar - s.tNear) * random.uniform(), density = walk->density(t);
             CHECK(glow->emitted(t, Wavelengths::single(550))[0] == doctest::Approx(0.5f * density));
-            // wherever it shines its light can have made a sample
+            // wherever it emits its light can have made a sample
             const Vec3 p = ray.origin + ray.direction * t;
             if (density > 1e-3f) CHECK(medium.emission()->pdfSolidAngle({0, 0, 0}, p) > 0);
             found += density > 0;

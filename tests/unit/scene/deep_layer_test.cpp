@@ -14,7 +14,7 @@ std::string header(const std::string& row = "deep", const std::string& filter = 
                        filter, row, kView);
 }
 
-// A room that no path leaves, with things in front of each other, glass and a fog that shines and absorbs.
+// A room that no path leaves, with things in front of each other, glass and a fog that emits and absorbs.
 std::string closedRoom(const std::string& row, const std::string& filter) {
     return header(row, filter) + R"(
 shape room box { size 6 4 20; material diffuse { reflectance 0.5 } }
@@ -181,11 +181,11 @@ TEST_CASE("a medium lets through what the law of Beer and Lambert says, at every
 
 TEST_CASE("how much of a patchy medium is seen through does not depend on what it absorbs") {
     const auto through = [](const char* albedo) {
-        const std::string text =
-            "scene 1\nfilm { size 8 8; filter box 0.5; layers { deep 64 } }\n"
-            "camera { from 0 0 0; look-at 0 0 -1; fov 20 deg }\nlight sky { luminance 100 nits }\n"
-            "volume slab noise { min -1.5 -1.5 -6; max 1.5 1.5 -2; extinction 1.5 per-m; scale 70 cm; coverage 0.5; albedo " +
-            std::string(albedo) + " }\n";
+        const std::string text = "scene 1\nfilm { size 8 8; filter box 0.5; layers { deep 64 } }\n"
+                                 "camera { from 0 0 0; look-at 0 0 -1; fov 20 deg }\nlight sky { luminance 100 nits }\n"
+                                 "volume slab noise { min -1.5 -1.5 -6; max 1.5 1.5 -2; extinction 1.5 per-m; scale 70 "
+                                 "cm; coverage 0.5; albedo " +
+                                 std::string(albedo) + " }\n";
         const LayeredFilm image(text, 512);
         return passing(image.deep(), 20);
     };
