@@ -10,7 +10,7 @@ namespace {
 template <typename Interval> int covered(const MadeCurve& curve, double truth, Interval interval, int studies = 500) {
     int inside = 0;
     for (int study = 0; study < studies; ++study) {
-        const Estimate e = interval(curve.make(static_cast<std::uint64_t>(study)));
+        const abbe::Estimate e = interval(curve.make(static_cast<std::uint64_t>(study)));
         inside += e.low <= truth && truth <= e.high;
     }
     return inside;
@@ -75,10 +75,10 @@ TEST_CASE("times that vary count in the intervals of what is told in time") {
             for (RungRun& rung : run.rungs) rung.seconds *= busy;
         }
         const CurveStatistics noisy(kLadder, runs);
-        const Estimate time = noisy.timeTo(std::sqrt(0.1 / 50), {}).seconds;
+        const abbe::Estimate time = noisy.timeTo(std::sqrt(0.1 / 50), {}).seconds;
         inside += time.low <= 0.505 && 0.505 <= time.high;
         width += time.high - time.low;
-        const Estimate before = quiet.timeTo(std::sqrt(0.1 / 50), {}).seconds;
+        const abbe::Estimate before = quiet.timeTo(std::sqrt(0.1 / 50), {}).seconds;
         quietWidth += before.high - before.low;
     }
     CHECK(inside >= 276);
@@ -92,7 +92,8 @@ TEST_CASE("efficiencies against another curve lie within their intervals") {
     main.sigma = slow.sigma = 0.1;
     int inside = 0;
     for (std::uint64_t study = 0; study < 500; ++study) {
-        const Estimate e = slow.make(2 * study + 1).efficiencyAgainst(main.make(2 * study + 2), TimeBasis::sampling);
+        const abbe::Estimate e =
+            slow.make(2 * study + 1).efficiencyAgainst(main.make(2 * study + 2), TimeBasis::sampling);
         inside += e.low <= 1.0 / 6 && 1.0 / 6 <= e.high;
     }
     CHECK(inside >= 450);

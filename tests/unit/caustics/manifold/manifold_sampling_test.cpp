@@ -1,21 +1,12 @@
 // What manifold sampling leaves to merging.
 #include "caustics/manifold/manifold_sampling.h"
 #include "caustics/merging/merge_plan.h"
-#include "support/caustics_of.h"
 #include "support/manifold_cases.h"
 
 #include <doctest/doctest.h>
 
 namespace abbe::test {
 namespace {
-
-CausticFindings planned(const char* file, Technique::Merging merging) {
-    const TestScene scene = TestScene::load(file);
-    REQUIRE(scene.report() == "");
-    RenderSettings settings = scene.settings();
-    settings.technique.merging = merging;
-    return causticsOf(scene, settings);
-}
 
 // A plan of a ball of glass and two lights, in which kind TRT is one that a pilot hardly saw; beside merging of the
 // light of the first lights.
@@ -78,27 +69,6 @@ TEST_CASE("manifold sampling: none is left where all kinds are rare and all ligh
     CHECK_FALSE(rare.planned().sampler);
     CHECK(rare.planned().findings.leftToMerging);
     CHECK_FALSE(rare.planned().findings.used);
-}
-
-// Behind the facets of the stone the pilot finds next to nothing.
-TEST_CASE("manifold sampling: chains that are hardly ever found are left to merging, if there is any") {
-    const CausticFindings both = planned("scenes/diamond/diamond.scene", Technique::Merging::automatic);
-    CHECK(both.of<MergeFindings>().used);
-    CHECK(both.of<ManifoldFindings>().chains < 8);
-    CHECK(both.of<ManifoldFindings>().leftToMerging);
-    CHECK_FALSE(both.of<ManifoldFindings>().used);
-    const CausticFindings alone = planned("scenes/diamond/diamond.scene", Technique::Merging::off);
-    CHECK_FALSE(alone.of<MergeFindings>().used);
-    CHECK_FALSE(alone.of<ManifoldFindings>().leftToMerging);
-    CHECK(alone.of<ManifoldFindings>().used);
-}
-
-TEST_CASE("manifold sampling: chains that are often found stay, beside merging") {
-    const CausticFindings both = planned("scenes/mirror-caustic/mirror-caustic.scene", Technique::Merging::automatic);
-    CHECK(both.of<MergeFindings>().used);
-    CHECK(both.of<ManifoldFindings>().chains > 50);
-    CHECK(both.of<ManifoldFindings>().used);
-    CHECK_FALSE(both.of<ManifoldFindings>().leftToMerging);
 }
 
 } // namespace abbe::test
