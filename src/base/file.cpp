@@ -37,14 +37,20 @@ RegularFile::~RegularFile() {
 }
 
 std::size_t RegularFile::readAt(std::uint64_t offset, std::span<char> to) {
+    errno = 0;
+    const std::size_t done = copyAt(offset, to);
+    if (errno != 0 && good()) why_ = std::strerror(errno);
+    return done;
+}
+
+std::size_t RegularFile::copyAt(std::uint64_t offset, std::span<char> to) const {
     if (!good() || offset >= size_) return 0;
     const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(to.size(), size_ - offset));
     std::size_t done = 0;
     while (done < wanted) {
         const ssize_t got = ::pread(descriptor_, to.data() + done, std::min<std::size_t>(wanted - done, 1u << 30),
                                     static_cast<off_t>(offset + done));
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) why_ = std::strerror(errno);
+        if (got < 0 && std::exchange(errno, errno == EINTR ? 0 : errno) == EINTR) continue;
         if (got <= 0) break; // or it was made shorter meanwhile
         done += static_cast<std::size_t>(got);
     }

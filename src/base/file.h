@@ -26,6 +26,8 @@ class RegularFile {
     std::uint64_t size() const { return size_; }
     // Fills `to` from there on, as far as the file goes; how many bytes came. Fewer also after an error, see good().
     std::size_t readAt(std::uint64_t offset, std::span<char> to);
+    // The same from any thread, for those who do not ask why.
+    std::size_t copyAt(std::uint64_t offset, std::span<char> to) const;
     // All of it, likewise. Requires that there is memory for size() bytes.
     std::string readAll();
 

@@ -1,7 +1,6 @@
 // Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
 #pragma once
 
-#include "base/file.h"
 #include "base/work_clock.h"
 #include "film/film_planes.h"
 #include "render/render_state.h"
@@ -13,8 +12,6 @@
 #include <vector>
 
 namespace abbe {
-
-class ByteReader;
 
 // Something that renders must have in common to be one: "seed", "7".
 struct Fact {
@@ -53,48 +50,16 @@ struct CheckpointFault : std::runtime_error {
 bool writeCheckpoint(const std::string& path, const CheckpointHeader&, const FilmPlanes&, RenderState&,
                      const std::function<bool()>& sound = {});
 
+// Brings into the film what its layers have of some whole rows of tiles: what samples, or light paths, added. The
+// planes of the film, until the next call.
+using LayerFetch = std::function<FilmPlanes(PixelBounds rows, bool ofLightPaths)>;
+
+// The same file of a render that nobody works on, whose film has the layers of a few rows at a time. Throws IoError,
+// and what `fetch` throws.
+void writeMerged(const std::string& path, const CheckpointHeader&, const RenderState&, bool takesSplats,
+                 const LayerFetch& fetch);
+
 // Whether a file is there that was never a checkpoint or part, of any version, and must not be lost unasked.
 bool isForeignCheckpoint(const std::string& path);
-
-// Reads without holding more than some megabytes in memory; adds with as many threads as there are.
-class CheckpointReader {
-  public:
-    // Throws IoError if the file cannot be read and CheckpointFault if it is no sound checkpoint as far as its header.
-    explicit CheckpointReader(const std::string& path);
-
-    const std::string& path() const { return path_; }
-    const CheckpointHeader& header() const { return header_; }
-    // Adds everything to a film whose planes have the header's names and whose bounds contain the header's; says how
-    // far that render had come. Once. Throws as the constructor; the film is then good for nothing.
-    RenderState addTo(const FilmPlanes&);
-
-  private:
-    struct Block {
-        std::uint32_t kind = 0, reserved = 0;
-        std::uint64_t begin = 0; // in the file
-        std::vector<std::byte> bytes;
-        std::uint64_t hash = 0; // as it is stated
-    };
-    void readBlock(Block&);
-    void verify(const Block&) const;
-    std::vector<Block> nextBatch(std::size_t most);
-    const Block& next();
-    [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
-    void readHeader();
-    void addTiles(const FilmPlanes&, RenderState&);
-    void addTile(const Block&, const FilmPlanes&, RenderState&) const;
-    bool hasExamples(const TileState&) const;
-    void addLight(const FilmPlanes&, RenderState&);
-    void addPlanes(ByteReader&, const Block&, const FilmPlanes&, bool ofLightPaths, PixelBounds) const;
-
-    // False at the end of the file.
-    bool read(void* to, std::size_t size);
-
-    std::string path_;
-    RegularFile file_;
-    std::uint64_t position_ = 0;
-    Block block_;
-    CheckpointHeader header_;
-};
 
 } // namespace abbe

@@ -1,5 +1,6 @@
 #include "checkpoints/render_checkpoint.h"
 
+#include "checkpoints/checkpoint_reader.h"
 #include "checkpoints/render_identity.h"
 #include "io/file.h"
 

@@ -1,6 +1,7 @@
 #include "checkpoints/render_parts.h"
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,10 +12,6 @@ namespace abbe {
 
 namespace {
 
-PixelBounds common(PixelBounds a, PixelBounds b) {
-    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-bool isEmpty(PixelBounds b) { return b.x0 >= b.x1 || b.y0 >= b.y1; }
 bool isSame(PixelBounds a, PixelBounds b) { return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1; }
 
 std::string rectangleText(PixelBounds b) { return fmt::format("{},{} to {},{}", b.x0, b.y0, b.x1, b.y1); }
@@ -158,7 +155,8 @@ void addTiles(RenderState& total, const RenderState& state) {
 
 } // namespace
 
-RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
+RenderStatistics RenderParts::addTo(PixelFilm& film) {
+    const FilmPlanes planes = film.planes();
     RenderStatistics statistics;
     PathTally sum;
     const CheckpointHeader& first = readers_[0].header();
@@ -168,7 +166,7 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     }
     for (CheckpointReader& reader : readers_) {
         const CheckpointHeader& header = reader.header();
-        const RenderState state = reader.addTo(planes);
+        const RenderState state = reader.addPicture(planes);
         const bool finished = state.even() && state.reached() == header.last;
         if (!finished && wanted_ != PartsWanted::soFar)
             throw misfit(fmt::format("`{}` is not finished: sample {} of {}", reader.path(),
@@ -190,14 +188,38 @@ RenderStatistics RenderParts::addTo(const FilmPlanes& planes) {
     return statistics;
 }
 
-void RenderParts::write(const std::string& path, const FilmPlanes& planes) {
+// Column by column of tiles and of each part by part: sums of a tile are in the cache of one core until all parts are
+// in them. Where parts begin at other pixels than the film does, as crops may, tiles are read for each column and row
+// that they reach into.
+void RenderParts::addLayers(const FilmPlanes& planes, PixelBounds rows, bool ofLightPaths) const {
+    const TileGrid grid(rows);
+    parallelFor(grid.count(), [&](std::size_t i) {
+        CheckpointReader::Scratch scratch;
+        for (const CheckpointReader& reader : readers_) reader.addLayers(planes, grid.pixels(i), ofLightPaths, scratch);
+    });
+}
+
+void RenderParts::bringLayers(PixelFilm& film, PixelBounds rows) const {
+    if (!film.layers()) return;
+    film.layers()->restart(rows);
+    const FilmPlanes planes = film.planes();
+    for (const bool ofLightPaths : {false, true}) addLayers(planes, rows, ofLightPaths);
+}
+
+void RenderParts::write(const std::string& path, PixelFilm& film) {
     ABBE_CHECK(total_);
     CheckpointHeader header = readers_[0].header();
     header.last = readers_.back().header().last;
     header.whole = whole();
     header.seconds = total_->seconds;
     header.work = work_;
-    writeCheckpoint(path, header, planes, *total_);
+    const auto fetch = [&](PixelBounds rows, bool ofLightPaths) {
+        if (film.layers()) film.layers()->restart(rows);
+        FilmPlanes planes = film.planes();
+        if (film.layers()) addLayers(planes, rows, ofLightPaths);
+        return planes;
+    };
+    writeMerged(path, header, *total_, film.takesSplats(), fetch);
 }
 
 } // namespace abbe

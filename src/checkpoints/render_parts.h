@@ -1,7 +1,9 @@
 // Parts of one render, by ranges of samples or by crops, put together to the bits of the whole.
 #pragma once
 
+#include "checkpoints/checkpoint_reader.h"
 #include "checkpoints/render_identity.h"
+#include "film/pixel_film.h"
 
 #include <optional>
 #include <string>
@@ -28,8 +30,11 @@ class RenderParts {
     void check(const std::vector<Fact>& identity) const;
     // The smallest rectangle around all parts. Requires check().
     PixelBounds bounds() const;
-    // Adds all of them to an empty film of these bounds. Requires check().
-    RenderStatistics addTo(const FilmPlanes&);
+    // Adds all of them, but for the layers, to an empty film of these bounds. Requires check().
+    RenderStatistics addTo(PixelFilm&);
+    // Fills the film's layers with those of some rows, as often as they are wanted. After addTo(). The file that they
+    // come from is checked as they are read, so that a fault may show here.
+    void bringLayers(PixelFilm&, PixelBounds rows) const;
     // RenderSettings::pilot of all of them. Requires check().
     int pilot() const { return readers_[0].header().pilot; }
     // Where the time of all parts went. After addTo().
@@ -37,9 +42,10 @@ class RenderParts {
     // Samples of each replicate of the render that they are parts of; of rounds, up to the end of the last one.
     std::uint32_t whole() const;
     // Writes the film as one part that stands for all of them. After addTo(); requires PartsWanted::range.
-    void write(const std::string& path, const FilmPlanes&);
+    void write(const std::string& path, PixelFilm&);
 
   private:
+    void addLayers(const FilmPlanes&, PixelBounds rows, bool ofLightPaths) const;
     void checkFacts(const std::vector<Fact>& identity) const;
     void checkDisjoint() const;
     void checkComplete() const;

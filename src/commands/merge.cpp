@@ -1,4 +1,4 @@
-#include "checkpoints/checkpoint_file.h"
+#include "checkpoints/checkpoint_reader.h"
 #include "checkpoints/render_identity.h"
 #include "command_line/parser.h"
 #include "command_line/shared_arguments.h"

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstring>
 #include <fmt/format.h>
-#include <set>
 
 namespace abbe {
 
@@ -49,7 +48,7 @@ float cryptomatteId(std::string_view name) {
 }
 
 std::vector<NamedPlane> cryptomattePlanes(const FilmLayers& layers, FilmLayers::Matte matte, std::string_view name,
-                                          const std::vector<float>& samples) {
+                                          const std::vector<float>& samples, std::size_t first) {
     std::vector<float> ids, tints;
     for (const std::string& thing : layers.names()) {
         ids.push_back(cryptomatteId(thing));
@@ -62,7 +61,7 @@ std::vector<NamedPlane> cryptomattePlanes(const FilmLayers& layers, FilmLayers::
     for (const char channel : {'R', 'G', 'B'})
         planes.push_back({fmt::format("{}.{}", name, channel), std::vector<float>(samples.size())});
     parallelFor(samples.size(), [&](std::size_t pixel) {
-        const auto seen = ranked(layers.coverage(pixel, matte));
+        const auto seen = ranked(layers.coverage(first + pixel, matte));
         for (std::size_t rank = 0; rank < seen.size(); ++rank) {
             const float share = static_cast<float>(seen[rank].samples) / samples[pixel];
             for (std::size_t c = 0; c < 3; ++c)
@@ -77,11 +76,9 @@ std::vector<NamedPlane> cryptomattePlanes(const FilmLayers& layers, FilmLayers::
 
 std::vector<std::pair<std::string, std::string>> cryptomatteHeader(const FilmLayers& layers, FilmLayers::Matte matte,
                                                                    std::string_view name) {
-    std::set<std::uint32_t> seen;
-    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(layers.bounds().area()); ++pixel)
-        for (const Coverage& c : layers.coverage(pixel, matte)) seen.insert(c.thing);
     std::string manifest;
-    for (const std::uint32_t thing : seen) {
+    for (std::uint32_t thing = 0; thing < layers.names().size(); ++thing) {
+        if (!layers.seen(matte, thing)) continue;
         const std::string& word = layers.names()[thing];
         manifest += fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "{" : ",", jsonText(word),
                                 std::bit_cast<std::uint32_t>(cryptomatteId(word)));

@@ -46,6 +46,15 @@ template <typename T> T take(std::span<const std::byte>& bytes) {
 DeepSums::DeepSums(PixelBounds bounds, int most)
     : bounds_(bounds), most_(static_cast<std::size_t>(most)), pixels_(2 * static_cast<std::size_t>(bounds.area())) {}
 
+void DeepSums::restart(PixelBounds bounds) {
+    bounds_ = bounds;
+    pixels_.resize(2 * static_cast<std::size_t>(bounds.area()));
+    for (Bins& bins : pixels_) {
+        bins.level = 0;
+        bins.list.clear();
+    }
+}
+
 std::uint64_t DeepSums::mostBytes(PixelBounds bounds, int most, std::uint64_t samples) {
     const auto bins = std::min<std::uint64_t>(static_cast<std::uint64_t>(most), samples);
     // Lists grow by doubling: up to twice of what they hold.
@@ -100,33 +109,44 @@ class DeepSums::Plane final : public FilmPlane {
     std::string name() const override { return "deep/" + std::to_string(sums_.most_); }
 
     void store(PixelBounds b, std::vector<std::byte>& out) const override {
-        forEach(b, [&](const Bins& bins) {
-            put(bins.level, out);
-            put(static_cast<std::uint32_t>(bins.list.size()), out);
-            for (const DeepBin& bin : bins.list) {
-                put(bin.key, out);
-                for (const ExactSum& s : {bin.share, bin.x, bin.y, bin.z, bin.depth}) put(s, out);
+        for (int y = b.y0; y < b.y1; ++y)
+            for (const Bins& bins :
+                 std::span(sums_.pixels_).subspan(first(b, y), static_cast<std::size_t>(2 * b.width()))) {
+                put(bins.level, out);
+                put(static_cast<std::uint32_t>(bins.list.size()), out);
+                for (const DeepBin& bin : bins.list) {
+                    put(bin.key, out);
+                    for (const ExactSum& s : {bin.share, bin.x, bin.y, bin.z, bin.depth}) put(s, out);
+                }
             }
-        });
     }
 
-    bool add(PixelBounds b, std::span<const std::byte> bytes) override {
-        bool sound = true;
+    bool ofLayers() const override { return true; }
+
+    bool addWithin(PixelBounds within, PixelBounds of, std::span<const std::byte> bytes) override {
         auto check = bytes;
-        forEach(b, [&](const Bins&) { sound = sound && skip(check); });
-        if (!sound || !check.empty()) return false;
-        forEach(b, [&](Bins& bins) { addTo(bins, bytes); });
+        for (std::int64_t list = 2 * of.area(); list > 0; --list)
+            if (!skip(check)) return false;
+        if (!check.empty()) return false;
+        for (int y = of.y0; y < of.y1; ++y)
+            for (int x = of.x0; x < of.x1; ++x) {
+                const bool inside = !isEmpty(common(within, {x, y, x + 1, y + 1}));
+                const std::size_t at = inside ? first({x, y, x + 1, y + 1}, y) : 0;
+                for (std::size_t kind = 0; kind < 2; ++kind)
+                    if (inside)
+                        addTo(sums_.pixels_[at + kind], bytes);
+                    else
+                        skip(bytes);
+            }
         return true;
     }
 
   private:
-    template <typename F> void forEach(PixelBounds b, const F& use) const {
-        for (int y = b.y0; y < b.y1; ++y) {
-            const auto row = static_cast<std::size_t>(y - sums_.bounds_.y0);
-            std::size_t at = 2 * (row * static_cast<std::size_t>(sums_.bounds_.width()) +
-                                  static_cast<std::size_t>(b.x0 - sums_.bounds_.x0));
-            for (int i = 0; i < 2 * b.width(); ++i) use(sums_.pixels_[at++]);
-        }
+    // The lists of the first pixel of a row.
+    std::size_t first(PixelBounds b, int y) const {
+        const auto row = static_cast<std::size_t>(y - sums_.bounds_.y0);
+        return 2 * (row * static_cast<std::size_t>(sums_.bounds_.width()) +
+                    static_cast<std::size_t>(b.x0 - sums_.bounds_.x0));
     }
 
     bool skip(std::span<const std::byte>& bytes) const {

@@ -29,6 +29,8 @@ class DeepSums {
 
     // `most` bins in each list. Throws std::bad_alloc.
     DeepSums(PixelBounds, int most);
+    // As if it had just been made, for other pixels; takes no more memory than before for as many.
+    void restart(PixelBounds);
     // The most that `samples` samples per pixel can take.
     static std::uint64_t mostBytes(PixelBounds, int most, std::uint64_t samples);
 

@@ -5,9 +5,24 @@
 #include "spectrum/rgb_upsampling.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <fmt/format.h>
+#include <set>
 
 namespace abbe {
+
+namespace {
+
+const char* nameOf(FilmLayers::Matte matte) { return matte == FilmLayers::Matte::objects ? "objects" : "materials"; }
+
+std::vector<std::uint32_t> wordsOf(std::span<const std::byte> bytes) {
+    std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+    return words;
+}
+
+} // namespace
 
 FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const SceneNames& names,
                        const RgbSpace& space, LayerSight sight)
@@ -16,10 +31,7 @@ FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const
     ABBE_CHECK(!plan_.motion || (sight.world && sight.camera));
     if (plan_.deep) deep_ = std::make_unique<DeepSums>(bounds, *plan_.deep);
     if (plan_.albedo) white_ = emissionFromRgb({1, 1, 1}, space).curve;
-    const auto pixels = static_cast<std::size_t>(bounds.area());
-    sums_.resize(pixels * static_cast<std::size_t>(halves()) * stride_);
-    if (plan_.seconds) seconds_.resize(pixels);
-    if (plan_.invalid) invalid_.resize(pixels);
+    resize();
     for (const auto& [thing, name] : names)
         for (std::size_t g = 0; g < plan_.groups.size(); ++g)
             if (std::ranges::find(plan_.groups[g].members, name) != plan_.groups[g].members.end())
@@ -30,8 +42,28 @@ FilmLayers::FilmLayers(PixelBounds bounds, LayerPlan plan, int replicates, const
     names_.erase(std::unique(names_.begin(), names_.end()), names_.end());
     for (const auto& [thing, name] : names)
         things_.emplace(thing, static_cast<std::uint32_t>(std::ranges::lower_bound(names_, name) - names_.begin()));
-    if (plan_.coversObjects()) mattes(Matte::objects).resize(pixels);
-    if (plan_.coversMaterials()) mattes(Matte::materials).resize(pixels);
+    for (auto& seen : seen_) seen.resize(names_.size());
+}
+
+// Vectors keep what they have: to take and to give back memory for each row of tiles costs more than to clear it.
+void FilmLayers::resize() {
+    const auto pixels = static_cast<std::size_t>(bounds_.area());
+    sums_.assign(pixels * static_cast<std::size_t>(halves()) * stride_, {});
+    for (std::size_t k = 0; k < kSplatKinds; ++k)
+        if (keepsSplats_[k]) splats_[k].assign(pixels * static_cast<std::size_t>(at_.light()), {});
+    if (plan_.seconds) seconds_.assign(pixels, 0);
+    if (plan_.invalid) invalid_.assign(pixels, 0);
+    for (const Matte matte : {Matte::objects, Matte::materials}) {
+        if (!covers(matte)) continue;
+        mattes(matte).resize(pixels);
+        for (auto& list : mattes(matte)) list.clear();
+    }
+}
+
+void FilmLayers::restart(PixelBounds bounds) {
+    bounds_ = bounds;
+    resize();
+    if (deep_) deep_->restart(bounds);
 }
 
 std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan, int splatKinds) {
@@ -43,6 +75,7 @@ std::uint64_t FilmLayers::memoryBytes(PixelBounds bounds, const LayerPlan& plan,
 }
 
 void FilmLayers::keepSplats(SplatKind kind) {
+    keepsSplats_[static_cast<std::size_t>(kind)] = true;
     splats_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(bounds_.area()) *
                                                    static_cast<std::size_t>(at_.light()));
 }
@@ -102,7 +135,14 @@ void FilmLayers::cover(std::size_t pixel, Matte matte, const void* thing) {
     if (const auto found = things_.find(thing); found != things_.end()) cover(pixel, matte, Coverage{found->second, 1});
 }
 
+// Threads at work on other pixels may see the same thing.
+void FilmLayers::see(Matte matte, std::uint32_t thing) {
+    const std::atomic_ref flag(seen_[static_cast<std::size_t>(matte)][thing]);
+    if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
+}
+
 void FilmLayers::cover(std::size_t pixel, Matte matte, const Coverage& c) {
+    see(matte, c.thing);
     auto& list = mattes(matte)[pixel];
     const auto place = std::ranges::lower_bound(list, c.thing, {}, &Coverage::thing);
     if (place != list.end() && place->thing == c.thing)
@@ -121,9 +161,9 @@ class FilmLayers::CoveragePlane final : public FilmPlane {
     CoveragePlane(FilmLayers& layers, Matte matte) : layers_(layers), matte_(matte) {}
 
     std::string name() const override {
-        return std::string(matte_ == Matte::objects ? "objects" : "materials") + "/" +
-               std::to_string(layers_.names_.size());
+        return std::string(nameOf(matte_)) + "/" + std::to_string(layers_.names_.size());
     }
+    bool ofLayers() const override { return true; }
 
     void store(PixelBounds b, std::vector<std::byte>& out) const override {
         const auto put = [&](std::uint32_t word) {
@@ -141,15 +181,16 @@ class FilmLayers::CoveragePlane final : public FilmPlane {
             }
     }
 
-    bool add(PixelBounds b, std::span<const std::byte> bytes) override {
-        std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
-        std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
-        if (bytes.size() % sizeof(std::uint32_t) != 0 || !sound(b, words)) return false;
+    bool addWithin(PixelBounds within, PixelBounds of, std::span<const std::byte> bytes) override {
+        const std::vector<std::uint32_t> words = wordsOf(bytes);
+        if (bytes.size() % sizeof(std::uint32_t) != 0 || !sound(of, words)) return false;
         std::size_t at = 0;
-        for (int y = b.y0; y < b.y1; ++y)
-            for (int x = b.x0; x < b.x1; ++x)
+        for (int y = of.y0; y < of.y1; ++y)
+            for (int x = of.x0; x < of.x1; ++x) {
+                const bool inside = !isEmpty(common(within, {x, y, x + 1, y + 1}));
                 for (std::uint32_t left = words[at++]; left > 0; --left, at += 2)
-                    layers_.cover(layers_.pixelIndex(x, y), matte_, Coverage{words[at], words[at + 1]});
+                    if (inside) layers_.cover(layers_.pixelIndex(x, y), matte_, Coverage{words[at], words[at + 1]});
+            }
         return true;
     }
 
@@ -169,23 +210,60 @@ class FilmLayers::CoveragePlane final : public FilmPlane {
     Matte matte_;
 };
 
+// Which things are in any of the lists: the header of an image names them, before the lists are read.
+class FilmLayers::SeenPlane final : public FilmPlane {
+  public:
+    SeenPlane(FilmLayers& layers, Matte matte) : layers_(layers), matte_(matte) {}
+
+    std::string name() const override { return fmt::format("{}-seen/{}", nameOf(matte_), layers_.names_.size()); }
+
+    void store(PixelBounds b, std::vector<std::byte>& out) const override {
+        std::set<std::uint32_t> things;
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x)
+                for (const Coverage& c : layers_.coverage(layers_.pixelIndex(x, y), matte_)) things.insert(c.thing);
+        for (const std::uint32_t thing : things) {
+            const auto bytes = std::as_bytes(std::span(&thing, 1));
+            out.insert(out.end(), bytes.begin(), bytes.end());
+        }
+    }
+
+    bool addWithin(PixelBounds, PixelBounds, std::span<const std::byte> bytes) override {
+        const std::vector<std::uint32_t> things = wordsOf(bytes);
+        if (bytes.size() % sizeof(std::uint32_t) != 0 ||
+            !std::ranges::all_of(things, [&](std::uint32_t thing) { return thing < layers_.names_.size(); }))
+            return false;
+        for (const std::uint32_t thing : things) layers_.see(matte_, thing);
+        return true;
+    }
+
+  private:
+    FilmLayers& layers_;
+    Matte matte_;
+};
+
 void FilmLayers::appendPlanes(FilmPlanes& planes) {
     if (stride_ > 0)
-        planes.push_back(std::make_unique<DensePlane<ExactSum>>(
-            "layers", bounds_, stride_ * static_cast<std::size_t>(halves()), std::span<ExactSum>(sums_)));
+        planes.push_back(
+            std::make_unique<DensePlane<ExactSum>>("layers", bounds_, stride_ * static_cast<std::size_t>(halves()),
+                                                   std::span<ExactSum>(sums_), PlaneUse{.ofLayers = true}));
     constexpr const char* kNames[kSplatKinds] = {"layer-splats", "layer-merged"};
     for (std::size_t k = 0; k < kSplatKinds; ++k)
-        if (!splats_[k].empty())
-            planes.push_back(
-                std::make_unique<DensePlane<SharedSum>>(kNames[k], bounds_, static_cast<std::size_t>(at_.light()),
-                                                        std::span(splats_[k]), PlaneChanges::byLightPaths));
-    if (!invalid_.empty())
-        planes.push_back(
-            std::make_unique<DensePlane<std::uint32_t>>("invalid", bounds_, 1, std::span<std::uint32_t>(invalid_)));
-    if (!seconds_.empty())
-        planes.push_back(std::make_unique<DensePlane<double>>("seconds", bounds_, 1, std::span<double>(seconds_)));
-    for (const Matte matte : {Matte::objects, Matte::materials})
-        if (!mattes(matte).empty()) planes.push_back(std::make_unique<CoveragePlane>(*this, matte));
+        if (keepsSplats_[k] && at_.light() > 0)
+            planes.push_back(std::make_unique<DensePlane<SharedSum>>(
+                kNames[k], bounds_, static_cast<std::size_t>(at_.light()), std::span(splats_[k]),
+                PlaneUse{.ofLightPaths = true, .ofLayers = true}));
+    if (plan_.invalid)
+        planes.push_back(std::make_unique<DensePlane<std::uint32_t>>(
+            "invalid", bounds_, 1, std::span<std::uint32_t>(invalid_), PlaneUse{.ofLayers = true}));
+    if (plan_.seconds)
+        planes.push_back(std::make_unique<DensePlane<double>>("seconds", bounds_, 1, std::span<double>(seconds_),
+                                                              PlaneUse{.ofLayers = true}));
+    for (const Matte matte : {Matte::objects, Matte::materials}) {
+        if (!covers(matte)) continue;
+        planes.push_back(std::make_unique<SeenPlane>(*this, matte));
+        planes.push_back(std::make_unique<CoveragePlane>(*this, matte));
+    }
     if (deep_) planes.push_back(deep_->plane());
 }
 

@@ -48,6 +48,10 @@ class FilmLayers {
     // What layers of this size take, without Cryptomatte and what a deep image has seen.
     static std::uint64_t memoryBytes(PixelBounds, const LayerPlan&, int splatKinds = 0);
 
+    // As if it had just been made, for other pixels; takes no more memory than before for as many. Planes that were
+    // made are good for nothing then. What was seen so far stays seen.
+    void restart(PixelBounds);
+
     // Before the first sample: a place for light from light paths. Throws std::bad_alloc.
     void keepSplats(SplatKind);
     // Light groups, components and bins get it; from several threads at once. Nothing without keepSplats().
@@ -83,6 +87,8 @@ class FilmLayers {
     enum class Matte : std::uint8_t { objects, materials };
     void cover(std::size_t pixel, Matte, const void* thing);
     std::span<const Coverage> coverage(std::size_t pixel, Matte) const;
+    // Whether any pixel has it, also those before restart(): by the index in Coverage.
+    bool seen(Matte m, std::uint32_t thing) const { return seen_[static_cast<std::size_t>(m)][thing] != 0; }
     // By the index in Coverage, sorted.
     const std::vector<std::string>& names() const { return names_; }
 
@@ -101,7 +107,11 @@ class FilmLayers {
 
   private:
     class CoveragePlane;
+    class SeenPlane;
+    void resize();
+    void see(Matte, std::uint32_t thing);
     void cover(std::size_t pixel, Matte, const Coverage&);
+    bool covers(Matte m) const { return m == Matte::objects ? plan_.coversObjects() : plan_.coversMaterials(); }
     std::vector<std::vector<Coverage>>& mattes(Matte m) { return mattes_[static_cast<std::size_t>(m)]; }
 
     PixelBounds bounds_;
@@ -113,11 +123,13 @@ class FilmLayers {
     std::size_t stride_; // sums per pixel and half
     std::vector<ExactSum> sums_;
     LayerPlan::Offsets at_;
-    std::array<std::vector<SharedSum>, kSplatKinds> splats_; // of a pixel those that are light; empty: none are kept
+    std::array<bool, kSplatKinds> keepsSplats_{};
+    std::array<std::vector<SharedSum>, kSplatKinds> splats_; // of a pixel those that are light
     std::unordered_map<const void*, int> groups_;
     std::vector<std::string> names_;
     std::unordered_map<const void*, std::uint32_t> things_;
     std::vector<std::vector<Coverage>> mattes_[2];
+    std::vector<std::uint8_t> seen_[2]; // 1: some pixel has the thing
     std::vector<double> seconds_;
     std::vector<std::uint32_t> invalid_;
 };

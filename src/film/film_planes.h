@@ -3,6 +3,7 @@
 
 #include "render/film.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -24,29 +25,42 @@ class FilmPlane {
     // Whether light paths add to it, which they do to any pixel at any time; else only samples of the pixels
     // themselves.
     virtual bool ofLightPaths() const { return false; }
+    // Whether layers alone are made of it: neither the picture nor its error. A merge, which reads parts as often as it
+    // likes, has these of some rows at a time.
+    virtual bool ofLayers() const { return false; }
     // With the layout of a pixel: films understand each other's bytes if the names are the same.
     virtual std::string name() const = 0;
     // Appends what was added to the pixels. Requires a rectangle within the film's bounds; nobody may be adding to
     // them.
     virtual void store(PixelBounds, std::vector<std::byte>&) const = 0;
-    // Adds what store() wrote for a rectangle of this size. False, and nothing was added, if it is no such thing.
-    virtual bool add(PixelBounds, std::span<const std::byte>) = 0;
+    // Adds what store() wrote for the pixels `of`, as far as they are in `within`, which lies within the film's bounds.
+    // False, and nothing was added, if it is no such thing.
+    virtual bool addWithin(PixelBounds within, PixelBounds of, std::span<const std::byte>) = 0;
+    bool add(PixelBounds of, std::span<const std::byte> bytes) { return addWithin(of, of, bytes); }
 };
 using FilmPlanes = std::vector<std::unique_ptr<FilmPlane>>;
 
-// Who adds to a plane: FilmPlane::ofLightPaths().
-enum class PlaneChanges : std::uint8_t { bySamples, byLightPaths };
+inline PixelBounds common(PixelBounds a, PixelBounds b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+inline bool isEmpty(PixelBounds b) { return b.x0 >= b.x1 || b.y0 >= b.y1; }
+
+// What FilmPlane::ofLightPaths() and ofLayers() say.
+struct PlaneUse {
+    bool ofLightPaths = false, ofLayers = false;
+};
 
 // Some numbers for each pixel, row by row, that add up by +=: of whole numbers the order does not matter.
 template <typename Number> class DensePlane final : public FilmPlane {
   public:
     // `numbers`: `perPixel` of them for each pixel of the bounds.
     DensePlane(const std::string& name, PixelBounds bounds, std::size_t perPixel, std::span<Number> numbers,
-               PlaneChanges changes = PlaneChanges::bySamples)
+               PlaneUse use = {})
         : name_(name + "/" + std::to_string(perPixel) + "x" + std::to_string(8 * sizeof(Number))), bounds_(bounds),
-          perPixel_(perPixel), numbers_(numbers), changes_(changes) {}
+          perPixel_(perPixel), numbers_(numbers), use_(use) {}
 
-    bool ofLightPaths() const override { return changes_ == PlaneChanges::byLightPaths; }
+    bool ofLightPaths() const override { return use_.ofLightPaths; }
+    bool ofLayers() const override { return use_.ofLayers; }
 
     std::string name() const override { return name_; }
 
@@ -57,16 +71,22 @@ template <typename Number> class DensePlane final : public FilmPlane {
         }
     }
 
-    bool add(PixelBounds b, std::span<const std::byte> bytes) override {
-        if (bytes.size() != static_cast<std::size_t>(b.area()) * perPixel_ * sizeof(Number)) return false;
-        const std::byte* next = bytes.data();
-        for (int y = b.y0; y < b.y1; ++y)
+    bool addWithin(PixelBounds within, PixelBounds of, std::span<const std::byte> bytes) override {
+        const std::size_t pixel = perPixel_ * sizeof(Number);
+        if (bytes.size() != static_cast<std::size_t>(of.area()) * pixel) return false;
+        const PixelBounds b = common(within, of);
+        if (isEmpty(b)) return true;
+        for (int y = b.y0; y < b.y1; ++y) {
+            const auto before = static_cast<std::size_t>(y - of.y0) * static_cast<std::size_t>(of.width()) +
+                                static_cast<std::size_t>(b.x0 - of.x0);
+            const std::byte* next = bytes.data() + before * pixel;
             for (Number& number : row(b, y)) {
                 Number term;
                 std::memcpy(&term, next, sizeof term); // bytes of files are not aligned
                 number += term;
                 next += sizeof term;
             }
+        }
         return true;
     }
 
@@ -81,7 +101,7 @@ template <typename Number> class DensePlane final : public FilmPlane {
     PixelBounds bounds_;
     std::size_t perPixel_;
     std::span<Number> numbers_;
-    PlaneChanges changes_;
+    PlaneUse use_;
 };
 
 } // namespace abbe

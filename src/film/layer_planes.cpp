@@ -21,7 +21,7 @@ class PlaneMaker {
   public:
     PlaneMaker(const PixelFilm& film, ResolvedImage& picture, const LayerView& view)
         : film_(film), layers_(*film.layers()), plan_(layers_.plan()), at_(plan_.offsets()), picture_(picture),
-          view_(view) {}
+          view_(view), first_(layers_.pixelIndex(picture.bounds.x0, picture.bounds.y0)) {}
 
     LayerPlanes make() {
         countSamples();
@@ -54,7 +54,7 @@ class PlaneMaker {
     }
 
     void countSamples() {
-        const PixelBounds b = layers_.bounds();
+        const PixelBounds b = picture_.bounds;
         for (int y = b.y0; y < b.y1; ++y)
             for (int x = b.x0; x < b.x1; ++x) {
                 total_.push_back(static_cast<float>(film_.samples(x, y)));
@@ -66,7 +66,7 @@ class PlaneMaker {
     // Sums of a pixel over halves [0, halves).
     double sum(std::size_t pixel, int offset, int halves) const {
         ExactSum total;
-        for (int h = 0; h < halves; ++h) total += layers_.sums(pixel, h)[static_cast<std::size_t>(offset)];
+        for (int h = 0; h < halves; ++h) total += layers_.sums(first_ + pixel, h)[static_cast<std::size_t>(offset)];
         return total.value();
     }
     Xyz three(std::size_t pixel, int offset, int halves) const {
@@ -76,7 +76,7 @@ class PlaneMaker {
     double splats(std::size_t pixel, int offset) const {
         double sum = 0;
         for (std::size_t k = 0; k < kSplatKinds; ++k)
-            if (splats_[k] > 0) sum += layers_.splatted(static_cast<SplatKind>(k), pixel, offset) / splats_[k];
+            if (splats_[k] > 0) sum += layers_.splatted(static_cast<SplatKind>(k), first_ + pixel, offset) / splats_[k];
         return sum * view_.scale;
     }
     static void store(const Vec3d& v, float* const* out) {
@@ -133,7 +133,7 @@ class PlaneMaker {
     }
 
     void half() {
-        const PixelBounds b = layers_.bounds();
+        const PixelBounds b = picture_.bounds;
         const int end = (film_.replicates() + 1) / 2;
         constexpr const char* kHalf[] = {"R", "G", "B"};
         add("half", kHalf, [&](std::size_t i, float* const* out) {
@@ -178,10 +178,10 @@ class PlaneMaker {
         if (plan_.samples) add("samples", kCount, [&](std::size_t i, float* const* out) { *out[0] = total_[i]; });
         if (plan_.seconds)
             add("seconds", kSeconds,
-                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.seconds(i)); });
+                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.seconds(first_ + i)); });
         if (plan_.invalid)
             add("invalid", kCount,
-                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.invalid(i)); });
+                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.invalid(first_ + i)); });
     }
 
     // Names and attributes of [Fichet2021].
@@ -205,7 +205,7 @@ class PlaneMaker {
     void mattes() {
         using Matte = FilmLayers::Matte;
         const auto matte = [&](Matte m, const char* name) {
-            for (NamedPlane& plane : cryptomattePlanes(layers_, m, name, total_))
+            for (NamedPlane& plane : cryptomattePlanes(layers_, m, name, total_, first_))
                 result_.planes.push_back(std::move(plane));
             for (auto& entry : cryptomatteHeader(layers_, m, name)) result_.header.push_back(std::move(entry));
         };
@@ -214,7 +214,7 @@ class PlaneMaker {
         const auto ids = [&](Matte m, const std::string& name) {
             constexpr const char* kId[] = {"id"};
             add(name, kId, [&](std::size_t i, float* const* out) {
-                const auto seen = layers_.coverage(i, m);
+                const auto seen = layers_.coverage(first_ + i, m);
                 const auto most = std::ranges::max_element(seen, {}, &Coverage::samples);
                 *out[0] = most == seen.end() ? 0.f : static_cast<float>(most->thing + 1);
             });
@@ -231,6 +231,7 @@ class PlaneMaker {
     const LayerPlan::Offsets at_;
     ResolvedImage& picture_;
     const LayerView& view_;
+    const std::size_t first_;           // pixel of the layers
     std::vector<float> total_, inHalf_; // samples of pixels
     const std::array<double, kSplatKinds> splats_{
         static_cast<double>(film_.splatCount(SplatKind::lightPath, 0, film_.replicates())),
@@ -321,11 +322,11 @@ class DeepMaker {
 
 } // namespace
 
-DeepImage deepImage(const PixelFilm& film, const LayerView& view) {
+DeepImage deepImage(const PixelFilm& film, const LayerView& view, std::optional<PixelBounds> part) {
     ABBE_CHECK(film.layers() && film.layers()->deep());
     const DeepSums& sums = *film.layers()->deep();
     DeepImage image;
-    image.bounds = film.bounds();
+    image.bounds = part.value_or(film.bounds());
     DeepMaker maker(image, view);
     const PixelBounds b = image.bounds;
     for (int y = b.y0; y < b.y1; ++y)

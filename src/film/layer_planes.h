@@ -6,6 +6,7 @@
 #include "spectrum/color_space.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,8 @@ struct LayerPlanes {
     std::size_t unequalSums = 0; // values of groups and components that do not add up to the picture's
 };
 
-// `picture`: as resolved with the same view. Its parts add up to it, for which its last bits may change where there are
+// `picture`: as resolved with the same view, all of the film or some whole rows that the layers have; its bounds are
+// those of the planes. Its parts add up to it, for which its last bits may change where there are
 // parts (roundToSum()). docs/output.md describes the channels.
 LayerPlanes layerPlanes(const PixelFilm&, ResolvedImage& picture, const LayerView&);
 
@@ -40,8 +42,8 @@ struct DeepImage {
     std::vector<float> front, back, a, r, g, b; // of all samples, pixel by pixel
 };
 
-// Requires a film with such sums. As the picture is resolved with the same view.
-DeepImage deepImage(const PixelFilm&, const LayerView&);
+// Requires a film with such sums. As the picture is resolved with the same view; `part`: of the film, else all of it.
+DeepImage deepImage(const PixelFilm&, const LayerView&, std::optional<PixelBounds> part = {});
 
 // Planes whose sum is the picture: its light groups, or its components.
 using Partition = std::vector<std::span<float>>;
@@ -62,9 +64,9 @@ std::uint32_t murmurHash3(std::string_view);
 float cryptomatteId(std::string_view name);
 
 // The layer `name` ("CryptoObject"): channels NAME00.R … NAME02.A, six ranks of identifier and coverage, by falling
-// coverage, and NAME.R .G .B, a picture for people. `samples[i]`: of pixel i.
+// coverage, and NAME.R .G .B, a picture for people. `samples[i]`: of pixel `first` + i.
 std::vector<NamedPlane> cryptomattePlanes(const FilmLayers&, FilmLayers::Matte, std::string_view name,
-                                          const std::vector<float>& samples);
+                                          const std::vector<float>& samples, std::size_t first = 0);
 
 // The header's attributes of that layer, by name and value: "cryptomatte/d1ab93f/name", ….
 std::vector<std::pair<std::string, std::string>> cryptomatteHeader(const FilmLayers&, FilmLayers::Matte,

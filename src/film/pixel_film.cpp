@@ -41,9 +41,10 @@ void PixelFilm::add(int x, int y, int replicate, const ExactXyz& sum, std::uint3
     ABBE_DCHECK(samples_[i] >= samples); // no overflow of the count
 }
 
-void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space, LayerSight sight) {
+void PixelFilm::keepLayers(const LayerPlan& plan, const SceneNames& names, const RgbSpace& space, LayerSight sight,
+                           std::optional<PixelBounds> rows) {
     if (plan.empty()) return;
-    layers_ = std::make_unique<FilmLayers>(bounds_, plan, replicates_, names, space, sight);
+    layers_ = std::make_unique<FilmLayers>(rows.value_or(bounds_), plan, replicates_, names, space, sight);
     for (std::size_t k = 0; k < kSplatKinds; ++k)
         if (splats_[k]) layers_->keepSplats(static_cast<SplatKind>(k));
 }
@@ -231,20 +232,21 @@ FilmPlanes PixelFilm::planes() {
         if (sums) sums->appendPlanes(planes);
     if (!closer_.empty())
         planes.push_back(std::make_unique<DensePlane<SharedSum>>("merged-closer", bounds_, replicates,
-                                                                 std::span(closer_), PlaneChanges::byLightPaths));
+                                                                 std::span(closer_), PlaneUse{.ofLightPaths = true}));
     if (layers_) layers_->appendPlanes(planes);
     return planes;
 }
 
-ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale) const {
-    ResolvedImage image{bounds_, {}, {}, {}, {}};
-    const auto area = static_cast<std::size_t>(bounds_.area());
+ResolvedImage PixelFilm::resolve(const Matrix3& fromXyz, double scale, std::optional<PixelBounds> part) const {
+    const PixelBounds b = part.value_or(bounds_);
+    ResolvedImage image{b, {}, {}, {}, {}};
+    const auto area = static_cast<std::size_t>(b.area());
     for (auto* plane : {&image.r, &image.g, &image.b}) plane->resize(area);
     if (replicates_ > 1) image.variance.resize(area);
-    parallelFor(static_cast<std::size_t>(bounds_.height()), [&](std::size_t row) {
-        const int y = bounds_.y0 + static_cast<int>(row);
-        std::size_t i = row * static_cast<std::size_t>(bounds_.width());
-        for (int x = bounds_.x0; x < bounds_.x1; ++x, ++i) {
+    parallelFor(static_cast<std::size_t>(b.height()), [&](std::size_t row) {
+        const int y = b.y0 + static_cast<int>(row);
+        std::size_t i = row * static_cast<std::size_t>(b.width());
+        for (int x = b.x0; x < b.x1; ++x, ++i) {
             const auto rgb = fromXyz.apply<Vec3d>(mean(x, y) * scale);
             image.r[i] = static_cast<float>(rgb.x);
             image.g[i] = static_cast<float>(rgb.y);

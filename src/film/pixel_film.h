@@ -33,8 +33,10 @@ class PixelFilm final : public Film {
     // `bounds` is the part of the image that is made (the crop). Requires a non-empty one and replicates >= 1.
     // Throws std::bad_alloc.
     PixelFilm(PixelBounds bounds, const PixelFilter& filter, int replicates);
-    // Before the first sample: what else to keep. Throws std::bad_alloc.
-    void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&, LayerSight = {});
+    // Before the first sample: what else to keep. `rows`: of these rows of the film alone, to begin with
+    // (FilmLayers::restart()). Throws std::bad_alloc.
+    void keepLayers(const LayerPlan&, const SceneNames&, const RgbSpace&, LayerSight = {},
+                    std::optional<PixelBounds> rows = {});
     // Before the first sample: a place for light from light paths, in the layers too. Throws std::bad_alloc.
     void keepSplats();
     void keepMerged();
@@ -42,6 +44,7 @@ class PixelFilm final : public Film {
     void keepSplatsOf(const Integrator&, const Scene&, const RenderSettings&);
     // Null if nothing else is kept.
     const FilmLayers* layers() const { return layers_.get(); }
+    FilmLayers* layers() { return layers_.get(); }
     std::unique_ptr<SampleRecorder> makeRecorder() override { return layers_ ? layers_->makeRecorder() : nullptr; }
     // What a film of this size takes, without layers.
     static std::uint64_t memoryBytes(PixelBounds, int replicates, bool splats = false, bool merged = false);
@@ -91,8 +94,8 @@ class PixelFilm final : public Film {
     FilmPlanes planes();
 
     // Linear RGB of mean · scale, by the matrix of an RgbSpace (spectrum/color_space.h); negative components stay. No
-    // thread may be adding. Pixels without samples are black.
-    ResolvedImage resolve(const Matrix3& fromXyz, double scale) const;
+    // thread may be adding. Pixels without samples are black. `part`: of the film; else all of it.
+    ResolvedImage resolve(const Matrix3& fromXyz, double scale, std::optional<PixelBounds> part = {}) const;
 
   private:
     std::size_t cell(int x, int y, int replicate) const noexcept;

@@ -52,9 +52,9 @@ class SplatSums::PathsPlane final : public FilmPlane {
         out.insert(out.end(), bytes.begin(), bytes.end());
     }
 
-    bool add(PixelBounds b, std::span<const std::byte> bytes) override {
-        if (bytes.size() != std::as_bytes(std::span(sums_.paths_)).size()) return bytes.empty() && !hasFirstPixel(b);
-        if (!hasFirstPixel(b)) return true;
+    bool addWithin(PixelBounds within, PixelBounds of, std::span<const std::byte> bytes) override {
+        if (bytes.size() != std::as_bytes(std::span(sums_.paths_)).size()) return bytes.empty() && !hasFirstPixel(of);
+        if (!hasFirstPixel(common(within, of))) return true;
         for (std::uint64_t& count : sums_.paths_) {
             std::uint64_t term;
             std::memcpy(&term, bytes.data(), sizeof term);
@@ -75,7 +75,8 @@ class SplatSums::PathsPlane final : public FilmPlane {
 
 void SplatSums::appendPlanes(FilmPlanes& planes) {
     planes.push_back(std::make_unique<DensePlane<Cell>>(kind_ == SplatKind::merged ? "merged" : "splats", bounds_,
-                                                        paths_.size(), std::span(cells_), PlaneChanges::byLightPaths));
+                                                        paths_.size(), std::span(cells_),
+                                                        PlaneUse{.ofLightPaths = true}));
     planes.push_back(std::make_unique<PathsPlane>(*this));
 }
 

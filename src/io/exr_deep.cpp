@@ -17,6 +17,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfVecAttribute.h>
 #include <array>
+#include <exception>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -74,11 +75,15 @@ Imf::Header makeHeader(const DeepPicture& p) {
     return header;
 }
 
-void writeSamples(Imf::OStream& stream, const DeepPicture& picture) {
+void checkSamples(const DeepPicture& p) {
+    ABBE_CHECK(p.window.area() > 0 && p.counts.size() == p.window.area());
+    const auto total = std::accumulate(p.counts.begin(), p.counts.end(), std::size_t{0});
+    for (const auto* plane : planesOf(p)) ABBE_CHECK(plane->size() == total);
+}
+
+void writeRows(Imf::DeepScanLineOutputPart& part, const DeepPicture& picture) {
+    checkSamples(picture);
     auto& p = const_cast<DeepPicture&>(picture); // OpenEXR reads from what it could also write to
-    const Imf::Header header = makeHeader(p);
-    Imf::MultiPartOutputFile file(stream, &header, 1, false, 0);
-    Imf::DeepScanLineOutputPart part(file, 0);
     Pointers pointers(p.window, p.counts);
     const auto planes = planesOf(p);
     for (std::size_t c = 0; c < planes.size(); ++c) {
@@ -145,13 +150,31 @@ DeepPicture readSamples(const std::string& path) {
 
 } // namespace
 
+void writeDeepExr(const std::string& path, const DeepPicture& head, const std::function<void(const DeepRows&)>& write) {
+    std::exception_ptr fault; // of the source, past those who take all exceptions for OpenEXR's
+    const auto writeAll = [&](AtomicStream& stream) {
+        const Imf::Header header = makeHeader(head);
+        Imf::MultiPartOutputFile file(stream, &header, 1, false, 0);
+        Imf::DeepScanLineOutputPart part(file, 0);
+        try {
+            write([&part](const DeepPicture& rows) { writeRows(part, rows); });
+        } catch (...) {
+            fault = std::current_exception();
+            throw;
+        }
+    };
+    try {
+        writeWhole(path, writeAll, [](const std::string& written) {
+            return Imf::MultiPartInputFile(written.c_str(), 0).partComplete(0);
+        });
+    } catch (...) {
+        if (fault) std::rethrow_exception(fault);
+        throw;
+    }
+}
+
 void writeDeepExr(const std::string& path, const DeepPicture& picture) {
-    ABBE_CHECK(picture.window.area() > 0 && picture.counts.size() == picture.window.area());
-    const auto total = std::accumulate(picture.counts.begin(), picture.counts.end(), std::size_t{0});
-    for (const auto* plane : planesOf(picture)) ABBE_CHECK(plane->size() == total);
-    writeWhole(
-        path, [&](AtomicStream& stream) { writeSamples(stream, picture); },
-        [](const std::string& written) { return Imf::MultiPartInputFile(written.c_str(), 0).partComplete(0); });
+    writeDeepExr(path, picture, [&](const DeepRows& rows) { rows(picture); });
 }
 
 DeepPicture readDeepExr(const std::string& path) {

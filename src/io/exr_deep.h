@@ -3,6 +3,7 @@
 
 #include "io/exr_writer.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct DeepPicture {
 // Channels A R G B Z ZBack, all float, zips: one part of the type deepscanline. The file appears under its name only
 // when it is whole; on failure an older one is untouched. Throws IoError.
 void writeDeepExr(const std::string& path, const DeepPicture&);
+
+// The same row by row: `write` gives all rows, some whole ones at a time from the top, to the function that it gets: a
+// picture whose window they are. Of `head` everything counts but the samples. Throws also what `write` throws.
+using DeepRows = std::function<void(const DeepPicture&)>;
+void writeDeepExr(const std::string& path, const DeepPicture& head, const std::function<void(const DeepRows&)>& write);
 
 // Of such a file, or of any with those channels (ZBack may be missing) in its first part of the type deepscanline.
 // Throws IoError.

@@ -1,6 +1,7 @@
 #include "io/exr_writer.h"
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "io/exr_library.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
@@ -18,11 +19,13 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
 #include <map>
 #include <string_view>
@@ -118,40 +121,93 @@ template <typename T> Imf::Slice slice(const PixelWindow& w, const T* values) {
     return Imf::Slice::Make(type, values, toImf(w), sizeof(T), sizeof(T) * static_cast<std::size_t>(w.width()));
 }
 
-// `halves`: of R G B, in 16 bits.
-using Halves = std::array<std::vector<Imath::half>, 3>;
+// Some rows of the picture, whole: what OpenEXR reads from while it writes them.
+class RowGroup {
+  public:
+    RowGroup(const ExrPicture& p, int y0, int y1, std::vector<std::span<const float>> more, ExrReport& report)
+        : picture_(p), window_{p.window.x0, y0, p.window.x1, y1}, more_(std::move(more)) {
+        const auto width = static_cast<std::size_t>(p.window.width());
+        const std::array<std::span<const float>, 3> planes{p.r, p.g, p.b};
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            colours_[i] = planes[i].subspan(static_cast<std::size_t>(y0 - p.window.y0) * width, window_.area());
+            if (p.half) halves_[i] = toHalf(colours_[i], report);
+        }
+    }
 
-Imf::FrameBuffer bufferOf(const ExrPicture& p, const ExrPartChannels& part, const Halves& halves) {
-    Imf::FrameBuffer buffer;
-    const std::array<std::span<const float>, 3> planes{p.r, p.g, p.b};
-    constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
-    for (std::size_t i = 0; part.colours && i < 3; ++i)
-        buffer.insert(kNames[i], p.half ? slice(p.window, halves[i].data()) : slice(p.window, planes[i].data()));
-    for (std::size_t i = part.first; i < part.last; ++i)
-        buffer.insert(p.more[i].name, slice(p.window, p.more[i].values.data()));
-    return buffer;
+    Imf::FrameBuffer bufferOf(const ExrPartChannels& part) const {
+        constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
+        Imf::FrameBuffer buffer;
+        for (std::size_t i = 0; part.colours && i < kNames.size(); ++i)
+            buffer.insert(kNames[i],
+                          picture_.half ? slice(window_, halves_[i].data()) : slice(window_, colours_[i].data()));
+        for (std::size_t i = part.first; i < part.last; ++i)
+            buffer.insert(picture_.more[i].name, slice(window_, more_[i].data()));
+        return buffer;
+    }
+
+  private:
+    const ExrPicture& picture_;
+    PixelWindow window_;
+    std::array<std::span<const float>, 3> colours_;
+    std::array<std::vector<Imath::half>, 3> halves_;
+    std::vector<std::span<const float>> more_;
+};
+
+// From the picture itself.
+std::vector<std::span<const float>> rowsOf(const ExrPicture& p, int y0, int y1) {
+    const auto width = static_cast<std::size_t>(p.window.width());
+    std::vector<std::span<const float>> rows;
+    for (const ExrChannel& c : p.more)
+        rows.push_back(c.values.subspan(static_cast<std::size_t>(y0 - p.window.y0) * width,
+                                        static_cast<std::size_t>(y1 - y0) * width));
+    return rows;
 }
 
-void writePixels(Imf::OStream& stream, const ExrPicture& p, ExrReport& report) {
-    Halves halves;
-    if (p.half) halves = {toHalf(p.r, report), toHalf(p.g, report), toHalf(p.b, report)};
+// What the source of rows threw, past those who take all exceptions for OpenEXR's.
+struct RowFault {
+    std::exception_ptr why;
+};
+
+// Calls write(group, count) for as many rows at a time as all threads have lines to compress.
+template <typename Write>
+void forRowGroups(const ExrPicture& p, const ExrRows& rows, ExrReport& report, const Write& write) {
+    const int step = kExrRows * threadCount();
+    for (int y = p.window.y0; y < p.window.y1; y += step) {
+        const int end = std::min(y + step, p.window.y1);
+        std::vector<std::span<const float>> more;
+        try {
+            more = rows ? rows(y, end) : rowsOf(p, y, end);
+        } catch (...) {
+            throw RowFault{std::current_exception()};
+        }
+        write(RowGroup(p, y, end, std::move(more), report), end - y);
+    }
+}
+
+void writePixels(Imf::OStream& stream, const ExrPicture& p, const ExrRows& rows, ExrReport& report) {
     if (p.acesContainer)
         for (const ExrChannel& c : p.more) report.leftOut.push_back(c.name);
     const std::vector<ExrPartChannels> parts = partsOf(p);
+    // Which thread compresses a line makes no difference to the file.
+    Imf::setGlobalThreadCount(threadCount());
     if (!p.parts || p.acesContainer) {
-        Imf::OutputFile file(stream, makeHeader(p, parts[0]), 0);
-        file.setFrameBuffer(bufferOf(p, parts[0], halves));
-        file.writePixels(p.window.height());
+        Imf::OutputFile file(stream, makeHeader(p, parts[0]), threadCount());
+        forRowGroups(p, rows, report, [&](const RowGroup& group, int count) {
+            file.setFrameBuffer(group.bufferOf(parts[0]));
+            file.writePixels(count);
+        });
         return;
     }
     std::vector<Imf::Header> headers;
     for (const ExrPartChannels& part : parts) headers.push_back(makeHeader(p, part));
-    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        Imf::OutputPart part(file, static_cast<int>(i));
-        part.setFrameBuffer(bufferOf(p, parts[i], halves));
-        part.writePixels(p.window.height());
-    }
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threadCount());
+    forRowGroups(p, rows, report, [&](const RowGroup& group, int count) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            Imf::OutputPart part(file, static_cast<int>(i));
+            part.setFrameBuffer(group.bufferOf(parts[i]));
+            part.writePixels(count);
+        }
+    });
 }
 
 bool isWhole(const std::string& path) {
@@ -161,10 +217,10 @@ bool isWhole(const std::string& path) {
     return true;
 }
 
-void checkPicture(const ExrPicture& p) {
+void checkPicture(const ExrPicture& p, bool rows) {
     const std::size_t area = p.window.area();
     ABBE_CHECK(area > 0 && p.r.size() == area && p.g.size() == area && p.b.size() == area);
-    for (const ExrChannel& c : p.more) ABBE_CHECK(c.values.size() == area);
+    for (const ExrChannel& c : p.more) ABBE_CHECK(c.values.size() == (rows ? 0 : area));
     ABBE_CHECK(!p.acesContainer ||
                (p.half && p.compression == ExrCompression::none && p.chromaticities.matches(rgb::ap0)));
 }
@@ -179,11 +235,15 @@ std::optional<ExrCompression> findExrCompression(std::string_view name) {
 
 std::string_view name(ExrCompression c) { return kCompressions[static_cast<std::size_t>(c)].first; }
 
-ExrReport writeExr(const std::string& path, const ExrPicture& picture) {
-    checkPicture(picture);
+ExrReport writeExr(const std::string& path, const ExrPicture& picture, const ExrRows& rows) {
+    checkPicture(picture, static_cast<bool>(rows));
     ExrReport report;
-    writeWhole(
-        path, [&](AtomicStream& stream) { writePixels(stream, picture, report); }, isWhole);
+    try {
+        writeWhole(
+            path, [&](AtomicStream& stream) { writePixels(stream, picture, rows, report); }, isWhole);
+    } catch (const RowFault& fault) {
+        std::rethrow_exception(fault.why);
+    }
     return report;
 }
 

@@ -3,6 +3,7 @@
 
 #include "io/image.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,9 +52,16 @@ struct ExrReport {
     std::vector<std::string> leftOut; // channels that an ACES container cannot hold
 };
 
+// Values of the channels `more` in the rows [y0, y1) of the data window, until the next call; whole rows of all
+// columns. What R G B have there counts as soon as it returns. From the top, each row once.
+using ExrRows = std::function<std::vector<std::span<const float>>(int y0, int y1)>;
+
 // An ACES container holds R G B alone: other channels are left out and reported.
-// The file appears under its name only when it is whole; on failure an older one is untouched. Throws IoError.
-ExrReport writeExr(const std::string& path, const ExrPicture&);
+// The file appears under its name only when it is whole; on failure an older one is untouched. `rows`: where values of
+// `more` come from, which are then empty in the picture; a multiple of kExrRows at a time, but for the last ones.
+// Throws IoError, and what `rows` throws.
+ExrReport writeExr(const std::string& path, const ExrPicture&, const ExrRows& rows = {});
+inline constexpr int kExrRows = 16;
 
 // Adds channels to an OpenEXR file that exists.
 // Writes a copy of `source` to `target`, which may be the same file, with more channels and attributes in its first

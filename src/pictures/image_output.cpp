@@ -78,19 +78,6 @@ std::string writeFault(const std::string& path) {
     }
 }
 
-ResolvedImage resolveImage(const PixelFilm& film, const FilmSettings& settings, double exposure) {
-    return film.resolve(rgbSpace(settings.space).fromXyz() * settings.whiteBalance, exposure);
-}
-
-FilmPicture resolvePicture(const PixelFilm& film, const FilmSettings& settings, double exposure, Vec3d origin) {
-    FilmPicture picture{resolveImage(film, settings, exposure), {}, {}};
-    const RgbSpace& space = rgbSpace(settings.space);
-    const LayerView view{&space, space.fromXyz() * settings.whiteBalance, exposure, origin};
-    picture.layers = layerPlanes(film, picture.image, view);
-    if (film.layers() && film.layers()->deep()) picture.deep = deepImage(film, view);
-    return picture;
-}
-
 std::string deepPath(const std::string& imagePath) {
     return std::filesystem::path(imagePath).replace_extension(".deep.exr").string();
 }
@@ -99,28 +86,39 @@ namespace {
 
 PixelWindow windowOf(const PixelBounds& b) { return {b.x0, b.y0, b.x1, b.y1}; }
 
-void writeDeep(const std::string& path, const DeepImage& deep, const ExrPicture& flat) {
-    DeepPicture picture{
-        flat.window, flat.display, deep.counts, deep.front,          deep.back,           deep.a,
-        deep.r,      deep.g,       deep.b,      flat.chromaticities, flat.adoptedNeutral, flat.attributes};
-    std::erase_if(picture.attributes, [](const ImageAttribute& a) { return a.name.starts_with("cryptomatte/"); });
-    writeDeepExr(path, picture);
+DeepPicture headOf(const ExrPicture& flat) {
+    DeepPicture head{flat.window,         flat.display,   {}, {}, {}, {}, {}, {}, {}, flat.chromaticities,
+                     flat.adoptedNeutral, flat.attributes};
+    std::erase_if(head.attributes, [](const ImageAttribute& a) { return a.name.starts_with("cryptomatte/"); });
+    return head;
 }
 
-} // namespace
+DeepPicture pictureOf(DeepImage deep) {
+    return {windowOf(deep.bounds),
+            windowOf(deep.bounds),
+            std::move(deep.counts),
+            std::move(deep.front),
+            std::move(deep.back),
+            std::move(deep.a),
+            std::move(deep.r),
+            std::move(deep.g),
+            std::move(deep.b),
+            {},
+            {}};
+}
 
-void writeImage(const std::string& path, const FilmPicture& shot, const FilmSettings& film,
-                std::vector<ImageAttribute> attributes, Diagnostics& diagnostics) {
-    const auto& [image, layers, deep] = shot;
+ExrPicture describe(const FilmPicture& shot, const LayerPlanes& channels, const FilmSettings& film,
+                    std::vector<ImageAttribute> attributes) {
+    const ResolvedImage& image = shot.image;
     ExrPicture picture;
     picture.window = windowOf(image.bounds);
     picture.display = {0, 0, film.width, film.height};
     picture.r = image.r;
     picture.g = image.g;
     picture.b = image.b;
-    if (!image.variance.empty()) picture.more.push_back({"variance.Y", image.variance});
-    for (const NamedPlane& plane : layers.planes) picture.more.push_back({plane.name, plane.values});
-    for (const auto& [name, value] : layers.header) attributes.push_back({name, value});
+    if (!image.variance.empty()) picture.more.push_back({"variance.Y", {}});
+    for (const NamedPlane& plane : channels.planes) picture.more.push_back({plane.name, {}});
+    for (const auto& [name, value] : channels.header) attributes.push_back({name, value});
     picture.chromaticities = Chromaticities::of(rgbSpace(film.space));
     picture.adoptedNeutral = adoptedNeutral(film.space);
     picture.acesContainer = film.acesContainer;
@@ -133,13 +131,58 @@ void writeImage(const std::string& path, const FilmPicture& shot, const FilmSett
         picture.attributes.push_back(
             {"abbe.whiteBalance", fmt::format("{:.5f} {:.5f} bradford", film.adoptedWhite->x, film.adoptedWhite->y)});
     picture.attributes.push_back({"colorInteropID", std::string(rgbSpace(film.space).name)});
-    warnOfLosses(writeExr(path, picture), path, diagnostics);
-    if (deep) writeDeep(deepPath(path), *deep, picture);
-    if (layers.unequalSums > 0)
+    return picture;
+}
+
+// The rows of both files, which are made together.
+class RowSource {
+  public:
+    explicit RowSource(FilmPicture& shot) : shot_(shot) {}
+
+    // `deep`: takes those of the deep image; may be empty.
+    std::vector<std::span<const float>> operator()(int y0, int y1, const DeepRows& deep) {
+        const ResolvedImage& image = shot_.image;
+        const auto width = static_cast<std::size_t>(image.bounds.width());
+        rows_ = shot_.rows(y0, y1);
+        unequalSums_ += rows_.layers.unequalSums;
+        if (deep) deep(pictureOf(std::move(*rows_.deep)));
+        std::vector<std::span<const float>> values;
+        if (!image.variance.empty())
+            values.push_back(std::span(image.variance)
+                                 .subspan(static_cast<std::size_t>(y0 - image.bounds.y0) * width,
+                                          static_cast<std::size_t>(y1 - y0) * width));
+        for (const NamedPlane& plane : rows_.layers.planes) values.emplace_back(plane.values);
+        return values;
+    }
+    std::size_t unequalSums() const { return unequalSums_; }
+
+  private:
+    FilmPicture& shot_;
+    FilmPicture::Rows rows_;
+    std::size_t unequalSums_ = 0;
+};
+
+} // namespace
+
+void writeImage(const std::string& path, FilmPicture& shot, const FilmSettings& film,
+                std::vector<ImageAttribute> attributes, Diagnostics& diagnostics) {
+    const int top = shot.image.bounds.y0;
+    const ExrPicture picture = describe(shot, shot.rows(top, top).layers, film, std::move(attributes));
+    RowSource source(shot);
+    ExrReport report;
+    const auto write = [&](const DeepRows& deep) {
+        report = writeExr(path, picture, [&](int y0, int y1) { return source(y0, y1, deep); });
+    };
+    if (shot.hasDeep())
+        writeDeepExr(deepPath(path), headOf(picture), write);
+    else
+        write({});
+    warnOfLosses(report, path, diagnostics);
+    if (source.unequalSums() > 0)
         diagnostics.warning(
             "W0656", {},
             fmt::format("{} values of the light groups or components of `{}` do not add up to the picture",
-                        layers.unequalSums, path));
+                        source.unequalSums(), path));
 }
 
 void cutOut(DisplayPicture& picture, const PixelWindow& window, const PixelWindow& display) {

@@ -3,10 +3,9 @@
 
 #include "base/diagnostic.h"
 #include "film/film_params.h"
-#include "film/layer_planes.h"
-#include "film/pixel_film.h"
 #include "io/exr_writer.h"
 #include "pictures/display_view.h"
+#include "pictures/film_picture.h"
 
 #include <string>
 #include <vector>
@@ -34,23 +33,12 @@ bool isForeignPng(const std::string& path);
 // The reason, or empty.
 std::string writeFault(const std::string& path);
 
-// The picture in the film's space, with the camera's exposure applied, and the channels beside it.
-struct FilmPicture {
-    ResolvedImage image;
-    LayerPlanes layers;
-    std::optional<DeepImage> deep;
-};
-ResolvedImage resolveImage(const PixelFilm&, const FilmSettings&, double exposure);
-// `origin`: world position of the origin of render space.
-FilmPicture resolvePicture(const PixelFilm&, const FilmSettings&, double exposure, Vec3d origin);
-
 // Where the deep samples of an image go: x.deep.exr beside x.exr.
 std::string deepPath(const std::string& imagePath);
 
-// With the deep image, if there is one. Throws IoError. Warnings (values that half floats cannot hold, channels left
-// out) go to the list.
-void writeImage(const std::string& path, const FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>,
-                Diagnostics&);
+// With the deep image, if there is one; both row by row. Throws IoError, and what the picture's source of layers
+// throws. Warnings (values that half floats cannot hold, channels left out) go to the list.
+void writeImage(const std::string& path, FilmPicture&, const FilmSettings&, std::vector<ImageAttribute>, Diagnostics&);
 
 // `rgb`: interleaved, linear, in `space`. Throws IoError.
 struct DisplayPicture {

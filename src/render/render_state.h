@@ -66,6 +66,38 @@ struct TileState {
     std::vector<DroppedSample> examples = {}; // kExamples at most
 };
 
+// The tiles of a rectangle, row by row from its corner; those at its other edges may be smaller.
+class TileGrid {
+  public:
+    static constexpr int kSize = 16;
+
+    // Requires a non-empty rectangle.
+    explicit TileGrid(PixelBounds bounds) : bounds_(bounds) {}
+
+    PixelBounds bounds() const { return bounds_; }
+    std::size_t columns() const { return tilesOver(bounds_.width()); }
+    std::size_t count() const { return columns() * tilesOver(bounds_.height()); }
+    PixelBounds pixels(std::size_t i) const {
+        const int x = bounds_.x0 + static_cast<int>(i % columns()) * kSize;
+        const int y = bounds_.y0 + static_cast<int>(i / columns()) * kSize;
+        return {x, y, std::min(x + kSize, bounds_.x1), std::min(y + kSize, bounds_.y1)};
+    }
+    // Those with pixels of a rectangle that is not empty and lies within the bounds.
+    std::vector<std::size_t> tilesIn(PixelBounds b) const {
+        const auto before = [](int pixels) { return static_cast<std::size_t>(pixels / kSize); };
+        std::vector<std::size_t> tiles;
+        for (std::size_t row = before(b.y0 - bounds_.y0); row <= before(b.y1 - 1 - bounds_.y0); ++row)
+            for (std::size_t column = before(b.x0 - bounds_.x0); column <= before(b.x1 - 1 - bounds_.x0); ++column)
+                tiles.push_back(row * columns() + column);
+        return tiles;
+    }
+
+  private:
+    static std::size_t tilesOver(int pixels) { return static_cast<std::size_t>((pixels + kSize - 1) / kSize); }
+
+    PixelBounds bounds_;
+};
+
 // How far all tiles have come. The tiles of a film's bounds, row by row, and behind them blocks of light paths: tiles
 // without pixels, which a render takes to the same samples. While it goes on, a tile and the film's pixels in it are
 // changed by the holder of its mutex alone: who holds it finds both in step, at any moment and without stopping the
@@ -73,19 +105,18 @@ struct TileState {
 // gate.
 class RenderState {
   public:
-    static constexpr int kTileSize = 16;
+    static constexpr int kTileSize = TileGrid::kSize;
 
     // Nothing is done yet; samples will begin at `first`. Requires a non-empty rectangle.
     RenderState(PixelBounds bounds, std::uint32_t first, std::size_t lightBlocks = 0)
-        : bounds_(bounds), first_(first), columns_((bounds.width() + kTileSize - 1) / kTileSize),
-          pixelTiles_(static_cast<std::size_t>(columns_) *
-                      static_cast<std::size_t>((bounds.height() + kTileSize - 1) / kTileSize)),
-          tiles_(pixelTiles_ + lightBlocks), mutexes_(tiles_.size()) {
+        : grid_(bounds), first_(first), pixelTiles_(grid_.count()), tiles_(pixelTiles_ + lightBlocks),
+          mutexes_(tiles_.size()) {
         for (TileState& tile : tiles_) tile.reached = first;
     }
 
     std::uint32_t first() const { return first_; }
-    PixelBounds bounds() const { return bounds_; }
+    PixelBounds bounds() const { return grid_.bounds(); }
+    const TileGrid& grid() const { return grid_; }
     // Tiles of pixels come first, then blocks of light paths.
     std::size_t tileCount() const { return tiles_.size(); }
     std::size_t pixelTileCount() const { return pixelTiles_; }
@@ -99,12 +130,7 @@ class RenderState {
     TileState& tile(std::size_t i) { return tiles_[i]; }
     const TileState& tile(std::size_t i) const { return tiles_[i]; }
     // Empty for a block of light paths.
-    PixelBounds pixels(std::size_t i) const {
-        if (isLightBlock(i)) return {};
-        const int x = bounds_.x0 + static_cast<int>(i) % columns_ * kTileSize;
-        const int y = bounds_.y0 + static_cast<int>(i) / columns_ * kTileSize;
-        return {x, y, std::min(x + kTileSize, bounds_.x1), std::min(y + kTileSize, bounds_.y1)};
-    }
+    PixelBounds pixels(std::size_t i) const { return isLightBlock(i) ? PixelBounds{} : grid_.pixels(i); }
 
     std::mutex& mutex(std::size_t i) { return mutexes_[i]; }
     LightGate& lightGate() { return *lightGate_; }
@@ -163,9 +189,8 @@ class RenderState {
     void setPilot(int size) { pilot_->store(size); }
 
   private:
-    PixelBounds bounds_;
+    TileGrid grid_;
     std::uint32_t first_;
-    int columns_;
     std::size_t pixelTiles_;
     std::vector<TileState> tiles_;
     std::vector<std::mutex> mutexes_;

@@ -9,6 +9,13 @@ namespace abbe {
 
 double RenderRun::memoryBudget() const { return memoryLimit(); }
 
+// A merge reads them as often as it likes.
+PixelBounds RenderRun::layersAtOnce() const {
+    PixelBounds rows = film_.crop;
+    if (!options_.parts.empty()) rows.y1 = std::min(rows.y1, rows.y0 + TileGrid::kSize);
+    return rows;
+}
+
 // Sums, what becomes of them when they are written, and layers.
 double RenderRun::filmBytes() const {
     const double pixels = static_cast<double>(film_.crop.width()) * film_.crop.height();
@@ -18,7 +25,7 @@ double RenderRun::filmBytes() const {
     const auto replicates = static_cast<int>(built_.render.replicates);
     return pixels * kResolved +
            static_cast<double>(PixelFilm::memoryBytes(film_.crop, replicates, splats, merged) +
-                               FilmLayers::memoryBytes(film_.crop, built_.layers, splats + merged));
+                               FilmLayers::memoryBytes(layersAtOnce(), built_.layers, splats + merged));
 }
 
 // Before the first sample. What is built already is measured, what is to come is counted; tiles of textures come as
@@ -33,7 +40,7 @@ ExitCode RenderRun::checkMemory() {
                                   memoryText(film), owner, memoryText(budget)),
                       "render parts of it with `crop` in the film", ExitCode::memory);
     if (film + scene <= budget) return ExitCode::done;
-    const auto layers = static_cast<double>(FilmLayers::memoryBytes(film_.crop, built_.layers));
+    const auto layers = static_cast<double>(FilmLayers::memoryBytes(layersAtOnce(), built_.layers));
     return refuse("E0675",
                   fmt::format("this render needs {}: {} for the scene as it is built, {} for the sums of {}×{} pixels "
                               "with {} replicates, {} for layers; {} {}",

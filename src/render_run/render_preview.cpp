@@ -112,8 +112,9 @@ void RenderRun::openPreview() {
 
 // Without a black hole where the time, or the patience, was too short for a sample.
 FilmPicture RenderRun::pictureOf(const PixelFilm& film) {
-    FilmPicture picture = resolvePicture(film, film_, built_.exposure, built_.scene.origin);
+    FilmPicture picture(film, film_, built_.exposure, built_.scene.origin, bringLayers_);
     lookedAt_ = look_ && !look_->cells.empty() ? paintMissing(picture.image, film, *look_, film_, built_.exposure) : 0;
+    picture.painted = lookedAt_ > 0;
     return picture;
 }
 

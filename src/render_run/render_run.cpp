@@ -46,7 +46,7 @@ ExitCode RenderRun::refuse(std::string_view code, std::string message, std::stri
 void RenderRun::warnOfDeepMemory() {
     if (!built_.layers.deep || options_.pixel) return;
     const std::uint64_t most =
-        DeepSums::mostBytes(film_.crop, *built_.layers.deep, static_cast<std::uint64_t>(built_.render.samples));
+        DeepSums::mostBytes(layersAtOnce(), *built_.layers.deep, static_cast<std::uint64_t>(built_.render.samples));
     if (static_cast<double>(most) <= physicalMemory()) return;
     Span span;
     for (const schema::TableRow& row : built_.film.layers.rows)
@@ -270,22 +270,24 @@ ExitCode RenderRun::merge() {
         parts.check(identity());
         film_.crop = parts.bounds();
         settings_.pilot = parts.pilot();
-        PixelFilm film = makeFilm(film_.crop);
+        const PixelBounds& all = film_.crop;
+        PixelFilm film = makeFilm(all, PixelBounds{all.x0, all.y0, all.x1, all.y0});
         watch_.lap();
         const WorkScope work(Work::merging);
         settings_.samples = parts.whole() * static_cast<std::uint32_t>(film.replicates());
-        summary_.statistics = parts.addTo(film.planes());
+        summary_.statistics = parts.addTo(film);
         summary_.partial = summary_.statistics.stopped;
         earlier_ = parts.work();
         summary_.noise = film.relativeNoise();
         endPhase("merging", watch_.lap());
         if (options_.mergesToPart()) {
-            parts.write(summary_.image, film.planes());
+            parts.write(summary_.image, film);
             report_->image(summary_.image, false);
             return finish(0);
         }
         setWork(Work::preparing);
         findDropped(film);
+        bringLayers_ = [&](PixelBounds rows) { parts.bringLayers(film, rows); };
         write(film);
     } catch (const CheckpointFault& fault) {
         return refuse(fault.code.c_str(), fault.what(), fault.help, ExitCode::faulty);

@@ -63,13 +63,14 @@ class RenderRun {
     ExitCode checkSkip();
     void warnOfFrames();
     ExitCode refuse(std::string_view code, std::string message, std::string help, ExitCode exit);
-    PixelFilm makeFilm(PixelBounds bounds) const {
+    // `layerRows`: the film has the layers of these rows alone.
+    PixelFilm makeFilm(PixelBounds bounds, std::optional<PixelBounds> layerRows = {}) const {
         PixelFilm film(bounds, PixelFilter(film_.filter, film_.filterRadius),
                        static_cast<int>(built_.render.replicates));
         film.keepSplatsOf(*integrator_, built_.scene, settings_);
         if (!alone())
             film.keepLayers(built_.layers, built_.scene.names, rgbSpace(film_.space),
-                            {built_.scene.intersector.get(), built_.scene.camera.get()});
+                            {built_.scene.intersector.get(), built_.scene.camera.get()}, layerRows);
         return film;
     }
     ExitCode renderPixel();
@@ -77,6 +78,7 @@ class RenderRun {
     ExitCode checkMemory();
     double memoryBudget() const; // bytes
     double filmBytes() const;
+    PixelBounds layersAtOnce() const; // pixels whose layers are in memory
     std::string replayCommand() const;
     void findDropped(const Film&);
     ExitCode merge();
@@ -96,7 +98,7 @@ class RenderRun {
     void certify(const PixelFilm&);
     void writeCertificate();
     void write(const PixelFilm&);
-    void writeFiles(const PixelFilm&, const FilmPicture&, Diagnostics&);
+    void writeFiles(const PixelFilm&, FilmPicture&, Diagnostics&);
     void writeInMemory(const PixelFilm&);
     ExitCode refuseForMemory();
     std::vector<ImageAttribute> attributes(const PixelFilm&);
@@ -107,7 +109,7 @@ class RenderRun {
     void judgePicture(const PixelFilm&, const ResolvedImage&, Diagnostics&);
     // Nothing if there is no such view, with the reason.
     std::optional<DisplayView> displayView(std::string& reason) const;
-    void writeRescued(const FilmPicture&, std::vector<ImageAttribute>, const IoError&);
+    void writeRescued(FilmPicture&, std::vector<ImageAttribute>, const IoError&);
     FilmPicture pictureOf(const PixelFilm&);
     void openPreview();
     ExitCode leaveFiles();
@@ -131,6 +133,7 @@ class RenderRun {
     std::optional<RenderCheckpoint> checkpoint_;
     std::optional<RenderPreview> preview_;
     std::optional<FramePreview> look_; // of this run
+    BringLayers bringLayers_;          // of parts: the film has those of a few rows at a time
     bool hasSamples_ = true;           // that it was to take, at least one
     bool hasPicture_ = true;           // these, or a first look where the time was up
     std::size_t lookedAt_ = 0;         // pixels that were written without a sample, as they looked at first

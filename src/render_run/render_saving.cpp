@@ -157,7 +157,7 @@ void RenderRun::snapshot(const PixelFilm& film, const RenderStatistics& statisti
             summary_.partial = true;
             summary_.noise = film.relativeNoise();
             certify(film);
-            const FilmPicture picture = pictureOf(film);
+            FilmPicture picture = pictureOf(film);
             const PathLock lock(summary_.image, kMostPatience);
             writeImage(summary_.image, picture, film_, attributes(film), ignored);
             report_->image(summary_.image, true);
@@ -226,7 +226,7 @@ void RenderRun::writeCertificate() {
 void RenderRun::write(const PixelFilm& film) {
     const WorkScope work(Work::writing);
     certify(film);
-    const FilmPicture picture = pictureOf(film);
+    FilmPicture picture = pictureOf(film);
     if (settings_.adaptive) summary_.spread = sampleSpread(film);
     Diagnostics warnings;
     writeFiles(film, picture, warnings);
@@ -250,7 +250,7 @@ void RenderRun::write(const PixelFilm& film) {
 }
 
 // Of renders to one image that end at once, each writes all of its files before the next one does.
-void RenderRun::writeFiles(const PixelFilm& film, const FilmPicture& picture, Diagnostics& warnings) {
+void RenderRun::writeFiles(const PixelFilm& film, FilmPicture& picture, Diagnostics& warnings) {
     const PathLock lock(summary_.image, kMostPatience);
     if (lock.refused())
         warn("W0670", fmt::format("another render has been writing `{}` for {} s", summary_.image, kMostPatience),
@@ -261,14 +261,14 @@ void RenderRun::writeFiles(const PixelFilm& film, const FilmPicture& picture, Di
         writeRescued(picture, attributes(film), e);
     }
     report_->image(summary_.image, summary_.partial);
-    if (picture.deep) report_->image(summary_.deep, summary_.partial);
+    if (picture.hasDeep()) report_->image(summary_.deep, summary_.partial);
     writeCertificate();
     writePng(picture.image);
 }
 
 // The disk filled up or went away while rendering: what was computed is saved where temporary files go, and a
 // checkpoint beside the image if there is room for that.
-void RenderRun::writeRescued(const FilmPicture& picture, std::vector<ImageAttribute> attributes, const IoError& why) {
+void RenderRun::writeRescued(FilmPicture& picture, std::vector<ImageAttribute> attributes, const IoError& why) {
     std::string saved = savedElsewhere(summary_.image, "image", [&](const std::string& path) {
         Diagnostics ignored;
         writeImage(path, picture, film_, std::move(attributes), ignored);

@@ -82,6 +82,48 @@ with 'overscan 1 2 3' >three.scene
 expect 1 check three.scene
 says err E0656
 
+# Parts of samples with every layer, of which a merge has a few rows at a time: the bits of the whole, also by way of a
+# part that stands for two, and with each layer in a part of the file.
+expect 0 one.scene "${small[@]}" -o one.exr
+for part in 1 2 3; do expect 0 one.scene "${small[@]}" -o p.exr --part $part/3; done
+expect 0 merge p.part*.abbe -o p.exr
+same_pixels one.exr p.exr
+same_pixels one.deep.exr p.deep.exr
+cmp -s one.png p.png || fault "the PNG of parts differs"
+expect 0 merge p.part[12].abbe -o two.abbe
+expect 0 merge two.abbe p.part3.abbe -o q.exr
+same_pixels one.exr q.exr
+same_pixels one.deep.exr q.deep.exr
+same_certificate one.exr q.exr
+of_layers() { "$program" info "$1" | grep -E '^(cryptomatte/|abbe\.ids)'; }
+[[ -n $(of_layers one.exr) && $(of_layers one.exr) == "$(of_layers q.exr)" ]] || fault "attributes of layers differ"
+expect 0 merge p.part[13].abbe --so-far -o far.exr
+expect 0 info far.exr
+says out "abbe.partial = 1"
+for part in 1 2; do expect 0 parts.scene "${small[@]}" -o l.exr --part $part/2; done
+expect 0 merge l.part*.abbe -o l.exr
+same_pixels one.exr l.exr
+same_pixels one.deep.exr l.deep.exr
+expect 0 info l.exr
+says out "parts        2"
+# Damage that only shows when layers are read leaves no image.
+printf 'x' | dd of=two.abbe bs=1 seek=$(($(stat -c %s two.abbe) - 200)) conv=notrunc status=none
+expect 1 merge two.abbe p.part3.abbe -o none.exr
+says err E0662
+[[ ! -e none.exr && ! -e none.deep.exr ]] || fault "an image of a damaged part"
+
+# A merge needs no more memory for more rows: this film has 985 MB of layers.
+sed 's/spectral 400 700 50/spectral 360 830 1/' one.scene >tall.scene
+for ((y = 0; y < 512; y += 64)); do
+    expect 0 tall.scene --size 128x512 --samples 2 --quiet --crop 0,$y,128,$((y + 64)) --part 1/1 -o tall$y.exr
+done
+memory_of() { sed -n 's/.*"event":"done".*"memory_bytes":\([0-9]*\).*/\1/p' out; }
+expect 0 merge tall*.abbe --json -o tall.exr
+(($(memory_of) < 400000000)) || fault "a merge took $(memory_of) bytes of memory"
+expect 0 merge tall0.part1.abbe --json -o tall.abbe
+expect 0 info tall.exr
+says out "S0.829,5nm (float)"
+
 # What might not fit into memory is told where it is asked for.
 sed 's/deep 6/deep 4096/' "$scenes/layers.scene" >many.scene
 expect 0 many.scene --size 512x512 --samples 1000000 --time 0.1s --checkpoint off --quiet -o many.exr

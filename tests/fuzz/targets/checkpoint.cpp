@@ -1,5 +1,5 @@
 // Checkpoints whose checksums are right, whatever is in them: header, tiles, planes of every kind, light paths.
-#include "checkpoints/checkpoint_file.h"
+#include "checkpoints/checkpoint_reader.h"
 #include "film/pixel_film.h"
 #include "fuzz/target.h"
 #include "fuzz/targets/reading.h"

@@ -1,5 +1,5 @@
 // Checkpoints as files: what is written is read, parts add up, and no damage is taken for a render.
-#include "checkpoints/checkpoint_file.h"
+#include "checkpoints/checkpoint_reader.h"
 #include "checkpoints/render_checkpoint.h"
 #include "checkpoints/render_identity.h"
 #include "checkpoints/render_parts.h"
@@ -194,7 +194,7 @@ TEST_CASE("parts by samples and by crops add up to the whole; what overlaps or l
             RenderParts parts(names);
             parts.check(with);
             merged = makeFilm(parts.bounds());
-            const RenderStatistics statistics = parts.addTo(merged.planes());
+            const RenderStatistics statistics = parts.addTo(merged);
             CHECK(statistics.samplesPerPixel == 16);
         });
     };
