@@ -57,6 +57,10 @@ std::size_t RegularFile::copyAt(std::uint64_t offset, std::span<char> to) const 
     return done;
 }
 
+void RegularFile::expect(std::uint64_t offset, std::uint64_t size) const {
+    ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(size), POSIX_FADV_WILLNEED);
+}
+
 std::string RegularFile::readAll() {
     std::string bytes(size_, '\0');
     bytes.resize(readAt(0, bytes));

@@ -28,6 +28,8 @@ class RegularFile {
     std::size_t readAt(std::uint64_t offset, std::span<char> to);
     // The same from any thread, for those who do not ask why.
     std::size_t copyAt(std::uint64_t offset, std::span<char> to) const;
+    // These bytes will be copied soon: the system may begin to read them. Any thread.
+    void expect(std::uint64_t offset, std::uint64_t size) const;
     // All of it, likewise. Requires that there is memory for size() bytes.
     std::string readAll();
 

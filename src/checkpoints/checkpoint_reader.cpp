@@ -50,12 +50,12 @@ void CheckpointReader::readBlock(Block& block) {
 }
 
 // Over the block that is next; where it is.
-std::uint64_t CheckpointReader::passLayers(BlockKind kind) {
+CheckpointReader::Place CheckpointReader::passLayers(BlockKind kind) {
     const std::uint64_t begin = position_;
     const BlockHead head = headAt(begin);
     if (head.kind != kind) damaged(begin, "an unexpected block");
     position_ += sizeof head + head.size + sizeof(Block::hash);
-    return begin;
+    return {begin, position_ - begin};
 }
 
 void CheckpointReader::verify(const Block& block) const {
@@ -216,21 +216,29 @@ void CheckpointReader::addLayers(const FilmPlanes& planes, PixelBounds within, b
     const BlockKind kind = ofLightPaths ? layerSplatBlock : layerBlock;
     const TileGrid grid(header_.bounds);
     for (const std::size_t i : grid.tilesIn(inside)) {
-        const std::uint64_t begin = places[i];
-        const BlockHead head = headAt(begin);
-        requireMemory(static_cast<double>(head.size));
-        scratch.block.resize(head.size + sizeof(Block::hash));
-        const auto bytes = std::span(scratch.block).first(head.size);
-        std::uint64_t hash = 0;
-        if (file_.copyAt(begin + sizeof head, {reinterpret_cast<char*>(scratch.block.data()), scratch.block.size()}) !=
-            scratch.block.size())
+        const auto [begin, size] = places[i];
+        requireMemory(static_cast<double>(size));
+        scratch.block.resize(size);
+        if (file_.copyAt(begin, {reinterpret_cast<char*>(scratch.block.data()), size}) != size)
             damaged(begin, "the file ends within a block");
-        std::memcpy(&hash, scratch.block.data() + head.size, sizeof hash);
+        BlockHead head;
+        std::uint64_t hash = 0;
+        std::memcpy(&head, scratch.block.data(), sizeof head);
+        std::memcpy(&hash, scratch.block.data() + size - sizeof hash, sizeof hash);
+        if (head.size != size - sizeof head - sizeof hash) damaged(begin, "a tile of another size");
+        const auto bytes = std::span(scratch.block).subspan(sizeof head, head.size);
         if (hash != hashOfBlock(head, bytes)) damaged(begin, "the checksum of a block is wrong");
         ByteReader in(bytes);
         if (head.kind != kind || in.number<std::uint64_t>() != i) damaged(begin, "an unexpected block");
         addPlanes(in, begin, {planes, kind, grid.pixels(i), inside}, scratch.plane);
     }
+}
+
+void CheckpointReader::expectLayers(PixelBounds within, bool ofLightPaths) const {
+    const Places& places = ofLightPaths ? layerSplats_ : layers_;
+    const PixelBounds inside = common(within, header_.bounds);
+    if (places.empty() || isEmpty(inside)) return;
+    for (const std::size_t i : TileGrid(header_.bounds).tilesIn(inside)) file_.expect(places[i].begin, places[i].size);
 }
 
 } // namespace abbe

@@ -32,7 +32,9 @@ class CheckpointReader {
         std::vector<std::byte> block, plane;
     };
     // and then, as often as they are wanted, the layers of those pixels of the header's bounds that are `within`: what
-    // samples, or light paths, added to them. Threads may add to different pixels at once.
+    // samples, or light paths, added to them. Threads may add to different pixels at once. The first one says early
+    // that they will be wanted, so that the disk is at work meanwhile.
+    void expectLayers(PixelBounds within, bool ofLightPaths) const;
     void addLayers(const FilmPlanes&, PixelBounds within, bool ofLightPaths, Scratch&) const;
 
   private:
@@ -42,8 +44,11 @@ class CheckpointReader {
         std::vector<std::byte> bytes;
         std::uint64_t hash = 0; // as it is stated
     };
-    // Where the layers of each tile are.
-    using Places = std::vector<std::uint64_t>;
+    // Where the layers of each tile are: whole blocks.
+    struct Place {
+        std::uint64_t begin = 0, size = 0;
+    };
+    using Places = std::vector<Place>;
 
     BlockHead headAt(std::uint64_t begin) const;
     void readBlock(Block&);
@@ -54,7 +59,7 @@ class CheckpointReader {
     };
     Batch nextBatch(std::size_t most, bool layersFollow);
     const Block& next();
-    std::uint64_t passLayers(BlockKind);
+    Place passLayers(BlockKind);
     [[noreturn]] void damaged(std::uint64_t at, const char* how) const;
     void readHeader();
     void addTiles(const FilmPlanes&, RenderState&);

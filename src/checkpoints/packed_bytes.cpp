@@ -32,16 +32,17 @@ unsigned flagsOf(std::uint64_t word) {
 void appendPacked(std::span<const std::byte> bytes, std::vector<std::byte>& out) {
     const std::size_t words = (bytes.size() + kWord - 1) / kWord, begin = out.size();
     out.resize(begin + words * (1 + kWord));
-    std::byte* to = out.data() + begin;
+    std::byte* flagsTo = out.data() + begin;
+    std::byte* to = flagsTo + words;
     for (std::size_t i = 0; i < words; ++i) {
         std::uint64_t word = 0;
         const std::size_t at = i * kWord;
         std::memcpy(&word, bytes.data() + at, std::min(kWord, bytes.size() - at));
         const unsigned flags = flagsOf(word);
-        *to = static_cast<std::byte>(flags);
+        flagsTo[i] = static_cast<std::byte>(flags);
         const std::uint64_t packed = _pext_u64(word, kBytesOfFlags[flags]);
-        std::memcpy(to + 1, &packed, kWord); // there is room; what is behind the last one is written over
-        to += 1 + std::popcount(flags);
+        std::memcpy(to, &packed, kWord); // there is room; what is behind the last one is written over
+        to += std::popcount(flags);
     }
     out.resize(static_cast<std::size_t>(to - out.data()));
 }
@@ -50,22 +51,34 @@ bool unpack(std::span<const std::byte> packed, std::size_t size, std::vector<std
     const std::size_t words = size / kWord + (size % kWord != 0);
     if (words > packed.size()) return false; // each takes one byte at least
     out.resize(words * kWord);
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < words; ++i) {
-        if (at >= packed.size()) return false;
-        const auto flags = static_cast<unsigned>(packed[at++]);
-        const auto count = static_cast<std::size_t>(std::popcount(flags));
-        if (count > packed.size() - at) return false;
-        std::uint64_t kept = 0;
-        std::memcpy(&kept, packed.data() + at, count);
-        at += count;
+    const std::byte* const flagsFrom = packed.data();
+    const std::span<const std::byte> from = packed.subspan(words);
+    std::size_t at = 0, i = 0;
+    const auto put = [&](std::uint64_t kept, unsigned flags) {
         const std::uint64_t word = _pdep_u64(kept, kBytesOfFlags[flags]);
         std::memcpy(out.data() + i * kWord, &word, kWord);
+    };
+    // Where eight bytes are left none need be counted, for those that are too many are not used.
+    for (; i < words && at + kWord <= from.size(); ++i) {
+        const auto flags = static_cast<unsigned>(flagsFrom[i]);
+        std::uint64_t kept = 0;
+        std::memcpy(&kept, from.data() + at, kWord);
+        put(kept, flags);
+        at += static_cast<std::size_t>(std::popcount(flags));
     }
-    for (std::size_t i = size; i < out.size(); ++i)
-        if (out[i] != std::byte{}) return false;
+    for (; i < words; ++i) {
+        const auto flags = static_cast<unsigned>(flagsFrom[i]);
+        const auto count = static_cast<std::size_t>(std::popcount(flags));
+        if (count > from.size() - at) return false;
+        std::uint64_t kept = 0;
+        if (count > 0) std::memcpy(&kept, from.data() + at, count);
+        put(kept, flags);
+        at += count;
+    }
+    for (std::size_t behind = size; behind < out.size(); ++behind)
+        if (out[behind] != std::byte{}) return false;
     out.resize(size);
-    return at == packed.size();
+    return at == from.size();
 }
 
 } // namespace abbe

@@ -8,7 +8,8 @@
 
 namespace abbe {
 
-// Appends of each eight bytes a byte that says which are not zero, and those. At most 9/8 of the size.
+// Appends of each eight bytes a byte that says which are not zero, and behind all of these the bytes that are not:
+// whoever unpacks knows early where the bytes of the next ones begin. At most 9/8 of the size.
 void appendPacked(std::span<const std::byte> bytes, std::vector<std::byte>& out);
 
 // The `size` bytes that were packed, in place of what is in `out`. False if `packed` is no such thing; nothing larger

@@ -195,6 +195,7 @@ void RenderParts::addLayers(const FilmPlanes& planes, PixelBounds rows, bool ofL
     const TileGrid grid(rows);
     parallelFor(grid.count(), [&](std::size_t i) {
         CheckpointReader::Scratch scratch;
+        for (const CheckpointReader& reader : readers_) reader.expectLayers(grid.pixels(i), ofLightPaths);
         for (const CheckpointReader& reader : readers_) reader.addLayers(planes, grid.pixels(i), ofLightPaths, scratch);
     });
 }

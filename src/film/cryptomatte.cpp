@@ -60,7 +60,7 @@ std::vector<NamedPlane> cryptomattePlanes(const FilmLayers& layers, FilmLayers::
         planes.push_back({fmt::format("{}{:02}.{}", name, i / 4, "RGBA"[i % 4]), std::vector<float>(samples.size())});
     for (const char channel : {'R', 'G', 'B'})
         planes.push_back({fmt::format("{}.{}", name, channel), std::vector<float>(samples.size())});
-    parallelFor(samples.size(), [&](std::size_t pixel) {
+    const auto show = [&](std::size_t pixel) {
         const auto seen = ranked(layers.coverage(first + pixel, matte));
         for (std::size_t rank = 0; rank < seen.size(); ++rank) {
             const float share = static_cast<float>(seen[rank].samples) / samples[pixel];
@@ -70,6 +70,11 @@ std::vector<NamedPlane> cryptomattePlanes(const FilmLayers& layers, FilmLayers::
             planes[2 * rank].values[pixel] = ids[seen[rank].thing];
             planes[2 * rank + 1].values[pixel] = share;
         }
+    };
+    constexpr std::size_t kPortion = 1024; // pixels
+    parallelFor((samples.size() + kPortion - 1) / kPortion, [&](std::size_t i) {
+        const std::size_t end = std::min((i + 1) * kPortion, samples.size());
+        for (std::size_t pixel = i * kPortion; pixel < end; ++pixel) show(pixel);
     });
     return planes;
 }

@@ -46,10 +46,13 @@ class PlaneMaker {
         fill(first, N, values);
     }
     void fill(std::size_t first, std::size_t count, const Values& values) {
-        parallelFor(total_.size(), [&](std::size_t pixel) {
-            float* out[9];
-            for (std::size_t c = 0; c < count; ++c) out[c] = &result_.planes[first + c].values[pixel];
-            values(pixel, out);
+        const auto width = static_cast<std::size_t>(picture_.bounds.width());
+        parallelFor(total_.size() / width, [&](std::size_t row) {
+            for (std::size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
+                float* out[9];
+                for (std::size_t c = 0; c < count; ++c) out[c] = &result_.planes[first + c].values[pixel];
+                values(pixel, out);
+            }
         });
     }
 

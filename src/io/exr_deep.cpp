@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/file.h"
 #include "base/memory_limit.h"
+#include "base/parallel.h"
 #include "io/exr_library.h"
 #include "io/exr_reader.h"
 #include "io/file.h"
@@ -15,6 +16,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVecAttribute.h>
 #include <array>
 #include <exception>
@@ -154,7 +156,8 @@ void writeDeepExr(const std::string& path, const DeepPicture& head, const std::f
     std::exception_ptr fault; // of the source, past those who take all exceptions for OpenEXR's
     const auto writeAll = [&](AtomicStream& stream) {
         const Imf::Header header = makeHeader(head);
-        Imf::MultiPartOutputFile file(stream, &header, 1, false, 0);
+        Imf::setGlobalThreadCount(threadCount());
+        Imf::MultiPartOutputFile file(stream, &header, 1, false, threadCount());
         Imf::DeepScanLineOutputPart part(file, 0);
         try {
             write([&part](const DeepPicture& rows) { writeRows(part, rows); });
