@@ -28,6 +28,7 @@ void repair(std::string& bytes) {
 LayerPlan planOfLayers() {
     LayerPlan plan;
     plan.deep = 4;
+    plan.components = true;
     return plan;
 }
 
