@@ -1,9 +1,9 @@
 #include "checkpoints/checkpoint_file.h"
 
 #include "base/check.h"
+#include "base/packed_bytes.h"
 #include "base/parallel.h"
 #include "checkpoints/checkpoint_records.h"
-#include "checkpoints/packed_bytes.h"
 #include "io/file.h"
 
 #include <cstring>

@@ -1,8 +1,8 @@
 #include "checkpoints/checkpoint_reader.h"
 
 #include "base/memory_limit.h"
+#include "base/packed_bytes.h"
 #include "base/parallel.h"
-#include "checkpoints/packed_bytes.h"
 #include "io/file.h"
 
 #include <algorithm>

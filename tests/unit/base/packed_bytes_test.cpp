@@ -1,4 +1,4 @@
-#include "checkpoints/packed_bytes.h"
+#include "base/packed_bytes.h"
 
 #include <doctest/doctest.h>
 #include <random>
