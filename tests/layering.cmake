@@ -38,7 +38,12 @@ set(allowed_study ${allowed_scene} scene denoise)
 set(allowed_verify ${allowed_scene} scene)
 set(allowed_doctor ${allowed_scene} parser scene)
 set(allowed_packs base math spectrum schema io)
-set(allowed_app ${allowed_scene} parser scene packs)
+set(allowed_exchange/shared base math spectrum schema io)
+foreach(program mitsuba pbrt gltf)
+    set(allowed_exchange/${program} ${allowed_exchange/shared} exchange/shared)
+endforeach()
+set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf)
+set(allowed_app ${allowed_scene} parser scene packs ${exchange})
 set(allowed_pictures ${allowed_app} app)
 set(allowed_pages ${allowed_app} app)
 set(allowed_checkpoints ${allowed_app} app study)
@@ -49,13 +54,13 @@ set(allowed_farm ${allowed_app} app checkpoints study)
 set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
             modules transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
-            packs app pictures pages checkpoints reports command_line render_run farm commands)
+            packs ${exchange} app pictures pages checkpoints reports command_line render_run farm commands)
 
 # Libraries that only one folder may know, or two.
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs" "zip\\.h=packs")
+    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs" "zip\\.h=packs" "pugixml=exchange/mitsuba")
 
 set(faults 0)
 macro(fault text)

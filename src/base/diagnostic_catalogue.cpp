@@ -5,7 +5,7 @@ namespace abbe {
 namespace {
 
 // One entry per line. Ranges: E01 syntax, E02 names, E03 values and units, E04 files, E05 the `scene` line, E06 whole
-// scene, E07 materials and lights; W01 … W07 are the same as warnings.
+// scene, E07 materials and lights, E08 scenes of other programs; W01 … W08 are the same as warnings.
 // clang-format off
 constexpr CodeInfo kCodes[] = {
     // E01: syntax
@@ -292,6 +292,12 @@ constexpr CodeInfo kCodes[] = {
     {"W0735", "estimators too noisy to compare", "`abbe verify` did not reach the wanted resolution in the time it was given. Faults smaller than the difference that it reports as visible may exist."},
     {"W0740", "a dark light", "The light has an amount of 0, a black texture, or no area. The camera sees it as black, and next-event estimation leaves it out."},
     {"W0750", "a dark photometric file", "The photometric file says that the light shines in no direction. It is left out."},
+    // E08: scenes of other programs
+    {"E0801", "a scene of another program that cannot be read", "The text breaks the rules of its own format, so that nothing can be made of it from there on."},
+    {"E0802", "a scene of another program that makes no sense", "A reference to nothing, a value of the wrong type or a missing file: the program that the scene was written for would refuse it, too."},
+    {"W0801", "left out of an import", "The scene language has nothing that does what this construct does. The scene is complete without it, and a comment in it says where it was."},
+    {"W0802", "approximated in an import", "The scene language can do nearly, but not exactly, what this construct does; the message says how, and a comment in the scene as well."},
+    {"W0803", "a parameter that means nothing", "The format has no such parameter in this place, so that the program that the scene was written for would ignore it or complain."},
 };
 // clang-format on
 

@@ -1,0 +1,31 @@
+// What every importer gets and makes: a foreign scene becomes the nodes of a scene file, side files and diagnostics.
+#pragma once
+
+#include "base/diagnostic.h"
+#include "base/source.h"
+#include "exchange/shared/scene_node.h"
+#include "exchange/shared/side_files.h"
+
+#include <filesystem>
+#include <list>
+#include <string>
+#include <string_view>
+
+namespace abbe::exchange {
+
+// One import. Faults of the foreign text are located diagnostics in files of `sources`:
+//   E0801 its syntax is wrong          E0802 what it says makes no sense (no such reference, a missing value)
+//   W0801 it has no counterpart here and is left out     W0802 it is approximated, and how
+//   W0803 a parameter that this importer does not know and that nobody else can have meant
+// Nothing is dropped without one of them; W0801 and W0802 also stand as comments at the place in the scene.
+struct Import {
+    SourceMap& sources;
+    Diagnostics& diagnostics;
+    SideFiles& files;
+    std::list<SceneNode> nodes; // of the scene file, in order, without `scene 1`
+
+    void leftOut(SceneNode* at, Span span, std::string_view what, std::string_view why);
+    void approximated(SceneNode* at, Span span, std::string_view what, std::string_view how);
+};
+
+} // namespace abbe::exchange

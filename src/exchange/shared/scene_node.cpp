@@ -1,0 +1,256 @@
+#include "exchange/shared/scene_node.h"
+
+#include "base/check.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace abbe::exchange {
+
+namespace {
+
+constexpr std::size_t kLineLength = 120;
+constexpr int kIndent = 4;
+
+// Bytes from `at` on that form one character of UTF-8, or 0.
+std::size_t utf8Length(std::string_view text, std::size_t at) {
+    const auto lead = static_cast<unsigned char>(text[at]);
+    const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+    if (length == 0 || at + length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((static_cast<unsigned char>(text[at + i]) & 0xc0) != 0x80) return 0;
+    constexpr std::array<unsigned, 5> kFirst = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned point = length == 1 ? lead : lead & (0xffu >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i) point = point << 6 | (static_cast<unsigned char>(text[at + i]) & 0x3fu);
+    const bool surrogate = point >= 0xd800 && point < 0xe000;
+    return point < kFirst[length] || point > 0x10ffff || surrogate ? 0 : length;
+}
+
+// Marks that change the direction of writing and other characters that the language wants as escapes.
+bool mustBeEscaped(std::string_view character) {
+    if (character.size() == 1) {
+        const auto byte = static_cast<unsigned char>(character[0]);
+        return byte < 0x20 || byte == 0x7f;
+    }
+    if (character.size() == 2)
+        return static_cast<unsigned char>(character[0]) == 0xc2 && // U+0080 to U+009F
+               static_cast<unsigned char>(character[1]) < 0xa0;
+    const auto between = [&](std::string_view first, std::string_view last) {
+        return character.size() == first.size() && character >= first && character <= last;
+    };
+    return between("\u200e", "\u200f") || between("\u2028", "\u202e") || between("\u2066", "\u2069") ||
+           character == "\ufeff";
+}
+
+unsigned codePoint(std::string_view character) {
+    const auto lead = static_cast<unsigned char>(character[0]);
+    unsigned point = character.size() == 1 ? lead : lead & (0xffu >> (character.size() + 1));
+    for (std::size_t i = 1; i < character.size(); ++i)
+        point = point << 6 | (static_cast<unsigned char>(character[i]) & 0x3fu);
+    return point;
+}
+
+void appendEscaped(std::string& out, std::string_view character) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    if (character == "\n")
+        out += "\\n";
+    else if (character == "\t")
+        out += "\\t";
+    else if (character == "\r")
+        out += "\\r";
+    else {
+        const unsigned point = codePoint(character);
+        out += "\\u{";
+        for (int shift = 20; shift >= 0; shift -= 4)
+            if (point >> shift != 0 || shift == 0) out += kDigits[point >> shift & 15u];
+        out += '}';
+    }
+}
+
+std::string quotedText(std::string_view text) {
+    std::string out = "\"";
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = utf8Length(text, at);
+        if (length == 0) {
+            out += "\ufffd";
+            ++at;
+            continue;
+        }
+        const std::string_view character = text.substr(at, length);
+        if (character == "\"" || character == "\\") out += '\\';
+        if (mustBeEscaped(character))
+            appendEscaped(out, character);
+        else
+            out += character;
+        at += length;
+    }
+    return out + '"';
+}
+
+} // namespace
+
+bool isPlainWord(std::string_view text) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const auto inside = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == ':'; };
+    constexpr std::array<std::string_view, 6> kKeywords = {"true", "false", "null", "inf", "nan", "-inf"};
+    return !text.empty() && letter(text[0]) && std::ranges::all_of(text, inside) &&
+           std::ranges::find(kKeywords, text) == kKeywords.end();
+}
+
+std::string numberText(double value) {
+    ABBE_CHECK(std::isfinite(value));
+    std::array<char, 32> digits;
+    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value);
+    return {digits.data(), result.ptr};
+}
+
+SceneNode& SceneNode::word(std::string_view text) {
+    values_.emplace_back(text);
+    return *this;
+}
+
+SceneNode& SceneNode::name(std::string_view text) { return isPlainWord(text) ? word(text) : this->text(text); }
+
+SceneNode& SceneNode::number(double value) {
+    values_.push_back(numberText(value));
+    return *this;
+}
+
+SceneNode& SceneNode::numbers(std::span<const double> values) {
+    for (const double value : values) number(value);
+    return *this;
+}
+
+SceneNode& SceneNode::vector(Vec3d v) { return number(v.x).number(v.y).number(v.z); }
+
+SceneNode& SceneNode::text(std::string_view value) {
+    values_.push_back(quotedText(value));
+    return *this;
+}
+
+SceneNode& SceneNode::key(std::string_view name, std::string_view word) {
+    values_.push_back(std::string(name) + '=' + (isPlainWord(word) ? std::string(word) : quotedText(word)));
+    return *this;
+}
+
+SceneNode& SceneNode::key(std::string_view name, double value) {
+    values_.push_back(std::string(name) + '=' + numberText(value));
+    return *this;
+}
+
+SceneNode& SceneNode::child(std::string name) { return children_.emplace_back(std::move(name)); }
+
+SceneNode& SceneNode::adopt(SceneNode node) { return children_.emplace_back(std::move(node)); }
+
+SceneNode& SceneNode::remark(std::string_view text) {
+    std::string line;
+    const auto end = [&] {
+        if (!line.empty()) remarks_.push_back(std::exchange(line, {}));
+    };
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = std::max<std::size_t>(utf8Length(text, at), 1);
+        const std::string_view character = text.substr(at, length);
+        if (character == "\n")
+            end();
+        else if (utf8Length(text, at) != 0 && !mustBeEscaped(character))
+            line += character;
+        at += length;
+    }
+    end();
+    return *this;
+}
+
+// Writes nodes behind each other into one text.
+class ScenePrinter {
+  public:
+    void file(const SceneNode& node, const SceneNode* before) {
+        if (before && (before->name_ != node.name_ || !node.remarks_.empty() || isBlock(*before) || isBlock(node)))
+            out_ += '\n';
+        print(node, 0);
+    }
+    std::string take() { return std::move(out_); }
+
+  private:
+    static std::string head(const SceneNode& node) {
+        std::string text = node.name_;
+        for (const std::string& value : node.values_) text.append(1, ' ').append(value);
+        return text;
+    }
+
+    // The node on one line, or nothing where that would be too long or lose remarks.
+    static bool onOneLine(const SceneNode& node, std::size_t room, std::string& line) {
+        line += head(node);
+        if (line.size() > room) return false;
+        if (node.children_.empty()) return true;
+        line += " { ";
+        bool first = true;
+        for (const SceneNode& child : node.children_) {
+            if (!child.remarks_.empty()) return false;
+            if (!std::exchange(first, false)) line += "; ";
+            if (!onOneLine(child, room, line)) return false;
+        }
+        line += " }";
+        return line.size() <= room;
+    }
+
+    static bool isBlock(const SceneNode& node) {
+        std::string line;
+        return !onOneLine(node, kLineLength, line);
+    }
+
+    void print(const SceneNode& node, std::size_t indent) {
+        for (const std::string& remark : node.remarks_)
+            out_.append(indent, ' ').append("// ").append(remark).append(1, '\n');
+        std::string line;
+        out_.append(indent, ' ');
+        if (node.children_.empty()) {
+            out_.append(head(node)).append(1, '\n');
+        } else if (onOneLine(node, kLineLength - indent, line)) {
+            out_.append(line).append(1, '\n');
+        } else {
+            out_.append(head(node)).append(" {\n");
+            block(node, indent + kIndent);
+            out_.append(indent, ' ').append("}\n");
+        }
+    }
+
+    // Rows stand several to a line.
+    void block(const SceneNode& node, std::size_t indent) {
+        std::string rows;
+        const auto flush = [&] {
+            if (!rows.empty()) out_.append(indent, ' ').append(std::exchange(rows, {})).append(1, '\n');
+        };
+        for (const SceneNode& child : node.children_) {
+            if (child.name_ != "-" || !child.children_.empty() || !child.remarks_.empty()) {
+                flush();
+                print(child, indent);
+                continue;
+            }
+            const std::string row = head(child);
+            if (!rows.empty() && indent + rows.size() + row.size() + 2 > kLineLength) flush();
+            if (!rows.empty()) rows += "; ";
+            rows += row;
+        }
+        flush();
+    }
+
+    std::string out_;
+};
+
+std::string printScene(std::span<const SceneNode> nodes) {
+    ScenePrinter printer;
+    const SceneNode* before = nullptr;
+    for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
+    return printer.take();
+}
+
+std::string printScene(const std::list<SceneNode>& nodes) {
+    ScenePrinter printer;
+    const SceneNode* before = nullptr;
+    for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
+    return printer.take();
+}
+
+} // namespace abbe::exchange

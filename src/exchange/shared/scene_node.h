@@ -1,0 +1,65 @@
+// A scene file that a program makes: nodes that know the spelling of the language (docs/language/syntax.md), printed as
+// a person would write them.
+#pragma once
+
+#include "math/vec.h"
+
+#include <list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace abbe::exchange {
+
+// A node of the language, `name value… key=value { children }`. Functions that add return the node itself, so that
+// calls can be chained: `node.child("radius").number(0.5).word("m")`.
+class SceneNode {
+  public:
+    // `name` is a word of the language; rows are nodes called `-`.
+    explicit SceneNode(std::string name) : name_(std::move(name)) {}
+
+    // A word of the language: a type, a unit, `$parameter`. Not checked.
+    SceneNode& word(std::string_view);
+    // A name that somebody chose: as it is where it is a legal word, else quoted.
+    SceneNode& name(std::string_view);
+    // The shortest text that reads back as the same double. Requires a finite number.
+    SceneNode& number(double);
+    SceneNode& numbers(std::span<const double>);
+    SceneNode& vector(Vec3d);
+    // Quoted, with escapes: paths, titles. Bytes that are not UTF-8 become U+FFFD.
+    SceneNode& text(std::string_view);
+    SceneNode& key(std::string_view name, std::string_view word);
+    SceneNode& key(std::string_view name, double);
+
+    // The new child, for as long as this node lives.
+    SceneNode& child(std::string name);
+    SceneNode& adopt(SceneNode);
+    // A line of comment above the node. Line ends make several; what a comment may not hold is left out.
+    SceneNode& remark(std::string_view);
+
+    const std::string& kind() const { return name_; }
+    const std::vector<std::string>& values() const { return values_; }
+    const std::list<SceneNode>& children() const { return children_; }
+    bool empty() const { return values_.empty() && children_.empty(); }
+
+  private:
+    friend class ScenePrinter;
+    std::string name_;
+    std::vector<std::string> values_; // as they are printed; keys too
+    std::list<SceneNode> children_;   // a list: references to children stay valid
+    std::vector<std::string> remarks_;
+};
+
+// Whether a text may stand as a name without quotes.
+bool isPlainWord(std::string_view);
+// A finite number as it is printed.
+std::string numberText(double);
+
+// A whole file: `nodes` in order, a blank line between nodes of different kinds. A node whose children are short stands
+// on one line of at most 120 characters, rows of numbers several to a line; blocks are indented by four spaces.
+std::string printScene(std::span<const SceneNode> nodes);
+std::string printScene(const std::list<SceneNode>& nodes);
+
+} // namespace abbe::exchange

@@ -1,0 +1,63 @@
+#include "exchange/shared/side_files.h"
+
+#include "io/file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace abbe::exchange {
+
+namespace {
+
+constexpr std::size_t kLongestStem = 80;
+
+std::string safeStem(std::string_view text) {
+    const auto kept = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+    };
+    std::string stem;
+    for (const char c : text.substr(0, kLongestStem)) stem += kept(c) ? c : '-';
+    return stem.find_first_not_of('-') == std::string::npos ? "file" : stem;
+}
+
+} // namespace
+
+SideFiles::SideFiles(std::filesystem::path scene) : scene_(std::move(scene)) {
+    folder_ = scene_.stem().string() + "-files";
+}
+
+std::string SideFiles::write(std::string_view stem, std::string_view extension, std::span<const char> bytes) {
+    const std::string safe = safeStem(stem);
+    std::string name = fmt::format("{}.{}", safe, extension);
+    for (int number = 2; names_.contains(name); ++number) name = fmt::format("{}-{}.{}", safe, number, extension);
+    const auto folder = scene_.parent_path() / folder_;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw IoError(fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
+    writeAtomically((folder / name).string(), bytes);
+    names_.insert(name);
+    return (folder_ / name).generic_string();
+}
+
+std::string SideFiles::refer(const std::filesystem::path& file) const {
+    std::error_code error;
+    const auto target = std::filesystem::weakly_canonical(file, error);
+    const auto parent = scene_.has_parent_path() ? scene_.parent_path() : std::filesystem::path(".");
+    const auto home = std::filesystem::weakly_canonical(parent, error);
+    if (error) return std::filesystem::absolute(file, error).generic_string();
+    const auto relative = target.lexically_relative(home);
+    const auto steps = std::ranges::count(relative, std::filesystem::path(".."));
+    return relative.empty() || steps > 2 ? target.generic_string() : relative.generic_string();
+}
+
+std::string NameTable::take(std::string_view wish, std::string_view fallback) {
+    const std::string base(wish.empty() ? fallback : wish);
+    if (taken_.insert(base).second) return base;
+    int& number = next_.try_emplace(base, 2).first->second;
+    std::string name;
+    do name = fmt::format("{}-{}", base, number++);
+    while (!taken_.insert(name).second);
+    return name;
+}
+
+} // namespace abbe::exchange

@@ -1,0 +1,46 @@
+// What an imported scene reads: files that were there and are referred to, and files that the import writes beside it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace abbe::exchange {
+
+// The folder of a scene file that is being made. Files that the import writes stand in a folder of their own in it,
+// `<scene>-files`, under names made of what the foreign scene calls them.
+class SideFiles {
+  public:
+    // `scene`: the file that will be written, "out/room.scene". Nothing is made on disk before the first write().
+    explicit SideFiles(std::filesystem::path scene);
+
+    // Writes a file, atomically, and returns its path as the scene names it, "room-files/ball.ply". `stem` is any text:
+    // letters, digits, `-` and `_` of it are kept, and a number is added where the name is taken. Throws IoError.
+    std::string write(std::string_view stem, std::string_view extension, std::span<const char> bytes);
+    // A file that exists as the scene names it: relative to the scene's folder where it is in or beside that
+    // folder ("../textures/a.png" goes up at most two folders), else absolute.
+    std::string refer(const std::filesystem::path& file) const;
+
+    const std::filesystem::path& scene() const { return scene_; }
+    std::size_t written() const { return names_.size(); }
+
+  private:
+    std::filesystem::path scene_, folder_;
+    std::set<std::string, std::less<>> names_; // of files written by this import
+};
+
+// Unique names for what a scene defines: materials, shapes, lights and others have one table each.
+class NameTable {
+  public:
+    // The wish as it is if it is free and legal, else with a number behind it; `fallback` for an empty wish.
+    std::string take(std::string_view wish, std::string_view fallback);
+
+  private:
+    std::set<std::string, std::less<>> taken_;
+    std::map<std::string, int, std::less<>> next_; // number to try for a wish
+};
+
+} // namespace abbe::exchange
