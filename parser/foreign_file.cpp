@@ -27,8 +27,9 @@ constexpr auto kGltf = "meshes and cameras of it can be used: `shape mesh \"{0}\
 constexpr auto kExport = "export its meshes as PLY, OBJ or glTF and write a scene: `shape mesh \"model.ply\" "
                          "{{ material diffuse {{ }} }}`"sv;
 constexpr auto kRewrite =
-    "scenes of other renderers are not read: keep the meshes (PLY, OBJ, glTF) and pictures, and write "
+    "scenes of this program are not read: keep the meshes (PLY, OBJ, glTF) and pictures, and write "
     "lights, camera and materials anew; `abbe explain` lists the words"sv;
+constexpr auto kImport = "`abbe render {0}` renders it, `abbe import {0}` makes a scene file of it"sv;
 constexpr auto kOwnImage =
     "`abbe info {0}` says what is in it; a scene uses it as a picture: `texture picture image \"{0}\"`"sv;
 constexpr auto kCheckpoint = "`abbe merge` puts parts together; to go on with a render give its scene and `--resume`"sv;
@@ -182,7 +183,7 @@ std::optional<ForeignFile> jsonFile(std::string_view text) {
 std::optional<ForeignFile> xmlFile(std::string_view text) {
     const std::string_view start = text.substr(0, 4096);
     const auto holds = [&](std::string_view word) { return start.find(word) != std::string_view::npos; };
-    if (holds("<scene")) return ForeignFile{"a scene of Mitsuba (XML)", std::string(kRewrite)};
+    if (holds("<scene")) return ForeignFile{"a scene of Mitsuba (XML)", std::string(kImport)};
     if (holds("<COLLADA")) return ForeignFile{"a COLLADA file", std::string(kExport)};
     if (holds("<materialx")) return ForeignFile{"a MaterialX file", std::string(kRewrite)};
     if (holds("<html") || holds("<!DOCTYPE html")) return ForeignFile{"a web page", std::string(kNothing)};

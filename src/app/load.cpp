@@ -2,6 +2,7 @@
 
 #include "base/stopwatch.h"
 #include "base/work.h"
+#include "exchange/importer/importer.h"
 #include "parser/parse.h"
 #include "parser/presets.h"
 #include "scene/registry.h"
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <sstream>
 
 namespace abbe {
 
@@ -20,7 +22,7 @@ constexpr std::string_view kFrameParameter = "frame";
 } // namespace
 
 ExitCode LoadedScene::exitCode() const {
-    if (!readable) return ExitCode::system;
+    if (!readable && !import) return ExitCode::system;
     return diagnostics.hasErrors() ? ExitCode::faulty : ExitCode::done;
 }
 
@@ -46,9 +48,22 @@ std::optional<FileId> readPackedScene(LoadedScene& loaded, const std::string& pa
     return readSceneText(loaded.sources, path + "/" + loaded.pack->manifest().scene, text, loaded.diagnostics);
 }
 
+// Messages about the scene that was made call it `room.xml/room.scene`. A foreign scene with errors was readable, but
+// makes none.
+std::optional<FileId> readForeignScene(LoadedScene& loaded, const std::string& path,
+                                       const exchange::ImportFormat& format) {
+    loaded.import = std::make_unique<const ImportedScene>(format, path, loaded.sources, loaded.diagnostics);
+    loaded.readable = loaded.import->text().has_value();
+    if (!loaded.readable) return std::nullopt;
+    std::istringstream text(*loaded.import->text());
+    const std::string name = path + "/" + loaded.import->scenePath().filename().string();
+    return readSceneText(loaded.sources, name, text, loaded.diagnostics);
+}
+
 std::optional<FileId> readText(LoadedScene& loaded, const SceneInput& input) {
     if (input.fromStandardInput) return readSceneText(loaded.sources, input.path, std::cin, loaded.diagnostics);
     if (isPack(input.path)) return readPackedScene(loaded, input.path);
+    if (const auto* format = exchange::importFormat(input.path)) return readForeignScene(loaded, input.path, *format);
     return readSceneFile(loaded.sources, input.path, loaded.diagnostics);
 }
 
@@ -62,6 +77,7 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     const auto file = readText(*loaded, input);
     if (!file) return loaded;
     loaded->readable = true;
+    loaded->text = *file;
     ParseOptions options;
     for (const std::string& define : input.defines)
         if (auto override = readOverride(loaded->sources, define, loaded->diagnostics))
@@ -73,7 +89,9 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     addPresets(loaded->types, loaded->sources, loaded->diagnostics);
     loaded->parseSeconds = watch.lap();
     setWork(Work::checking);
-    const auto scenePath = loaded->pack ? loaded->pack->scenePath() : std::filesystem::path(input.path);
+    const auto scenePath = loaded->pack     ? loaded->pack->scenePath()
+                           : loaded->import ? loaded->import->scenePath()
+                                            : std::filesystem::path(input.path);
     loaded->tree = schema::resolve(document, loaded->types, scenePath.parent_path(), loaded->diagnostics);
     loaded->tree.frame = input.frame;
     loaded->resolveSeconds = watch.lap();

@@ -1,6 +1,7 @@
 // Parse and check: from the words of the command line to the meaning of a scene file.
 #pragma once
 
+#include "app/imported_scene.h"
 #include "app/program_end.h"
 #include "base/diagnostic.h"
 #include "base/source.h"
@@ -36,6 +37,8 @@ struct LoadedScene {
     schema::SceneTree tree;
     Diagnostics diagnostics;
     std::unique_ptr<const UnpackedPack> pack;    // that the scene is in, if it is in one
+    std::unique_ptr<const ImportedScene> import; // that the scene was made by, if it is another program's
+    FileId text = FileId::none;                  // the scene's own, of `sources`
     bool readable = false;                       // the file itself could be read
     double parseSeconds = 0, resolveSeconds = 0; // wall clock
 
@@ -45,7 +48,8 @@ struct LoadedScene {
     bool changesWithFrames() const;
 };
 
-// The path may be that of a pack (docs/packing.md), which is unpacked into the cache.
+// The path may be that of a pack (docs/packing.md), which is unpacked into the cache, or of a scene of another program
+// (docs/importing.md), which is imported there.
 // Never null and never throws on bad input; what is wrong is in `diagnostics`.
 std::unique_ptr<LoadedScene> loadScene(const SceneInput&);
 

@@ -2,6 +2,7 @@
 #include "base/diagnostic.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
+#include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "scene/build.h"
 
@@ -85,6 +86,13 @@ SceneInput checkedInput(const std::string& path, const CheckOptions& options) {
 }
 
 ExitCode checkOne(const SceneInput& input, const CheckOptions& options, const Console& console) {
+    if (options.fix && !input.fromStandardInput && exchange::importFormat(input.path)) {
+        console.error(
+            fmt::format("`{0}` is a scene of another program, which `--fix` does not change; `abbe import {0}` "
+                        "makes a scene file of it",
+                        input.path));
+        return ExitCode::usage;
+    }
     if (options.fix && !input.fromStandardInput && isPack(input.path)) {
         console.error(fmt::format("`{0}` is a pack, which `--fix` does not change; `abbe pack {0} -o FOLDER/` makes a "
                                   "folder of it",

@@ -43,6 +43,7 @@ const CommandTable& commandTable() {
         {"convert", kPictures, kConvertHelp, makeCommand<ConvertOptions>},
         {"denoise", kPictures, kDenoiseHelp, makeCommand<DenoiseOptions>},
         {"check", kScenes, kCheckHelp, makeCommand<CheckOptions>},
+        {"import", kScenes, kImportHelp, makeCommand<ImportOptions>},
         {"pack", kScenes, kPackHelp, makeCommand<PackOptions>},
         {"explain", kScenes, kExplainHelp, makeCommand<ExplainOptions>},
         {"info", kScenes, kInfoHelp, makeCommand<InfoOptions>},

@@ -81,6 +81,19 @@ extern const char* const kCheckHelp;
 void addArguments(Arguments&, CheckOptions&);
 ExitCode run(const CheckOptions&, const CommonOptions&);
 
+// `abbe import`: a scene file of a scene of another program.
+struct ImportOptions {
+    std::string path;
+    std::string output; // empty: named after the foreign file, in the current folder
+    bool force = false; // replaces a file that is there
+
+    static bool makesFiles() { return true; }
+};
+
+extern const char* const kImportHelp;
+void addArguments(Arguments&, ImportOptions&);
+ExitCode run(const ImportOptions&, const CommonOptions&);
+
 // `abbe pack`: a scene with all that it reads.
 struct PackOptions {
     std::string path;

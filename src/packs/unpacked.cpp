@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/memory_limit.h"
 #include "base/path_lock.h"
+#include "base/private_folder.h"
 #include "io/file.h"
 #include "packs/sha256.h"
 #include "packs/zip_file.h"
@@ -16,8 +17,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <map>
-#include <optional>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,68 +30,13 @@ namespace fs = std::filesystem;
 constexpr timespec kUnpacked{315532800, 0}; // 1 January 1980
 constexpr double kUnused = 24 * 3600;       // s after which a pack is removed
 constexpr double kLongestWait = 3600;       // s, for another process that unpacks
-constexpr const char* kLockEnding = ".lock";
 
 [[noreturn]] void failSystem(const fs::path& path, int error) {
     throw IoError(fmt::format("cannot unpack to `{}`: {}", path.string(), std::strerror(error)));
 }
 
-// Makes the folder if need be, and refuses one that others may read or change.
 void requirePrivateFolder(const fs::path& path) {
-    std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    if (::mkdir(path.c_str(), 0700) == 0) return;
-    if (errno != EEXIST) failSystem(path, errno);
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0) failSystem(path, errno);
-    if (!S_ISDIR(status.st_mode)) failSystem(path, ENOTDIR);
-    if (status.st_uid != ::geteuid() || (status.st_mode & 077) != 0) failSystem(path, EPERM);
-}
-
-// The lock of a folder is a file beside it, whose time says when the folder was used last. -1 where locks cannot be
-// had: then nothing is ever removed.
-int openLock(const fs::path& folder) {
-    const std::string path = folder.string() + kLockEnding;
-    for (;;) {
-        const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0600);
-        if (file < 0) return -1;
-        int failed = 0;
-        do failed = ::flock(file, LOCK_SH);
-        while (failed != 0 && errno == EINTR);
-        struct stat held {
-        }, named{};
-        if (failed == 0 && ::fstat(file, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
-            held.st_ino == named.st_ino) {
-            ::futimens(file, nullptr);
-            return file;
-        }
-        ::close(file);
-        if (failed != 0) return -1; // else it was removed while this one waited
-    }
-}
-
-double ageOf(const struct stat& status) {
-    timespec now{};
-    ::clock_gettime(CLOCK_REALTIME, &now);
-    return std::difftime(now.tv_sec, status.st_mtim.tv_sec);
-}
-
-// Removes folders that no process holds and that were not used for so long.
-void removeUnused(const fs::path& cache, double seconds) {
-    std::error_code error;
-    std::vector<fs::path> locks;
-    for (fs::directory_iterator it(cache, error), end; !error && it != end; it.increment(error))
-        if (it->path().extension() == kLockEnding) locks.push_back(it->path());
-    for (const fs::path& lock : locks) {
-        const int file = ::open(lock.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
-        struct stat status {};
-        if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0 && ::fstat(file, &status) == 0 &&
-            ageOf(status) >= seconds) {
-            fs::remove_all(fs::path(lock).replace_extension(), error);
-            fs::remove(lock, error);
-        }
-        if (file >= 0) ::close(file);
-    }
+    if (const int error = makePrivateFolder(path)) failSystem(path, error);
 }
 
 bool isUnpacked(const fs::path& path, const PackedFile& file) {
@@ -108,7 +52,7 @@ void requireRoom(const fs::path& cache, std::uint64_t bytes) {
         return error || bytes <= space.available;
     };
     if (hasRoom()) return;
-    removeUnused(cache, 0);
+    removeUnusedFolders(cache, 0);
     if (!hasRoom())
         throw IoError(fmt::format("cannot unpack to `{}`: the pack has {:.3g} GB, and there is less room",
                                   cache.string(), static_cast<double>(bytes) / 1e9));
@@ -222,18 +166,13 @@ UnpackedPack::UnpackedPack(const std::string& path, fs::path cache) {
     if (cache.empty()) cache = packCacheDirectory();
     requirePrivateFolder(cache);
     folder_ = cache / key;
-    lock_ = openLock(folder_);
-    try {
-        requirePrivateFolder(folder_);
-        if (!missing().empty()) {
-            // One process unpacks; others that begin meanwhile wait for it. Two would only do the same twice.
-            const PathLock lock(folder_.string(), kLongestWait);
-            removeUnused(cache, kUnused);
-            unpack(zip, path, cache);
-        }
-    } catch (...) {
-        if (lock_ >= 0) ::close(lock_);
-        throw;
+    use_ = std::make_unique<const FolderUse>(folder_);
+    requirePrivateFolder(folder_);
+    if (!missing().empty()) {
+        // One process unpacks; others that begin meanwhile wait for it. Two would only do the same twice.
+        const PathLock lock(folder_.string(), kLongestWait);
+        removeUnusedFolders(cache, kUnused);
+        unpack(zip, path, cache);
     }
     encloseFolder(folder_);
 }
@@ -255,8 +194,6 @@ void UnpackedPack::unpack(const ZipReader& zip, const std::string& pack, const f
     for (const PackedFile* file : files) unpacking.file(*file, *entries.at(file->name));
 }
 
-UnpackedPack::~UnpackedPack() {
-    if (lock_ >= 0) ::close(lock_);
-}
+UnpackedPack::~UnpackedPack() = default;
 
 } // namespace abbe

@@ -4,11 +4,13 @@
 #include "packs/manifest.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace abbe {
 
+class FolderUse;
 class ZipReader;
 
 // Whether a file is a pack: a regular file that begins as ZIP files do, which no scene does.
@@ -38,7 +40,7 @@ class UnpackedPack {
 
     PackManifest manifest_;
     std::filesystem::path folder_;
-    int lock_ = -1; // shared, against removal
+    std::unique_ptr<const FolderUse> use_;
 };
 
 // $XDG_CACHE_HOME/abbe/packs, else ~/.cache/abbe/packs; without either a folder of this user's in that of temporary

@@ -29,7 +29,7 @@ std::string effectNames(Effects effects) {
 
 std::string sceneHash(const LoadedScene& loaded, const SceneInput& input) {
     Hash128 hash;
-    if (loaded.sources.fileCount() > 0) hash.addField(loaded.sources.text(FileId{0}));
+    if (loaded.text != FileId::none) hash.addField(loaded.sources.text(loaded.text));
     std::vector<std::string> defines = input.defines;
     std::sort(defines.begin(), defines.end());
     for (const std::string& define : defines) hash.addField(define);

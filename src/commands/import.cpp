@@ -1,0 +1,94 @@
+#include "app/json.h"
+#include "app/load.h"
+#include "command_line/shared_arguments.h"
+#include "commands/command_table.h"
+#include "exchange/importer/importer.h"
+#include "io/file.h"
+#include "scene/build.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace abbe {
+
+const char* const kImportHelp = R"(Makes a scene file of a scene of another program.
+
+Examples:
+  abbe import room.xml                         room.scene, and what it needs in room-files/
+  abbe import room.xml -o new/room.scene
+  abbe render room.xml                         renders such a scene without keeping what it becomes)";
+
+void addArguments(Arguments& a, ImportOptions& o) {
+    a.argument("file", &o.path, "Scene of another program: Mitsuba (.xml)").require();
+    a.value("-o,--output", "FILE", &o.output, "Scene file to write (.scene); else named after the other");
+    a.flag("--force", &o.force, "Replace a scene file that is there");
+    addJson(a);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string importedName(const ImportOptions& options) {
+    if (!options.output.empty()) return options.output;
+    return fs::path(options.path).filename().replace_extension(".scene").string();
+}
+
+// What a file that no importer takes is; reading it as a scene says that, too.
+ExitCode explainRefusal(const std::string& path, const CommonOptions& common) {
+    const auto loaded = loadScene({path, {}});
+    if (loaded->readable) {
+        common.console.error(fmt::format("`{0}` is a scene already: `abbe render {0}`", path));
+        return ExitCode::usage;
+    }
+    common.console.report(loaded->diagnostics, loaded->sources);
+    return loaded->exitCode();
+}
+
+// Whether the scene that was written is one: else the import is at fault, and says so.
+ExitCode checkWritten(const std::string& path, const Console& console) {
+    const auto loaded = loadScene({path, {}});
+    BuildOptions build;
+    build.geometry = false;
+    if (loaded->readable) buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
+    console.report(loaded->diagnostics, loaded->sources);
+    return loaded->exitCode();
+}
+
+std::string importResultText(const std::string& scene, const exchange::ImportFormat& format, const Diagnostics& found,
+                             bool json) {
+    if (json)
+        return Json::object({{"scene", scene},
+                             {"format", std::string(format.name)},
+                             {"warnings", static_cast<std::uint64_t>(found.warningCount())}})
+                   .text(true) +
+               "\n";
+    const std::string lost = found.warningCount() == 0 ? std::string("everything has a counterpart")
+                                                       : fmt::format("{} remark{}", found.warningCount(),
+                                                                     found.warningCount() == 1 ? "" : "s");
+    return fmt::format("{0}: {1}; next: abbe render {0}\n", scene, lost);
+}
+
+} // namespace
+
+ExitCode run(const ImportOptions& options, const CommonOptions& common) {
+    const exchange::ImportFormat* const format = exchange::importFormat(options.path);
+    if (!format) return explainRefusal(options.path, common);
+    const std::string scene = importedName(options);
+    std::error_code error;
+    if (!options.force && fs::exists(scene, error)) {
+        common.console.error(fmt::format("`{}` is there already; `--force` replaces it, `-o` names another", scene));
+        return ExitCode::usage;
+    }
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const auto text = exchange::importScene(*format, options.path, scene, sources, diagnostics);
+    common.console.report(diagnostics, sources);
+    if (!text) return ExitCode::faulty;
+    writeAtomically(scene, *text);
+    if (const ExitCode end = checkWritten(scene, common.console); end != ExitCode::done) return end;
+    common.console.data(importResultText(scene, *format, diagnostics, common.json));
+    return ExitCode::done;
+}
+
+} // namespace abbe
