@@ -31,6 +31,7 @@ dep_import(OpenImageIO HEADER OpenImageIO/imageio.h LIBS OpenImageIO OpenImageIO
 dep_import(OpenSubdiv HEADER opensubdiv/version.h LIBS osdCPU)
 dep_import(TinyGltf HEADER tiny_gltf.h LIBS tinygltf LINK nlohmann_json::nlohmann_json)
 dep_import(LibZip HEADER zip.h LIBS zip) # whose own package asks for programs of another one
+dep_import(ZLib HEADER zlib.h LIBS z)
 dep_import(PugiXml HEADER pugixml.hpp LIBS pugixml)
 dep_import(NanoVDB HEADER nanovdb/NanoVDB.h LIBS "")
 dep_import(OpenVDB HEADER openvdb/openvdb.h LIBS openvdb LINK TBB::tbb Imath::Imath)

@@ -1,6 +1,57 @@
 #include "exchange/mitsuba/mitsuba_import.h"
 
+#include "exchange/mitsuba/emitters.h"
+#include "exchange/mitsuba/sensors.h"
+#include "exchange/mitsuba/shapes.h"
+
+#include <algorithm>
+#include <array>
+
 namespace abbe::exchange {
+
+namespace {
+
+// Settings first, then what is referred to, then what is seen.
+std::size_t rankOf(const SceneNode& node) {
+    constexpr std::array<std::string_view, 9> kOrder = {"film",    "camera",   "render", "light", "medium",
+                                                        "texture", "material", "object", "shape"};
+    return static_cast<std::size_t>(std::ranges::find(kOrder, node.kind()) - kOrder.begin());
+}
+
+// Names that hide types of their kind would confuse (W0202).
+void reserveTypeNames(MitsubaContext& ctx) {
+    for (const char* type :
+         {"diffuse", "conductor", "dielectric", "subsurface", "mix", "two-sided", "layered", "boundary", "sheen",
+          "thin-dielectric", "diffuse-transmission", "hair", "openpbr", "preset"})
+        ctx.materialNames.take(type, type);
+    for (const char* type : {"image", "noise", "checker", "ramp", "triplanar", "attribute", "product"})
+        ctx.textureNames.take(type, type);
+    for (const char* type : {"homogeneous", "noise", "preset"}) ctx.mediumNames.take(type, type);
+}
+
+void writeRender(MitsubaContext& ctx) {
+    if (ctx.samples == 0 && ctx.maxDepth == 0) return;
+    SceneNode& render = ctx.define("render");
+    if (ctx.samples > 0) render.child("samples").number(ctx.samples);
+    if (ctx.maxDepth > 0) render.child("max-depth").number(ctx.maxDepth);
+}
+
+// Cameras cannot be mirrored, but all that they see can.
+void mirrorScene(MitsubaContext& ctx) {
+    SceneNode group("group");
+    group.name("mirrored");
+    group.remark("The camera of the other scene is mirrored. Here it is not, but all that it sees is.");
+    writeTransform(group, *ctx.mirror);
+    for (auto node = ctx.import.nodes.begin(); node != ctx.import.nodes.end();) {
+        const bool seen = node->kind() == "shape" || node->kind() == "light" || node->kind() == "volume" ||
+                          node->kind() == "instance";
+        if (seen) group.adopt(std::move(*node));
+        node = seen ? ctx.import.nodes.erase(node) : std::next(node);
+    }
+    ctx.import.nodes.push_back(std::move(group));
+}
+
+} // namespace
 
 bool isMitsubaScene(const std::filesystem::path&, std::string_view head) {
     const std::size_t first = head.find_first_not_of(" \t\r\n\xef\xbb\xbf");
@@ -8,7 +59,24 @@ bool isMitsubaScene(const std::filesystem::path&, std::string_view head) {
 }
 
 void importMitsuba(const std::filesystem::path& path, Import& import) {
-    import.diagnostics.error("E0801", {import.sources.add(path.string(), {}), 0, 0}, "not yet");
-}
+    const XmlScene scene = readXmlScene(path, import);
+    if (!scene.root) return;
+    const XmlObject& root = *scene.root;
+    MitsubaContext ctx(import, scene);
+    reserveTypeNames(ctx);
+    for (const XmlObject* integrator : root.objects("integrator")) readIntegrator(*integrator, ctx);
+    convertSensors(root.objects("sensor"), ctx);
+    writeRender(ctx);
+    for (const XmlObject* emitter : root.objects("emitter")) convertEmitter(*emitter, ctx);
+    for (const XmlObject* shape : root.objects("shape")) convertShape(*shape, nullptr, ctx);
+    // Definitions that nothing refers to are read, so that what they hold is no fault, and then not needed.
+    for (const XmlParam& param : root.params)
+        if (param.object && param.tag != "scene") param.used = true;
+    mitsubaIgnore(root, {"id"});
+    warnOfUnused(root, import);
+    if (ctx.mirror) mirrorScene(ctx);
+    import.nodes.sort([](const SceneNode& a, const SceneNode& b) { return rankOf(a) < rankOf(b);
+});
+} // namespace abbe::exchange
 
 } // namespace abbe::exchange

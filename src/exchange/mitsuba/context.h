@@ -1,0 +1,60 @@
+// What the converters of one scene share, and how they ask objects for their parameters.
+#pragma once
+
+#include "exchange/mitsuba/xml_object.h"
+#include "exchange/mitsuba/xml_reader.h"
+#include "exchange/shared/import.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace abbe::exchange {
+
+// What a shape must know of its material.
+struct MaterialTraits {
+    bool textured = false;         // its texture coordinates count
+    std::optional<Transform> toUv; // of all its textures, if not the identity
+    bool framed = false;           // the direction of u counts: highlights are stretched along it
+    bool normalMap = false;        // directions are told along u and v
+    bool oneSided = false;         // black from behind, as most of Mitsuba's are
+    bool boundary = false;         // `null`: no surface at all
+    bool clear = false;            // light goes into the shape
+};
+
+struct MitsubaContext {
+    MitsubaContext(Import& to, const XmlScene& from) : import(to), scene(from) {}
+
+    Import& import;
+    const XmlScene& scene;
+    NameTable materialNames, textureNames, shapeNames, mediumNames, objectNames;
+    std::map<const XmlObject*, std::pair<std::string, MaterialTraits>> materials;
+    std::map<const XmlObject*, std::string> textures, media, groups;
+    std::map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
+    bool hideEmitters = false;
+    bool seesMedia = false;          // the integrator is one for media
+    std::optional<Transform> mirror; // of the whole scene, where its camera is a mirrored one
+    double maxDepth = 0;             // scattering events, 0: no limit
+    double samples = 0;              // of a pixel, 0: not stated
+    int depth = 0;                   // of converters inside of each other
+
+    SceneNode& define(std::string kind) { return import.nodes.emplace_back(std::move(kind)); }
+};
+
+// Values of parameters, or the default; marked as used. What has another type is E0802.
+double mitsubaNumber(const XmlObject&, std::string_view name, double otherwise, Import&);
+bool mitsubaFlag(const XmlObject&, std::string_view name, bool otherwise, Import&);
+std::string mitsubaText(const XmlObject&, std::string_view name, std::string_view otherwise = {});
+std::optional<Vec3d> mitsubaVector(const XmlObject&, std::string_view name, Import&);
+Transform mitsubaTransform(const XmlObject&, std::string_view name = "to_world");
+// Parameters that change nothing in the picture, or that only say what holds anyway.
+void mitsubaIgnore(const XmlObject&, std::initializer_list<std::string_view> names);
+// W0803 for every parameter that nobody asked for.
+void warnOfUnused(const XmlObject&, Import&);
+
+// `transform { … }` of the map; nothing for the identity.
+void writeTransform(SceneNode& parent, const Transform&);
+bool isIdentity(const Transform&);
+
+} // namespace abbe::exchange

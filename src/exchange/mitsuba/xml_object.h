@@ -1,0 +1,54 @@
+// What a scene of Mitsuba's is after its text was read: objects (plugins) with parameters, each with its place.
+#pragma once
+
+#include "base/source.h"
+#include "math/transform.h"
+
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe::exchange {
+
+struct XmlObject;
+
+// One parameter of an object. Only what its tag says is set.
+struct XmlParam {
+    std::string tag;  // "float", "rgb", "ref", "bsdf", …
+    std::string name; // in today's spelling; empty for most nested objects
+    std::string text; // the attribute `value`, or the file of a spectrum
+    Span span;
+    std::vector<double> numbers;       // of float, integer, point, vector, rgb, and spectra that are numbers alone
+    Transform transform;               // of `transform`
+    const XmlObject* object = nullptr; // a nested object, or the one that is referred to
+    std::filesystem::path folder;      // of the file that states it, for names of files
+    mutable bool used = false;         // some converter asked for it
+};
+
+// <TAG type="PLUGIN" id="ID"> … </TAG>
+struct XmlObject {
+    std::string tag, plugin, id;
+    Span span;
+    std::deque<XmlParam> params; // a deque: converters hold pointers
+    std::filesystem::path folder;
+
+    // The parameter of this name, marked as used, or null.
+    const XmlParam* find(std::string_view name) const;
+    bool has(std::string_view name) const;
+    // Nested objects and references of this tag, marked as used, in the order of the file.
+    std::vector<const XmlObject*> objects(std::string_view tag) const;
+    // The id, or nothing where the reader made one up.
+    const std::string& label() const { return id; }
+};
+
+// All of a file with its includes. Objects stay where they are.
+struct XmlScene {
+    std::deque<XmlObject> objects;
+    const XmlObject* root = nullptr;                // <scene>, or null after an error
+    std::vector<std::filesystem::path> searchPaths; // folders of files that are not beside the one that names them
+};
+
+} // namespace abbe::exchange

@@ -1,0 +1,374 @@
+#include "exchange/mitsuba/xml_reader.h"
+
+#include "base/file.h"
+#include "base/memory_limit.h"
+#include "exchange/mitsuba/xml_upgrade.h"
+#include "exchange/mitsuba/xml_values.h"
+#include "schema/scene_tree.h"
+#include "schema/suggest.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <limits>
+#include <pugixml.hpp>
+#include <set>
+
+namespace abbe::exchange {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostXmlDepth = 100; // elements inside elements, includes too
+constexpr std::size_t kMostXmlFiles = 1000;
+
+constexpr auto kXmlObjectTags =
+    std::to_array<std::string_view>({"scene", "bsdf", "shape", "emitter", "sensor", "integrator", "sampler", "film",
+                                     "rfilter", "medium", "phase", "texture", "volume", "spectrum", "subsurface"});
+constexpr auto kXmlNumberTags =
+    std::to_array<std::string_view>({"float", "integer", "point", "vector", "rgb", "color", "srgb"});
+
+bool isXmlTag(std::span<const std::string_view> tags, std::string_view tag) {
+    return std::ranges::find(tags, tag) != tags.end();
+}
+
+// Reads one file and those that it includes into the scene.
+class XmlReader {
+  public:
+    XmlReader(XmlScene& scene, Import& import) : scene_(scene), import_(import) {}
+
+    void file(const fs::path& path, Span from, XmlObject* into, int depth);
+    void resolve();
+
+  private:
+    struct Reference {
+        XmlParam* param;
+        std::string id;
+    };
+
+    Span spanOf(pugi::xml_node node) const;
+    Diagnostic& fault(const char* code, pugi::xml_node node, std::string text) {
+        return import_.diagnostics.error(code, spanOf(node), std::move(text));
+    }
+    std::string attribute(pugi::xml_node node, const char* name);
+    std::string replaced(pugi::xml_node node, std::string text);
+    XmlObject* object(pugi::xml_node node, int depth);
+    void child(pugi::xml_node node, XmlObject& into, int depth);
+    void special(pugi::xml_node node, XmlObject& into, int depth);
+    void nested(pugi::xml_node node, XmlObject& into, int depth);
+    void parameter(pugi::xml_node node, XmlParam& param);
+    void numbers(pugi::xml_node node, XmlParam& param);
+    void transform(pugi::xml_node node, XmlParam& param);
+    void includeFile(pugi::xml_node node, XmlObject& into, int depth);
+    void cutCycles();
+
+    XmlScene& scene_;
+    Import& import_;
+    std::map<std::string, std::string, std::less<>> defaults_;
+    std::map<std::string, const XmlObject*, std::less<>> ids_;
+    std::vector<std::pair<std::string, std::string>> aliases_; // of an id, and the other name
+    std::vector<Reference> references_;
+    std::vector<fs::path> open_; // files that are being read
+    std::size_t files_ = 0;
+    XmlVersion version_;
+    FileId file_ = FileId::none;
+    fs::path folder_;
+};
+
+Span XmlReader::spanOf(pugi::xml_node node) const {
+    const auto offset = node.offset_debug();
+    const std::string_view text = import_.sources.text(file_);
+    if (offset < 1 || static_cast<std::size_t>(offset) > text.size()) return {file_, 0, 0};
+    const auto begin = static_cast<std::size_t>(offset) - 1;
+    const std::size_t end = std::min(text.find('>', begin), text.size() - 1) + 1;
+    return {file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+}
+
+std::string XmlReader::replaced(pugi::xml_node node, std::string text) {
+    // The longest name wins, so that $width2 is not $width and a 2 [Mitsuba 3 documentation, "Default parameters"].
+    for (std::size_t at = text.find('$'); at != std::string::npos; at = text.find('$', at)) {
+        std::string_view best;
+        for (const auto& [name, value] : defaults_)
+            if (name.size() > best.size() && std::string_view(text).substr(at + 1).starts_with(name)) best = name;
+        if (best.empty()) {
+            fault("E0802", node, fmt::format("nothing says what `{}` is", text.substr(at, 40))).help =
+                "`<default name=\"…\" value=\"…\"/>` before it gives it a value";
+            return text;
+        }
+        const std::string& value = defaults_.find(best)->second;
+        text.replace(at, best.size() + 1, value);
+        at += value.size();
+    }
+    return text;
+}
+
+std::string XmlReader::attribute(pugi::xml_node node, const char* name) {
+    std::string text = node.attribute(name).value();
+    return text.find('$') == std::string::npos ? text : replaced(node, std::move(text));
+}
+
+void XmlReader::numbers(pugi::xml_node node, XmlParam& param) {
+    std::string text = attribute(node, "value");
+    if (text.empty() && (node.attribute("x") || node.attribute("y") || node.attribute("z")))
+        for (const char* axis : {"x", "y", "z"}) {
+            const std::string part = attribute(node, axis);
+            text += (part.empty() ? "0" : part) + " ";
+        }
+    if (const auto hex = xmlHexColor(text); hex && param.tag != "float") {
+        param.numbers = *hex;
+        return;
+    }
+    const bool one = param.tag == "float" || param.tag == "integer";
+    const auto found = xmlNumbers(text);
+    if (!found || found->empty() || (one && found->size() != 1) ||
+        (!one && found->size() != 3 && found->size() != 1 && found->size() != 2)) {
+        fault("E0802", node,
+              fmt::format("`{}` is no {}", text, one ? "finite number" : "list of three finite numbers"));
+        param.numbers = one ? std::vector<double>{0} : std::vector<double>{0, 0, 0};
+        return;
+    }
+    param.numbers = *found;
+    if (!one && param.numbers.size() == 1) param.numbers.assign(3, param.numbers[0]);
+    if (!one && param.numbers.size() == 2) param.numbers.push_back(0);
+}
+
+void XmlReader::transform(pugi::xml_node node, XmlParam& param) {
+    for (const pugi::xml_node step : node.children()) {
+        if (step.type() != pugi::node_element) continue;
+        const XmlStep done = xmlStep(step.name(), [&](const char* name) { return attribute(step, name); });
+        if (!done.fault.empty()) {
+            fault("E0802", step, fmt::format("this `{}` cannot be used: {}", step.name(), done.fault));
+            continue;
+        }
+        param.transform = param.transform.then(done.map);
+    }
+    if (!param.transform.isFinite()) {
+        fault("E0802", node, "the transform has numbers that are not finite");
+        param.transform = {};
+    }
+}
+
+void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
+    if (isXmlTag(kXmlNumberTags, param.tag)) return numbers(node, param);
+    if (param.tag == "transform") return transform(node, param);
+    param.text = attribute(node, "value");
+    if (param.tag == "spectrum") {
+        if (const std::string file = attribute(node, "filename"); !file.empty()) {
+            param.tag = "spectrum-file";
+            param.text = file;
+        } else if (const auto found = xmlNumbers(param.text); found && found->size() == 1)
+            param.numbers = *found;
+        return;
+    }
+    if (param.tag == "blackbody") { // of version 0.5
+        param.text = attribute(node, "temperature");
+        return;
+    }
+    if (param.tag == "ref") {
+        references_.push_back({&param, attribute(node, "id")});
+        return;
+    }
+    if (param.tag == "string" || param.tag == "boolean") return;
+    fault("E0802", node, fmt::format("`<{}>` is no tag of Mitsuba's", param.tag));
+}
+
+XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
+    XmlObject& made = scene_.objects.emplace_back();
+    made.tag = node.name();
+    made.plugin = attribute(node, "type");
+    made.id = attribute(node, "id");
+    made.span = spanOf(node);
+    made.folder = folder_;
+    if (made.plugin.empty() && made.tag != "scene")
+        fault("E0802", node, fmt::format("this `{}` has no `type`", made.tag));
+    if (!made.id.empty() && !ids_.emplace(made.id, &made).second)
+        fault("E0802", node, fmt::format("two objects have the id `{}`", made.id));
+    for (const pugi::xml_node inner : node.children())
+        if (inner.type() == pugi::node_element) child(inner, made, depth + 1);
+    upgradeXmlObject(made, version_);
+    return &made;
+}
+
+void XmlReader::special(pugi::xml_node node, XmlObject& into, int depth) {
+    const std::string_view tag = node.name();
+    if (tag == "include") return includeFile(node, into, depth);
+    if (tag == "default") {
+        defaults_.emplace(node.attribute("name").value(), attribute(node, "value"));
+        return;
+    }
+    if (tag == "alias") {
+        aliases_.emplace_back(attribute(node, "id"), attribute(node, "as"));
+        return;
+    }
+    const fs::path path = attribute(node, "value"); // <path value="…"/>
+    scene_.searchPaths.push_back(path.is_absolute() ? path : folder_ / path);
+}
+
+void XmlReader::nested(pugi::xml_node node, XmlObject& into, int depth) {
+    XmlParam& param = into.params.emplace_back();
+    param.tag = node.name();
+    param.name = attribute(node, "name");
+    param.span = spanOf(node);
+    param.folder = folder_;
+    // <spectrum value="…"/> is a value, <spectrum type="…"> an object.
+    const bool isObject = isXmlTag(kXmlObjectTags, param.tag) && (param.tag != "spectrum" || node.attribute("type"));
+    if (isObject)
+        param.object = object(node, depth);
+    else
+        parameter(node, param);
+}
+
+void XmlReader::child(pugi::xml_node node, XmlObject& into, int depth) {
+    const std::string_view tag = node.name();
+    if (depth > kMostXmlDepth) {
+        fault("E0801", node, fmt::format("more than {} elements inside of each other", kMostXmlDepth));
+        return;
+    }
+    if (tag == "include" || tag == "default" || tag == "alias" || tag == "path")
+        special(node, into, depth);
+    else
+        nested(node, into, depth);
+}
+
+void XmlReader::includeFile(pugi::xml_node node, XmlObject& into, int depth) {
+    XmlParam named;
+    named.text = attribute(node, "filename");
+    named.span = spanOf(node);
+    named.folder = folder_;
+    const auto path = findXmlFile(scene_, named, import_);
+    if (!path) return;
+    if (std::ranges::find(open_, *path) != open_.end()) {
+        fault("E0801", node, fmt::format("`{}` includes itself", named.text));
+        return;
+    }
+    if (++files_ > kMostXmlFiles) {
+        if (files_ == kMostXmlFiles + 1)
+            fault("E0801", node, fmt::format("more than {} included files", kMostXmlFiles));
+        return;
+    }
+    file(*path, named.span, &into, depth);
+}
+
+void XmlReader::file(const fs::path& path, Span from, XmlObject* into, int depth) {
+    RegularFile bytes(path.string());
+    if (!bytes.good() || bytes.size() >= std::numeric_limits<std::uint32_t>::max()) {
+        import_.diagnostics.error(
+            "E0402", from,
+            fmt::format("cannot read `{}`: {}", path.string(), bytes.good() ? "it is too large" : bytes.why()));
+        return;
+    }
+    requireMemory(3 * static_cast<double>(bytes.size()));
+    const FileId outerFile = file_;
+    const fs::path outerFolder = folder_;
+    const XmlVersion outerVersion = version_;
+    file_ = import_.sources.add(path.string(), bytes.readAll());
+    folder_ = path.parent_path();
+    open_.push_back(path);
+    pugi::xml_document document;
+    const std::string_view text = import_.sources.text(file_);
+    const auto parsed = document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+    if (!parsed) {
+        const auto at = static_cast<std::uint32_t>(
+            std::clamp<std::ptrdiff_t>(parsed.offset, 0, static_cast<std::ptrdiff_t>(text.size())));
+        import_.diagnostics.error("E0801", {file_, at, at}, fmt::format("this is no XML: {}", parsed.description()));
+    } else {
+        const pugi::xml_node root = document.document_element();
+        version_ = xmlVersion(root.attribute("version").value(), version_);
+        if (into)
+            // An included file is a <scene> whose contents count, or one object.
+            if (std::string_view(root.name()) == "scene")
+                for (const pugi::xml_node inner : root.children()) {
+                    if (inner.type() == pugi::node_element) child(inner, *into, depth + 1);
+                }
+            else
+                child(root, *into, depth + 1);
+        else if (std::string_view(root.name()) == "scene")
+            scene_.root = object(root, 0);
+        else
+            fault("E0801", root, fmt::format("a scene begins with `<scene>`, not with `<{}>`", root.name()));
+    }
+    open_.pop_back();
+    file_ = outerFile;
+    folder_ = outerFolder;
+    version_ = outerVersion;
+}
+
+void XmlReader::resolve() {
+    for (const auto& [id, other] : aliases_)
+        if (const auto found = ids_.find(id); found != ids_.end()) ids_.emplace(other, found->second);
+    std::vector<std::string_view> names;
+    for (const auto& [name, object] : ids_)
+        if (names.size() < 1000) names.push_back(name);
+    for (const auto& [param, id] : references_) {
+        if (const auto found = ids_.find(id); found != ids_.end()) {
+            param->object = found->second;
+            continue;
+        }
+        Diagnostic& d = import_.diagnostics.error("E0802", param->span, fmt::format("nothing has the id `{}`", id));
+        d.help = schema::didYouMean(schema::nearest(id, names));
+    }
+    cutCycles();
+}
+
+// References that lead back to where they are would never end: an iterative walk over what every object names.
+void XmlReader::cutCycles() {
+    std::set<const XmlObject*> done, path;
+    struct Visit {
+        const XmlObject* object;
+        std::size_t next;
+    };
+    for (XmlObject& start : scene_.objects) {
+        if (done.contains(&start)) continue;
+        std::vector<Visit> stack{{&start, 0}};
+        path.insert(&start);
+        while (!stack.empty()) {
+            auto& [object, next] = stack.back();
+            if (next == object->params.size()) {
+                path.erase(object);
+                done.insert(object);
+                stack.pop_back();
+                continue;
+            }
+            const XmlParam& param = object->params[next++];
+            if (!param.object || done.contains(param.object)) continue;
+            if (path.contains(param.object)) {
+                import_.diagnostics.error("E0802", param.span, fmt::format("`{}` contains itself", param.object->id));
+                const_cast<XmlParam&>(param).object = nullptr; // the scene is this reader's own
+                continue;
+            }
+            path.insert(param.object);
+            stack.push_back({param.object, 0});
+        }
+    }
+}
+
+} // namespace
+
+XmlScene readXmlScene(const fs::path& path, Import& import) {
+    XmlScene scene;
+    XmlReader reader(scene, import);
+    reader.file(path, {}, nullptr, 0);
+    reader.resolve();
+    return scene;
+}
+
+std::optional<fs::path> findXmlFile(const XmlScene& scene, const XmlParam& named, Import& import) {
+    std::error_code error;
+    const fs::path name(named.text);
+    const fs::path beside = name.is_absolute() ? name : named.folder / name;
+    if (fs::is_regular_file(beside, error)) return beside;
+    for (const fs::path& folder : scene.searchPaths)
+        if (fs::is_regular_file(folder / name, error)) return folder / name;
+    Diagnostic& d = import.diagnostics.error("E0401", named.span, fmt::format("file not found: `{}`", named.text));
+    std::vector<std::string> there;
+    for (fs::directory_iterator it(beside.parent_path(), error), end; !error && it != end && there.size() < 1000;
+         it.increment(error))
+        there.push_back(it->path().filename().string());
+    std::ranges::sort(there);
+    const std::vector<std::string_view> names(there.begin(), there.end());
+    d.help = schema::didYouMean(schema::nearest(beside.filename().string(), names));
+    return std::nullopt;
+}
+
+} // namespace abbe::exchange

@@ -1,0 +1,176 @@
+// Scenes of Mitsuba's as text in, scene text and diagnostics out.
+#include "exchange/importer/importer.h"
+#include "unit/io/temporary_folder.h"
+
+#include <doctest/doctest.h>
+#include <fstream>
+
+using namespace abbe;
+using namespace abbe::exchange;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Imported {
+    std::string text;  // empty after errors
+    std::string codes; // "W0801 W0803"
+    std::string messages;
+};
+
+bool holds(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+void writeText(const fs::path& path, std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
+
+Imported importText(const TemporaryFolder& folder, const std::string& text) {
+    const fs::path path = fs::path(folder / "") / "room.xml";
+    writeText(path, text);
+    const ImportFormat* const format = importFormat(path);
+    REQUIRE(format);
+    CHECK(format->name == "mitsuba");
+    SourceMap sources;
+    Diagnostics diagnostics;
+    Imported result;
+    result.text = importScene(*format, path, fs::path(folder / "") / "room.scene", sources, diagnostics).value_or("");
+    for (const Diagnostic& d : diagnostics.all()) {
+        result.codes += (result.codes.empty() ? "" : " ") + d.code;
+        result.messages += d.message + "\n" + d.help + "\n";
+        if (d.span.valid()) CHECK(d.span.end <= sources.text(d.span.file).size());
+    }
+    return result;
+}
+
+Imported importText(const std::string& text) {
+    const TemporaryFolder folder;
+    return importText(folder, text);
+}
+
+std::string scene(const std::string& body, const char* version = "3.0.0") {
+    return std::string("<scene version=\"") + version + "\">" + body + "</scene>";
+}
+
+std::string ball(const std::string& bsdf) { return scene("<shape type=\"sphere\">" + bsdf + "</shape>"); }
+
+} // namespace
+
+TEST_CASE("a scene of Mitsuba is known by its root") {
+    const TemporaryFolder folder;
+    const fs::path path = fs::path(folder / "") / "a.xml";
+    writeText(path, "<?xml version=\"1.0\"?>\n<!-- -->\n<scene version=\"3.0.0\"></scene>");
+    CHECK(importFormat(path));
+    writeText(path, "<html></html>");
+    CHECK_FALSE(importFormat(path));
+    CHECK_FALSE(importFormat(fs::path(folder / "") / "none.xml"));
+}
+
+TEST_CASE("a sphere with a material and a light become a shape") {
+    const Imported made =
+        importText(scene(R"(<bsdf type="diffuse" id="paint"><rgb name="reflectance" value="0.2, 0.4, 0.6"/></bsdf>
+<shape type="sphere" id="ball"><point name="center" x="1" y="2"/><float name="radius" value="0.5"/><ref id="paint"/>
+<emitter type="area"><rgb name="radiance" value="3"/></emitter></shape>)"));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "scene 1 length=m"));
+    CHECK(holds(made.text, "material paint diffuse { reflectance rgb 0.2 0.4 0.6 }"));
+    CHECK(holds(made.text, "shape ball sphere { center 1 2 0; radius 0.5; material paint; emission rgb 3 3 3 }"));
+}
+
+TEST_CASE("cameras look where Mitsuba's do") {
+    const Imported made =
+        importText(scene(R"(<sensor type="perspective"><float name="fov" value="90"/><string name="fov_axis" value="y"/>
+<transform name="to_world"><lookat origin="0, 0, 5" target="0, 0, 0" up="0, 1, 0"/></transform>
+<film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/></film></sensor>)"));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "from 0 0 5; look-at 0 0 4; up 0 1 0"));
+    CHECK(holds(made.text, "fov 126.8698976458"));
+    CHECK(holds(made.text, "size 200 100"));
+    CHECK(holds(made.text, "output room.exr space=rec709") != holds(made.text, "output \"room.exr\" space=rec709"));
+}
+
+TEST_CASE("defaults, includes and aliases") {
+    const TemporaryFolder folder;
+    writeText(fs::path(folder / "") / "part.xml", scene("<shape type=\"disk\" id=\"$name\"/>"));
+    const Imported made = importText(
+        folder, scene(R"(<default name="name" value="plate"/><default name="r" value="2"/><default name="rx" value="7"/>
+<include filename="part.xml"/><shape type="sphere" id="b"><float name="radius" value="$rx"/><ref id="other"/></shape>
+<bsdf type="diffuse" id="one"/><alias id="one" as="other"/>)"));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "shape plate disk"));
+    CHECK(holds(made.text, "radius 7"));
+    CHECK(holds(made.text, "material one"));
+}
+
+TEST_CASE("faults of the text have places") {
+    CHECK(importText("<scene version=\"3.0.0\"><shape").codes == "E0801");
+    CHECK(importText(scene("<include filename=\"room.xml\"/>")).codes == "E0801");
+    CHECK(importText(scene("<include filename=\"none.xml\"/>")).codes == "E0401");
+    CHECK(importText(scene("<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>")).codes ==
+          "E0802 E0802");
+    CHECK(importText(ball("<ref id=\"none\"/>")).codes == "E0802");
+    CHECK(importText(ball("<float name=\"radius\" value=\"1e999\"/>")).codes == "E0802");
+    CHECK(importText(ball("<float name=\"radius\" value=\"nan\"/>")).codes == "E0802");
+    CHECK(importText(ball("<float name=\"radius\" value=\"-1\"/>")).codes == "E0802");
+    CHECK(importText(ball("<wrong name=\"radius\"/>")).codes.starts_with("E0802"));
+    CHECK(importText(ball("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"watr\"/></bsdf>"))
+              .messages.find("water") != std::string::npos);
+    CHECK(
+        importText(
+            scene("<shape type=\"rectangle\"><transform name=\"to_world\"><matrix value=\"1 2\"/></transform></shape>"))
+            .codes == "E0802");
+}
+
+TEST_CASE("objects that contain themselves, and endless nesting, end in a diagnostic") {
+    CHECK(holds(
+        importText(
+            scene(R"(<bsdf type="twosided" id="a"><ref id="b"/></bsdf><bsdf type="twosided" id="b"><ref id="a"/></bsdf>
+<shape type="sphere"><ref id="a"/></shape>)"))
+            .codes,
+        "E0802"));
+    std::string deep;
+    for (int i = 0; i < 5000; ++i) deep += "<bsdf type=\"twosided\">";
+    CHECK(holds(importText(ball(deep)).codes, "E0801"));
+    for (int i = 0; i < 5000; ++i) deep += "</bsdf>";
+    CHECK(importText(ball(deep)).codes.starts_with("E0801"));
+    // A tree of references that doubles at every level is told level by level.
+    std::string doubled = "<bsdf type=\"diffuse\" id=\"m0\"/>";
+    for (int i = 1; i < 40; ++i)
+        doubled += "<bsdf type=\"blendbsdf\" id=\"m" + std::to_string(i) + "\"><ref id=\"m" + std::to_string(i - 1) +
+                   "\"/><ref id=\"m" + std::to_string(i - 1) + "\"/></bsdf>";
+    CHECK(importText(scene(doubled + "<shape type=\"sphere\"><ref id=\"m39\"/></shape>")).text.size() < 20000);
+}
+
+TEST_CASE("what has no counterpart is said, and stands in the scene") {
+    for (const char* shape : {"sdfgrid", "ellipsoids", "heightfield"}) {
+        const Imported made = importText(
+            scene(std::string("<shape type=\"") + shape + "\"><string name=\"filename\" value=\"a\"/></shape>"));
+        CHECK(made.codes == "W0801");
+        CHECK(holds(made.messages, shape));
+    }
+    CHECK(importText(ball("<bsdf type=\"measured\"><string name=\"filename\" value=\"a.bsdf\"/></bsdf>")).codes ==
+          "W0801");
+    CHECK(importText(scene("<emitter type=\"projector\"/>")).codes == "W0801");
+    const Imported rough = importText(ball("<bsdf type=\"roughconductor\"/>"));
+    CHECK(rough.codes == "W0802");
+    CHECK(holds(rough.text, "// Approximated: distribution `beckmann`"));
+    CHECK(importText(ball("<float name=\"raduis\" value=\"1\"/>")).codes == "W0803");
+}
+
+TEST_CASE("names of older versions are today's") {
+    const Imported made =
+        importText(scene(R"(<shape type="sphere"><transform name="toWorld"><translate x="1"/></transform>
+<bsdf type="dielectric"><float name="intIOR" value="1.33"/><float name="extIOR" value="1"/></bsdf></shape>)",
+                         "0.6.0"));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "ior 1.33"));
+    CHECK(holds(made.text, "translate 1 0 0"));
+}
+
+TEST_CASE("lights in the units of the language") {
+    const Imported made = importText(
+        scene(R"(<emitter type="point"><point name="position" value="1 2 3"/><rgb name="intensity" value="2"/></emitter>
+<emitter type="spot"><float name="cutoff_angle" value="30"/><float name="beam_width" value="30"/><spectrum name="intensity" value="1"/></emitter>
+<emitter type="directional"><vector name="direction" value="0 -1 0"/><rgb name="irradiance" value="1"/></emitter>)"));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "intensity 145966 cd; color rgb 2 2 2"));
+    CHECK(holds(made.text, "angle 60 deg; inner-angle 60 deg; intensity 72983 cd; color 1"));
+    CHECK(holds(made.text, "irradiance 72983 lx"));
+}
