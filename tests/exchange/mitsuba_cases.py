@@ -132,7 +132,10 @@ LOSS = "Mitsuba loses the light that is scattered more than once between facets"
 bsdf("roughconductor", f'<bsdf type="roughconductor">{ROUGH % 0.1}</bsdf>', tolerance=0.03, reason=LOSS)
 bsdf("roughconductor-wide", f'<bsdf type="roughconductor">{ROUGH % 0.3}</bsdf>', tolerance=0.17, reason=LOSS)
 bsdf("roughconductor-beckmann", '<bsdf type="roughconductor"><float name="alpha" value="0.2"/></bsdf>', tolerance=0.25, reason="another distribution")
-bsdf("roughconductor-stretched", '<bsdf type="roughconductor"><string name="distribution" value="ggx"/><float name="alpha_u" value="0.3"/><float name="alpha_v" value="0.1"/></bsdf>', tolerance=0.15, floor=0.05, reason=LOSS)
+STRETCHED = '<bsdf type="roughconductor"><string name="distribution" value="ggx"/><float name="alpha_u" value="%s"/><float name="alpha_v" value="%s"/></bsdf>'
+TUBE = '<shape type="cylinder"><point name="p0" value="-1, -0.4, 0"/><point name="p1" value="1, 0.4, 0.2"/><float name="radius" value="0.7"/>%s</shape>'
+case("roughconductor-stretched", SKY + LAMP + FLOOR + TUBE % (STRETCHED % (0.2, 0.05)), tolerance=0.08, reason=LOSS)
+case("roughconductor-stretched-rectangle", SKY + LAMP + '<shape type="rectangle"><transform name="to_world"><rotate z="1" angle="30"/><rotate x="1" angle="-50"/></transform>%s</shape>' % (STRETCHED % (0.2, 0.05)), tolerance=0.08, reason=LOSS)
 bsdf("conductor-gold", '<bsdf type="conductor"><string name="material" value="Au"/></bsdf>', variant="scalar_spectral", tolerance=0.06, floor=0.03, reason="another measurement of gold")
 bsdf("dielectric", '<bsdf type="dielectric"/>', depth=12)
 bsdf("dielectric-water", '<bsdf type="dielectric"><string name="int_ior" value="water"/><string name="ext_ior" value="air"/></bsdf>', depth=12)
@@ -209,7 +212,7 @@ case("medium-glass", SKY + LAMP + FLOOR + BALL % '<bsdf type="dielectric"/><medi
 case("medium-constvolume", SKY + LAMP + BALL % '<bsdf type="null"/><medium type="heterogeneous" name="interior"><volume type="constvolume" name="sigma_t"><float name="value" value="1"/><transform name="to_world"><scale value="2"/><translate x="-1" y="-1" z="-1"/></transform></volume><volume type="constvolume" name="albedo"><rgb name="value" value="0.8"/></volume></medium>', integrator="volpath", depth=40)
 
 GRID = '<medium type="heterogeneous" name="interior"><volume type="gridvolume" name="sigma_t"><string name="filename" value="puff.vol"/>%s</volume><rgb name="albedo" value="0.8"/><float name="scale" value="3"/></medium>'
-case("medium-grid", SKY + LAMP + FLOOR + '<shape type="cube"><bsdf type="null"/>%s</shape>' % (GRID % '<transform name="to_world"><scale value="2"/><translate x="-1" y="-1" z="-1"/></transform>'),
+case("medium-grid", SKY + LAMP + FLOOR + '<shape type="cube"><transform name="to_world"><scale value="0.9"/></transform><bsdf type="null"/>%s</shape>' % (GRID % '<transform name="to_world"><scale value="1.8"/><translate x="-0.9" y="-0.9" z="-0.9"/></transform>'),
      integrator="volpath", depth=40, spp=8, tolerance=0.01, reason="voxels end half a voxel later")
 
 # ---- spectra

@@ -126,9 +126,18 @@ void writePlastic(SceneNode& at, const XmlObject& bsdf, bool rough, MaterialTrai
     noteDistribution(bsdf, at, ctx);
 }
 
+// The nested BSDF by a name.
+void writeNamed(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx);
+
 // The nested BSDF, by the name of its own or in place.
 void writeNested(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
-    if (bsdf.id.empty()) return writeMaterial(at, bsdf, traits, ctx);
+    if (bsdf.id.empty())
+        writeMaterial(at, bsdf, traits, ctx);
+    else
+        writeNamed(at, bsdf, traits, ctx);
+}
+
+void writeNamed(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
     const auto& [name, inner] = materialOf(bsdf, ctx);
     at.name(name);
     traits.oneSided = traits.oneSided || inner.oneSided;
@@ -164,8 +173,14 @@ void writeTwoSided(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits,
         writeMaterial(at, *front, traits, ctx);
     else {
         at.word("two-sided");
-        writeNested(at.child("front"), *front, traits, ctx);
-        writeNested(at.child("back"), *(list.size() > 1 ? list[1] : front), traits, ctx);
+        if (list.size() > 1)
+            writeNested(at.child("front"), *front, traits, ctx);
+        else // once and by name: nested ones would double at every level
+            writeNamed(at.child("front"), *front, traits, ctx);
+        if (list.size() > 1)
+            writeNested(at.child("back"), *list[1], traits, ctx);
+        else
+            writeNamed(at.child("back"), *front, traits, ctx);
     }
     traits.oneSided = false;
 }
@@ -290,6 +305,12 @@ void writeMaterial(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits,
 
 const std::pair<std::string, MaterialTraits>& materialOf(const XmlObject& bsdf, MitsubaContext& ctx) {
     if (const auto found = ctx.materials.find(&bsdf); found != ctx.materials.end()) return found->second;
+    if (bsdf.plugin == "null") { // needs no definition
+        MaterialTraits none;
+        none.boundary = true;
+        warnOfUnused(bsdf, ctx.import);
+        return ctx.materials[&bsdf] = {"boundary", none};
+    }
     const std::string name = ctx.materialNames.take(bsdf.id, bsdf.plugin + "-material");
     SceneNode made("material");
     made.name(name);

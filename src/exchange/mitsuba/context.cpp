@@ -8,6 +8,7 @@ namespace abbe::exchange {
 namespace {
 
 void wrongType(const XmlParam& param, std::string_view wanted, Import& import) {
+    if (param.tag == kBrokenTag) return;
     import.diagnostics.error("E0802", param.span,
                              fmt::format("`{}` is {} here, not `<{}>`", param.name, wanted, param.tag));
 }

@@ -122,8 +122,8 @@ const SceneNode* gridVolumeOf(const XmlObject& shape, MitsubaContext& ctx) {
             writePhase(node.child("phase"), *phases[0], 0, ctx);
         writeTransform(node, gridPlace(volume, *grid, ctx));
         ctx.import.approximated(
-            &node, medium.span, "the bounds of voxels",
-            "they fill their grid, and not the shape around it, and fade over half a voxel beyond its ends");
+            &node, medium.span, "the outline of a grid",
+            "voxels fill their grid, and not the shape around it, and fade over half a voxel beyond its ends");
         mitsubaIgnore(volume, {"filter_type", "wrap_mode", "raw", "accel", "max_value"});
         mitsubaIgnore(medium, {"sample_emitters", "has_spectral_extinction", "majorant_resolution_factor", "id"});
         if (medium.find("emission")) ctx.import.leftOut(&node, medium.span, "`emission` of voxels", "it is not read");

@@ -184,7 +184,7 @@ bool isTexture(const XmlParam& param) {
 }
 
 std::optional<MitsubaSpectrum> readSpectrum(const XmlParam& param, SpectrumUse use, MitsubaContext& ctx) {
-    if (isTexture(param)) return std::nullopt;
+    if (isTexture(param) || param.tag == kBrokenTag) return std::nullopt;
     if (param.object) {
         auto found = spectrumPlugin(*param.object, use, ctx);
         warnOfUnused(*param.object, ctx.import);

@@ -119,7 +119,7 @@ void writeNumber(SceneNode& parent, std::string property, const XmlObject& objec
         std::optional<double> value = otherwise;
         if (param && param->object) {
             if (const auto s = readSpectrum(*param, SpectrumUse::positive, ctx)) value = luminanceOf(*s);
-        } else if (param)
+        } else if (param && param->tag != kBrokenTag)
             value = param->numbers.size() == 3 ? param->numbers[1]
                                                : mitsubaNumber(object, name, otherwise.value_or(0), ctx.import);
         if (value) parent.child(std::move(property)).number(map ? map(*value) : *value);

@@ -15,6 +15,9 @@ namespace abbe::exchange {
 
 struct XmlObject;
 
+// The tag of a parameter whose value made no sense, which was said: it is as if it were not there.
+inline constexpr const char* kBrokenTag = "broken";
+
 // One parameter of an object. Only what its tag says is set.
 struct XmlParam {
     std::string tag;  // "float", "rgb", "ref", "bsdf", …

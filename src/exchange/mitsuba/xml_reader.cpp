@@ -125,7 +125,8 @@ void XmlReader::numbers(pugi::xml_node node, XmlParam& param) {
         (!one && found->size() != 3 && found->size() != 1 && found->size() != 2)) {
         fault("E0802", node,
               fmt::format("`{}` is no {}", text, one ? "finite number" : "list of three finite numbers"));
-        param.numbers = one ? std::vector<double>{0} : std::vector<double>{0, 0, 0};
+        param.tag = kBrokenTag; // said once
+        param.numbers.clear();
         return;
     }
     param.numbers = *found;
@@ -307,6 +308,7 @@ void XmlReader::resolve() {
         }
         Diagnostic& d = import_.diagnostics.error("E0802", param->span, fmt::format("nothing has the id `{}`", id));
         d.help = schema::didYouMean(schema::nearest(id, names));
+        param->used = true;
     }
     cutCycles();
 }

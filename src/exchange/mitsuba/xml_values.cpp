@@ -78,7 +78,11 @@ XmlStep xmlLookAt(const XmlAttribute& attribute) {
 
 // Rodrigues' formula with the axis as it is written, as Mitsuba has it: one that is no unit vector also stretches.
 Transform xmlRotation(Vec3d axis, double radians) {
-    const double s = std::sin(radians), c = std::cos(radians);
+    // Right angles are what they are.
+    const auto exact = [](double v) {
+        return std::abs(v) < 1e-15 ? 0 : std::abs(v) > 1 - 1e-15 ? std::copysign(1.0, v) : v;
+    };
+    const double s = exact(std::sin(radians)), c = exact(std::cos(radians));
     const double cross[3][3] = {{0, -axis.z, axis.y}, {axis.z, 0, -axis.x}, {-axis.y, axis.x, 0}};
     Transform map;
     for (int i = 0; i < 3; ++i)

@@ -174,3 +174,30 @@ TEST_CASE("lights in the units of the language") {
     CHECK(holds(made.text, "angle 60 deg; inner-angle 60 deg; intensity 72983 cd; color 1"));
     CHECK(holds(made.text, "irradiance 72983 lx"));
 }
+
+TEST_CASE("one-sided materials of open shapes are black from behind") {
+    CHECK(holds(importText(scene("<shape type=\"rectangle\"/>")).text, "two-sided"));
+    CHECK_FALSE(holds(importText(scene("<shape type=\"cube\"/>")).text, "two-sided"));
+    const Imported both =
+        importText(scene("<shape type=\"rectangle\"><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></shape>"));
+    CHECK_FALSE(holds(both.text, "two-sided"));
+}
+
+TEST_CASE("media are seen by integrators for media alone") {
+    const std::string ball = R"(<shape type="sphere"><bsdf type="null"/><medium type="homogeneous" name="interior">
+<float name="sigma_t" value="2"/><float name="scale" value="3"/><rgb name="albedo" value="0.5"/></medium></shape>)";
+    const Imported seen = importText(scene("<integrator type=\"volpath\"/>" + ball));
+    CHECK(seen.codes == "");
+    CHECK(holds(seen.text, "medium medium homogeneous { extinction 6; albedo 0.5 }"));
+    CHECK(holds(seen.text, "material boundary; interior medium"));
+    CHECK(importText(scene("<integrator type=\"path\"/>" + ball)).codes == "W0801");
+}
+
+TEST_CASE("depth counts what scatters between the segments of a path") {
+    CHECK(holds(
+        importText(scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"5\"/></integrator>")).text,
+        "max-depth 4"));
+    CHECK(importText(scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"1\"/></integrator>")).codes ==
+          "W0802");
+    CHECK_FALSE(holds(importText(scene("<integrator type=\"path\"/>")).text, "max-depth"));
+}
