@@ -199,27 +199,24 @@ void writeBlend(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, Mi
 
 // mask, bumpmap, normalmap: a property of the BSDF inside.
 void writeWrapper(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
-    const std::size_t named = at.values().size(); // what stands before the type: a name
+    SceneNode inside("front");
     if (const XmlObject* const inner = nestedBsdf(bsdf, 0, ctx))
-        writeMaterial(at, *inner, traits, ctx);
+        writeMaterial(inside, *inner, traits, ctx);
     else
-        at.word("diffuse");
+        inside.word("diffuse");
+    if (bsdf.plugin == "mask" && traits.oneSided) { // what is open is open from behind, too
+        at.word("two-sided").adopt(std::move(inside));
+        at.child("back").word("diffuse").child("reflectance").number(0);
+        traits.oneSided = false;
+    } else {
+        at.absorb(std::move(inside));
+    }
     const auto taken = [&](std::string_view property) {
         const bool found = std::ranges::any_of(at.children(), [&](const SceneNode& n) { return n.kind() == property; });
         if (found) ctx.import.leftOut(&at, bsdf.span, fmt::format("a second `{}`", bsdf.plugin), "a material has one");
         return found;
     };
     if (bsdf.plugin == "mask") {
-        if (traits.oneSided) { // what is open is open from behind, too
-            SceneNode sheet(at.kind());
-            for (std::size_t i = 0; i < named; ++i) sheet.word(at.values()[i]);
-            SceneNode& front = sheet.word("two-sided").child("front");
-            for (std::size_t i = named; i < at.values().size(); ++i) front.word(at.values()[i]);
-            for (const SceneNode& child : at.children()) front.adopt(child);
-            sheet.child("back").word("diffuse").child("reflectance").number(0);
-            at = std::move(sheet);
-            traits.oneSided = false;
-        }
         if (!taken("opacity")) writeNumber(at, "opacity", bsdf, "opacity", 0.5, nullptr, traits, ctx);
         return;
     }

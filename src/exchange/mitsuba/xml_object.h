@@ -27,7 +27,6 @@ struct XmlParam {
     std::vector<double> numbers;       // of float, integer, point, vector, rgb, and spectra that are numbers alone
     Transform transform;               // of `transform`
     const XmlObject* object = nullptr; // a nested object, or the one that is referred to
-    std::filesystem::path folder;      // of the file that states it, for names of files
     mutable bool used = false;         // some converter asked for it
 };
 
@@ -36,7 +35,6 @@ struct XmlObject {
     std::string tag, plugin, id;
     Span span;
     std::deque<XmlParam> params; // a deque: converters hold pointers
-    std::filesystem::path folder;
 
     // The parameter of this name, marked as used, or null.
     const XmlParam* find(std::string_view name) const;

@@ -180,7 +180,6 @@ XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
     made.plugin = attribute(node, "type");
     made.id = attribute(node, "id");
     made.span = spanOf(node);
-    made.folder = folder_;
     if (made.plugin.empty() && made.tag != "scene")
         fault("E0802", node, fmt::format("this `{}` has no `type`", made.tag));
     if (!made.id.empty() && !ids_.emplace(made.id, &made).second)
@@ -211,7 +210,6 @@ void XmlReader::nested(pugi::xml_node node, XmlObject& into, int depth) {
     param.tag = node.name();
     param.name = attribute(node, "name");
     param.span = spanOf(node);
-    param.folder = folder_;
     // <spectrum value="…"/> is a value, <spectrum type="…"> an object.
     const bool isObject = isXmlTag(kXmlObjectTags, param.tag) && (param.tag != "spectrum" || node.attribute("type"));
     if (isObject)
@@ -236,7 +234,6 @@ void XmlReader::includeFile(pugi::xml_node node, XmlObject& into, int depth) {
     XmlParam named;
     named.text = attribute(node, "filename");
     named.span = spanOf(node);
-    named.folder = folder_;
     const auto path = findXmlFile(scene_, named, import_);
     if (!path) return;
     if (std::ranges::find(open_, *path) != open_.end()) {
@@ -358,10 +355,11 @@ XmlScene readXmlScene(const fs::path& path, Import& import) {
 std::optional<fs::path> findXmlFile(const XmlScene& scene, const XmlParam& named, Import& import) {
     std::error_code error;
     const fs::path name(named.text);
-    const fs::path beside = name.is_absolute() ? name : named.folder / name;
+    const fs::path folder = fs::path(import.sources.path(named.span.file)).parent_path();
+    const fs::path beside = name.is_absolute() ? name : folder / name;
     if (fs::is_regular_file(beside, error)) return beside;
-    for (const fs::path& folder : scene.searchPaths)
-        if (fs::is_regular_file(folder / name, error)) return folder / name;
+    for (const fs::path& other : scene.searchPaths)
+        if (fs::is_regular_file(other / name, error)) return other / name;
     Diagnostic& d = import.diagnostics.error("E0401", named.span, fmt::format("file not found: `{}`", named.text));
     std::vector<std::string> there;
     for (fs::directory_iterator it(beside.parent_path(), error), end; !error && it != end && there.size() < 1000;

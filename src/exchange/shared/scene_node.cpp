@@ -144,6 +144,13 @@ SceneNode& SceneNode::child(std::string name) { return children_.emplace_back(st
 
 SceneNode& SceneNode::adopt(SceneNode node) { return children_.emplace_back(std::move(node)); }
 
+SceneNode& SceneNode::absorb(SceneNode other) {
+    values_.insert(values_.end(), other.values_.begin(), other.values_.end());
+    children_.splice(children_.end(), other.children_);
+    remarks_.insert(remarks_.end(), other.remarks_.begin(), other.remarks_.end());
+    return *this;
+}
+
 SceneNode& SceneNode::remark(std::string_view text) {
     std::string line;
     const auto end = [&] {

@@ -36,6 +36,8 @@ class SceneNode {
     // The new child, for as long as this node lives.
     SceneNode& child(std::string name);
     SceneNode& adopt(SceneNode);
+    // Values, children and remarks of another node behind its own.
+    SceneNode& absorb(SceneNode);
     // A line of comment above the node. Line ends make several; what a comment may not hold is left out.
     SceneNode& remark(std::string_view);
 
