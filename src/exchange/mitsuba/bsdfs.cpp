@@ -30,6 +30,18 @@ void noteDistribution(const XmlObject& bsdf, SceneNode& at, MitsubaContext& ctx)
                                 "by GGX of the same alpha, whose highlights have longer tails");
 }
 
+// Light that is scattered more than once between facets is lost there. At alpha 0.15 that is two percent.
+void noteLoss(const XmlObject& bsdf, SceneNode& at, MitsubaContext& ctx) {
+    constexpr double kMuch = 0.15;
+    const auto isRough = [&](std::string_view name) {
+        const auto param = std::ranges::find(bsdf.params, name, &XmlParam::name);
+        return param != bsdf.params.end() && (param->numbers.empty() || param->numbers[0] > kMuch);
+    };
+    if (isRough("alpha") || isRough("alpha_u") || isRough("alpha_v"))
+        ctx.import.approximated(&at, bsdf.span, fmt::format("`{}`", bsdf.plugin),
+                                "this rough it loses light between its facets in Mitsuba, and none here");
+}
+
 void writeDiffuse(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
     at.word("diffuse");
     writeColor(at, "reflectance", bsdf, "reflectance", SpectrumUse::reflectance, 0.5, traits, ctx);
@@ -47,6 +59,7 @@ void writeConductor(SceneNode& at, const XmlObject& bsdf, bool rough, MaterialTr
         ctx.import.approximated(&at, bsdf.span, "`alpha_v` above `alpha_u`",
                                 "the highlight is stretched along u, not along v");
     noteDistribution(bsdf, at, ctx);
+    noteLoss(bsdf, at, ctx);
 }
 
 void writeDielectric(SceneNode& at, const XmlObject& bsdf, bool rough, MaterialTraits& traits, MitsubaContext& ctx) {
@@ -59,6 +72,7 @@ void writeDielectric(SceneNode& at, const XmlObject& bsdf, bool rough, MaterialT
     if (writeRoughness(at, bsdf, "", traits, ctx))
         ctx.import.approximated(&at, bsdf.span, "`alpha_u` and `alpha_v`", "glass is as rough along u as along v here");
     noteDistribution(bsdf, at, ctx);
+    noteLoss(bsdf, at, ctx);
 }
 
 void writeThinDielectric(SceneNode& at, const XmlObject& bsdf, MitsubaContext& ctx) {

@@ -25,7 +25,7 @@ void noteMap(const XmlObject& texture, MaterialTraits& traits, MitsubaContext& c
                                 "the textures of a material share one; that of the first is used");
 }
 
-void writeBitmap(SceneNode& at, const XmlObject& texture, bool data, MitsubaContext& ctx) {
+void writeBitmap(SceneNode& at, const XmlObject& texture, MitsubaContext& ctx) {
     const XmlParam* const file = texture.find("filename");
     if (!file) {
         ctx.import.diagnostics.error("E0802", texture.span, "a bitmap needs a `filename`");
@@ -34,7 +34,7 @@ void writeBitmap(SceneNode& at, const XmlObject& texture, bool data, MitsubaCont
     }
     const auto path = findXmlFile(ctx.scene, *file, ctx.import);
     at.word("image").text(path ? ctx.import.files.refer(*path) : file->text);
-    if (mitsubaFlag(texture, "raw", data, ctx.import)) at.key("space", "data");
+    if (mitsubaFlag(texture, "raw", false, ctx.import)) at.key("space", "data");
     const std::string wrap = mitsubaText(texture, "wrap_mode", "repeat");
     if (wrap == "mirror" || wrap == "clamp") at.child("wrap").word(wrap);
     if (mitsubaText(texture, "filter_type", "bilinear") == "nearest")
@@ -67,7 +67,7 @@ void writeAttribute(SceneNode& at, const XmlObject& texture, MitsubaContext& ctx
 void writeTextureType(SceneNode& at, const XmlObject& texture, bool data, MaterialTraits& traits, MitsubaContext& ctx) {
     noteMap(texture, traits, ctx);
     if (texture.plugin == "bitmap")
-        writeBitmap(at, texture, data, ctx);
+        writeBitmap(at, texture, ctx);
     else if (texture.plugin == "checkerboard")
         writeChecker(at, texture, data, traits, ctx);
     else if (texture.plugin == "mesh_attribute")

@@ -21,7 +21,7 @@ using NumberMap = std::function<double(double)>;
 void writeNumber(SceneNode& parent, std::string property, const XmlObject&, std::string_view param,
                  std::optional<double> otherwise, const NumberMap& map, MaterialTraits&, MitsubaContext&);
 
-// Appends a texture, by its name or in place. `data`: its values are numbers, not colours.
+// Appends a texture, by its name or in place. `data`: it stands for numbers, not for colours.
 void writeTexture(SceneNode& at, const XmlObject&, bool data, MaterialTraits&, MitsubaContext&);
 
 } // namespace abbe::exchange
