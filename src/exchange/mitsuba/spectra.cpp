@@ -1,5 +1,6 @@
 #include "exchange/mitsuba/spectra.h"
 
+#include "exchange/mitsuba/xml_values.h"
 #include "io/file.h"
 #include "spectrum/curve.h"
 #include "spectrum/sensor.h"
