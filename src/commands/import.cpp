@@ -85,6 +85,7 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
     const auto text = exchange::importScene(*format, options.path, scene, sources, diagnostics);
     common.console.report(diagnostics, sources);
     if (!text) return ExitCode::faulty;
+    fs::create_directories(fs::path(scene).parent_path(), error);
     writeAtomically(scene, *text);
     if (const ExitCode end = checkWritten(scene, common.console); end != ExitCode::done) return end;
     common.console.data(importResultText(scene, *format, diagnostics, common.json));

@@ -41,6 +41,9 @@ says err "--force"
 expect 0 import peer/room.xml --force --json
 says out "\"format\": \"mitsuba\""
 
+expect 0 import peer/room.xml -o new/place.scene
+[[ -e new/place-files/hill.ply ]] || fault "no mesh beside the scene"
+
 # Used as it is: the same bits, an image named after it, and nothing left behind.
 expect 0 render peer/room.xml --quiet
 [[ -e room.exr ]] || fault "no image named after the scene"

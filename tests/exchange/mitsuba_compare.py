@@ -83,6 +83,7 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
+    options.nightly = options.nightly or bool(os.environ.get("ABBE_NIGHTLY"))
     cases = [c for c in mitsuba_cases.CASES if options.only in c.name and (options.nightly or not c.nightly)]
     if options.list:
         for c in cases:

@@ -10,7 +10,7 @@ namespace abbe::exchange {
 
 namespace {
 
-constexpr std::size_t kHeadBytes = 4096; // by which formats are known
+constexpr std::size_t kHeadBytes = 16384; // by which formats are known; comments may stand before
 
 // One entry for each format. Another one is a line here.
 constexpr ImportFormat kImportFormats[] = {
