@@ -1,0 +1,40 @@
+// Media of pbrt scenes: fog and liquids of one density, and grids of which only some have a counterpart.
+#pragma once
+
+#include "exchange/pbrt/pbrt_spectrum.h"
+
+#include <map>
+#include <string>
+
+namespace abbe::exchange {
+
+struct PbrtMedium {
+    std::string word;         // of a medium of the scene file; empty: a volume, which stands where it is by itself
+    SceneNode node{"volume"}; // of a volume, until a shape first names it
+    bool isPlaced = false;
+};
+
+class PbrtMedia {
+  public:
+    explicit PbrtMedia(PbrtShared& shared) : shared_(shared) {}
+
+    // `MakeNamedMedium`, where space is moved by `place`.
+    void define(const std::string& name, const PbrtParams&, const Transform& place);
+    // E0802 and null for a name that is not defined. A volume is placed in the world the first time.
+    const PbrtMedium* use(const std::string& name, Span);
+
+  private:
+    void homogeneous(SceneNode& medium, const PbrtParams&);
+    void phase(SceneNode& medium, const PbrtParams&);
+    void meanOfGrid(SceneNode& medium, const PbrtParams&, const std::string& type);
+    bool nanovdb(PbrtMedium&, const PbrtParams&, const Transform& place);
+    void cloud(PbrtMedium&, const PbrtParams&, const Transform& place);
+
+    PbrtShared& shared_;
+    std::map<std::string, PbrtMedium, std::less<>> media_;
+};
+
+// `scattering` and `absorption` of a medium from sigma_s and sigma_a, or from the parameter that names a preset.
+void pbrtCoefficients(SceneNode& medium, const PbrtParams&, std::string_view presetParam, double scale, PbrtShared&);
+
+} // namespace abbe::exchange
