@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "exchange/mitsuba/mitsuba_import.h"
+#include "exchange/pbrt/pbrt_import.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ constexpr std::size_t kHeadBytes = 16384; // by which formats are known; comment
 // One entry for each format. Another one is a line here.
 constexpr ImportFormat kImportFormats[] = {
     {"mitsuba", "a scene of Mitsuba (XML)", isMitsubaScene, importMitsuba},
+    {"pbrt", "a scene of pbrt-v4", isPbrtScene, importPbrt},
 };
 
 std::string headOf(const std::filesystem::path& path) {
