@@ -9,17 +9,36 @@
 
 namespace abbe::exchange {
 
-void PbrtMachine::identity(PbrtScanner&, const PbrtToken&) { applyMatrix(Transform(), true); }
+namespace {
 
-void PbrtMachine::applyMatrix(const Transform& t, bool replace) {
+// Numbers that a scene can state, with room for what is made of them.
+bool pbrtIsUsable(const Transform& t) {
+    constexpr double kLargest = 1e30;
+    if (!t.isFinite() || !t.inverse()) return false;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            if (std::abs(t.a[r][c]) > kLargest) return false;
+    return maxComponent(abs(t.t)) <= kLargest;
+}
+
+} // namespace
+
+void PbrtMachine::identity(PbrtScanner&, const PbrtToken& word) { applyMatrix(Transform(), true, word.span); }
+
+void PbrtMachine::applyMatrix(const Transform& t, bool replace, Span span) {
+    PbrtMotion made = state_.place;
     for (unsigned i = 0; i < 2; ++i)
-        if (replace && (state_.active >> i & 1u) != 0) state_.place.at[i] = Transform();
-    state_.place.concat(t, state_.active);
+        if (replace && (state_.active >> i & 1u) != 0) made.at[i] = Transform();
+    made.concat(t, state_.active);
+    if (pbrtIsUsable(made.at[0]) && pbrtIsUsable(made.at[1]))
+        state_.place = made;
+    else
+        shared_.faults().error("E0802", span, "this makes everything vanish or infinitely large");
 }
 
 void PbrtMachine::translate(PbrtScanner& scanner, const PbrtToken& word) {
     std::array<double, 3> v{};
-    if (numbers(scanner, word, v)) applyMatrix(Transform::translate({v[0], v[1], v[2]}), false);
+    if (numbers(scanner, word, v)) applyMatrix(Transform::translate({v[0], v[1], v[2]}), false, word.span);
 }
 
 void PbrtMachine::scale(PbrtScanner& scanner, const PbrtToken& word) {
@@ -27,7 +46,7 @@ void PbrtMachine::scale(PbrtScanner& scanner, const PbrtToken& word) {
     if (!numbers(scanner, word, v)) return;
     if (v[0] == 0 || v[1] == 0 || v[2] == 0)
         return void(shared_.faults().error("E0802", word.span, "a scale of 0 leaves nothing"));
-    applyMatrix(Transform::scale({v[0], v[1], v[2]}), false);
+    applyMatrix(Transform::scale({v[0], v[1], v[2]}), false, word.span);
 }
 
 void PbrtMachine::rotate(PbrtScanner& scanner, const PbrtToken& word) {
@@ -35,7 +54,7 @@ void PbrtMachine::rotate(PbrtScanner& scanner, const PbrtToken& word) {
     if (!numbers(scanner, word, v)) return;
     const Vec3d axis{v[1], v[2], v[3]};
     if (axis == Vec3d()) return void(shared_.faults().error("E0802", word.span, "an axis of length 0"));
-    applyMatrix(Transform::rotate(axis, v[0] * kDegree), false);
+    applyMatrix(Transform::rotate(axis, v[0] * kDegree), false, word.span);
 }
 
 void PbrtMachine::lookAt(PbrtScanner& scanner, const PbrtToken& word) {
@@ -53,7 +72,7 @@ void PbrtMachine::lookAt(PbrtScanner& scanner, const PbrtToken& word) {
         worldFromCamera.a[r][2] = z[r];
     }
     worldFromCamera.t = from;
-    if (const auto cameraFromWorld = worldFromCamera.inverse()) applyMatrix(*cameraFromWorld, false);
+    if (const auto cameraFromWorld = worldFromCamera.inverse()) applyMatrix(*cameraFromWorld, false, word.span);
 }
 
 // Sixteen numbers, column by column.
@@ -72,7 +91,7 @@ void PbrtMachine::matrix(PbrtScanner& scanner, const PbrtToken& word) {
         t.t = t.t / m[15];
     }
     if (!t.inverse()) return void(shared_.faults().error("E0802", word.span, "this matrix has no inverse"));
-    applyMatrix(t, word.raw == "Transform");
+    applyMatrix(t, word.raw == "Transform", word.span);
 }
 
 void PbrtMachine::coordinateSystem(PbrtScanner& scanner, const PbrtToken& word) {

@@ -216,13 +216,8 @@ void PbrtLights::goniometric(Making& m) {
     const std::string file = m.params.text("filename", "", faults);
     const double power = m.params.number("power", -1, faults);
     const auto inverse = m.place.inverse();
-    RgbImage image;
-    if (!file.empty())
-        image = readImage(shared_.file(file).string());
-    else {
-        image.window = {0, 0, 1, 1};
-        image.rgb = {1, 1, 1};
-    }
+    if (file.empty()) return point(m); // the same in all directions
+    const RgbImage image = readImage(shared_.file(file).string());
     if (image.width() != image.height() || !inverse)
         return void(faults.error("E0802", m.params.directive, "the image of a goniometric light is square"));
     double sum = 0;
@@ -233,7 +228,7 @@ void PbrtLights::goniometric(Making& m) {
     if (!isTinted) light.writeColor(m.node);
     const Vec3d rgb = isTinted ? light.spectrum.rgb : Vec3d(1, 1, 1);
     const bool isGrey = rgb.x == rgb.y && rgb.y == rgb.z;
-    measured(m, file.empty() ? "goniometric" : pbrtStem(file), isGrey ? Vec3d(1, 1, 1) : rgb, [&](Vec3d d) {
+    measured(m, pbrtStem(file), isGrey ? Vec3d(1, 1, 1) : rgb, [&](Vec3d d) {
         const Vec3d own = normalize(inverse->vector(d)); // pbrt's image has its z along the light's y
         const Vec3d value = pbrtOctahedralLookup(image, pbrtSphereToSquare({own.x, own.z, own.y}));
         return std::max(scale * (value.x + value.y + value.z) / 3, 0.0);

@@ -78,7 +78,7 @@ class PbrtMachine {
     void shape(PbrtScanner&, const PbrtToken&);
     void oldDirective(PbrtScanner&, const PbrtToken&);
 
-    void applyMatrix(const Transform&, bool replace);
+    void applyMatrix(const Transform&, bool replace, Span);
 
     PbrtShared& shared_;
     PbrtTextures textures_;

@@ -52,9 +52,9 @@ void pbrtEmission(SceneNode& node, const PbrtSpectrum& absorption, const PbrtLig
     const auto sigma = absorption.curve(PbrtUse::unbounded), emitted = light.spectrum.curve(PbrtUse::light);
     const bool isColour = light.spectrum.kind == PbrtSpectrum::Kind::rgb;
     const double own = isColour ? 1 : light.spectrum.luminance();
-    node.word("table");
-    for (double nm = 360; nm <= 830; nm += 5)
-        node.child("-").number(nm).number(sigma->at(nm) * emitted->at(nm) * scale * light.scale / (own > 0 ? own : 1));
+    std::vector<double> pairs;
+    for (double nm = 360; nm <= 830; nm += 5) pairs.insert(pairs.end(), {nm, sigma->at(nm) * emitted->at(nm)});
+    pbrtWriteTable(node, pairs, scale * light.scale / (own > 0 ? own : 1));
 }
 
 } // namespace

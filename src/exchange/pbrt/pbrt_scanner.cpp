@@ -14,6 +14,9 @@ bool pbrtEndsWord(char c) { return pbrtIsSpace(c) || c == '"' || c == '[' || c =
 
 bool pbrtBeginsNumber(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.'; }
 
+// pbrt's numbers are floats: what would be infinite or 0 in single precision is here, too.
+constexpr double kPbrtLargest = 3.4e38, kPbrtSmallest = 1.4e-45;
+
 // A number that ends where a word would; null where there is none. Too small ones are 0.
 const char* pbrtScanNumber(const char* p, const char* end, double& value) {
     const char* start = p < end && *p == '+' ? p + 1 : p;
@@ -24,9 +27,10 @@ const char* pbrtScanNumber(const char* p, const char* end, double& value) {
         if (exponent == std::string_view::npos || exponent + 1 >= digits.size() || digits[exponent + 1] != '-')
             return nullptr;
         value = 0;
-    } else if (error != std::errc() || !std::isfinite(value)) {
+    } else if (error != std::errc() || !(std::abs(value) <= kPbrtLargest)) {
         return nullptr;
     }
+    if (std::abs(value) < kPbrtSmallest) value = 0;
     return rest == end || pbrtEndsWord(*rest) ? rest : nullptr;
 }
 
@@ -88,7 +92,7 @@ PbrtToken PbrtScanner::wordOrNumber(std::size_t begin) {
     if (!pbrtBeginsNumber(text_[begin])) return make(PbrtToken::Kind::word, begin, end);
     double value = 0;
     if (!pbrtScanNumber(text_.data() + begin, text_.data() + end, value))
-        return fault(begin, end, "this is not a finite number");
+        return fault(begin, end, "this is no number, or too large for single precision");
     PbrtToken token = make(PbrtToken::Kind::number, begin, end);
     token.number = value;
     return token;

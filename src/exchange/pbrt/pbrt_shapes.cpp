@@ -91,8 +91,9 @@ void PbrtShapes::mesh(Making& m, MeshData mesh, std::string_view stem) {
     pbrtOrient(mesh, m.state.isReversed);
     if (needsUvs(m) && mesh.uvs.empty()) pbrtSplitWithUvs(mesh);
     if (const PbrtUv map = uvMap(m); !map.isIdentity()) pbrtMapUvs(mesh, map);
-    if (!needsUvs(m)) mesh.uvs.clear();
-    if (m.state.areaLight && m.state.areaLight->has("power")) m.areas = pbrtFaceAreas(mesh, m.state.place.at[0]);
+    if (!needsUvs(m) && mesh.positions.size() <= kPbrtTiny) mesh.uvs.clear(); // the scene stays short
+    if (m.areas.empty() && m.state.areaLight && m.state.areaLight->has("power"))
+        m.areas = pbrtFaceAreas(mesh, m.state.place.at[0]);
     m.geometry.word("mesh");
     source(m.geometry, mesh, stem);
     finish(m, Transform(), 0);
@@ -267,6 +268,7 @@ void PbrtShapes::sphere(Making& m) {
                              isWhole ? "a sphere turned inside out or with scaled texture coordinates"
                                      : "a part of a sphere",
                              "it is a mesh of 256 × 128 quads with smooth normals");
+    m.areas = {area};
     mesh(m, pbrtSphereMesh(s), "sphere");
 }
 
@@ -298,6 +300,7 @@ void PbrtShapes::cylinder(Making& m) {
         "a part of a cylinder, or one turned inside out, shining on both sides or with scaled texture "
         "coordinates",
         "it is a mesh of 256 quads with smooth normals");
+    m.areas = {area};
     mesh(m, pbrtCylinderMesh(s), "cylinder");
 }
 
@@ -320,6 +323,7 @@ void PbrtShapes::disk(Making& m) {
     }
     shared_.out.approximated(&m.geometry, m.params.directive, "a part of a disk, or one with a texture",
                              "it is a mesh of 256 corners");
+    m.areas = {area};
     mesh(m, pbrtDiskMesh(s), "disk");
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <sstream>
 
@@ -37,10 +38,8 @@ constexpr std::array<PbrtGlassName, 10> kPbrtGlasses{{{"BK7", "BK7"},
 
 const RgbSpace pbrtSpace(const std::string& word) { return findRgbSpace(word).value_or(rgb::rec709); }
 
-void pbrtWriteTable(SceneNode& node, const std::vector<double>& pairs, double scale) {
-    node.word("table");
-    for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) node.child("-").number(pairs[i]).number(pairs[i + 1] * scale);
-}
+// As many digits as pbrt's own numbers have.
+double pbrtRounded(double value) { return std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr); }
 
 // Every 5 nm of a curve, as a table's pairs.
 std::vector<double> pbrtSampled(const Curve& curve) {
@@ -153,6 +152,12 @@ std::optional<PbrtSpectrum> pbrtByName(const PbrtParam& param, PbrtUse use, Pbrt
 }
 
 } // namespace
+
+void pbrtWriteTable(SceneNode& node, const std::vector<double>& pairs, double scale) {
+    node.word("table");
+    for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+        node.child("-").number(pairs[i]).number(pbrtRounded(pairs[i + 1] * scale));
+}
 
 PbrtSpectrum PbrtSpectrum::flat(double value) {
     PbrtSpectrum s;

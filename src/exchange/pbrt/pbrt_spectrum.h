@@ -12,6 +12,9 @@
 
 namespace abbe::exchange {
 
+// Pairs of wavelength and value as `table` and its rows, with as many digits as pbrt's own numbers have.
+void pbrtWriteTable(SceneNode& node, const std::vector<double>& pairs, double scale);
+
 // What a spectrum stands for: pbrt makes different curves of one colour [Pharr2023, sec. 4.6.6].
 enum class PbrtUse : unsigned char { albedo, unbounded, light, index };
 
