@@ -1,5 +1,6 @@
 #include "exchange/pbrt/pbrt_media.h"
 
+#include "exchange/shared/vdb_writer.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
@@ -40,13 +41,6 @@ const PbrtPreset& pbrtPreset(const PbrtParams& params, std::string_view param, S
     return milk;
 }
 
-// The mean of the values of a grid, 0 of an empty one.
-double pbrtMean(std::span<const double> values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
-
 // Every 5 nm of what a metre of a medium emits: pbrt's Le is per absorption [Pharr2023, sec. 11.4.2].
 void pbrtEmission(SceneNode& node, const PbrtSpectrum& absorption, const PbrtLight& light, double scale) {
     const auto sigma = absorption.curve(PbrtUse::unbounded), emitted = light.spectrum.curve(PbrtUse::light);
@@ -56,6 +50,9 @@ void pbrtEmission(SceneNode& node, const PbrtSpectrum& absorption, const PbrtLig
     for (double nm = 360; nm <= 830; nm += 5) pairs.insert(pairs.end(), {nm, sigma->at(nm) * emitted->at(nm)});
     pbrtWriteTable(node, pairs, scale * light.scale / (own > 0 ? own : 1));
 }
+
+constexpr std::array<std::pair<const char*, const char*>, 2> kPbrtCoefficients{
+    {{"sigma_s", "scattering"}, {"sigma_a", "absorption"}}};
 
 } // namespace
 
@@ -69,6 +66,13 @@ void pbrtCoefficients(SceneNode& medium, const PbrtParams& params, std::string_v
     };
     write("sigma_s", "scattering", preset.scattering);
     write("sigma_a", "absorption", preset.absorption);
+}
+
+void PbrtMedia::coefficient(SceneNode& node, const PbrtParams& params, const char* param, const char* property,
+                            double scale) {
+    const PbrtParam* given = params.find(param);
+    const auto spectrum = given ? pbrtSpectrum(*given, PbrtUse::unbounded, shared_) : std::nullopt;
+    (spectrum ? *spectrum : PbrtSpectrum::flat(1)).write(node.child(property), PbrtUse::unbounded, scale);
 }
 
 void PbrtMedia::phase(SceneNode& medium, const PbrtParams& params) {
@@ -92,38 +96,78 @@ void PbrtMedia::homogeneous(SceneNode& medium, const PbrtParams& params) {
                      absorption ? *absorption : PbrtSpectrum::colour(kPbrtPresets.back().absorption), light, scale);
 }
 
-// Grids of numbers in the text itself: only files of OpenVDB hold grids here.
-void PbrtMedia::meanOfGrid(SceneNode& medium, const PbrtParams& params, const std::string& type) {
+// The number of voxels along each axis, if there are as many values as they need.
+std::optional<std::array<int, 3>> PbrtMedia::counts(const PbrtParams& params, std::string_view grid,
+                                                    std::size_t channels) {
     Diagnostics& faults = shared_.faults();
-    const double scale = params.number("scale", 1, faults);
-    for (const char* known : {"nx", "ny", "nz", "p0", "p1", "Lescale", "temperature", "temperatureoffset",
-                              "temperaturescale", "temperaturecutoff"})
-        params.find(known);
-    for (const char* emission : {"Le", "temperature"})
-        if (params.has(emission))
-            shared_.out.leftOut(&medium, params.spanOf(emission), fmt::format("`{}` of a grid", emission),
+    std::array<int, 3> counts{};
+    double product = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        constexpr std::array<const char*, 3> kNames = {"nx", "ny", "nz"};
+        counts[i] = params.integer(kNames[i], 1, faults);
+        product *= std::max(counts[i], 0);
+    }
+    const auto given = static_cast<double>(params.numbers(grid).size()) / static_cast<double>(channels);
+    if (product > 0 && given == product) return counts;
+    faults.error(
+        "E0802", params.spanOf(grid),
+        fmt::format("`{}` has {} values for {} × {} × {} voxels", grid, given, counts[0], counts[1], counts[2]));
+    return std::nullopt;
+}
+
+// pbrt's voxels have their middles at (i + 1/2) / n of the box from p0 to p1, those of our files at i.
+void PbrtMedia::grid(PbrtMedium& made, const PbrtParams& params, const Transform& place, const std::string& stem,
+                     std::array<int, 3> counts, std::span<const float> density) {
+    Diagnostics& faults = shared_.faults();
+    const Vec3d p0 = params.point("p0", {0, 0, 0}, faults), p1 = params.point("p1", {1, 1, 1}, faults);
+    const Vec3d step{(p1.x - p0.x) / counts[0], (p1.y - p0.y) / counts[1], (p1.z - p0.z) / counts[2]};
+    if (step.x == 0 || step.y == 0 || step.z == 0)
+        return void(faults.error("E0802", params.directive, "the box of this grid is empty"));
+    made.node.word("vdb").text(shared_.out.files.write(stem, "vdb", vdbFile(counts, density)));
+    pbrtTransform(made.node, Transform::scale(step).then(Transform::translate(p0 + step * 0.5)).then(place));
+    phase(made.node, params);
+    for (const char* emission : {"Le", "Lescale", "temperature", "temperatureoffset", "temperaturescale",
+                                 "temperaturecutoff", "emissivescale"})
+        if (params.has(emission) && std::string_view(emission) != "Lescale")
+            shared_.out.leftOut(&made.node, params.spanOf(emission), fmt::format("`{}` of a grid", emission),
                                 "what a grid emits is not carried over");
-    if (type == "uniformgrid") {
-        const double mean = pbrtMean(params.numbers("density"));
-        for (const auto& [param, property] : {std::pair("sigma_s", "scattering"), std::pair("sigma_a", "absorption")}) {
-            const PbrtParam* given = params.find(param);
-            const auto spectrum = given ? pbrtSpectrum(*given, PbrtUse::unbounded, shared_) : std::nullopt;
-            (spectrum ? *spectrum : PbrtSpectrum::flat(1))
-                .write(medium.child(property), PbrtUse::unbounded, scale * mean);
-        }
-    } else {
-        for (const auto& [param, property] : {std::pair("sigma_s", "scattering"), std::pair("sigma_a", "absorption")}) {
-            Vec3d sum;
-            const auto values = params.numbers(param);
-            for (std::size_t i = 0; i + 2 < values.size(); i += 3) sum += {values[i], values[i + 1], values[i + 2]};
-            if (values.size() >= 3) sum = sum * (3 / static_cast<double>(values.size()));
-            PbrtSpectrum::colour(values.empty() ? Vec3d(1, 1, 1) : sum)
-                .write(medium.child(property), PbrtUse::unbounded, scale);
+}
+
+void PbrtMedia::uniformGrid(PbrtMedium& made, const PbrtParams& params, const Transform& place,
+                            const std::string& name) {
+    const double scale = params.number("scale", 1, shared_.faults());
+    const auto size = counts(params, "density", 1);
+    if (!size) return;
+    const auto values = params.numbers("density");
+    grid(made, params, place, name, *size, std::vector<float>(values.begin(), values.end()));
+    for (const auto& [param, property] : kPbrtCoefficients) coefficient(made.node, params, param, property, scale);
+}
+
+// Colours at voxels: their mean over the channels is the density, and the colour of all of it that of the whole.
+void PbrtMedia::rgbGrid(PbrtMedium& made, const PbrtParams& params, const Transform& place, const std::string& name) {
+    const double scale = params.number("scale", 1, shared_.faults());
+    const auto size = counts(params, params.has("sigma_s") ? "sigma_s" : "sigma_a", 3);
+    if (!size) return;
+    const auto voxels = static_cast<std::size_t>((*size)[0]) * static_cast<std::size_t>((*size)[1]) *
+                        static_cast<std::size_t>((*size)[2]);
+    std::vector<float> density(voxels);
+    std::array<Vec3d, 2> sums;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto values = params.numbers(kPbrtCoefficients[k].first);
+        for (std::size_t i = 0; i < voxels; ++i) {
+            const bool isGiven = values.size() == 3 * voxels; // 1 when absent
+            const Vec3d c = isGiven ? Vec3d{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Vec3d{1, 1, 1};
+            sums[k] += c;
+            density[i] += static_cast<float>((c.x + c.y + c.z) / 3);
         }
     }
-    phase(medium, params);
-    shared_.out.approximated(&medium, params.directive, fmt::format("the grid of a medium of type `{}`", type),
-                             "grids are read from OpenVDB files only; it has its mean everywhere");
+    const double all = (dot(sums[0], Vec3d(1, 1, 1)) + dot(sums[1], Vec3d(1, 1, 1))) / 3;
+    grid(made, params, place, name, *size, density);
+    for (std::size_t k = 0; k < 2; ++k)
+        PbrtSpectrum::colour(max(all > 0 ? sums[k] / all : Vec3d(), Vec3d()))
+            .write(made.node.child(kPbrtCoefficients[k].second), PbrtUse::unbounded, scale);
+    shared_.out.approximated(&made.node, params.directive, "a grid of colours",
+                             "its density varies from place to place, its colour is the mean everywhere");
 }
 
 bool PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transform& place) {
@@ -144,11 +188,7 @@ bool PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transf
     }
     made.node.word("vdb").text(shared_.out.files.refer(file));
     const double scale = params.number("scale", 1, faults);
-    for (const auto& [param, property] : {std::pair("sigma_s", "scattering"), std::pair("sigma_a", "absorption")}) {
-        const PbrtParam* given = params.find(param);
-        const auto spectrum = given ? pbrtSpectrum(*given, PbrtUse::unbounded, shared_) : std::nullopt;
-        (spectrum ? *spectrum : PbrtSpectrum::flat(1)).write(made.node.child(property), PbrtUse::unbounded, scale);
-    }
+    for (const auto& [param, property] : kPbrtCoefficients) coefficient(made.node, params, param, property, scale);
     phase(made.node, params);
     if (params.has("Lescale"))
         shared_.out.leftOut(&made.node, params.spanOf("Lescale"), "what a volume emits by its temperature",
@@ -168,12 +208,8 @@ void PbrtMedia::cloud(PbrtMedium& made, const PbrtParams& params, const Transfor
     node.child("pattern").word("billow");
     node.child("scale").number(std::clamp(1 / (frequency > 0 ? frequency : 1), 1e-6, 1e9)).word("m");
     node.child("warp").number(std::clamp(wisps * 0.3, 0.0, 10.0));
-    for (const auto& [param, property] : {std::pair("sigma_s", "scattering"), std::pair("sigma_a", "absorption")}) {
-        const PbrtParam* given = params.find(param);
-        const auto spectrum = given ? pbrtSpectrum(*given, PbrtUse::unbounded, shared_) : std::nullopt;
-        (spectrum ? *spectrum : PbrtSpectrum::flat(1))
-            .write(node.child(property), PbrtUse::unbounded, std::max(density, 0.0));
-    }
+    for (const auto& [param, property] : kPbrtCoefficients)
+        coefficient(node, params, param, property, std::max(density, 0.0));
     phase(node, params);
     pbrtTransform(node, place);
     shared_.out.approximated(&node, params.directive, "a medium of type `cloud`",
@@ -189,14 +225,15 @@ void PbrtMedia::define(const std::string& name, const PbrtParams& params, const 
         if (!nanovdb(made, params, place)) made.isPlaced = true; // there is nothing to place
     } else if (type == "cloud") {
         cloud(made, params, place);
-    } else if (type == "homogeneous" || type == "uniformgrid" || type == "rgbgrid") {
+    } else if (type == "uniformgrid") {
+        uniformGrid(made, params, place, name);
+    } else if (type == "rgbgrid") {
+        rgbGrid(made, params, place, name);
+    } else if (type == "homogeneous") {
         made.word = shared_.mediumNames.take(name, "medium");
         SceneNode medium("medium");
         medium.name(made.word).word("homogeneous");
-        if (type == "homogeneous")
-            homogeneous(medium, params);
-        else
-            meanOfGrid(medium, params, type);
+        homogeneous(medium, params);
         shared_.definitions.push_back(std::move(medium));
     } else {
         shared_.faults().error("E0802", params.spanOf("type"), fmt::format("there is no type of medium `{}`", type));

@@ -3,7 +3,10 @@
 
 #include "exchange/pbrt/pbrt_spectrum.h"
 
+#include <array>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 
 namespace abbe::exchange {
@@ -26,7 +29,12 @@ class PbrtMedia {
   private:
     void homogeneous(SceneNode& medium, const PbrtParams&);
     void phase(SceneNode& medium, const PbrtParams&);
-    void meanOfGrid(SceneNode& medium, const PbrtParams&, const std::string& type);
+    void coefficient(SceneNode&, const PbrtParams&, const char* param, const char* property, double scale);
+    std::optional<std::array<int, 3>> counts(const PbrtParams&, std::string_view grid, std::size_t channels);
+    void grid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& stem,
+              std::array<int, 3> counts, std::span<const float> density);
+    void uniformGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
+    void rgbGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
     bool nanovdb(PbrtMedium&, const PbrtParams&, const Transform& place);
     void cloud(PbrtMedium&, const PbrtParams&, const Transform& place);
 

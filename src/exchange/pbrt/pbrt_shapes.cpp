@@ -1,5 +1,6 @@
 #include "exchange/pbrt/pbrt_shapes.h"
 
+#include "base/file.h"
 #include "exchange/pbrt/pbrt_emitter.h"
 #include "exchange/shared/ply_writer.h"
 #include "io/mesh_file.h"
@@ -57,6 +58,10 @@ bool PbrtShapes::needsUvs(const Making& m) const {
 
 bool PbrtShapes::hasSides(const Making& m) const {
     return m.state.areaLight || !m.state.inside.empty() || (m.material && m.material->lightEnters);
+}
+
+bool PbrtShapes::isUnmapped(const Making& m) const {
+    return !m.material || std::ranges::all_of(m.material->uvs, [](const PbrtUv& uv) { return uv.isIdentity(); });
 }
 
 PbrtUv PbrtShapes::uvMap(Making& m) {
@@ -210,6 +215,24 @@ void PbrtShapes::displaced(Making& m) {
     displacement.child("midpoint").number(0);
 }
 
+// Whether a PLY file can stand as it is, by its header alone: files of a gigabyte are not read for that.
+bool PbrtShapes::plyIsFit(Making& m, const std::filesystem::path& path) {
+    constexpr std::size_t kHeader = 16384;
+    RegularFile file(path.string());
+    std::string head(kHeader, '\0');
+    head.resize(file.good() ? file.readAt(0, head) : 0);
+    if (!head.starts_with("ply")) return false; // compressed, or not there
+    head.resize(std::min(head.find("end_header"), head.size()));
+    std::replace(head.begin(), head.end(), '\r', '\n');
+    const auto has = [&](std::string_view property) {
+        return head.find(fmt::format(" {}\n", property)) != std::string::npos;
+    };
+    const bool hasUvs = has("u") || has("s") || has("texture_u");
+    const bool needsAreas = m.state.areaLight && m.state.areaLight->has("power");
+    return !has("nx") && !(m.state.isReversed && hasSides(m)) && (!needsUvs(m) || hasUvs) && isUnmapped(m) &&
+           !needsAreas;
+}
+
 void PbrtShapes::plyMesh(Making& m) {
     const std::string name = m.params.text("filename", "", shared_.faults());
     const auto path = shared_.file(name);
@@ -219,20 +242,11 @@ void PbrtShapes::plyMesh(Making& m) {
         m.params.find("edgelength");
     }
     try {
-        const std::string bytes = pbrtReadFile(path);
-        const std::string_view header = std::string_view(bytes).substr(0, bytes.find("end_header"));
-        const bool hasNormals = header.find(" nx") != std::string_view::npos;
-        const bool hasUvs =
-            header.find(" u\n") != std::string_view::npos || header.find(" u\r") != std::string_view::npos ||
-            header.find(" s\n") != std::string_view::npos || header.find(" s\r") != std::string_view::npos;
-        const bool asItIs = !hasNormals && (!m.state.isReversed || !hasSides(m)) && (!needsUvs(m) || hasUvs) &&
-                            uvMap(m).isIdentity() && path.extension() != ".gz" && !isDisplaced &&
-                            !(m.state.areaLight && m.state.areaLight->has("power"));
-        if (asItIs) {
+        if (!isDisplaced && plyIsFit(m, path)) {
             m.geometry.word("mesh").text(shared_.out.files.refer(path));
             return finish(m, Transform(), 0);
         }
-        MeshData data = parsePly(bytes, name).mesh;
+        MeshData data = parsePly(pbrtReadFile(path), name).mesh;
         const std::string stem = path.filename().replace_extension().replace_extension().string();
         if (!isDisplaced) return mesh(m, std::move(data), stem);
         pbrtOrient(data, m.state.isReversed);
@@ -260,7 +274,7 @@ void PbrtShapes::sphere(Making& m) {
     const double area = s.phimax * kDegree * s.radius * (s.zmax - s.zmin);
     const bool isWhole = s.zmin <= -s.radius && s.zmax >= s.radius && s.phimax >= 360;
     const bool isInsideOut = m.state.isReversed && hasSides(m);
-    if (isWhole && !isInsideOut && uvMap(m).isIdentity()) {
+    if (isWhole && !isInsideOut && isUnmapped(m)) {
         m.geometry.word("sphere").child("radius").number(s.radius);
         return finish(m, needsUvs(m) ? pbrtTurned() : Transform(), area);
     }
@@ -285,7 +299,7 @@ void PbrtShapes::cylinder(Making& m) {
     const double area = s.phimax * kDegree * s.radius * (s.zmax - s.zmin);
     const bool isInsideOut = m.state.isReversed && hasSides(m);
     const bool isTwoSided = m.state.areaLight && m.state.areaLight->flag("twosided", false, faults);
-    if (s.phimax >= 360 && !isInsideOut && !isTwoSided && uvMap(m).isIdentity()) {
+    if (s.phimax >= 360 && !isInsideOut && !isTwoSided && isUnmapped(m)) {
         SceneNode& node = m.geometry.word("cylinder");
         // Turned, its axis is y as in our own shapes, and u begins where pbrt's does.
         node.child("center").number(0).number((s.zmin + s.zmax) / 2).number(0);

@@ -39,6 +39,7 @@ class PbrtShapes {
     void triangles(Making&);
     void patches(Making&);
     void plyMesh(Making&);
+    bool plyIsFit(Making&, const std::filesystem::path&);
     void displaced(Making&);
     void loopSubdivision(Making&);
     void curve(Making&);
@@ -50,6 +51,7 @@ class PbrtShapes {
     bool needsUvs(const Making&) const;
     // Whether it matters which side is outside.
     bool hasSides(const Making&) const;
+    bool isUnmapped(const Making&) const;
     PbrtUv uvMap(Making&);
     // Material, media, light and place; the node is then in the list.
     void finish(Making&, const Transform& before, double area);

@@ -129,3 +129,10 @@ TEST_CASE("pbrt: the ends of a motion become keys") {
     CHECK(made.has("at 0.75 s { translate 1 0 0 }"));
     CHECK(made.has("shutter 1 s"));
 }
+
+TEST_CASE("pbrt: numbers beyond float are errors, and so are transforms") {
+    CHECK(PbrtCase(pbrtWorld("Shape \"sphere\" \"float radius\" 1e39\n")).says("too large for single precision"));
+    CHECK(PbrtCase(pbrtWorld("Scale 1e25 1 1\nScale 1e25 1 1\nShape \"sphere\"\n")).says("infinitely large"));
+    CHECK(PbrtCase(pbrtWorld("Scale 0 1 1\n")).says("a scale of 0"));
+    CHECK(PbrtCase(pbrtWorld("Transform [1 0 0 0  1 0 0 0  0 0 1 0  0 0 0 1]\n")).says("no inverse"));
+}
