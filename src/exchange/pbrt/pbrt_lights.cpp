@@ -34,6 +34,13 @@ double pbrtSpotAngle(double inner, double outer) {
     return 2 * kPiD * ((1 - std::cos(inner)) + (std::cos(inner) - std::cos(outer)) / 2);
 }
 
+// That of the file where pbrt knows it, else sRGB, as pbrt has it.
+RgbSpace pbrtColoursOf(const RgbImage& image) {
+    if (!image.chromaticities || image.chromaticities->white.y <= 0) return rgb::rec709;
+    const RgbSpace space = image.chromaticities->space();
+    return space.name.empty() ? rgb::rec709 : space;
+}
+
 // An image that is written beside the scene and was not there before.
 std::string pbrtWriteExr(PbrtShared& shared, const std::string& stem, const RgbImage& image) {
     const std::size_t count = image.rgb.size() / 3;
@@ -42,10 +49,7 @@ std::string pbrtWriteExr(PbrtShared& shared, const std::string& stem, const RgbI
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t c = 0; c < 3; ++c) planes[c][i] = image.rgb[3 * i + c];
     ExrPicture picture{image.window, image.window, planes[0], planes[1], planes[2]};
-    if (image.chromaticities && image.chromaticities->white.y > 0)
-        picture.chromaticities = *image.chromaticities;
-    else
-        picture.chromaticities = Chromaticities::of(rgb::rec709);
+    picture.chromaticities = Chromaticities::of(pbrtColoursOf(image));
     // The name is taken by an empty file, which the picture then replaces.
     const std::string name = shared.out.files.write(stem, "exr", {});
     writeExr((shared.out.files.scene().parent_path() / name).string(), picture);
@@ -136,7 +140,7 @@ void PbrtLights::infiniteImage(Making& m, const std::string& file) {
     if (!inverse) return void(faults.error("E0802", m.params.directive, "the transform of this light has no inverse"));
     const int size = image.width(), rows = std::clamp(size, 1, kPbrtMostRows);
     if (lux > 0) { // as pbrt computes it: 2π over the pixels of the upper half [lights.cpp, "infinite"]
-        const RgbSpace space = image.chromaticities ? image.chromaticities->space() : rgb::rec709;
+        const RgbSpace space = pbrtColoursOf(image);
         double sum = 0;
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x) {
@@ -148,7 +152,7 @@ void PbrtLights::infiniteImage(Making& m, const std::string& file) {
     }
     RgbImage made;
     made.window = made.display = {0, 0, 2 * rows, rows};
-    made.chromaticities = image.chromaticities;
+    made.chromaticities = Chromaticities::of(pbrtColoursOf(image));
     made.rgb.resize(3 * made.window.area());
     const int cuts = 2; // samples along each side of a pixel
     for (int y = 0; y < rows; ++y)
@@ -249,7 +253,7 @@ void PbrtLights::projection(Making& m) {
         return void(faults.error("E0802", m.params.directive, "this projection is degenerate"));
     const double aspect = static_cast<double>(image.width()) / image.height();
     const Vec2d half{std::max(aspect, 1.0), std::max(1 / aspect, 1.0)};
-    const RgbSpace space = image.chromaticities ? image.chromaticities->space() : rgb::rec709;
+    const RgbSpace space = pbrtColoursOf(image);
     const auto pixel = [&](int x, int y) {
         const float* v = image.rgb.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) +
                                                  static_cast<std::size_t>(x));
@@ -303,7 +307,12 @@ void PbrtLights::add(const std::string& type, const PbrtParams& params, const Pb
     try {
         (this->*maker->second)(m);
     } catch (const IoError& error) {
-        shared_.faults().error("E0802", params.spanOf("filename"), error.what());
+        std::error_code ignored;
+        const std::string file = params.text("filename", "", shared_.faults());
+        if (!std::filesystem::is_regular_file(shared_.file(file), ignored))
+            shared_.faults().error("E0802", params.spanOf("filename"), error.what());
+        else // of another kind than OpenEXR and Radiance, perhaps
+            shared_.out.leftOut(nullptr, params.spanOf("filename"), fmt::format("the light `{}`", type), error.what());
         return;
     }
     params.reportUnused(fmt::format("the light `{}`", type), shared_.faults());

@@ -22,7 +22,8 @@ namespace {
 
 // The names of encodings stand for what is made of the numbers in a file of integers.
 std::string pbrtImageSpace(const std::string& encoding, bool isSpectrum, const std::string& file, bool& nearly) {
-    const std::string ending = file.substr(std::min(file.rfind('.'), file.size()));
+    std::string ending = file.substr(std::min(file.rfind('.'), file.size()));
+    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     const bool isFloat = ending == ".exr" || ending == ".hdr" || ending == ".pfm";
     if (isFloat) return isSpectrum ? "" : "data";
     if (encoding.empty() || encoding == "sRGB") return isSpectrum ? "" : "srgb_rec709_scene";
