@@ -25,6 +25,43 @@ says out "8×8"
 expect 0 render wall.pbrt --quiet -o again.exr
 [[ $(pixels wall.exr) == $(pixels again.exr) ]] || fault "the scene and what it was made of differ"
 
+# Compressed files, of the scene and of a mesh.
+cat >ball.ply <<'PLY'
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+-9 -9 2
+9 -9 2
+9 9 2
+-9 9 2
+4 0 3 2 1
+PLY
+gzip ball.ply
+sed -e '/^Material/d' -e 's/^Shape .*/Shape "plymesh" "string filename" "ball.ply.gz"/' wall.pbrt | gzip >packed.pbrt.gz
+expect 0 import packed.pbrt.gz -o packed.scene
+is_empty err
+says packed.scene "faces { - 0 3 2 1 }" # a tiny mesh stands in the scene
+expect 0 render packed.scene --quiet -o packed.exr
+head -c 40 packed.pbrt.gz >short.pbrt.gz
+expect 1 import short.pbrt.gz
+tells err E0802 "no intact gzip file"
+
+# A picture that shines is an area light with that texture.
+cat >lamp.pbrt <<'PBRT'
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+AreaLightSource "diffuse" "string filename" "again.exr" "float scale" 3
+Shape "bilinearmesh" "point3 P" [-1 -1 2 1 -1 2 -1 1 2 1 1 2]
+PBRT
+expect 0 import lamp.pbrt
+expect 0 render lamp.scene --quiet -o lamp.exr
+
 printf 'Film "image"\nWorldBegin\nWorldEnd\n' >old.pbrt
 expect 1 import old.pbrt
 tells err E0801 pbrt-v3

@@ -72,8 +72,8 @@ PbrtUv PbrtShapes::uvMap(Making& m) {
     return m.material->uvs.front();
 }
 
-void PbrtShapes::source(SceneNode& node, const MeshData& mesh, std::string_view stem) {
-    if (mesh.positions.size() > kPbrtTiny || !mesh.normals.empty()) {
+void PbrtShapes::source(SceneNode& node, const MeshData& mesh, std::string_view stem, bool mayStandInScene) {
+    if (mesh.positions.size() > kPbrtTiny || !mesh.normals.empty() || !mayStandInScene) {
         const std::string name = fmt::format("{}-{}", stem, shared_.out.files.written() + 1);
         node.text(shared_.out.files.write(name, "ply", binaryPly(mesh)));
         return;
@@ -100,7 +100,7 @@ void PbrtShapes::mesh(Making& m, MeshData mesh, std::string_view stem) {
     if (m.areas.empty() && m.state.areaLight && m.state.areaLight->has("power"))
         m.areas = pbrtFaceAreas(mesh, m.state.place.at[0]);
     m.geometry.word("mesh");
-    source(m.geometry, mesh, stem);
+    source(m.geometry, mesh, stem, !m.state.areaLight || mesh.uvs.empty()); // lights have no `uvs`
     finish(m, Transform(), 0);
 }
 
@@ -415,9 +415,7 @@ void PbrtShapes::finish(Making& m, const Transform& before, double area) {
                                   shared_, m.geometry);
     if (emission && (emission->needsLight() || isInterface)) {
         SceneNode light("light");
-        for (const std::string& value : m.geometry.values()) light.word(value);
-        for (const SceneNode& child : m.geometry.children())
-            if (child.kind() != "uvs") light.adopt(child);
+        light.absorb(std::move(m.geometry));
         m.params.find("alpha");
         if (!isInterface)
             shared_.out.approximated(&light, m.params.directive, "a shape that shines",

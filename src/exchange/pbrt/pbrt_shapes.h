@@ -46,7 +46,7 @@ class PbrtShapes {
 
     MeshData statedMesh(Making&);
     void mesh(Making&, MeshData, std::string_view stem);
-    void source(SceneNode&, const MeshData&, std::string_view stem);
+    void source(SceneNode&, const MeshData&, std::string_view stem, bool mayStandInScene = true);
     // Whether the shape needs texture coordinates, and pbrt's own axes.
     bool needsUvs(const Making&) const;
     // Whether it matters which side is outside.
