@@ -164,21 +164,32 @@ void PbrtMaterials::conductor(Making& m) {
 }
 
 void PbrtMaterials::diffuseTransmission(Making& m) {
+    constexpr std::array<const char*, 2> kSides = {"reflectance", "transmittance"};
     m.node().word("diffuse-transmission");
-    const double scale = m.params.number("scale", 1, shared_.faults());
-    for (const char* property : {"reflectance", "transmittance"}) {
-        SceneNode& child = m.node().child(property);
-        const PbrtParam* param = m.params.find(property);
-        const bool isTexture = m.params.texture(property).has_value();
-        const auto value = param && !isTexture ? pbrtSpectrum(*param, PbrtUse::albedo, shared_) : std::nullopt;
-        if (scale != 1 && isTexture) {
+    double scale = m.params.number("scale", 1, shared_.faults());
+    std::array<PbrtSpectrum, 2> values;
+    double most = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const PbrtParam* param = m.params.texture(kSides[i]) ? nullptr : m.params.find(kSides[i]);
+        const auto given = param ? pbrtSpectrum(*param, PbrtUse::albedo, shared_) : std::nullopt;
+        values[i] = given ? *given : PbrtSpectrum::flat(0.25);
+        most += values[i].curve(PbrtUse::albedo)->maximum();
+    }
+    if (scale * most > 1 || scale < 0) {
+        scale = std::max(0.0, 1 / most - 1e-6);
+        shared_.out.approximated(&m.node(), m.params.directive, "a sheet that sends on more light than it gets",
+                                 "both shares are scaled to 1 together");
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+        SceneNode& child = m.node().child(kSides[i]);
+        if (!m.params.texture(kSides[i])) {
+            values[i].write(child, PbrtUse::albedo, scale);
+        } else if (scale != 1) {
             SceneNode& product = child.word("product");
-            spectrum(m, product, "first", property, 0.25);
-            product.child("second").number(std::clamp(scale, 0.0, 1.0));
-        } else if (isTexture) {
-            textures_.writeSpectrum(child, m.params, property, PbrtSpectrum::flat(0.25), m.material.uvs);
+            spectrum(m, product, "first", kSides[i], 0.25);
+            product.child("second").number(scale);
         } else {
-            (value ? *value : PbrtSpectrum::flat(0.25)).write(child, PbrtUse::albedo, scale);
+            textures_.writeSpectrum(child, m.params, kSides[i], values[i], m.material.uvs);
         }
     }
 }

@@ -107,6 +107,7 @@ std::optional<PbrtSpectrum> pbrtTable(const PbrtParam& param, std::vector<double
         shared.faults().error("E0802", param.span, fmt::format("the spectrum `{}` {}", param.name, fault));
         return std::nullopt;
     }
+    if (use == PbrtUse::index && pairs.size() == 2) return PbrtSpectrum::flat(pairs[1]);
     PbrtSpectrum spectrum;
     spectrum.kind = PbrtSpectrum::Kind::table;
     if (use == PbrtUse::albedo || use == PbrtUse::unbounded) pbrtEndInZero(pairs);

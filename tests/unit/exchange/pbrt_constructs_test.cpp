@@ -30,6 +30,8 @@ TEST_CASE("pbrt: materials by their own parameters and defaults") {
     CHECK(pbrtHolds(pbrtBall("Material \"thindielectric\""), "thin-dielectric"));
     CHECK(pbrtHolds(pbrtBall("Material \"diffusetransmission\" \"float scale\" 0.5"),
                     "{ reflectance 0.125; transmittance 0.125 }"));
+    CHECK(PbrtCase(pbrtWorld("Material \"diffusetransmission\" \"float scale\" 9\n")).says("scaled to 1 together"));
+    CHECK(pbrtHolds(pbrtBall("Material \"dielectric\" \"spectrum eta\" [500 1.4]"), "ior 1.4"));
     CHECK(pbrtHolds(pbrtBall("Material \"hair\""), "eumelanin 1.3"));
     CHECK_FALSE(pbrtHolds(pbrtBall("Material \"hair\" \"rgb sigma_a\" [1 2 3]"), "eumelanin"));
     CHECK(pbrtHolds(pbrtBall("Material \"subsurface\" \"rgb reflectance\" [.8 .5 .4] \"float mfp\" 0.01"),
