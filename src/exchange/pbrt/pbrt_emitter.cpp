@@ -1,5 +1,6 @@
 #include "exchange/pbrt/pbrt_emitter.h"
 
+#include "io/file.h"
 #include "io/image.h"
 #include "spectrum/sensor.h"
 

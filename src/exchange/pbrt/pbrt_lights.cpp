@@ -2,6 +2,7 @@
 
 #include "exchange/pbrt/pbrt_sphere_map.h"
 #include "io/exr_writer.h"
+#include "io/file.h"
 #include "io/image.h"
 #include "schema/suggest.h"
 #include "spectrum/sensor.h"
@@ -11,7 +12,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
-#include <unistd.h>
+#include <vector>
 
 namespace abbe::exchange {
 

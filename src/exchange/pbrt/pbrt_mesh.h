@@ -5,6 +5,8 @@
 #include "math/mesh_data.h"
 
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace abbe::exchange {
 

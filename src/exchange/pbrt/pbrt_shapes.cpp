@@ -9,6 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace abbe::exchange {
 

@@ -3,9 +3,9 @@
 #include "io/file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 #include <zlib.h>
 
 namespace abbe::exchange {

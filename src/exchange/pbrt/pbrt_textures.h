@@ -5,6 +5,7 @@
 #include "exchange/pbrt/pbrt_spectrum.h"
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 

@@ -4,9 +4,10 @@
 #include "io/file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
+#include <vector>
 
 namespace abbe::exchange {
 
