@@ -10,7 +10,7 @@ namespace abbe::exchange {
 
 namespace {
 
-constexpr int kMostNestedPhases = 30;
+constexpr int kMostNestedPhases = 8; // they may double at every level
 
 // Values at even steps of the cosine from −1 (straight back) to 1.
 void writeTabulatedPhase(SceneNode& at, const XmlObject& phase, MitsubaContext& ctx) {

@@ -216,7 +216,10 @@ void convertSensors(const std::vector<const XmlObject*>& sensors, MitsubaContext
 
 void readIntegrator(const XmlObject& integrator, MitsubaContext& ctx) {
     const std::string& type = integrator.plugin;
-    for (const XmlObject* inner : integrator.objects("integrator")) readIntegrator(*inner, ctx);
+    constexpr int kMostNestedIntegrators = 16;
+    if (++ctx.depth <= kMostNestedIntegrators)
+        for (const XmlObject* inner : integrator.objects("integrator")) readIntegrator(*inner, ctx);
+    --ctx.depth;
     const bool nest = type == "aov" || type == "moment" || type == "stokes";
     if (nest) {
         if (type != "aov")

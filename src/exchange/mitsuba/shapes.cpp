@@ -101,6 +101,20 @@ void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& c
 
 } // namespace
 
+namespace {
+
+// A second copy in the same place shows nothing new, and copies of copies would double at every level.
+void convertMerged(const XmlObject& merged, SceneNode* parent, MitsubaContext& ctx) {
+    if (!ctx.groups.emplace(&merged, "-").second) {
+        ctx.import.leftOut(nullptr, merged.span, "a second copy of merged shapes", "the first is in the same place");
+        return;
+    }
+    for (const XmlObject* inner : merged.objects("shape")) convertShape(*inner, parent, ctx);
+    warnOfUnused(merged, ctx.import);
+}
+
+} // namespace
+
 void convertShape(const XmlObject& shape, SceneNode* parent, MitsubaContext& ctx) {
     if (ctx.depth >= kMostNestedShapes) {
         ctx.import.diagnostics.error("E0802", shape.span,
@@ -113,7 +127,7 @@ void convertShape(const XmlObject& shape, SceneNode* parent, MitsubaContext& ctx
     else if (shape.plugin == "instance")
         convertInstance(shape, parent, ctx);
     else if (shape.plugin == "merge")
-        for (const XmlObject* inner : shape.objects("shape")) convertShape(*inner, parent, ctx);
+        convertMerged(shape, parent, ctx);
     else
         convertSurface(shape, parent, ctx);
     --ctx.depth;

@@ -6,6 +6,8 @@ namespace abbe::exchange {
 
 namespace {
 
+constexpr int kMostNestedTextures = 100; // materials around them count, too
+
 bool sameMap(const Transform& a, const Transform& b) {
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
@@ -65,6 +67,13 @@ void writeAttribute(SceneNode& at, const XmlObject& texture, MitsubaContext& ctx
 }
 
 void writeTextureType(SceneNode& at, const XmlObject& texture, bool data, MaterialTraits& traits, MitsubaContext& ctx) {
+    if (ctx.depth >= kMostNestedTextures) {
+        ctx.import.diagnostics.error("E0802", texture.span,
+                                     fmt::format("more than {} textures inside of each other", kMostNestedTextures));
+        at.word("checker");
+        return;
+    }
+    ++ctx.depth;
     noteMap(texture, traits, ctx);
     if (texture.plugin == "bitmap")
         writeBitmap(at, texture, ctx);
@@ -80,6 +89,7 @@ void writeTextureType(SceneNode& at, const XmlObject& texture, bool data, Materi
         at.child("stop").number(1).number(0.5);
         for (const XmlParam& param : texture.params) param.used = true;
     }
+    --ctx.depth;
     warnOfUnused(texture, ctx.import);
 }
 

@@ -138,6 +138,25 @@ TEST_CASE("objects that contain themselves, and endless nesting, end in a diagno
     CHECK(importText(scene(doubled + "<shape type=\"sphere\"><ref id=\"m39\"/></shape>")).text.size() < 20000);
 }
 
+TEST_CASE("objects that are named twice at every level do not double") {
+    const auto chain = [](const std::string& tag, const std::string& type, const std::string& first, int levels) {
+        std::string text = first;
+        for (int i = 1; i < levels; ++i) {
+            const std::string ref = "<ref id=\"n" + std::to_string(i - 1) + "\"/>";
+            text +=
+                "<" + tag + " type=\"" + type + "\" id=\"n" + std::to_string(i) + "\">" + ref + ref + "</" + tag + ">";
+        }
+        return text;
+    };
+    const Imported merged = importText(scene(chain("shape", "merge", "<shape type=\"sphere\" id=\"n0\"/>", 30)));
+    CHECK(merged.text.size() < 100000);
+    const Imported phases = importText(
+        scene("<integrator type=\"volpath\"/>" + chain("phase", "blendphase", "<phase type=\"hg\" id=\"n0\"/>", 30) +
+              "<shape type=\"sphere\"><bsdf type=\"null\"/><medium type=\"homogeneous\" name=\"interior\">"
+              "<ref id=\"n29\"/></medium></shape>"));
+    CHECK(holds(phases.codes, "E0802"));
+}
+
 TEST_CASE("what has no counterpart is said, and stands in the scene") {
     for (const char* shape : {"sdfgrid", "ellipsoids", "heightfield"}) {
         const Imported made = importText(
