@@ -1,4 +1,4 @@
-#include "exchange/mitsuba/emitters.h"
+#include "exchange/mitsuba/settings.h"
 
 #include <algorithm>
 #include <cmath>

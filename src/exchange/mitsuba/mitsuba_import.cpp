@@ -1,7 +1,6 @@
 #include "exchange/mitsuba/mitsuba_import.h"
 
-#include "exchange/mitsuba/emitters.h"
-#include "exchange/mitsuba/sensors.h"
+#include "exchange/mitsuba/settings.h"
 #include "exchange/mitsuba/shapes.h"
 
 #include <algorithm>

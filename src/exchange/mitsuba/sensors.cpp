@@ -1,5 +1,4 @@
-#include "exchange/mitsuba/sensors.h"
-
+#include "exchange/mitsuba/settings.h"
 #include "exchange/mitsuba/xml_values.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "exchange/mitsuba/shapes.h"
 
 #include "exchange/mitsuba/bsdfs.h"
-#include "exchange/mitsuba/emitters.h"
 #include "exchange/mitsuba/media.h"
+#include "exchange/mitsuba/settings.h"
 
 #include <cmath>
 #include <fmt/format.h>

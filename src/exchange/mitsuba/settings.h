@@ -1,4 +1,5 @@
-// Emitters of Mitsuba's as lights.
+// What stands at the top of Mitsuba's scenes beside shapes: emitters as lights; sensors, films, filters, samplers and
+// integrators as camera, film and render.
 #pragma once
 
 #include "exchange/mitsuba/textures.h"
@@ -11,5 +12,10 @@ void writeShapeEmitter(SceneNode& shapeNode, const XmlObject& emitter, const Xml
 void noteEmitterTextures(const XmlObject& emitter, MaterialTraits&);
 // Of the scene.
 void convertEmitter(const XmlObject&, MitsubaContext&);
+
+// All sensors become cameras; film and sampler are those of the first.
+void convertSensors(const std::vector<const XmlObject*>&, MitsubaContext&);
+// What the integrator is, for all that follows.
+void readIntegrator(const XmlObject&, MitsubaContext&);
 
 } // namespace abbe::exchange
