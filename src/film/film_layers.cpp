@@ -210,7 +210,8 @@ class FilmLayers::CoveragePlane final : public FilmPlane {
     Matte matte_;
 };
 
-// Which things are in any of the lists: the header of an image names them, before the lists are read.
+// Which things are in any of the lists: the header of an image names them, before the lists are read. How many, then
+// they.
 class FilmLayers::SeenPlane final : public FilmPlane {
   public:
     SeenPlane(FilmLayers& layers, Matte matte) : layers_(layers), matte_(matte) {}
@@ -222,16 +223,19 @@ class FilmLayers::SeenPlane final : public FilmPlane {
         for (int y = b.y0; y < b.y1; ++y)
             for (int x = b.x0; x < b.x1; ++x)
                 for (const Coverage& c : layers_.coverage(layers_.pixelIndex(x, y), matte_)) things.insert(c.thing);
-        for (const std::uint32_t thing : things) {
-            const auto bytes = std::as_bytes(std::span(&thing, 1));
+        const auto put = [&](std::uint32_t word) {
+            const auto bytes = std::as_bytes(std::span(&word, 1));
             out.insert(out.end(), bytes.begin(), bytes.end());
-        }
+        };
+        put(static_cast<std::uint32_t>(things.size()));
+        std::ranges::for_each(things, put);
     }
 
     bool addWithin(PixelBounds, PixelBounds, std::span<const std::byte> bytes) override {
-        const std::vector<std::uint32_t> things = wordsOf(bytes);
-        if (bytes.size() % sizeof(std::uint32_t) != 0 ||
-            !std::ranges::all_of(things, [&](std::uint32_t thing) { return thing < layers_.names_.size(); }))
+        const std::vector<std::uint32_t> words = wordsOf(bytes);
+        if (bytes.size() % sizeof(std::uint32_t) != 0 || words.empty() || words[0] != words.size() - 1) return false;
+        const auto things = std::span(words).subspan(1);
+        if (!std::ranges::all_of(things, [&](std::uint32_t thing) { return thing < layers_.names_.size(); }))
             return false;
         for (const std::uint32_t thing : things) layers_.see(matte_, thing);
         return true;
