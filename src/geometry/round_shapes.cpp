@@ -62,10 +62,19 @@ ShapeSample Sphere::at(Vec3d normal) const {
     return {Vec3(p), analyticError(p, magnitude_), Vec3(normal), 0};
 }
 
+namespace {
+
+// Of a normal in the sphere's own axes.
+Vec2 sphereUv(float nx, float ny, float nz) {
+    const float longitude = std::atan2(nx, nz) * (0.5f * kInvPi);
+    return {longitude < 0 ? longitude + 1 : longitude, 1 - std::acos(ny) * kInvPi};
+}
+
+} // namespace
+
 void parametrizeSphere(Vec3 n, float radius, Vec3 x, Vec3 y, Vec3 z, SurfaceHit& hit) {
     const float nx = dot(n, x), ny = std::clamp(dot(n, y), -1.f, 1.f), nz = dot(n, z);
-    const float longitude = std::atan2(nx, nz) * (0.5f * kInvPi);
-    hit.uv = {longitude < 0 ? longitude + 1 : longitude, 1 - std::acos(ny) * kInvPi};
+    hit.uv = sphereUv(nx, ny, nz);
     hit.dpdu = (x * nz - z * nx) * (2 * kPi * radius);
     const float sine = std::hypot(nx, nz);
     if (sine > 0) hit.dpdv = (y * sine - (x * nx + z * nz) * (ny / sine)) * (kPi * radius);
@@ -82,9 +91,9 @@ void Sphere::surface(const RawHit& raw, const Ray& ray, SurfaceHit& hit) const {
     hit.pError = s.pError;
     hit.ng = s.ng;
     const Vec3 n = s.ng;
-    const float longitude = std::atan2(n.x, n.z) * (0.5f * kInvPi);
-    hit.uv = {longitude < 0 ? longitude + 1 : longitude, 1 - std::acos(std::clamp(n.y, -1.f, 1.f)) * kInvPi};
-    hit.shading = Frame::fromNormalTangent(n, {n.z, 0, -n.x});
+    const float nx = dot(n, x_), nz = dot(n, z_);
+    hit.uv = sphereUv(nx, std::clamp(dot(n, y_), -1.f, 1.f), nz);
+    hit.shading = Frame::fromNormalTangent(n, x_ * nz - z_ * nx); // along ∂p/∂u
     hit.primitive = 0;
 }
 

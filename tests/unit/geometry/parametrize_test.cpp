@@ -267,3 +267,31 @@ TEST_CASE("nobody asks for the parametrisation of plain materials; faces may ask
     CHECK(asked(FaceMaterials(std::make_unique<Mesh>(wavy(true)), {&kTextured}, choice)));
     CHECK(!asked(FaceMaterials(std::make_unique<Mesh>(wavy(true)), {&plain}, choice)));
 }
+
+TEST_CASE("highlights are stretched along dp/du, however the shape is turned") {
+    std::vector<std::unique_ptr<const Shape>> shapes;
+    shapes.push_back(std::make_unique<Sphere>(Vec3d(0.1, 0, 0), 0.9));
+    shapes.push_back(std::make_unique<Transformed>(std::make_unique<Sphere>(Vec3d(0.1, 0, 0), 0.9), kMirror));
+    for (const Transform& place : {kTurn, kTurnedMirror}) {
+        shapes.push_back(std::make_unique<Sphere>(place.point({0.1, 0, 0}), 0.9, place));
+        shapes.push_back(std::make_unique<Frustum>(0.9, 0.2, 1.2, false, place));
+        shapes.push_back(std::make_unique<Torus>(0.8, 0.3, place));
+    }
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        CAPTURE(i);
+        const auto scene = sceneOf(*shapes[i], nullptr);
+        Random random(5);
+        int compared = 0, along = 0;
+        for (int k = 0; k < 500; ++k) {
+            const Vec3d target = aroundPoint(random) * 0.7, origin = normalize(aroundPoint(random)) * 6.0;
+            SurfaceHit hit;
+            if (!scene->intersect({Vec3(origin), Vec3(normalize(target - origin)), kInfinity, 0.4f}, hit)) continue;
+            const Vec3 u = hit.dpdu - hit.ng * dot(hit.ng, hit.dpdu);
+            if (!(length(u) > 0.02f)) continue; // near a pole
+            ++compared;
+            along += std::abs(dot(normalize(u), hit.shading.x)) > 0.999f;
+        }
+        CHECK(compared > 50);
+        CHECK(along == compared);
+    }
+}
