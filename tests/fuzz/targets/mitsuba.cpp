@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         exchange::importMitsuba(file.path(), import);
         exchange::printScene(import.nodes);
         for (const Diagnostic& d : diagnostics.all())
-            if (d.span.valid()) fuzz::require(d.span.end <= sources.text(d.span.file).size(), "a place behind the text");
+            if (d.span.valid())
+                fuzz::require(d.span.end <= sources.text(d.span.file).size(), "a place behind the text");
     });
     fuzz::reading([&] {
         const MeshData mesh = exchange::readSerializedMesh(file.path(), 0);
