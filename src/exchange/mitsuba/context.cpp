@@ -13,13 +13,6 @@ void wrongType(const XmlParam& param, std::string_view wanted, Import& import) {
                              fmt::format("`{}` is {} here, not `<{}>`", param.name, wanted, param.tag));
 }
 
-bool isDiagonal(const Transform& m) {
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-            if (r != c && m.a[r][c] != 0) return false;
-    return true;
-}
-
 } // namespace
 
 double mitsubaNumber(const XmlObject& object, std::string_view name, double otherwise, Import& import) {
@@ -76,27 +69,6 @@ void warnOfUnused(const XmlObject& object, Import& import) {
                 ? fmt::format("`{}` of type `{}` has no use for this `{}`", object.tag, object.plugin, param.tag)
                 : fmt::format("`{}` of type `{}` has no parameter `{}`", object.tag, object.plugin, param.name));
     }
-}
-
-bool isIdentity(const Transform& m) {
-    return isDiagonal(m) && m.a[0][0] == 1 && m.a[1][1] == 1 && m.a[2][2] == 1 && m.t == Vec3d();
-}
-
-void writeTransform(SceneNode& parent, const Transform& m) {
-    if (isIdentity(m)) return;
-    SceneNode& block = parent.child("transform");
-    if (!isDiagonal(m)) {
-        SceneNode& matrix = block.child("matrix");
-        for (int r = 0; r < 3; ++r) matrix.number(m.a[r][0]).number(m.a[r][1]).number(m.a[r][2]).number(m.t[r]);
-        for (const double value : {0, 0, 0, 1}) matrix.number(value);
-        return;
-    }
-    const Vec3d s(m.a[0][0], m.a[1][1], m.a[2][2]);
-    if (s.x == s.y && s.y == s.z && s.x != 1)
-        block.child("scale").number(s.x);
-    else if (!(s == Vec3d(1, 1, 1)))
-        block.child("scale").vector(s);
-    if (!(m.t == Vec3d())) block.child("translate").vector(m.t);
 }
 
 } // namespace abbe::exchange

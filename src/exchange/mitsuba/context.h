@@ -4,6 +4,7 @@
 #include "exchange/mitsuba/xml_object.h"
 #include "exchange/mitsuba/xml_reader.h"
 #include "exchange/shared/import.h"
+#include "exchange/shared/placement.h"
 
 #include <map>
 #include <optional>
@@ -52,9 +53,5 @@ Transform mitsubaTransform(const XmlObject&, std::string_view name = "to_world")
 void mitsubaIgnore(const XmlObject&, std::initializer_list<std::string_view> names);
 // W0803 for every parameter that nobody asked for.
 void warnOfUnused(const XmlObject&, Import&);
-
-// `transform { … }` of the map; nothing for the identity.
-void writeTransform(SceneNode& parent, const Transform&);
-bool isIdentity(const Transform&);
 
 } // namespace abbe::exchange

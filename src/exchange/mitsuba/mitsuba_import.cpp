@@ -17,17 +17,6 @@ std::size_t rankOf(const SceneNode& node) {
     return static_cast<std::size_t>(std::ranges::find(kOrder, node.kind()) - kOrder.begin());
 }
 
-// Names that hide types of their kind would confuse (W0202).
-void reserveTypeNames(MitsubaContext& ctx) {
-    for (const char* type :
-         {"diffuse", "conductor", "dielectric", "subsurface", "mix", "two-sided", "layered", "boundary", "sheen",
-          "thin-dielectric", "diffuse-transmission", "hair", "openpbr", "preset"})
-        ctx.materialNames.take(type, type);
-    for (const char* type : {"image", "noise", "checker", "ramp", "triplanar", "attribute", "product"})
-        ctx.textureNames.take(type, type);
-    for (const char* type : {"homogeneous", "noise", "preset"}) ctx.mediumNames.take(type, type);
-}
-
 void writeRender(MitsubaContext& ctx) {
     if (ctx.samples == 0 && ctx.maxDepth == 0) return;
     SceneNode& render = ctx.define("render");
@@ -62,7 +51,7 @@ void importMitsuba(const std::filesystem::path& path, Import& import) {
     if (!scene.root) return;
     const XmlObject& root = *scene.root;
     MitsubaContext ctx(import, scene);
-    reserveTypeNames(ctx);
+    reserveTypeNames(ctx.materialNames, ctx.textureNames, ctx.mediumNames);
     for (const XmlObject* integrator : root.objects("integrator")) readIntegrator(*integrator, ctx);
     convertSensors(root.objects("sensor"), ctx);
     writeRender(ctx);

@@ -1,11 +1,11 @@
 #include "exchange/mitsuba/shapes.h"
+#include "exchange/shared/inflate.h"
 #include "io/file.h"
 
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
-#include <zlib.h>
 
 namespace abbe::exchange {
 
@@ -28,23 +28,10 @@ template <typename T> T plain(std::string_view bytes, std::size_t at, const std:
     return value;
 }
 
-std::string inflated(std::string_view packed, const std::string& path) {
-    z_stream stream{};
-    if (inflateInit(&stream) != Z_OK) failSerialized(path, "out of memory");
-    std::string out;
-    std::string portion(1 << 20, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-    stream.avail_in = static_cast<uInt>(packed.size());
-    int state = Z_OK;
-    while (state == Z_OK && out.size() <= packed.size() * kMostExpansion) {
-        stream.next_out = reinterpret_cast<Bytef*>(portion.data());
-        stream.avail_out = static_cast<uInt>(portion.size());
-        state = inflate(&stream, Z_NO_FLUSH);
-        out.append(portion.data(), portion.size() - stream.avail_out);
-    }
-    inflateEnd(&stream);
-    if (state != Z_STREAM_END) failSerialized(path, "a mesh of it is damaged");
-    return out;
+std::string meshBytes(std::string_view packed, const std::string& path) {
+    Inflated result = inflated(packed, Packing::zlib, packed.size() * kMostExpansion);
+    if (result.end != Inflated::End::whole) failSerialized(path, "a mesh of it is damaged");
+    return std::move(result.bytes);
 }
 
 // Values one after the other.
@@ -140,7 +127,7 @@ MeshData readSerializedMesh(const std::string& path, std::size_t index) {
     };
     const std::uint64_t begin = offset(index), end = offset(index + 1);
     if (begin > table || end > table || end < begin + 4) failSerialized(path, "its list of meshes is damaged");
-    MeshData mesh = meshOf(inflated(bytes.substr(begin + 4, end - begin - 4), path), version, path);
+    MeshData mesh = meshOf(meshBytes(bytes.substr(begin + 4, end - begin - 4), path), version, path);
     for (const Vec3 p : mesh.positions)
         if (!std::isfinite(p.x + p.y + p.z)) failSerialized(path, "a vertex has numbers that are not finite");
     return mesh;

@@ -27,19 +27,12 @@ void pbrtAssemble(PbrtShared& shared, std::list<SceneNode>& nodes) {
     nodes.push_back(std::move(group));
 }
 
-// The names of types, which names that a scene gives would hide.
-void pbrtReserve(NameTable& names, std::initializer_list<const char*> types) {
-    for (const char* type : types) names.take(type, "");
-}
-
+// The names of types, which names that a scene gives would hide; spectra stand where textures do.
 void pbrtReserveTypes(PbrtShared& shared) {
-    pbrtReserve(shared.materialNames,
-                {"diffuse", "conductor", "dielectric", "subsurface", "mix", "two-sided", "layered", "boundary", "sheen",
-                 "thin-dielectric", "diffuse-transmission", "hair", "openpbr", "preset"});
-    pbrtReserve(shared.textureNames,
-                {"image", "noise", "checker", "ramp", "triplanar", "attribute", "product", "rgb", "srgb", "table",
-                 "blackbody", "illuminant", "line", "measured", "glass", "metal", "sellmeier", "cauchy"});
-    pbrtReserve(shared.mediumNames, {"homogeneous", "noise", "preset"});
+    reserveTypeNames(shared.materialNames, shared.textureNames, shared.mediumNames);
+    for (const char* spectrum : {"rgb", "srgb", "table", "blackbody", "illuminant", "line", "measured", "glass",
+                                 "metal", "sellmeier", "cauchy"})
+        shared.textureNames.take(spectrum, {});
 }
 
 } // namespace

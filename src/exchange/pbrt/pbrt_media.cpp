@@ -125,7 +125,7 @@ void PbrtMedia::grid(PbrtMedium& made, const PbrtParams& params, const Transform
     if (step.x == 0 || step.y == 0 || step.z == 0)
         return void(faults.error("E0802", params.directive, "the box of this grid is empty"));
     made.node.word("vdb").text(shared_.out.files.write(stem, "vdb", vdbFile(counts, density)));
-    pbrtTransform(made.node, Transform::scale(step).then(Transform::translate(p0 + step * 0.5)).then(place));
+    writeTransform(made.node, Transform::scale(step).then(Transform::translate(p0 + step * 0.5)).then(place));
     phase(made.node, params);
     for (const char* emission : {"Le", "Lescale", "temperature", "temperatureoffset", "temperaturescale",
                                  "temperaturecutoff", "emissivescale"})
@@ -194,7 +194,7 @@ bool PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transf
     if (params.has("Lescale"))
         shared_.out.leftOut(&made.node, params.spanOf("Lescale"), "what a volume emits by its temperature",
                             "write `temperature` and `emissivity` of the volume by hand");
-    pbrtTransform(made.node, place);
+    writeTransform(made.node, place);
     return true;
 }
 
@@ -212,7 +212,7 @@ void PbrtMedia::cloud(PbrtMedium& made, const PbrtParams& params, const Transfor
     for (const auto& [param, property] : kPbrtCoefficients)
         coefficient(node, params, param, property, std::max(density, 0.0));
     phase(node, params);
-    pbrtTransform(node, place);
+    writeTransform(node, place);
     shared_.out.approximated(&node, params.directive, "a medium of type `cloud`",
                              "`volume noise` has other heaps of about that size in the same box");
 }

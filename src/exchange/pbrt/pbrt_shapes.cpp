@@ -49,11 +49,11 @@ void PbrtShapes::into(std::list<SceneNode>& nodes, bool isObject) {
 }
 
 void PbrtShapes::place(SceneNode& node, const PbrtMotion& motion, const Transform& before) const {
-    if (!motion.moves()) return pbrtTransform(node, before.then(motion.at[0]));
+    if (!motion.moves()) return writeTransform(node, before.then(motion.at[0]));
     shared_.moves = true;
     SceneNode& transform = node.child("transform");
-    pbrtSteps(transform.child("at").number(first_).word("s"), before.then(motion.at[0]));
-    pbrtSteps(transform.child("at").number(last_).word("s"), before.then(motion.at[1]));
+    writeSteps(transform.child("at").number(first_).word("s"), before.then(motion.at[0]));
+    writeSteps(transform.child("at").number(last_).word("s"), before.then(motion.at[1]));
 }
 
 bool PbrtShapes::needsUvs(const Making& m) const {

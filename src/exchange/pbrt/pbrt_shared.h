@@ -2,6 +2,7 @@
 #pragma once
 
 #include "exchange/shared/import.h"
+#include "exchange/shared/placement.h"
 #include "math/transform.h"
 
 #include <filesystem>
@@ -39,12 +40,6 @@ struct PbrtShared {
     // From pbrt's world to ours.
     Transform toOurs() const { return mirrored ? Transform::scale({-1, 1, 1}) : Transform(); }
 };
-
-// Fills `transform { … }` with a map, as plain steps where it is that plain; nothing where it is the identity.
-void pbrtTransform(SceneNode& parent, const Transform&);
-// Steps alone, of a transform or of a key of one; `matrix` and the like. At least one.
-void pbrtSteps(SceneNode& transform, const Transform&);
-bool pbrtIsIdentity(const Transform&);
 
 // The bytes of a file, unpacked where it is compressed by gzip. Throws IoError.
 std::string pbrtReadFile(const std::filesystem::path&);

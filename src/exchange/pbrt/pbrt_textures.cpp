@@ -190,7 +190,7 @@ PbrtTexture PbrtTextures::checker(const Making& m) {
     if (dimension == 3) {
         const double size = m.place.uniformScale().value_or(1);
         node.child("scale").number(size > 0 ? size : 1).word("m");
-        if (!pbrtIsIdentity(m.place))
+        if (!isIdentity(m.place))
             shared_.out.approximated(m.node, m.params.directive, "the place of a pattern in space",
                                      "patterns are in the space of the shape that has them");
     } else {

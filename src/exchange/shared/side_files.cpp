@@ -60,4 +60,15 @@ std::string NameTable::take(std::string_view wish, std::string_view fallback) {
     return name;
 }
 
+void reserveTypeNames(NameTable& materials, NameTable& textures, NameTable& media) {
+    for (const char* type :
+         {"diffuse", "conductor", "dielectric", "subsurface", "mix", "two-sided", "layered", "boundary", "sheen",
+          "thin-dielectric", "diffuse-transmission", "hair", "openpbr", "preset"})
+        materials.take(type, {});
+    for (const char* type :
+         {"image", "noise", "checker", "ramp", "triplanar", "attribute", "product", "placed", "channel"})
+        textures.take(type, {});
+    for (const char* type : {"homogeneous", "noise", "preset"}) media.take(type, {});
+}
+
 } // namespace abbe::exchange

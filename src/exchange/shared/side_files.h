@@ -43,4 +43,7 @@ class NameTable {
     std::map<std::string, int, std::less<>> next_; // number to try for a wish
 };
 
+// The names of types, so that none that a foreign scene gives hides one (W0202).
+void reserveTypeNames(NameTable& materials, NameTable& textures, NameTable& media);
+
 } // namespace abbe::exchange

@@ -1,0 +1,39 @@
+#include "exchange/shared/placement.h"
+
+namespace abbe::exchange {
+
+namespace {
+
+bool isDiagonal(const Transform& m) {
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            if (r != c && m.a[r][c] != 0) return false;
+    return true;
+}
+
+} // namespace
+
+bool isIdentity(const Transform& m) {
+    return isDiagonal(m) && m.a[0][0] == 1 && m.a[1][1] == 1 && m.a[2][2] == 1 && m.t == Vec3d();
+}
+
+void writeSteps(SceneNode& node, const Transform& m) {
+    if (!isDiagonal(m)) {
+        SceneNode& matrix = node.child("matrix");
+        for (int r = 0; r < 3; ++r) matrix.number(m.a[r][0]).number(m.a[r][1]).number(m.a[r][2]).number(m.t[r]);
+        matrix.number(0).number(0).number(0).number(1);
+        return;
+    }
+    const Vec3d scale{m.a[0][0], m.a[1][1], m.a[2][2]};
+    if (scale.x != scale.y || scale.y != scale.z)
+        node.child("scale").vector(scale);
+    else if (scale.x != 1)
+        node.child("scale").number(scale.x);
+    if (m.t != Vec3d() || scale == Vec3d(1, 1, 1)) node.child("translate").vector(m.t);
+}
+
+void writeTransform(SceneNode& parent, const Transform& m) {
+    if (!isIdentity(m)) writeSteps(parent.child("transform"), m);
+}
+
+} // namespace abbe::exchange
