@@ -10,7 +10,8 @@ scenes=$(cd "$(dirname -- "$0")/scenes" && pwd)
 bad=$(cd "$(dirname -- "$0")/../language/bad" && pwd)
 [[ -x $program ]] || { echo "$program is no program"; exit 1; }
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# A background job that is signalled before its program has begun is still this shell, and runs the trap, too.
+trap '[[ $BASHPID != "$$" ]] || rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 faults=0
 unset NO_COLOR
