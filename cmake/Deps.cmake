@@ -33,5 +33,6 @@ dep_import(TinyGltf HEADER tiny_gltf.h LIBS tinygltf LINK nlohmann_json::nlohman
 dep_import(LibZip HEADER zip.h LIBS zip) # whose own package asks for programs of another one
 dep_import(ZLib HEADER zlib.h LIBS z)
 dep_import(PugiXml HEADER pugixml.hpp LIBS pugixml)
+dep_import(Blosc HEADER blosc.h LIBS blosc)
 dep_import(NanoVDB HEADER nanovdb/NanoVDB.h LIBS "")
 dep_import(OpenVDB HEADER openvdb/openvdb.h LIBS openvdb LINK TBB::tbb Imath::Imath)

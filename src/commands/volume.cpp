@@ -57,7 +57,7 @@ constexpr CommandEntry kActions[] = {{"info", "", kVolumeInfoHelp, makeCommand<V
 std::span<const CommandEntry> volumeActions() { return kActions; }
 
 void addArguments(Arguments& a, VolumeInfoOptions& o) {
-    a.argument("file", &o.input, "OpenVDB file").require();
+    a.argument("file", &o.input, "OpenVDB or NanoVDB file").require();
     addJson(a);
 }
 
@@ -73,7 +73,7 @@ void addArguments(Arguments& a, VolumeMakeOptions& o) {
 }
 
 void addArguments(Arguments& a, VolumeConvertOptions& o) {
-    a.argument("input", &o.input, "OpenVDB file").require();
+    a.argument("input", &o.input, "OpenVDB or NanoVDB file").require();
     a.argument("output", &o.output, "OpenVDB file to write").require();
     a.value("--grid", "NAME", &o.grids, "Only this grid; may be repeated");
     a.value("--resample", "FACTOR", &o.resample, "Size of the new voxels in old ones: 2 is an eighth of them")

@@ -77,7 +77,7 @@ TypeInfo vdbType() {
             .argument(0)
             .required()
             .synonyms({"filename", "path"})
-            .doc("OpenVDB file.")
+            .doc("OpenVDB or NanoVDB file.")
             .example("file \"cloud.vdb\""),
     };
     for (FieldInfo& f : gridFields()) fields.push_back(std::move(f));
@@ -93,7 +93,7 @@ TypeInfo vdbType() {
                          .example("transform { scale 2; translate 0 1 0 }"));
     return {Kind::volume,
             "vdb",
-            "Cloud, smoke and fire from the grids of an OpenVDB file.",
+            "Cloud, smoke and fire from the grids of an OpenVDB or NanoVDB file.",
             "volume cloud vdb \"cloud.vdb\" { extinction 0.08 per-m; phase henyey-greenstein 0.85 }",
             false,
             std::move(fields)};

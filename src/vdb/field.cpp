@@ -28,13 +28,9 @@ std::string beginningOf(const std::string& path) {
     return bytes;
 }
 
-// A file of another kind is told by its first bytes, which are an eight-byte number in every OpenVDB file.
-void checkMagic(const std::string& path) {
-    const std::string begin = beginningOf(path);
+bool looksLikeOpenVdb(const std::string& begin) {
     const std::int64_t magic = openvdb::OPENVDB_MAGIC;
-    if (begin.empty()) throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` is empty", path));
-    if (begin.size() == sizeof magic && std::memcmp(begin.data(), &magic, sizeof magic) == 0) return;
-    throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` is not an OpenVDB file", path));
+    return begin.size() == sizeof magic && std::memcmp(begin.data(), &magic, sizeof magic) == 0;
 }
 
 std::string damage(const std::string& subject, const std::string& path, const std::exception& e) {
@@ -48,29 +44,64 @@ std::string damage(const std::string& subject, const std::string& path, const st
 
 VdbInput::VdbInput(const std::string& path) : path_(path) {
     openvdb::initialize();
-    checkMagic(path);
-    file_ = std::make_unique<openvdb::io::File>(path);
+    // A file of another kind is told by its first bytes, which are an eight-byte number in every file of these two.
+    const std::string begin = beginningOf(path);
+    if (begin.empty()) throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` is empty", path));
+    const bool nano = looksLikeNanoVdb(begin);
+    if (!nano && !looksLikeOpenVdb(begin))
+        throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` is not an OpenVDB or NanoVDB file", path));
     try {
-        file_->open(false); // delayed loading would read later, from another place
+        if (nano)
+            nano_ = std::make_unique<NanoVdbFile>(path);
+        else
+            openVdb();
+    } catch (const std::runtime_error& e) { // openvdb::Exception is none
+        throw Failure(VdbFault::Kind::damaged, damage(fmt::format("`{}`", path), path, e));
     } catch (const openvdb::Exception& e) {
         throw Failure(VdbFault::Kind::damaged, damage(fmt::format("`{}`", path), path, e));
     }
-    if (file_->beginName() == file_->endName())
+    if (names().empty())
         throw Failure(VdbFault::Kind::damaged, fmt::format("`{}` holds no grids: it is empty or cut off", path));
 }
 
+void VdbInput::openVdb() {
+    file_ = std::make_unique<openvdb::io::File>(path_);
+    file_->open(false); // delayed loading would read later, from another place
+}
+
 std::vector<std::string> VdbInput::names() const {
+    if (nano_) return nano_->names();
     std::vector<std::string> names;
     for (auto name = file_->beginName(); name != file_->endName(); ++name) names.push_back(name.gridName());
     return names;
 }
 
+std::string VdbInput::library() const { return nano_ ? "NanoVDB " + nano_->library() : file_->version(); }
+
+std::string VdbInput::compression() const {
+    if (nano_) return nano_->compression();
+    const std::uint32_t flags = file_->compression();
+    std::string text = flags & openvdb::io::COMPRESS_BLOSC ? "blosc"
+                       : flags & openvdb::io::COMPRESS_ZIP ? "zip"
+                                                           : "none";
+    if (flags & openvdb::io::COMPRESS_ACTIVE_MASK) text += ", active voxels only";
+    return text;
+}
+
+openvdb::MetaMap VdbInput::metadata() const { return nano_ ? openvdb::MetaMap() : *file_->getMetadata(); }
+
+openvdb::GridBase::Ptr VdbInput::readGrid(const std::string& name) {
+    if (nano_) return nano_->grid(name);
+    return file_->hasGrid(name) ? file_->readGrid(name) : nullptr;
+}
+
 openvdb::GridBase::Ptr VdbInput::grid(const std::string& name) {
-    if (!file_->hasGrid(name)) return nullptr;
     try {
-        return file_->readGrid(name);
+        return readGrid(name);
     } catch (const openvdb::ArithmeticError&) {
         throw Failure(VdbFault::Kind::transform, subject(name) + " has a transform without an inverse");
+    } catch (const std::runtime_error& e) { // of NanoVDB
+        throw Failure(VdbFault::Kind::damaged, damage(subject(name), path_, e));
     } catch (const openvdb::Exception& e) {
         throw Failure(VdbFault::Kind::damaged, damage(subject(name), path_, e));
     }

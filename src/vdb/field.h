@@ -1,6 +1,8 @@
-// Grids of an OpenVDB file, fields made of them that can be rendered, and new grids. The one header with OpenVDB.
+// Grids of an OpenVDB or NanoVDB file, fields made of them that can be rendered, and new grids. The one header with
+// OpenVDB.
 #pragma once
 
+#include "vdb/nano_file.h"
 #include "volumes/vdb_file.h"
 #include "volumes/volume_recipe.h"
 
@@ -40,16 +42,22 @@ class VdbInput {
   public:
     explicit VdbInput(const std::string& path);
     const std::string& path() const { return path_; }
-    openvdb::io::File& file() { return *file_; }
     std::vector<std::string> names() const;
+    std::string library() const; // version of what wrote the file
+    std::string compression() const;
+    openvdb::MetaMap metadata() const; // of the whole file
     // nullptr if there is no such grid. Throws Failure if its transform is singular.
     openvdb::GridBase::Ptr grid(const std::string& name);
     // "grid `density` of `a.vdb`", for messages.
     std::string subject(const std::string& name) const;
 
   private:
+    void openVdb();
+    openvdb::GridBase::Ptr readGrid(const std::string& name);
+
     std::string path_;
-    std::unique_ptr<openvdb::io::File> file_;
+    std::unique_ptr<openvdb::io::File> file_; // one of the two
+    std::unique_ptr<NanoVdbFile> nano_;
 };
 
 // A field with background 0, inactive voxels 0 and finite values; and what was changed for that.

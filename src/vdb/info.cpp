@@ -114,21 +114,13 @@ void inspect(const openvdb::GridBase& grid, VdbGridInfo& info) {
         readValues<Vec3IGrid>(grid, info);
 }
 
-std::string compressionText(std::uint32_t flags) {
-    std::string text = flags & openvdb::io::COMPRESS_BLOSC ? "blosc"
-                       : flags & openvdb::io::COMPRESS_ZIP ? "zip"
-                                                           : "none";
-    if (flags & openvdb::io::COMPRESS_ACTIVE_MASK) text += ", active voxels only";
-    return text;
-}
-
 } // namespace
 
 void info(Arguments arguments) {
     VdbInput input(arguments[0]);
     VdbFileInfo info;
-    info.library = input.file().version();
-    info.metadata = metadataOf(*input.file().getMetadata());
+    info.library = input.library();
+    info.metadata = metadataOf(input.metadata());
     for (const std::string& name : input.names()) {
         VdbGridInfo& grid = info.grids.emplace_back();
         grid.name = name;
@@ -139,7 +131,7 @@ void info(Arguments arguments) {
             grid.singular = true;
         }
     }
-    info.compression = compressionText(input.file().compression());
+    info.compression = input.compression();
     writeFrame(VdbFrame::fileInfo, info);
 }
 

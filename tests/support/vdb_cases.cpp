@@ -1,7 +1,16 @@
-// Writes an OpenVDB file of awkward grids for the tests of volumes:  vdb_cases OUT.vdb
+// Writes files of grids for the tests of volumes:  vdb_cases OUT.vdb   awkward ones
+//                                                 vdb_cases OUT.nvdb  NanoVDB, the segments packed in three ways
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
+#include <string_view>
+#include <vector>
+
+#define NANOVDB_USE_BLOSC
+#define NANOVDB_USE_ZIP
+#include <nanovdb/util/IO.h>
 
 namespace {
 
@@ -69,11 +78,50 @@ GridBase::Ptr turned() {
     return grid;
 }
 
+// What differs from voxel to voxel, beside a tile of 8³ and one of 128³, far from them a single voxel, half a metre a
+// voxel and turned.
+FloatGrid::Ptr varied() {
+    auto grid = named<FloatGrid>("density");
+    auto a = grid->getAccessor();
+    for (int i = 0; i < 20; ++i) a.setValue(Coord(i - 3, 2 * i, i % 3), 0.125f + 0.25f * static_cast<float>(i));
+    grid->tree().addTile(1, Coord(64, 0, 0), 2.f, true);
+    grid->tree().addTile(2, Coord(256, 0, 0), 3.f, true);
+    a.setValue(Coord(-5000, 9000, 12000), 4.f);
+    grid->setTransform(turned()->transformPtr());
+    return grid;
+}
+
+template <typename Build, typename GridType> auto nano(const GridType& grid, const char* name) {
+    auto copy = grid.deepCopy();
+    copy->setName(name);
+    nanovdb::OpenToNanoVDB<typename GridType::ValueType, Build> convert;
+    return convert(*copy);
+}
+
+int writeNano(const char* path) {
+    using nanovdb::io::Codec;
+    using Handles = std::vector<nanovdb::GridHandle<nanovdb::HostBuffer>>;
+    std::ofstream file(path, std::ios::binary);
+    const auto density = varied();
+    Handles plain, zipped, blosc;
+    plain.push_back(nano<float>(*density, "density"));
+    plain.push_back(nano<nanovdb::Fp16>(*density, "half"));
+    plain.push_back(nano<nanovdb::Vec3f>(*block<Vec3SGrid>("wind", Vec3s(1, 2, 3)), "wind"));
+    zipped.push_back(nano<float>(*density, "zipped"));
+    blosc.push_back(nano<float>(*density, "blosc"));
+    blosc.push_back(nano<nanovdb::FpN>(*density, "packed"));
+    nanovdb::io::writeGrids(file, plain, Codec::NONE);
+    nanovdb::io::writeGrids(file, zipped, Codec::ZIP);
+    nanovdb::io::writeGrids(file, blosc, Codec::BLOSC);
+    return file ? 0 : 1;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     initialize();
+    if (std::string_view(argv[1]).ends_with(".nvdb")) return writeNano(argv[1]);
     auto frustum = std::make_shared<math::NonlinearFrustumMap>(BBoxd(Vec3d(0), Vec3d(10)), 0.5, 10.0);
     GridPtrVec grids{spoilt(),
                      withBackground(),

@@ -171,21 +171,16 @@ void PbrtMedia::rgbGrid(PbrtMedium& made, const PbrtParams& params, const Transf
                              "its density varies from place to place, its colour is the mean everywhere");
 }
 
-bool PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transform& place) {
+void PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transform& place) {
     Diagnostics& faults = shared_.faults();
-    const std::string name = params.text("filename", "", faults);
-    for (const char* known :
-         {"Lescale", "temperaturename", "temperaturecutoff", "temperatureoffset", "temperaturescale", "densityname"})
+    for (const char* known : {"Lescale", "temperaturecutoff", "temperatureoffset", "temperaturescale"})
         params.find(known);
-    std::filesystem::path file = shared_.file(name);
-    file.replace_extension(".vdb");
+    std::filesystem::path file = shared_.file(params.text("filename", "", faults));
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) {
-        shared_.out.leftOut(
-            nullptr, params.directive, fmt::format("the volume `{}`", name),
-            fmt::format("NanoVDB files are not read; `{}` beside it would be", file.filename().string()));
-        for (const char* known : {"sigma_s", "sigma_a", "scale", "g"}) params.find(known);
-        return false;
+    if (!std::filesystem::exists(file, error)) { // some scenes are handed on with what their grids were made from
+        std::filesystem::path source = file;
+        source.replace_extension(".vdb");
+        if (std::filesystem::exists(source, error)) file = source;
     }
     made.node.word("vdb").text(shared_.out.files.refer(file));
     const double scale = params.number("scale", 1, faults);
@@ -195,7 +190,6 @@ bool PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transf
         shared_.out.leftOut(&made.node, params.spanOf("Lescale"), "what a volume emits by its temperature",
                             "write `temperature` and `emissivity` of the volume by hand");
     writeTransform(made.node, place);
-    return true;
 }
 
 void PbrtMedia::cloud(PbrtMedium& made, const PbrtParams& params, const Transform& place) {
@@ -223,7 +217,7 @@ void PbrtMedia::define(const std::string& name, const PbrtParams& params, const 
         shared_.faults().error("E0802", params.directive, fmt::format("the medium `{}` is defined twice", name));
     PbrtMedium made;
     if (type == "nanovdb") {
-        if (!nanovdb(made, params, place)) made.isPlaced = true; // there is nothing to place
+        nanovdb(made, params, place);
     } else if (type == "cloud") {
         cloud(made, params, place);
     } else if (type == "uniformgrid") {

@@ -35,7 +35,7 @@ class PbrtMedia {
               std::array<int, 3> counts, std::span<const float> density);
     void uniformGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
     void rgbGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
-    bool nanovdb(PbrtMedium&, const PbrtParams&, const Transform& place);
+    void nanovdb(PbrtMedium&, const PbrtParams&, const Transform& place);
     void cloud(PbrtMedium&, const PbrtParams&, const Transform& place);
 
     PbrtShared& shared_;

@@ -197,8 +197,11 @@ TEST_CASE("pbrt: media inside of shapes, around the camera, and what has no coun
     CHECK(grid.has("volume vdb \"case-files/g.vdb\""));
     CHECK(grid.has("scale 0.5 1 1; translate 0.25 0.5 0.5"));
     CHECK(grid.report() == "");
-    CHECK(PbrtCase(pbrtWorld("MakeNamedMedium \"n\" \"string type\" \"nanovdb\" \"string filename\" \"a.nvdb\"\n"))
-              .says("NanoVDB files are not read"));
+    const PbrtCase nano(
+        pbrtWorld("MakeNamedMedium \"n\" \"string type\" \"nanovdb\" \"string filename\" \"a.nvdb\" \"float Lescale\" "
+                  "2\nMediumInterface \"n\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n"));
+    CHECK(nano.has("a.nvdb\""));
+    CHECK(nano.says("emits by its temperature"));
     CHECK(pbrtHolds(pbrtMade("MakeNamedMedium \"c\" \"string type\" \"cloud\"\nMediumInterface \"c\" \"\"\nMaterial "
                              "\"interface\"\nShape \"sphere\"\n"),
                     "volume noise"));

@@ -235,6 +235,48 @@ TEST_CASE("awkward grids are put right or refused, with words") {
     }
 }
 
+TEST_CASE("NanoVDB files: every packing and every width of numbers") {
+    const Folder folder;
+    const std::string path = folder.file("cases.nvdb");
+    REQUIRE(std::system((std::string(ABBE_VDB_CASES) + " " + path).c_str()) == 0);
+
+    const VdbGrid density = readOne(path, {"density"});
+    CHECK(density.scalar->activeVoxels() == 20 + 512 + 128 * 128 * 128 + 1);
+    CHECK(density.scalar->maximum() == 4.875f);
+    const Vec3d p = density.scalar->indexToWorld().point({2, 0, 0}); // index x is world y
+    CHECK(p.x == doctest::Approx(10));
+    CHECK(p.y == doctest::Approx(21));
+    CHECK(p.z == doctest::Approx(30));
+    struct Voxel {
+        Vec3i at;
+        float value;
+    };
+    for (const char* name : {"density", "zipped", "blosc", "half", "packed"}) {
+        INFO(name);
+        const VdbGrid grid = readOne(path, {name});
+        auto s = grid.scalar->sampler();
+        for (const Voxel v :
+             {Voxel{{-3, 0, 0}, 0.125f}, Voxel{{16, 38, 1}, 4.875f}, Voxel{{66, 3, 5}, 2}, Voxel{{300, 100, 7}, 3},
+              Voxel{{-5000, 9000, 12000}, 4}, Voxel{{-2, 0, 0}, 0}, Voxel{{90, 0, 0}, 0}})
+            CHECK(s.voxel(v.at) == doctest::Approx(v.value).epsilon(1e-3));
+    }
+    CHECK(readOne(path, {"wind", VdbUse::vector}).vector->sampler().at({1, 1, 2}) == Vec3(1, 2, 3));
+    CHECK(faultOf(path, {"wind"}).kind == VdbFault::Kind::wrongKind);
+    CHECK(faultOf(path, {"wing"}).names.size() == 6);
+    const auto info = inspectVdb(path);
+    REQUIRE(std::holds_alternative<VdbFileInfo>(info));
+    CHECK(std::get<VdbFileInfo>(info).grids.size() == 6);
+    CHECK(std::get<VdbFileInfo>(info).library.starts_with("NanoVDB 32"));
+
+    // Cut off anywhere: what is left of it is read, or refused; nothing hangs.
+    std::ifstream whole(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+    for (const std::size_t size : {std::size_t{12}, std::size_t{100}, std::size_t{400}, bytes.size() / 2}) {
+        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(size));
+        CHECK(faultOf(path, {"packed"}).kind == VdbFault::Kind::damaged);
+    }
+}
+
 TEST_CASE("files of other programs") {
     if (shared("smoke.vdb").empty()) return;
     const VdbGrid smoke = readOne(shared("smoke.vdb"), {"density"});
