@@ -222,8 +222,9 @@ ExitCode info(const VolumeInfoOptions& options, const CommonOptions& common) {
                             "\n");
         return ExitCode::done;
     }
-    std::string s = fmt::format("format       OpenVDB {}\ncompression  {}\ngrids        {}\n", file.library,
-                                file.compression, file.grids.size());
+    std::string s = fmt::format("format       {}{}\ncompression  {}\ngrids        {}\n",
+                                file.library.starts_with("Nano") ? "" : "OpenVDB ", file.library, file.compression,
+                                file.grids.size());
     for (const auto& [name, value] : file.metadata) s += fmt::format("  {} = {}\n", name, value);
     for (const VdbGridInfo& g : file.grids) s += text(g);
     common.console.data(s);

@@ -179,10 +179,10 @@ TEST_CASE("quadrature under a ball: twice as fine is the same to 0.05 %") {
 
 TEST_CASE("irradiance at twenty places under a ball") {
     compareView(kLine, 0.5, nightly() ? 1u << 19 : 1u << 15);
-    compareView(kEdge, 0.5, nightly() ? 1u << 19 : 1u << 15);
+    if (nightly()) compareView(kEdge, 0.5, 1u << 19);
     // Nightly, two and a half standard errors of any place are 0.5 %; most are far less.
     for (const double lightRadius : {0.5, 0.1, 0.02})
-        if (nightly() || lightRadius != 0.1)
+        if (nightly() || lightRadius == 0.02)
             compareRings(lightRadius, nightly() ? 7u << 13 : 1u << 9, nightly() ? 0.002 : 0.06);
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("glints: a light at a place, in silver, and a lens with an opening") {
     agree("lamp", inlineScene(kLight, "conductor { index metal Ag }", "aperture 100 mm; focus 5", ""), 0.05);
 }
 
-TEST_CASE("glints: fog on the way") {
+TEST_CASE("glints: fog on the way" * doctest::skip(!nightly())) {
     agree("fog",
           inlineScene("shape box { min -3 -1.35 -2; max 3 2 2; material boundary\n"
                       "    interior homogeneous { extinction table 400 0.1 700 0.05 per-m; albedo 0.5 } }\n" +

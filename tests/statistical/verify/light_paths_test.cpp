@@ -106,7 +106,7 @@ TEST_CASE("light paths: a glass ball in fog") {
 
 // Most of what is seen the medium scatters before anything else; the wall is lit through the prism, too, and its hero
 // alone may have come that way.
-TEST_CASE("light paths: a light in the haze behind a prism") {
+TEST_CASE("light paths: a light in the haze behind a prism" * doctest::skip(!nightly())) {
     compareWays("haze",
                 lightPathScene("camera { from 0.4 1.2 3; look-at 0 0.7 0; fov 40 deg }\n" + std::string(kFloor) +
                                "light spot { position -1.9 1 0.2; look-at 1 0.7 0; angle 50 deg; inner-angle 30 deg; "

@@ -83,7 +83,7 @@ TEST_CASE("merging: beside manifold sampling, which has some of the light") {
     mergedAgree("ball", renderMerged(scene, false, 256), found, 0.02);
 }
 
-TEST_CASE("merging: fog and absorbing glass") {
+TEST_CASE("merging: fog and absorbing glass" * doctest::skip(!nightly())) {
     const TestScene scene = inlineScene(
         "shape sphere { center 0 0.9 -1; radius 0.5; material dielectric { ior 1.5; absorption table 400 0.5 700 0.1 "
         "per-m } }\n"
