@@ -59,7 +59,7 @@ set(folders base math spectrum denoise schema parser io volumes vdb render geome
 
 # Libraries that only one folder may know, or two.
 set(library_folders
-    "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "OpenColorIO/=io"
+    "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "draco/=io" "meshoptimizer\\.h=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
     "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs" "zip\\.h=packs" "pugixml=exchange/mitsuba" "zlib\\.h=exchange/shared")
 

@@ -245,6 +245,7 @@ constexpr CodeInfo kCodes[] = {
     {"W0458", "a texture went away", "A file of a texture vanished or was damaged while rendering. From then on it is black, so a render ends there (E0666). A damaged file of the texture cache is removed, so that the next render makes it anew."},
     {"W0602", "a black environment", "No pixel of the environment image is above zero. It lights nothing and is left out."},
     {"W0603", "faces without area", "Faces whose corners lie in a line or a point cannot be seen and are left out."},
+    {"W0604", "parts of a glTF file are left out", "Points and lines have no faces: model them, or use `points` and `curves`. What an extension animates that is no node (KHR_animation_pointer) stands still. The message names the first one by its path in the JSON."},
     {"W0621", "curves or points without width", "Segments whose control points all have the radius 0 or lie in one place, and points with radius 0, cannot be seen. The message counts them."},
     {"W0630", "values beyond half floats", "The film's `output` asks for 16-bit values, whose largest is 65504. Larger ones were written as that."},
     {"W0631", "a channel was left out", "An ACES container (`container=aces`) holds red, green and blue alone. Leave out `container` to have an OpenEXR file with everything."},

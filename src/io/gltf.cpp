@@ -2,7 +2,7 @@
 
 #include "base/memory_limit.h"
 #include "io/file.h"
-#include "io/gltf_document.h"
+#include "io/gltf_scene.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,58 +11,72 @@ namespace abbe {
 
 namespace {
 
+constexpr std::size_t kMostLeftOut = 100; // that are named: nodes share meshes
+
 class GltfMeshReader {
   public:
-    explicit GltfMeshReader(const GltfDocument& document) : document_(document) {}
+    GltfMeshReader(const GltfDocument& document, const GltfSelection& selection);
 
-    MeshFile read(const GltfSelection&);
+    MeshFile read();
 
   private:
-    void checkWork(const std::vector<PlacedGltfNode>&, const GltfSelection&) const;
-    bool isChosen(const tinygltf::Mesh& mesh, const GltfSelection& selection) const {
-        return selection.mesh.empty() || mesh.name == selection.mesh;
-    }
-    void readNode(const PlacedGltfNode&);
-    void checkFeatures(const tinygltf::Node&, const tinygltf::Mesh&, int node) const;
-    void readPrimitive(const tinygltf::Primitive&, const PlacedGltfNode&, const std::string& path);
-    std::vector<std::uint32_t> corners(const tinygltf::Primitive&, std::size_t vertices, const std::string& path) const;
-    void addVertices(const tinygltf::Primitive&, const Transform&, std::size_t count, const std::string& path);
-    void addTriangles(const tinygltf::Primitive&, const std::vector<std::uint32_t>&, std::size_t firstVertex,
-                      bool mirrored, const std::string& path);
+    // A node with a mesh that was asked for.
+    struct Chosen {
+        const GltfNodePose* pose;
+        const tinygltf::Mesh* mesh;
+    };
+    void choose(const std::string& mesh);
+    double jointsOf(int skin) const;
+    void checkWork() const;
+    void readNode(const Chosen&);
+    void add(const GltfPrimitive&, const Transform&, const std::string& path);
+    void addAttributes(const MeshData&, std::size_t before);
 
     const GltfDocument& document_;
+    GltfPose pose_;
+    std::vector<Chosen> chosen_;
     MeshFile file_;
     bool anyNormals_ = false, anyUvs_ = false;
 };
 
-bool isTriangles(int mode) {
-    return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
-           mode == TINYGLTF_MODE_TRIANGLE_FAN;
+// Without a name the first animation, if there is a time.
+int animationOf(const GltfDocument& document, const GltfSelection& selection) {
+    if (!selection.animation.empty()) return GltfAnimation::named(document, selection.animation);
+    if (!selection.time) return -1;
+    if (document.model().animations.empty()) document.fail("it has no animation, and so no `time`");
+    return 0;
 }
 
-bool allZero(const std::vector<double>& weights) {
-    for (const double w : weights)
-        if (w != 0) return false;
-    return true;
-}
-
-MeshFile GltfMeshReader::read(const GltfSelection& selection) {
+GltfMeshReader::GltfMeshReader(const GltfDocument& document, const GltfSelection& selection) : document_(document) {
     file_.coordinates = MeshCoordinates::metresYUp;
-    const auto& model = document_.model();
-    const auto nodes = document_.nodes(selection.node);
-    checkWork(nodes, selection);
-    bool found = selection.mesh.empty();
-    for (const PlacedGltfNode& placed : nodes) {
-        const int mesh = model.nodes[static_cast<std::size_t>(placed.node)].mesh;
-        if (mesh < 0) continue;
-        if (static_cast<std::size_t>(mesh) >= model.meshes.size())
-            document_.fail(
-                fmt::format("nodes[{}].mesh is {}, but there are {}", placed.node, mesh, model.meshes.size()));
-        if (!isChosen(model.meshes[static_cast<std::size_t>(mesh)], selection)) continue;
-        found = true;
-        readNode(placed);
+    const GltfAnimation animation(document, animationOf(document, selection));
+    const auto span = animation.span();
+    pose_ = animation.pose(selection.time.value_or(span ? span->first : 0), selection.node);
+    file_.leftOut = animation.leftOut();
+    choose(selection.mesh);
+}
+
+// Matrices that a primitive reads.
+double GltfMeshReader::jointsOf(int skin) const {
+    const auto& skins = document_.model().skins;
+    if (static_cast<std::size_t>(skin) >= skins.size()) return 0;
+    const tinygltf::Skin& of = skins[static_cast<std::size_t>(skin)];
+    const int inverse = of.inverseBindMatrices;
+    const std::size_t matrices = inverse < 0 ? 0 : document_.count(inverse, "inverseBindMatrices");
+    return static_cast<double>(std::max(of.joints.size(), matrices));
+}
+
+void GltfMeshReader::choose(const std::string& name) {
+    for (const GltfNodePose& pose : pose_.nodes()) {
+        const tinygltf::Mesh* const mesh = document_.meshOf(pose.node);
+        if (mesh && (name.empty() || mesh->name == name)) chosen_.push_back({&pose, mesh});
     }
-    if (!found) document_.fail(fmt::format("no mesh of the scene is named `{}`", selection.mesh));
+    if (chosen_.empty() && !name.empty()) document_.fail(fmt::format("no mesh of the scene is named `{}`", name));
+}
+
+MeshFile GltfMeshReader::read() {
+    checkWork();
+    for (const Chosen& chosen : chosen_) readNode(chosen);
     if (!anyNormals_) file_.mesh.normals.clear();
     if (!anyUvs_) file_.mesh.uvs.clear();
     return std::move(file_);
@@ -70,129 +84,93 @@ MeshFile GltfMeshReader::read(const GltfSelection& selection) {
 
 // Nodes share meshes, meshes share accessors and accessors may have no bytes: what comes out of a file is not bounded
 // by its size. A scene full of copies has some hundred vertices for a byte.
-void GltfMeshReader::checkWork(const std::vector<PlacedGltfNode>& nodes, const GltfSelection& selection) const {
-    constexpr double kMostPerByte = 1024;
-    const auto& model = document_.model();
-    const double most = kMostPerByte * static_cast<double>(document_.bytes());
+void GltfMeshReader::checkWork() const {
+    double vertices = 0, corners = 0, joints = 0;
     const auto countOf = [&](int accessor, const char* who) {
         const auto count = static_cast<double>(document_.count(accessor, who));
-        if (count > most)
-            document_.fail(fmt::format("accessors[{}] ({}): {:.0f} elements without data", accessor, who, count));
+        document_.bound(count, fmt::format("accessors[{}] ({})", accessor, who));
         return count;
     };
-    double vertices = 0, corners = 0;
-    for (const PlacedGltfNode& placed : nodes) {
-        const auto mesh = static_cast<std::size_t>(model.nodes[static_cast<std::size_t>(placed.node)].mesh);
-        if (mesh >= model.meshes.size() || !isChosen(model.meshes[mesh], selection)) continue;
-        for (const tinygltf::Primitive& p : model.meshes[mesh].primitives) {
+    for (const Chosen& chosen : chosen_) {
+        const int skin = document_.model().nodes[static_cast<std::size_t>(chosen.pose->node)].skin;
+        const auto copies = static_cast<double>(gltfInstanceCount(document_, chosen.pose->node));
+        joints += copies;
+        for (const tinygltf::Primitive& p : chosen.mesh->primitives) {
+            joints += 1 + jointsOf(skin); // looking at one that is empty takes its time, too
             const auto position = p.attributes.find("POSITION");
             if (position == p.attributes.end()) continue;
-            vertices += countOf(position->second, "attributes.POSITION");
-            if (p.indices >= 0) corners += countOf(p.indices, "indices");
+            const double count = countOf(position->second, "attributes.POSITION");
+            vertices += count * copies;
+            joints += count * static_cast<double>(p.targets.size());
+            if (p.indices >= 0) corners += countOf(p.indices, "indices") * copies;
         }
     }
-    if (vertices + corners > most)
-        document_.fail(fmt::format("its nodes have {:.4g} vertices and corners, more than {} for each of its {} bytes",
-                                   vertices + corners, kMostPerByte, document_.bytes()));
+    document_.bound(vertices + corners + joints, "the vertices, corners and joints of its nodes");
     requireMemory(vertices * (2 * sizeof(Vec3) + sizeof(Vec2)) +
                   std::max(vertices, corners) * 2 * sizeof(std::uint32_t)); // numbers, and triangles made of them
 }
 
-// What would make the mesh look different from what is read.
-void GltfMeshReader::checkFeatures(const tinygltf::Node& node, const tinygltf::Mesh& mesh, int index) const {
-    if (node.skin >= 0) document_.fail(fmt::format("nodes[{}].skin: skinned meshes are not supported", index));
-    if (node.extensions.contains("EXT_mesh_gpu_instancing"))
-        document_.fail(fmt::format("nodes[{}]: EXT_mesh_gpu_instancing is not supported", index));
-    if (!allZero(node.weights.empty() ? mesh.weights : node.weights))
-        document_.fail(fmt::format("nodes[{}]: morph targets with weights are not supported", index));
-}
-
-void GltfMeshReader::readNode(const PlacedGltfNode& placed) {
+void GltfMeshReader::readNode(const Chosen& chosen) {
     const auto& model = document_.model();
-    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
-    const tinygltf::Mesh& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
-    checkFeatures(node, mesh, placed.node);
-    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-        const tinygltf::Primitive& primitive = mesh.primitives[i];
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(chosen.pose->node)];
+    const std::vector<Transform> copies = gltfInstances(document_, chosen.pose->node);
+    for (std::size_t i = 0; i < chosen.mesh->primitives.size(); ++i) {
+        const tinygltf::Primitive& primitive = chosen.mesh->primitives[i];
         const std::string path = fmt::format("meshes[{}].primitives[{}]", node.mesh, i);
-        if (primitive.extensions.contains("KHR_draco_mesh_compression"))
-            document_.fail(path + " is compressed by KHR_draco_mesh_compression, which is not supported");
-        if (!isTriangles(primitive.mode)) {
-            if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-                document_.fail(fmt::format("{}.mode is {}", path, primitive.mode));
-            ++file_.ignoredFaces; // points or lines
+        const GltfPrimitive read = gltfPrimitive(document_, pose_, chosen.pose->node, static_cast<int>(i));
+        if (!read.leftOut.empty()) {
+            ++file_.ignoredFaces;
+            if (file_.leftOut.size() < kMostLeftOut) file_.leftOut.push_back(fmt::format("{}: {}", path, read.leftOut));
             continue;
         }
-        MeshGroup group{node.name.empty() ? mesh.name : node.name, {}, file_.mesh.triangles.size(), 0, 0, 0};
+        MeshGroup group{node.name.empty() ? chosen.mesh->name : node.name, {}, file_.mesh.triangles.size(), 0, 0, 0};
         if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < model.materials.size())
             group.material = model.materials[static_cast<std::size_t>(primitive.material)].name;
-        readPrimitive(primitive, placed, path);
+        const Transform map = read.skinned ? Transform() : chosen.pose->world;
+        for (const Transform& copy : copies) add(read, copy.then(map), path);
         group.triangleCount = file_.mesh.triangles.size() - group.firstTriangle;
         if (group.triangleCount > 0) file_.groups.push_back(std::move(group));
     }
 }
 
-void GltfMeshReader::readPrimitive(const tinygltf::Primitive& primitive, const PlacedGltfNode& placed,
-                                   const std::string& path) {
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) return; // allowed, and nothing to see
-    const std::string who = path + ".attributes.POSITION";
-    const std::size_t count = document_.count(position->second, who), first = file_.mesh.positions.size();
-    if (count > 0xfffffffeu - first) document_.fail(path + ": more vertices than 32 bits count");
-    addVertices(primitive, placed.map, count, path);
-    addTriangles(primitive, corners(primitive, count, path), first, placed.map.determinant() < 0, path);
-}
-
-void GltfMeshReader::addVertices(const tinygltf::Primitive& primitive, const Transform& map, std::size_t count,
-                                 const std::string& path) {
+void GltfMeshReader::add(const GltfPrimitive& primitive, const Transform& map, const std::string& path) {
     MeshData& mesh = file_.mesh;
-    const auto attribute = [&](const char* name, int components) {
-        const auto found = primitive.attributes.find(name);
-        if (found == primitive.attributes.end()) return std::vector<float>();
-        const std::string who = fmt::format("{}.attributes.{}", path, name);
-        const std::size_t n = document_.count(found->second, who);
-        if (n != count) document_.fail(fmt::format("{}: {} values for {} positions", who, n, count));
-        return document_.floats(found->second, components, who);
-    };
-    const std::vector<float> positions = attribute("POSITION", 3), normals = attribute("NORMAL", 3);
-    const std::vector<float> uvs = attribute("TEXCOORD_0", 2);
-    anyNormals_ |= !normals.empty();
-    anyUvs_ |= !uvs.empty();
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 p(map.point(Vec3d(Vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]))));
+    const MeshData& from = primitive.mesh;
+    const std::size_t before = mesh.positions.size();
+    if (from.positions.size() > 0xfffffffeu - before) document_.fail(path + ": more vertices than 32 bits count");
+    anyNormals_ |= !from.normals.empty();
+    anyUvs_ |= !from.uvs.empty();
+    for (std::size_t i = 0; i < from.positions.size(); ++i) {
+        const Vec3 p(map.point(Vec3d(from.positions[i])));
         if (!isFinite(p)) document_.fail(fmt::format("{}: vertex {} is too far away", path, i));
         mesh.positions.push_back(p);
         Vec3d n;
-        if (!normals.empty()) n = map.normal(Vec3d(Vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2])));
+        if (!from.normals.empty()) n = map.normal(Vec3d(from.normals[i]));
         const double l = length(n);
         mesh.normals.push_back(l > 0 && std::isfinite(l) ? Vec3(n * (1 / l)) : Vec3());
-        mesh.uvs.push_back(uvs.empty() ? Vec2{} : Vec2{uvs[2 * i], 1 - uvs[2 * i + 1]});
+    }
+    mesh.uvs.insert(mesh.uvs.end(), from.uvs.begin(), from.uvs.end());
+    mesh.uvs.resize(mesh.positions.size(), Vec2{});
+    addAttributes(from, before);
+    const bool mirrored = map.determinant() < 0;
+    const auto first = static_cast<std::uint32_t>(before);
+    for (auto [a, b, c] : from.triangles) {
+        if (mirrored) std::swap(b, c); // keeps the outer side outside
+        mesh.triangles.push_back({first + a, first + b, first + c});
     }
 }
 
-std::vector<std::uint32_t> GltfMeshReader::corners(const tinygltf::Primitive& primitive, std::size_t vertices,
-                                                   const std::string& path) const {
-    if (primitive.indices >= 0) return document_.indices(primitive.indices, vertices, path + ".indices");
-    std::vector<std::uint32_t> all(vertices);
-    for (std::size_t i = 0; i < vertices; ++i) all[i] = static_cast<std::uint32_t>(i);
-    return all;
-}
-
-void GltfMeshReader::addTriangles(const tinygltf::Primitive& primitive, const std::vector<std::uint32_t>& corners,
-                                  std::size_t firstVertex, bool mirrored, const std::string& path) {
-    const auto first = static_cast<std::uint32_t>(firstVertex);
-    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-        if (mirrored) std::swap(b, c); // keeps the outer side outside
-        file_.mesh.triangles.push_back({first + corners[a], first + corners[b], first + corners[c]});
-    };
-    const std::size_t n = corners.size();
-    if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
-        if (n % 3 != 0) document_.fail(fmt::format("{}: {} corners are no triangles", path, n));
-        for (std::size_t i = 0; i + 2 < n; i += 3) add(i, i + 1, i + 2);
-    } else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
-        for (std::size_t i = 0; i + 2 < n; ++i) add(i, i + 1 + i % 2, i + 2 - i % 2);
-    } else {
-        for (std::size_t i = 1; i + 1 < n; ++i) add(i, i + 1, 0);
+// A primitive without colours beside others that have them is white, as without any.
+void GltfMeshReader::addAttributes(const MeshData& from, std::size_t before) {
+    MeshData& mesh = file_.mesh;
+    for (const MeshAttribute& a : from.attributes)
+        if (std::ranges::find(mesh.attributes, a.name, &MeshAttribute::name) == mesh.attributes.end())
+            mesh.attributes.push_back(
+                {a.name, a.channels, std::vector<float>(before * static_cast<std::size_t>(a.channels), 1.f)});
+    for (MeshAttribute& a : mesh.attributes) {
+        const auto own = std::ranges::find(from.attributes, a.name, &MeshAttribute::name);
+        if (own != from.attributes.end()) a.values.insert(a.values.end(), own->values.begin(), own->values.end());
+        a.values.resize(mesh.positions.size() * static_cast<std::size_t>(a.channels), 1.f);
     }
 }
 
@@ -207,7 +185,7 @@ bool looksLikeGltf(std::string_view bytes) {
 
 MeshFile parseGltf(std::string_view bytes, const std::string& name, const GltfSelection& selection) {
     const GltfDocument document(bytes, name);
-    return GltfMeshReader(document).read(selection);
+    return GltfMeshReader(document, selection).read();
 }
 
 MeshFile readGltf(const std::string& path, const GltfSelection& selection) {
@@ -251,7 +229,8 @@ std::vector<GltfCamera> parseGltfCameras(std::string_view bytes, const std::stri
     const GltfDocument document(bytes, name);
     const auto& model = document.model();
     std::vector<GltfCamera> cameras;
-    for (const PlacedGltfNode& placed : document.nodes({})) {
+    const GltfPose pose = GltfAnimation(document, -1).pose(0);
+    for (const GltfNodePose& placed : pose.nodes()) {
         const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
         if (node.camera < 0) continue;
         if (static_cast<std::size_t>(node.camera) >= model.cameras.size())
@@ -259,7 +238,7 @@ std::vector<GltfCamera> parseGltfCameras(std::string_view bytes, const std::stri
                                       model.cameras.size()));
         cameras.push_back(readCamera(document, model.cameras[static_cast<std::size_t>(node.camera)], node.camera));
         if (!node.name.empty()) cameras.back().name = node.name;
-        cameras.back().placement = placed.map;
+        cameras.back().placement = placed.world;
     }
     return cameras;
 }

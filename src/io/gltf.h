@@ -4,6 +4,7 @@
 #include "io/mesh_file.h"
 #include "math/transform.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,10 @@ namespace abbe {
 struct GltfSelection {
     std::string node; // this node and those below it, wherever they are
     std::string mesh; // instances of this mesh only
+    // The pose: of this animation (the first one if there is only a time) at this time in s (its first key if there is
+    // only an animation); without both that of the nodes as they are.
+    std::string animation = {};
+    std::optional<double> time = {};
 };
 
 // Whether the bytes are a binary glTF file, or JSON: no other format of meshes starts with a brace.
@@ -23,8 +28,11 @@ bool looksLikeGltf(std::string_view bytes);
 // them: lists, strips and fans, with the transforms of their nodes applied, faces outwards under mirrors, v turned
 // upwards as in OBJ. A primitive without normals or texture coordinates beside others that have them gets zeros. One
 // group for every primitive of every node, named after the node or else its mesh. Images are not looked for.
-// Skins, morphs that are not at rest, and extensions that a file requires and that change geometry are errors, but for
-// KHR_mesh_quantization. Throws IoError that names the place: the byte, or the path to the JSON value.
+// Morph targets and skins are as they are in the pose; copies of EXT_mesh_gpu_instancing belong to the group of their
+// node. Vertex colours are the attributes `color` and `alpha`, 1 where a primitive has none. Points and lines are left
+// out, with a remark in MeshFile::leftOut. Geometry compressed by Draco or meshopt is unpacked; other extensions that a
+// file requires and that change geometry are errors. Throws IoError that names the place: the byte, or the path to the
+// JSON value.
 // `name` is the path: buffers in files of their own are looked up beside it.
 MeshFile parseGltf(std::string_view bytes, const std::string& name, const GltfSelection& = {});
 MeshFile readGltf(const std::string& path, const GltfSelection& = {});

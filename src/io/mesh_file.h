@@ -27,8 +27,9 @@ enum class MeshCoordinates : std::uint8_t { unstated, metresYUp };
 struct MeshFile {
     MeshData mesh; // indices in range, numbers finite
     MeshCoordinates coordinates = MeshCoordinates::unstated;
-    std::vector<MeshGroup> groups;  // in file order, without empty ones; one for PLY
-    std::uint64_t ignoredFaces = 0; // points and lines: fewer than three corners
+    std::vector<MeshGroup> groups;         // in file order, without empty ones; one for PLY
+    std::uint64_t ignoredFaces = 0;        // points and lines: fewer than three corners
+    std::vector<std::string> leftOut = {}; // of glTF: what there is no mesh of, the first ones, each with its place
 };
 
 // Wavefront OBJ: v, vt, vn, f (negative numbers too), g, o, usemtl; lines, points, s, mtllib and subdivision tags (t)

@@ -154,11 +154,9 @@ namespace {
 using K = ShapeKey;
 
 FieldInfo fileField() {
-    return field(FieldType::file, "file", &K::file)
-        .key({"node", {}, "Take this node of a glTF file, and those below it."})
-        .key({"mesh", {}, "Take this mesh of a glTF file."})
-        .doc("File with the points at this time.")
-        .example("file \"flag.0102.ply\"");
+    return withGltfKeys(field(FieldType::file, "file", &K::file)
+                            .doc("File with the points at this time.")
+                            .example("file \"flag.0102.ply\""));
 }
 
 FieldInfo pointsField() {
@@ -169,6 +167,17 @@ FieldInfo pointsField() {
 }
 
 } // namespace
+
+FieldInfo withGltfKeys(FieldInfo file) {
+    FieldKey time{"time", {}, "Pose of a glTF file: its animation at this time in seconds."};
+    time.number = true;
+    file.keys.push_back({"node", {}, "Take this node of a glTF file, and those below it."});
+    file.keys.push_back({"mesh", {}, "Take this mesh of a glTF file."});
+    file.keys.push_back(
+        {"animation", {}, "Pose of a glTF file: this animation; the first one if only `time` is given."});
+    file.keys.push_back(std::move(time));
+    return file;
+}
 
 std::vector<FieldInfo> meshKeyFields() { return {fileField(), pointsField()}; }
 

@@ -34,6 +34,8 @@ struct ShapeKey {
 
 // Fields of a block, by the type of the shape.
 std::vector<schema::FieldInfo> meshKeyFields();
+// A field for files of meshes with the keys that choose from a glTF file.
+schema::FieldInfo withGltfKeys(schema::FieldInfo file);
 std::vector<schema::FieldInfo> curvesKeyFields();
 std::vector<schema::FieldInfo> pointsKeyFields();
 

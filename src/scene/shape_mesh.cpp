@@ -7,6 +7,7 @@
 #include "scene/shape_builder.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -41,13 +42,25 @@ FaceGroups groupsOf(MeshFile& file) {
     return result;
 }
 
+GltfSelection selectionOf(const schema::Text& file) {
+    GltfSelection selection;
+    for (const auto& [key, value] : file.keys) {
+        if (key == "node") selection.node = value;
+        if (key == "mesh") selection.mesh = value;
+        if (key == "animation") selection.animation = value;
+        if (key == "time") std::from_chars(value.data(), value.data() + value.size(), selection.time.emplace());
+    }
+    return selection;
+}
+
 std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, FaceGroups* groups, Span span,
                                  Diagnostics& diagnostics) {
     std::optional<MeshData> mesh;
     readsFile(file.value, file.span.valid() ? file.span : span, diagnostics, [&] {
-        GltfSelection selection;
-        for (const auto& [key, value] : file.keys) (key == "node" ? selection.node : selection.mesh) = value;
-        MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selection);
+        MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selectionOf(file));
+        if (!read.leftOut.empty())
+            diagnostics.warning("W0604", file.span.valid() ? file.span : span, "parts of this file are left out",
+                                read.leftOut.front());
         toScene(read, unit, zUp);
         if (groups) *groups = groupsOf(read);
         mesh = std::move(read.mesh);
@@ -184,14 +197,12 @@ schema::TypeInfo meshType() {
     using namespace schema;
     using P = MeshParams;
     std::vector<FieldInfo> fields = {
-        field<P, Text>(FieldType::file, "file", &P::file)
-            .argument(0)
-            .group("source")
-            .synonyms({"filename", "path"})
-            .key({"node", {}, "Take this node of a glTF file, and those below it."})
-            .key({"mesh", {}, "Take this mesh of a glTF file."})
-            .doc("OBJ, PLY or glTF file, binary or text; quads are kept. glTF is in metres, with y up.")
-            .example("file \"bunny.ply\""),
+        withGltfKeys(field<P, Text>(FieldType::file, "file", &P::file)
+                         .argument(0)
+                         .group("source")
+                         .synonyms({"filename", "path"})
+                         .doc("OBJ, PLY or glTF file, binary or text; quads are kept. glTF is in metres, with y up.")
+                         .example("file \"bunny.ply\"")),
         field<P, std::vector<Vec3d>>(FieldType::points, "points", &P::points)
             .unit({Dimension::length})
             .group("source")

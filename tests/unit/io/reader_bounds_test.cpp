@@ -191,13 +191,39 @@ TEST_CASE("gltf: copies of copies are bounded by the bytes that there are") {
     text.scene = R"("scene":0,"scenes":[{"nodes":[)" + roots + "]}],";
     std::string said;
     CHECK(secondsOf([&] { said = test::errorOf(text); }) < kAtOnce);
-    CHECK(contains(said, "vertices and corners, more than 1024 for each of its"));
+    CHECK(contains(said, "vertices, corners and joints of its nodes: 6e+09 elements, more than 1024 for each of its"));
     GltfText zeros; // no bytes at all behind an accessor
     zeros.accessors = R"([{"componentType":5126,"count":60000000,"type":"VEC3","sparse":{"count":1,)"
                       R"("indices":{"bufferView":3,"componentType":5123},"values":{"bufferView":0}}}])";
     zeros.primitive = R"({"attributes":{"POSITION":0}})";
     CHECK(secondsOf([&] { said = test::errorOf(zeros); }) < kAtOnce);
-    CHECK(contains(said, "accessors[0] (attributes.POSITION): 60000000 elements without data"));
+    CHECK(contains(said, "accessors[0] (attributes.POSITION): 6e+07 elements, more than 1024"));
+}
+
+TEST_CASE("gltf: nodes that share copies or weights are bounded, too") {
+    const auto nodesOf = [](const std::string& node) {
+        std::string nodes = "[" + node;
+        for (int i = 1; i < 20'000; ++i) nodes += "," + node;
+        return nodes + "]";
+    };
+    GltfText copies; // 20 000 nodes with 100 000 copies each
+    copies.data += std::string(12 * 100'000, '\0');
+    copies.views = R"([{"buffer":0,"byteOffset":140,"byteLength":1200000}])";
+    copies.accessors = R"([{"bufferView":0,"componentType":5126,"count":100000,"type":"VEC3"}])";
+    copies.primitive = R"({"attributes":{"POSITION":0}})";
+    copies.scene = "";
+    copies.nodes = nodesOf(R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}})");
+    std::string said;
+    CHECK(secondsOf([&] { said = test::errorOf(copies); }) < kAtOnce);
+    CHECK(contains(said, "the vertices, corners and joints of its nodes: 2e+14 elements"));
+    GltfText weights; // 20 000 nodes with the 100 000 weights of one mesh
+    std::string list = "0";
+    for (int i = 1; i < 100'000; ++i) list += ",0";
+    weights.primitive += R"(],"weights":[)" + list;
+    weights.scene = "";
+    weights.nodes = nodesOf(R"({"mesh":0})");
+    CHECK(secondsOf([&] { said = test::errorOf(weights); }) < kAtOnce);
+    CHECK(contains(said, "the weights of its nodes: 2e+09 elements"));
 }
 
 TEST_CASE("gltf: many roots deep in one tree") {

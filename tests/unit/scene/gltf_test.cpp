@@ -1,5 +1,5 @@
 // glTF files as meshes of a scene: metres and y up whatever the scene's units are.
-#include "../io/gltf_support.h"
+#include "../io/gltf_maker.h"
 #include "scene_test_fixture.h"
 
 #include <doctest/doctest.h>
@@ -47,6 +47,44 @@ TEST_CASE("gltf: metres and y up in any scene, nodes by name") {
     const auto none = build("shape mesh { file \"" + file.path() + "\" node=C }");
     CHECK(codes(none) == "E0402");
     CHECK(none.report().find("no node is named `C`") != std::string::npos);
+}
+
+namespace {
+
+// A triangle that an animation lifts by a metre in the first second, and a line.
+std::string liftedGlb() {
+    GltfMaker m;
+    const int positions = m.floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int times = m.floats("SCALAR", {0, 1}), places = m.floats("VEC3", {0, 0, 0, 0, 0, 1});
+    return m.binary(
+        R"([{"mesh":0}])",
+        fmt::format(
+            R"([{{"primitives":[{{"attributes":{{"POSITION":{0}}}}},{{"attributes":{{"POSITION":{0}}},"mode":1}}]}}])",
+            positions),
+        fmt::format(
+            R"("animations":[{{"name":"Lift","channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}],)"
+            R"("samplers":[{{"input":{},"output":{}}}]}}])",
+            times, places));
+}
+
+} // namespace
+
+TEST_CASE("gltf: a pose by the time of an animation, and what is left out") {
+    const TemporaryGlb file(liftedGlb());
+    const auto depth = [&](const std::string& keys) {
+        const auto scene = build("shape mesh { file \"" + file.path() + "\"" + keys + " }");
+        CHECK(codes(scene) == "W0604");
+        CHECK(scene.report().find("meshes[0].primitives[1]: lines") != std::string::npos);
+        return trace(scene, {0.2, 0.2, 9}, {0, 0, -1}).p.z;
+    };
+    CHECK(depth("") == doctest::Approx(0));
+    CHECK(depth(" time=0.25") == doctest::Approx(0.25));
+    CHECK(depth(" animation=Lift time=7") == doctest::Approx(1));
+    CHECK(depth(" animation=Lift") == doctest::Approx(0));
+    const auto none = build("shape mesh { file \"" + file.path() + "\" animation=Fall }");
+    CHECK(codes(none) == "E0402");
+    CHECK(none.report().find("no animation is named `Fall`; there are 1: `Lift`") != std::string::npos);
+    CHECK(codes(build("shape mesh { file \"" + file.path() + "\" time=soon }")).starts_with("E03"));
 }
 
 } // namespace abbe::test

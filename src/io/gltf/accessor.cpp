@@ -41,6 +41,8 @@ int componentsOf(int type) {
         return 3;
     case TINYGLTF_TYPE_VEC4:
         return 4;
+    case TINYGLTF_TYPE_MAT4:
+        return 16;
     default:
         return 0;
     }
@@ -88,16 +90,27 @@ const tinygltf::Accessor& GltfDocument::accessorAt(int accessor, const std::stri
     return model_.accessors[static_cast<std::size_t>(accessor)];
 }
 
-std::size_t GltfDocument::count(int accessor, const std::string& who) const { return accessorAt(accessor, who).count; }
+int GltfDocument::components(int accessor, const std::string& who) const {
+    return componentsOf(accessorAt(accessor, who).type);
+}
 
 const unsigned char* GltfDocument::range(int bufferView, std::size_t offset, std::size_t stride, std::size_t count,
                                          std::size_t element, const std::string& who) const {
     if (bufferView < 0 || static_cast<std::size_t>(bufferView) >= model_.bufferViews.size())
         fail(fmt::format("{}: bufferView {} of {}", who, bufferView, model_.bufferViews.size()));
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(bufferView)];
-    if (view.extensions.contains("EXT_meshopt_compression"))
-        fail(fmt::format("bufferViews[{}] is compressed by EXT_meshopt_compression, which is not supported",
-                         bufferView));
+    const auto outside = [&](std::size_t length) {
+        // No product can wrap: strides are small and counts are below the number of bytes.
+        return offset > length || count > length || stride > 4096 || (count - 1) * stride + element > length - offset;
+    };
+    const auto misfit = [&](std::size_t length) {
+        fail(fmt::format("{}: {} elements of {} bytes from byte {} on do not fit into bufferViews[{}] with {} bytes",
+                         who, count, element, offset, bufferView, length));
+    };
+    if (const auto& data = unpacked_[static_cast<std::size_t>(bufferView)]; !data.empty()) {
+        if (outside(data.size())) misfit(data.size());
+        return data.data() + offset;
+    }
     if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size())
         fail(fmt::format("bufferViews[{}].buffer is {}, but there are {}", bufferView, view.buffer,
                          model_.buffers.size()));
@@ -105,13 +118,16 @@ const unsigned char* GltfDocument::range(int bufferView, std::size_t offset, std
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
         fail(fmt::format("bufferViews[{}]: {} bytes from byte {} on, but buffers[{}] has {}", bufferView,
                          view.byteLength, view.byteOffset, view.buffer, data.size()));
-    // No product can wrap: strides are small and counts are below the number of bytes.
-    const bool fits = offset <= view.byteLength && count <= view.byteLength && stride <= 4096 &&
-                      (count - 1) * stride + element <= view.byteLength - offset;
-    if (!fits)
-        fail(fmt::format("{}: {} elements of {} bytes from byte {} on do not fit into bufferViews[{}] with {} bytes",
-                         who, count, element, offset, bufferView, view.byteLength));
+    if (outside(view.byteLength)) misfit(view.byteLength);
     return data.data() + view.byteOffset + offset;
+}
+
+std::string_view GltfDocument::bytesOf(int bufferView, const std::string& who) const {
+    if (bufferView < 0 || static_cast<std::size_t>(bufferView) >= model_.bufferViews.size())
+        fail(fmt::format("{}: bufferView {} of {}", who, bufferView, model_.bufferViews.size()));
+    const std::size_t length = model_.bufferViews[static_cast<std::size_t>(bufferView)].byteLength;
+    if (length == 0) fail(fmt::format("{}: bufferViews[{}] is empty", who, bufferView));
+    return {reinterpret_cast<const char*>(range(bufferView, 0, 1, 1, length, who)), length};
 }
 
 GltfView GltfDocument::view(int accessor, const std::string& who) const {
@@ -124,6 +140,7 @@ GltfView GltfDocument::view(int accessor, const std::string& who) const {
     GltfView v{nullptr, element, a.count, a.componentType, components, a.normalized};
     if (a.bufferView < 0) {
         if (!a.sparse.isSparse) fail(fmt::format("{} has no bufferView", path));
+        bound(static_cast<double>(a.count), path + " without data");
         return v;
     }
     if (static_cast<std::size_t>(a.bufferView) < model_.bufferViews.size()) {
