@@ -128,6 +128,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0452", "tiles of different colour spaces", "All tiles of a `<UDIM>` texture are read alike. Without `space=` each file's tag or type says how it is stored, and here they do not agree."},
     {"E0453", "an ACES container excludes this choice", "`container=aces` writes what SMPTE ST 2065-4 demands: ACES2065-1, 16 bits, no compression. `space`, `compression` and `half` can be left out beside it; other values contradict it."},
     {"E0454", "no white to balance to", "`white-balance` makes a light look neutral. Light of one line or a narrow band has no white near it that an eye could adapt to: one of its cones would not respond at all."},
+    {"E0455", "a picture without alpha", "`take alpha` is the alpha channel of a picture, and this one has none: JPEG never has, PNG and EXR may. Of a picture that is a mask itself, `image \"mask.png\" space=data` is the mask."},
     {"W0440", "negative pixels in an environment image", "Radiance cannot be negative. Such pixels, often colours outside of the file's gamut or ringing of a filter, are taken as 0."},
     {"W0445", "denoised without features", "Albedo, normal and depth tell the denoiser where textures and edges are. Without them it has the colours alone, and fine detail is lost or stays noisy. `film { layers { denoise } }` writes them with their halves."},
     {"W0446", "pixels that are not finite", "The mean of the finite pixels around them took their place in the denoised layer. The picture keeps them."},

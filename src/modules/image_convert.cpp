@@ -140,7 +140,7 @@ class Conversion {
         input_ = openPicture(from_, reason);
         if (!input_) return reason;
         const OIIO::ImageSpec& source = input_->spec();
-        if (source.nchannels < channels_) return "it has too few channels";
+        if (asked_.first < 0 || source.nchannels < asked_.first + channels_) return "it has too few channels";
         // Rows as they are read, bands of tiles of two levels, and what becomes the next one.
         const double rows = rowsAtOnce(source) + 2 * kTile + 8;
         const double row = static_cast<double>(source.width) * channels_ * sizeof(float);
@@ -184,9 +184,10 @@ class Conversion {
             kind_ = abbeFaultOfSource;
             const bool good =
                 source.tile_width > 0
-                    ? input_->read_tiles(0, 0, source.x, source.x + source.width, y0, y0 + n, 0, 1, 0, channels_,
-                                         OIIO::TypeDesc::FLOAT, rows.data())
-                    : input_->read_scanlines(0, 0, y0, y0 + n, 0, 0, channels_, OIIO::TypeDesc::FLOAT, rows.data());
+                    ? input_->read_tiles(0, 0, source.x, source.x + source.width, y0, y0 + n, 0, 1, asked_.first,
+                                         asked_.first + channels_, OIIO::TypeDesc::FLOAT, rows.data())
+                    : input_->read_scanlines(0, 0, y0, y0 + n, 0, asked_.first, asked_.first + channels_,
+                                             OIIO::TypeDesc::FLOAT, rows.data());
             if (!good) return orElse(input_->geterror(), "its pixels cannot be read");
             kind_ = abbeFaultOfResult;
             if (!asked_.texels(asked_.user, rows.data(), static_cast<std::int64_t>(source.width) * n))

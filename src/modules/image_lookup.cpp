@@ -84,6 +84,7 @@ std::int32_t lookup(void* system, void* texture, const AbbeTextureLookup* l, flo
     OIIO::TextureOpt options;
     options.swrap = options.twrap = wrapOf(l->wrap);
     options.anisotropic = 16;
+    options.firstchannel = l->first;
     try {
         return s.textures->texture(static_cast<OIIO::TextureSystem::TextureHandle*>(texture), ofThread(s), options,
                                    l->s, l->t, l->dsdx, l->dtdx, l->dsdy, l->dtdy, l->channels, result);

@@ -13,22 +13,23 @@ namespace abbe_images {
 namespace {
 
 // Empty, or why the image cannot be used.
-std::string read(const char* path, int mostChannels, const AbbeImageSink& sink) {
+std::string read(const char* path, int first, int mostChannels, const AbbeImageSink& sink) {
     std::string reason;
     const auto file = openPicture(path, reason);
     if (!file) return reason;
     const OIIO::ImageSpec& spec = file->spec();
     const int channels = mostChannels >= 3 ? usedChannels(spec) : 1;
+    if (first < 0 || first + channels > spec.nchannels) return "it has too few channels";
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     float* const pixels = sink.begin(sink.user, spec.width, spec.height, channels, space.c_str());
     if (!pixels) return "it does not fit into memory";
-    if (file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels)) return {};
+    if (file->read_image(0, 0, first, first + channels, OIIO::TypeDesc::FLOAT, pixels)) return {};
     return orElse(file->geterror(), "its pixels cannot be read");
 }
 
-std::int32_t readImage(const char* path, std::int32_t mostChannels, const AbbeImageSink* sink) {
+std::int32_t readImage(const char* path, std::int32_t first, std::int32_t mostChannels, const AbbeImageSink* sink) {
     AbbeImageFault fault;
-    if (guarded(&fault, [&] { return read(path, mostChannels, *sink); })) return 1;
+    if (guarded(&fault, [&] { return read(path, first, mostChannels, *sink); })) return 1;
     sink->fail(sink->user, &fault);
     return 0;
 }
@@ -71,6 +72,7 @@ std::string describe(const char* path, AbbeImageInfo& info) {
     info.width = spec.width;
     info.height = spec.height;
     info.channels = usedChannels(spec);
+    info.alpha = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
     info.type = typeOf(spec);
     info.isTexture = hasAllLevels(*file);
     const OIIO::ParamValue* const primaries =

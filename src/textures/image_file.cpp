@@ -76,11 +76,11 @@ const AbbeImageModule& imageModule() {
     return *module;
 }
 
-ImagePixels readImageFile(const std::string& path) {
+ImagePixels readImageFile(const std::string& path, int first, int mostChannels) {
     checkPicture(path);
     Reading reading;
     const AbbeImageSink sink{&reading, begin, fail};
-    const bool good = imageModule().read(path.c_str(), 3, &sink);
+    const bool good = imageModule().read(path.c_str(), first, mostChannels, &sink);
     if (reading.beyondMemory) std::rethrow_exception(reading.beyondMemory);
     if (!good && reading.fault.kind == abbeFaultOfMemory) throw std::bad_alloc();
     if (!good) throw ImageFileError(reading.fault.reason[0] ? reading.fault.reason : "it cannot be read");

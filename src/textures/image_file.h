@@ -23,7 +23,7 @@ struct ImageFileError : std::runtime_error {
 // Everywhere here: loads the module that reads images with the first call; it then stays. Throws ImageFileError.
 const AbbeImageModule& imageModule();
 // Also throws std::bad_alloc if the pixels do not fit into memory.
-ImagePixels readImageFile(const std::string& path);
+ImagePixels readImageFile(const std::string& path, int first = 0, int mostChannels = 3);
 AbbeImageInfo describeImageFile(const std::string& path);
 
 } // namespace abbe

@@ -33,6 +33,8 @@ enum AbbeTexelType : std::int32_t { abbeTexel8, abbeTexel16, abbeTexelHalf, abbe
 struct AbbeImageInfo {
     std::int32_t width, height;
     std::int32_t channels;   // 3 if the file has three or more, else 1
+    std::int32_t first;      // the first of them, 0
+    std::int32_t alpha;      // the channel of alpha, or -1
     std::int32_t type;       // AbbeTexelType
     std::int32_t isTexture;  // tiled, with all its mip levels
     std::int32_t chromatic;  // whether `chromaticities` are in it
@@ -43,9 +45,9 @@ struct AbbeImageInfo {
 // From any picture to a tiled one with mip levels: each level is the exact mean of the one before. Needs memory for a
 // few rows only; what a level leaves for the next one lies in temporary files beside the result.
 struct AbbeConversion {
-    std::int32_t channels; // 1 or 3
-    std::int32_t type;     // AbbeTexelType of the result
-    double memory;         // bytes that it may take: known to need more, it does not begin
+    std::int32_t first, channels; // of the picture; 1 or 3
+    std::int32_t type;            // AbbeTexelType of the result
+    double memory;                // bytes that it may take: known to need more, it does not begin
     void* user;
     // Changes texels of the picture in place, before any averaging. 0 to stop.
     std::int32_t (*texels)(void* user, float* values, std::int64_t count);
@@ -58,7 +60,7 @@ enum AbbeWrap : std::int32_t { abbeWrapPeriodic, abbeWrapClamp, abbeWrapMirror, 
 struct AbbeTextureLookup {
     float s, t, dsdx, dtdx, dsdy, dtdy;
     std::int32_t wrap; // AbbeWrap
-    std::int32_t channels;
+    std::int32_t first, channels;
 };
 
 struct AbbeTextureStatistics {
@@ -69,8 +71,8 @@ struct AbbeTextureStatistics {
 // several threads at once.
 struct AbbeImageModule {
     std::int32_t version; // kAbbeImageModuleVersion
-    // Reads the first `mostChannels` channels of the first image of a file.
-    std::int32_t (*read)(const char* path, std::int32_t mostChannels, const AbbeImageSink*);
+    // Reads `mostChannels` channels of the first image of a file, or as many as there are, from the channel `first` on.
+    std::int32_t (*read)(const char* path, std::int32_t first, std::int32_t mostChannels, const AbbeImageSink*);
     std::int32_t (*describe)(const char* path, AbbeImageInfo*, AbbeImageFault*);
     std::int32_t (*convert)(const char* from, const char* to, const AbbeConversion*, AbbeImageFault*);
     // A cache of tiles of at most so many bytes. Null after a fault.
@@ -84,7 +86,7 @@ struct AbbeImageModule {
     void (*statistics)(void* system, AbbeTextureStatistics*);
 };
 
-inline constexpr std::int32_t kAbbeImageModuleVersion = 3;
+inline constexpr std::int32_t kAbbeImageModuleVersion = 4;
 
 using AbbeGetImageModule = const AbbeImageModule* (*)();
 // The name of that function in the module.

@@ -116,6 +116,7 @@ Vec3 ImageTexture::value(const TextureQuery& query) const noexcept {
                                    dv.x,
                                    -dv.y,
                                    moduleWrap(wrap_),
+                                   tile->opened == tile->path ? tile->info.first : 0, // converted files have no other
                                    channels_};
     float texel[3] = {};
     // After a fault OpenImageIO takes the tile for good the next time it is asked for: nothing of the file is used.
@@ -187,8 +188,8 @@ template <typename F> bool reported(const std::string& path, Span span, Diagnost
     return false;
 }
 
-ImagePixels readFinite(const std::string& path) {
-    ImagePixels image = readImageFile(path);
+ImagePixels readFinite(const ImageTile& tile) {
+    ImagePixels image = readImageFile(tile.path, tile.info.first, tile.info.channels);
     std::uint64_t bad = 0;
     for (const float x : image.values) bad += !std::isfinite(x);
     if (bad > 0) throw NotFiniteError(bad);
@@ -237,7 +238,7 @@ bool ImageTexture::prepareHeights(Diagnostics& diagnostics) {
     if (heights_) return true;
     std::map<int, ImagePixels> pixels;
     for (const auto& [number, tile] : tiles_)
-        if (!reported(tile.path, asked_.span, diagnostics, [&] { pixels.emplace(number, readFinite(tile.path)); }))
+        if (!reported(tile.path, asked_.span, diagnostics, [&] { pixels.emplace(number, readFinite(tile)); }))
             return false;
     if (tiled_)
         heights_.emplace(std::move(pixels));
@@ -329,6 +330,7 @@ const ColorEncoding* encodingOfTag(std::string_view tag) {
 
 // By what the scene says, else by the file's tag, else by its type.
 ImageEncoding encodingOf(const AbbeImageInfo& info, const Text& asked, Diagnostics& diagnostics) {
+    if (info.first == info.alpha) return {findColorEncoding("data"), true};
     if (const std::string_view space = spaceKey(asked); !space.empty() && space != "unknown")
         return {findColorEncoding(space), true, true};
     const bool integers = info.type == abbeTexel8 || info.type == abbeTexel16;
@@ -374,6 +376,20 @@ Wrap wrapOf(const Choice& choice) {
                                      : Wrap::periodic;
 }
 
+// From now on the tiles are their alpha channels; false after an error.
+bool takeAlpha(std::map<int, ImageTile>& tiles, const Text& asked, Diagnostics& diagnostics) {
+    for (auto& [number, tile] : tiles) {
+        if (tile.info.alpha < 0) {
+            diagnostics.error("E0455", asked.span, fmt::format("`{}` has no alpha channel", fileName(tile.path))).help =
+                "leave `take` out; a mask in a picture of its own needs none";
+            return false;
+        }
+        tile.info.first = tile.info.alpha;
+        tile.info.channels = 1;
+    }
+    return true;
+}
+
 } // namespace
 
 TypeInfo imageTextureType() {
@@ -396,6 +412,12 @@ TypeInfo imageTextureType() {
             .synonyms({"repeat", "extend", "wrap-mode"})
             .doc("What lies outside the unit square of texture coordinates; tiles of `<UDIM>` never wrap.")
             .example("wrap mirror"),
+        field<P, Choice>(FieldType::choice, "take", &P::take)
+            .choices({"color", "alpha"})
+            .byDefault("color")
+            .synonyms({"channels"})
+            .doc("`alpha`: the alpha channel alone, as numbers.")
+            .example("take alpha"),
     };
     return {Kind::texture,
             "image",
@@ -426,6 +448,7 @@ std::unique_ptr<Texture> makeImageTexture(const ImageTextureParams& p, std::shar
         }
     }
     if (tiles.empty()) return nullptr; // reported with the name
+    if (p.take.word == "alpha" && !takeAlpha(tiles, p.file, diagnostics)) return nullptr;
     const ImageEncoding encoding = encodingOf(tiles.begin()->second.info, p.file, diagnostics);
     for (const auto& [number, tile] : tiles) {
         Diagnostics repeated; // of the first tile

@@ -20,6 +20,7 @@ namespace abbe {
 struct ImageTextureParams {
     schema::Text file; // resolved path, perhaps with <UDIM>
     schema::Choice wrap;
+    schema::Choice take;
 };
 
 // One picture: what its header says, and where the texture system has it.

@@ -192,10 +192,11 @@ bool writeTrailer(const fs::path& path, std::uint64_t key, const TexelCounts& co
 }
 
 // Changes whenever the result of the conversion would.
-std::uint64_t keyOf(const fs::path& picture, const ColorEncoding& encoding) {
+std::uint64_t keyOf(const fs::path& picture, const ColorEncoding& encoding, std::int32_t first) {
     std::error_code error;
     std::uint64_t h = hashOf(picture.string(), kVersion);
     h = hashOf(encoding.name, h);
+    if (first != 0) h = combine64(h, static_cast<std::uint64_t>(first));
     const std::uint64_t bytes = fs::file_size(picture, error);
     h = combine64(h, static_cast<std::uint64_t>(fs::last_write_time(picture, error).time_since_epoch().count()));
     std::ifstream file(picture, std::ios::binary);
@@ -231,7 +232,8 @@ Converted convert(const std::string& picture, const AbbeImageInfo& info, const C
     if (part.error() != 0)
         return {{}, fmt::format("the folder `{}` cannot be written to", file.parent_path().string())};
     TexelCheck check(info, encoding, upsampling);
-    const AbbeConversion asked{info.channels, storedType(info, encoding), memoryLeft(), &check, checkTexels};
+    const AbbeConversion asked{info.first,   info.channels, storedType(info, encoding),
+                               memoryLeft(), &check,        checkTexels};
     AbbeImageFault fault{};
     const bool good = imageModule().convert(picture.c_str(), part.path().c_str(), &asked, &fault);
     Converted result{check.counts(), {}};
@@ -259,7 +261,7 @@ TextureFile textureFile(const std::string& picture, const AbbeImageInfo& info, c
     std::error_code error;
     fs::path real = fs::canonical(picture, error);
     if (error) real = picture;
-    const std::uint64_t key = keyOf(real, encoding);
+    const std::uint64_t key = keyOf(real, encoding, info.first);
     const fs::path file = directory / fmt::format("{}-{:016x}.tif", real.stem().string().substr(0, 200), key);
     if (const auto counts = readTrailer(file, key)) return {file.string(), *counts, false, {}};
     Converted made = convert(real.string(), info, encoding, file, key, upsampling);

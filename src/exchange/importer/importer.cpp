@@ -1,6 +1,7 @@
 #include "exchange/importer/importer.h"
 
 #include "base/file.h"
+#include "exchange/gltf/gltf_import.h"
 #include "exchange/mitsuba/mitsuba_import.h"
 #include "exchange/pbrt/pbrt_import.h"
 
@@ -17,6 +18,7 @@ constexpr std::size_t kHeadBytes = 16384; // by which formats are known; comment
 constexpr ImportFormat kImportFormats[] = {
     {"mitsuba", "a scene of Mitsuba (XML)", isMitsubaScene, importMitsuba},
     {"pbrt", "a scene of pbrt-v4", isPbrtScene, importPbrt},
+    {"gltf", "a glTF 2.0 scene", isGltfScene, importGltf},
 };
 
 std::string headOf(const std::filesystem::path& path) {

@@ -420,3 +420,46 @@ TEST_CASE("image texture: threads agree, also when tiles come and go") {
     for (std::size_t i = 0; i < alone.size(); ++i) different += !(alone[i] == together[i]) + !(alone[i] == crowded[i]);
     CHECK(different == 0);
 }
+
+TEST_CASE("image texture: alpha alone, as numbers, from what the cache has and for heights") {
+    // A PNG of 2 × 2 pixels: alpha 255 and 0 above, 128 and 255 below.
+    static constexpr unsigned char kPng[] = {
+        0x89, 'P',  'N',  'G',  0x0d, 0x0a, 0x1a, 0x0a, 0,   0,    0,    0x0d, 'I',  'H',  'D',  'R',
+        0,    0,    0,    2,    0,    0,    0,    2,    8,   6,    0,    0,    0,    0x72, 0xb6, 0x0d,
+        0x24, 0,    0,    0,    0x15, 'I',  'D',  'A',  'T', 0x78, 0xda, 0x63, 0xf8, 0xcf, 0xc0, 0xf0,
+        0x1f, 0x08, 0x41, 0xe0, 0x7f, 0xc3, 0x7f, 0x20, 0,   0,    0x3d, 0x57, 0x08, 0x79, 0x22, 0xc5,
+        0x0c, 0x7b, 0,    0,    0,    0,    'I',  'E',  'N', 'D',  0xae, 0x42, 0x60, 0x82};
+    Setup s;
+    std::ofstream(s.folder.path / "leaf.png", std::ios::binary)
+        .write(reinterpret_cast<const char*>(kPng), static_cast<std::streamsize>(sizeof kPng));
+    ImageTextureParams params;
+    params.file.value = (s.folder.path / "leaf.png").string();
+    params.take.word = "alpha";
+    params.wrap.word = "clamp";
+    for (int time = 0; time < 2; ++time) { // converted, and as it was kept
+        const auto t = makeImageTexture(params, s.store(), s.diagnostics);
+        REQUIRE(t);
+        REQUIRE(t->prepare(TextureUse::number, {}, s.diagnostics));
+        CHECK(t->channels() == 1);
+        // Outside of the picture its corners alone count.
+        CHECK(at(*t, -2, 3) == doctest::Approx(1).epsilon(1e-3));
+        CHECK(at(*t, 3, 3) == doctest::Approx(0).epsilon(1e-3));
+        CHECK(at(*t, -2, -2) == doctest::Approx(128 / 255.0).epsilon(1e-3));
+        CHECK(at(*t, 3, -2) == doctest::Approx(1).epsilon(1e-3));
+        REQUIRE(t->prepare(TextureUse::heights, {}, s.diagnostics));
+        CHECK(t->jet({{}, {0.75f, 0.75f}, {0.75f, 0.75f}}, 1).value.x < 0.5f);
+    }
+    // the colours beside it are kept for themselves
+    params.take.word = "color";
+    params.file.keys.emplace_back("space", "data");
+    const auto colors = makeImageTexture(params, s.store(), s.diagnostics);
+    REQUIRE(colors);
+    REQUIRE(colors->prepare(TextureUse::number, {}, s.diagnostics));
+    CHECK(colors->value(query(3, 3)).y == doctest::Approx(1).epsilon(1e-3)); // not multiplied by alpha 0
+    CHECK(s.cached() == 2);
+    CHECK(s.codes() == "");
+    params.take.word = "alpha";
+    params.file.value = s.file("plain.tif", plain(0.5, 0.5, 0.5));
+    CHECK_FALSE(makeImageTexture(params, s.store(), s.diagnostics));
+    CHECK(s.codes() == "E0455");
+}
