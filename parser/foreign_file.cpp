@@ -17,6 +17,9 @@ using namespace std::string_view_literals;
 
 // What a scene does with a file of another program; `{}` is its name.
 constexpr auto kMesh = "write a scene that shows it: `shape mesh \"{}\" {{ material diffuse {{ }} }}`"sv;
+constexpr auto kModel =
+    "`abbe render` takes it if its name ends in `.obj`; in a scene it is `shape mesh \"{}\" {{ material "
+    "diffuse {{ }} }}`"sv;
 constexpr auto kPicture = "write a scene that uses it: `texture picture image \"{0}\"` on a surface, or "
                           "`light environment \"{0}\"` all around"sv;
 constexpr auto kVolume =
@@ -30,6 +33,7 @@ constexpr auto kRewrite =
     "scenes of this program are not read: keep the meshes (PLY, OBJ, glTF) and pictures, and write "
     "lights, camera and materials anew; `abbe explain` lists the words"sv;
 constexpr auto kImport = "`abbe render {0}` renders it, `abbe import {0}` makes a scene file of it"sv;
+constexpr auto kMaterials = "give the OBJ file that names it: `abbe render model.obj`"sv;
 constexpr auto kOwnImage =
     "`abbe info {0}` says what is in it; a scene uses it as a picture: `texture picture image \"{0}\"`"sv;
 constexpr auto kCheckpoint = "`abbe merge` puts parts together; to go on with a render give its scene and `--resume`"sv;
@@ -213,8 +217,8 @@ std::optional<ForeignFile> byText(std::string_view text) {
     const auto known = [](std::string_view what, std::string_view help) {
         return ForeignFile{what, std::string(help)};
     };
-    if (lines[0].starts_with("newmtl ")) return known("a Wavefront material library (MTL)", kRewrite);
-    if (isObj(lines)) return known("a Wavefront OBJ file", kMesh);
+    if (lines[0].starts_with("newmtl ")) return known("a Wavefront material library (MTL)", kMaterials);
+    if (isObj(lines)) return known("a Wavefront OBJ file", kModel);
     if (lines[0].starts_with("solid ") && lines[1].starts_with("facet")) return known("an STL file", kExport);
     if (isPbrt(lines[0])) return known("a scene of pbrt", kRewrite);
     if (isRib(lines[0])) return known("a RenderMan RIB file", kRewrite);

@@ -191,6 +191,7 @@ struct StudyOptions {
     std::optional<double> timeLimit; // s, of the whole study
     std::vector<std::string> variants;
     bool effects = false;                           // these are measured, in place of curves
+    std::string against;                            // another renderer: "mitsuba", perhaps with ":variant"
     bool listVariants = false;                      // print them, and that is all
     std::vector<double> errors{0.01, 0.003, 0.001}; // relative, to tell the time to
     bool resume = false;

@@ -8,6 +8,7 @@
 #include "commands/command_table.h"
 #include "commands/measured_scene.h"
 #include "commands/study_effects.h"
+#include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "pages/pages.h"
 #include "pictures/image_output.h"
@@ -17,6 +18,7 @@
 #include "reports/render_report.h"
 #include "schema/scene_tree.h"
 #include "study/curve_fits.h"
+#include "study/peer_study.h"
 #include "study/study_plan.h"
 #include "study/study_run.h"
 
@@ -36,6 +38,7 @@ Examples:
   abbe study room.scene --variants no-nee,random,denoised
   abbe study room.scene --variants list        what can be changed
   abbe study room.scene --effects              what each effect of the scene is worth
+  abbe study room.xml --against mitsuba        beside Mitsuba, on its own scene
   abbe study room.scene --time 20min           as much as that allows
   abbe study room.scene --resume               goes on where it was interrupted)";
 
@@ -92,6 +95,14 @@ std::string readErrors(const std::string& text, StudyOptions& options) {
     return {};
 }
 
+std::string readPeer(const std::string& text, StudyOptions& options) {
+    const std::string name = text.substr(0, text.find(':'));
+    if (name != "mitsuba" || text == "mitsuba:")
+        return fmt::format("`{}` is no renderer to compare with: `mitsuba`, or `mitsuba:VARIANT`, is one", text);
+    options.against = text;
+    return {};
+}
+
 } // namespace
 
 void addArguments(Arguments& a, StudyOptions& o) {
@@ -111,6 +122,9 @@ void addArguments(Arguments& a, StudyOptions& o) {
         "Errors in per cent to tell the time to: 1,0.3,0.1");
     a.read("--time", "TIME", o.timeLimit, "a time such as 20min", readTime, "For the whole study: 90, 20min, 2h");
     a.flag("--effects", &o.effects, "Measure what each effect costs and shows, in place of curves");
+    a.value(
+        "--against", "PEER", [&o](const std::string& text) { return readPeer(text, o); },
+        "Another renderer's curve beside: mitsuba, or mitsuba:VARIANT");
     a.flag("--resume", &o.resume, "Go on from what an interrupted study has saved");
     addThreads(a);
     addJson(a, "Progress as JSON lines on stdout");
@@ -142,6 +156,7 @@ class StudyCommand {
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
         if (options_.effects) return studyEffects(options_, common_, *loaded_, build_, outputBase());
         InterruptGuard interrupt;
+        if (const ExitCode code = findPeer(interrupt); code != ExitCode::done) return code;
         if (!probe(interrupt)) return stopped(interrupt);
         try {
             StudyState state(outputBase() + ".state", identity());
@@ -157,6 +172,9 @@ class StudyCommand {
     ExitCode load();
     ExitCode checkOutputs();
     void choosePlan();
+    std::optional<std::string> peerScene() const;
+    ExitCode findPeer(InterruptGuard&);
+    std::optional<PeerEnd> runPeer(InterruptGuard&, const StudyStore&, StudyProgressLine&);
     bool probe(InterruptGuard&);
     void openState(StudyState&);
     std::vector<Fact> identity() const;
@@ -199,6 +217,7 @@ class StudyCommand {
     StudySubject subject_;
     StudyPlan plan_;
     TimeModel time_; // of one render
+    PeerRequest peer_;
 };
 
 ExitCode StudyCommand::load() {
@@ -231,6 +250,55 @@ ExitCode StudyCommand::checkOutputs() {
         if (std::string fault = writeFault(outputBase() + extension); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o DIR/NAME` writes the study elsewhere", ExitCode::system);
     return ExitCode::done;
+}
+
+// The scene in the format of the peer. Scenes of this program's need an export: this is its place.
+std::optional<std::string> StudyCommand::peerScene() const {
+    const auto* format = loaded_->import ? exchange::importFormat(options_.input.path) : nullptr;
+    if (format && format->name == "mitsuba") return options_.input.path;
+    return std::nullopt;
+}
+
+// Before anything is rendered: whether there is a peer, and whether it can render the scene.
+ExitCode StudyCommand::findPeer(InterruptGuard& interrupt) {
+    if (options_.against.empty()) return ExitCode::done;
+    const auto scene = peerScene();
+    if (!scene)
+        return refuse(
+            "E0756",
+            fmt::format("`{}` is no scene of Mitsuba's, so that Mitsuba cannot render it", options_.input.path),
+            "give a scene that was written for Mitsuba, `abbe study room.xml --against mitsuba`; other scenes "
+            "would have to be exported first");
+    if (!options_.build.camera.empty())
+        return refuse("E0756", "`--camera` does not go with `--against`",
+                      "Mitsuba renders the first sensor of its scene");
+    const std::size_t colon = options_.against.find(':');
+    peer_.scene = *scene;
+    peer_.variant = colon == std::string::npos ? std::string() : options_.against.substr(colon + 1);
+    peer_.width = subject_.film.width;
+    peer_.height = subject_.film.height;
+    peer_.threads = threadCount();
+    peer_.seeds = plan_.seeds;
+    peer_.seed = plan_.seed;
+    // Half of the time is the peer's.
+    peer_.timeLimit = plan_.timeLimit /= 2;
+    const PeerEnd trial = tryMitsuba(peer_, {&interrupt.stop(), {}});
+    if (trial.end == StudyEnd::stopped) return stopped(interrupt);
+    if (!trial.curve) return refuse("E0757", trial.fault, trial.help, ExitCode::system);
+    peer_.variant = trial.curve->variant;
+    return ExitCode::done;
+}
+
+// Nothing if it was interrupted.
+std::optional<PeerEnd> StudyCommand::runPeer(InterruptGuard& interrupt, const StudyStore& store,
+                                             StudyProgressLine& line) {
+    const auto main = store.loadCurve(plan_.chosen.variants[0].id);
+    peer_.ladder = StudyPlan::ladder(plan_.samples, subject_.replicates);
+    peer_.mainSeconds = main->runs[0].rungs.back().seconds;
+    PeerEnd end = runMitsuba(peer_, {&interrupt.stop(), [&line](const StudyProgress& p) { line.show(p); }});
+    line.clear();
+    if (end.end == StudyEnd::stopped) return std::nullopt;
+    return end;
 }
 
 // How fast the scene renders: what the study will take, or what it can do in the time. False if it was interrupted.
@@ -325,8 +393,12 @@ ExitCode StudyCommand::study(StudyState& state, InterruptGuard& interrupt) {
                         renders.dropped()),
             "`abbe render` of the scene with its samples tells where");
     if (end == StudyEnd::stopped) return stopped(interrupt);
-    const StudyReport report = StudyReport::make(subject_, plan_, store);
-    write(report, end == StudyEnd::done);
+    std::optional<PeerEnd> peer = PeerEnd();
+    if (!options_.against.empty()) peer = runPeer(interrupt, store, line);
+    if (!peer) return stopped(interrupt);
+    const auto peers = peer->curve ? std::span(&*peer->curve, 1) : std::span<const PeerCurve>();
+    const StudyReport report = StudyReport::make(subject_, plan_, store, peers);
+    write(report, end == StudyEnd::done && (!peer->curve || peer->curve->complete));
     if (report.referenceAdvantage < StudyRun::kReferenceAdvantage)
         warn("W0733",
              fmt::format("the best image has {:.3g} times the error of the reference; 20 times and more were wanted",
@@ -334,9 +406,10 @@ ExitCode StudyCommand::study(StudyState& state, InterruptGuard& interrupt) {
              "its noise cancels in the mean, but what is measured varies more; give the study more `--time`");
     if (end == StudyEnd::outOfTime)
         say("the time is used up; the report has the seeds that were done, and `--resume` adds the others");
-    else
+    else if (peer->fault.empty())
         state.remove();
-    return ExitCode::done;
+    // What was rendered here is in the report all the same.
+    return peer->fault.empty() ? ExitCode::done : refuse("E0757", peer->fault, peer->help, ExitCode::system);
 }
 
 void StudyCommand::write(const StudyReport& report, bool complete) {

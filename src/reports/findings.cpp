@@ -88,7 +88,7 @@ Json curveJson(const StudyCurve& curve, const StudyCurve& main, const StudyFacts
                          {"group", v.group},
                          {"change", v.change},
                          {"bias", name(v.bias)},
-                         {"note", v.note},
+                         {"note", curve.note.empty() ? std::string(v.note) : curve.note},
                          {"points", points},
                          {"fit", Json::object({{"slope", slope.value},
                                                {"low", slope.low},
@@ -131,6 +131,20 @@ Json scaleJson(double high) {
         {{"name", ErrorColours::kName}, {"low", 0}, {"high", high}, {"unit", "relative error"}, {"stops", stops}});
 }
 
+Json peersJson(const StudyReport& report) {
+    Json peers = Json::list();
+    for (const StudyPeer& p : report.peers)
+        peers.push(Json::object({{"id", p.id},
+                                 {"name", p.name},
+                                 {"version", p.version},
+                                 {"variant", p.variant},
+                                 {"reference", Json::object({{"samplesPerHalf", p.referenceSamples},
+                                                             {"seconds", p.referenceSeconds},
+                                                             {"relMse", p.referenceRelMse},
+                                                             {"advantage", p.referenceAdvantage}})}}));
+    return peers;
+}
+
 } // namespace
 
 std::string studyJson(const StudyReport& report, const StudyFacts& facts) {
@@ -155,6 +169,7 @@ std::string studyJson(const StudyReport& report, const StudyFacts& facts) {
                                                      {"relMse", report.referenceRelMse},
                                                      {"advantage", report.referenceAdvantage}})},
                          {"curves", curves},
+                         {"peers", peersJson(report)},
                          {"leftOut", leftOut},
                          {"strips", stripsJson(report)},
                          {"errorScale", scaleJson(report.errorScale)},
@@ -171,6 +186,10 @@ std::string studyCsv(const StudyReport& report, const StudyFacts& facts) {
                                    "variant,samples,seed,relmse,relmse_trimmed,seconds,core_seconds,rays\n",
                                    versionNumber(), facts.scene, facts.width, facts.height, facts.threads,
                                    facts.command, kMeasure, report.referenceSamples, report.referenceRelMse);
+    for (const StudyPeer& p : report.peers)
+        text.insert(text.find("variant,samples"),
+                    fmt::format("# {}: {} {}, {}; reference of its own: 2 x {} samples, relMSE {:.6g}\n", p.id, p.name,
+                                p.version, p.variant, p.referenceSamples, p.referenceRelMse));
     for (const StudyCurve& curve : report.curves)
         for (std::size_t k = 0; k < curve.statistics.rungs(); ++k)
             for (const SeedRun& run : curve.statistics.runs()) {

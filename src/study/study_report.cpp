@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 
@@ -101,7 +102,7 @@ std::optional<StudyCurve> curveOf(const StudyVariant& variant, const CurveRecord
     }
     const std::vector<SeedRun> runs(record.runs.begin(),
                                     record.runs.begin() + static_cast<std::ptrdiff_t>(record.measured));
-    return StudyCurve{variant, CurveStatistics(std::move(samples), runs), std::move(bias)};
+    return StudyCurve{variant, CurveStatistics(std::move(samples), runs), std::move(bias), {}};
 }
 
 // The times of the first, a middle and the last rung of the main curve.
@@ -124,6 +125,41 @@ std::size_t rungNear(const CurveStatistics& curve, double seconds) {
     return best;
 }
 
+void addPictures(StudyReport& report, const Pictures& pictures, const StudyCurve& curve, const CurveRecord& record,
+                 const ReferencePair& reference) {
+    for (StudyStrip& strip : report.strips) {
+        const CurveRung& rung = record.rungs[rungNear(curve.statistics, strip.seconds)];
+        strip.pictures.push_back({curve.variant.id, rung.samples, reference.measure(rung.first).relMse,
+                                  pictures.png(rung.first), errorPng(rung.first, reference, report.errorScale)});
+    }
+}
+
+// The least relMSE of a rung.
+double bestError(std::span<const StudyCurve> curves) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const StudyCurve& curve : curves)
+        for (std::size_t k = 0; k < curve.statistics.rungs(); ++k)
+            best = std::min(best, curve.statistics.error(k).value);
+    return best;
+}
+
+constexpr StudyVariant kMitsubaVariant{
+    "mitsuba", "Mitsuba", "other renderers", "the same scene, rendered by Mitsuba", BiasClass::exact, ""};
+
+void addPeer(StudyReport& report, const Pictures& pictures, const PeerCurve& peer) {
+    const ReferencePair reference(peer.reference.a, peer.reference.b);
+    auto curve = curveOf(kMitsubaVariant, peer.record, reference);
+    if (!curve) return;
+    curve->note = fmt::format("{} {}, {}: its errors are against its own reference, so that where its picture differs "
+                              "from the others counts as no error; times are without start-up, loading and compiling",
+                              peer.name, peer.version, peer.variant);
+    addPictures(report, pictures, *curve, peer.record, reference);
+    const double advantage = bestError(std::span(&*curve, 1)) / reference.relMse();
+    report.peers.push_back({peer.record.id, peer.name, peer.version, peer.variant, peer.reference.samples,
+                            peer.reference.seconds, reference.relMse(), advantage});
+    report.curves.push_back(std::move(*curve));
+}
+
 } // namespace
 
 Estimate StudyCurve::floor() const {
@@ -136,7 +172,8 @@ Estimate StudyCurve::floor() const {
     return floor;
 }
 
-StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan, const StudyStore& store) {
+StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan, const StudyStore& store,
+                              std::span<const PeerCurve> peers) {
     const auto stored = store.loadReference();
     ABBE_CHECK(stored);
     const ReferencePair reference(stored->a, stored->b);
@@ -147,27 +184,21 @@ StudyReport StudyReport::make(const StudySubject& subject, const StudyPlan& plan
     report.referenceSamples = stored->samples;
     report.referenceSeconds = stored->seconds;
     report.referenceRelMse = reference.relMse();
-    double best = std::numeric_limits<double>::infinity();
     for (const StudyVariant& variant : plan.chosen.variants) {
         const auto record = store.loadCurve(variant.id);
         if (!record) continue;
         auto curve = curveOf(variant, *record, reference);
         if (!curve) continue;
-        for (std::size_t k = 0; k < curve->statistics.rungs(); ++k)
-            best = std::min(best, curve->statistics.error(k).value);
         if (report.curves.empty()) {
             for (const double seconds : stripTimes(curve->statistics)) report.strips.push_back({seconds, {}});
             report.errorScale = ErrorColours::roundScale(reference.errorMap(
                 record->rungs[rungNear(curve->statistics, report.strips[report.strips.size() / 2].seconds)].first));
         }
-        for (StudyStrip& strip : report.strips) {
-            const CurveRung& rung = record->rungs[rungNear(curve->statistics, strip.seconds)];
-            strip.pictures.push_back({variant.id, rung.samples, reference.measure(rung.first).relMse,
-                                      pictures.png(rung.first), errorPng(rung.first, reference, report.errorScale)});
-        }
+        addPictures(report, pictures, *curve, *record, reference);
         report.curves.push_back(std::move(*curve));
     }
-    report.referenceAdvantage = best / report.referenceRelMse;
+    report.referenceAdvantage = bestError(report.curves) / report.referenceRelMse;
+    for (const PeerCurve& peer : peers) addPeer(report, pictures, peer);
     return report;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "study/curve_statistics.h"
+#include "study/peer_study.h"
 #include "study/study_plan.h"
 #include "study/study_store.h"
 
@@ -28,6 +29,7 @@ struct StudyCurve {
     StudyVariant variant;
     CurveStatistics statistics;
     std::vector<Estimate> bias; // bias² of each rung, over r² + ε
+    std::string note = {};      // in place of the variant's
 
     // What the error flattens at: by a law with a floor, and by the bias² of the last rung, which was measured. The law
     // also fits a curve that is only bent, so the floor is above 0 where both say so; and it lies no higher than the
@@ -47,6 +49,13 @@ struct StudyStrip {
     std::vector<Picture> pictures;
 };
 
+// A curve whose errors are against a reference of its own: another renderer's.
+struct StudyPeer {
+    std::string id, name, version, variant;
+    std::uint32_t referenceSamples = 0; // per pixel, of each half
+    double referenceSeconds = 0, referenceRelMse = 0, referenceAdvantage = 0;
+};
+
 struct StudyReport {
     std::vector<StudyCurve> curves; // the main one first
     std::vector<StudyStrip> strips;
@@ -57,9 +66,12 @@ struct StudyReport {
     double referenceSeconds = 0, referenceRelMse = 0;
     double referenceAdvantage = 0; // relMSE of the best rung of all curves over that
 
-    // From all that the store has: variants with a measured seed, the main one among them; a reference.
+    std::vector<StudyPeer> peers; // of the curves, those of other renderers
+
+    // From all that the store has: variants with a measured seed, the main one among them; a reference. Peers follow.
     // Throws what the store throws.
-    static StudyReport make(const StudySubject&, const StudyPlan&, const StudyStore&);
+    static StudyReport make(const StudySubject&, const StudyPlan&, const StudyStore&,
+                            std::span<const PeerCurve> peers = {});
 };
 
 } // namespace abbe

@@ -73,4 +73,24 @@ says err "peer/wrong.xml:8:"
 expect 1 render peer/wrong.xml
 expect 2 import room.scene
 expect 3 import none.xml
+# A model with its materials, in a camera and lights that show it; what is missing is said, and grey.
+mkdir -p model
+{
+    printf 'mtllib chair.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n'
+    printf 'usemtl wood\nf 1 2 3 4\nusemtl steel\nf 1 5 2\nusemtl stell\nf 1 4 5\n'
+} >model/chair.obj
+printf 'newmtl wood\nKd 0.4 0.2 0.1\nmap_Kd oak.png\nnewmtl steel\nKd 0 0 0\nKs 0.8 0.8 0.8\nNs 500\nillum 3\n' >model/chair.mtl
+expect 0 import model/chair.obj
+says err "model/chair.mtl:3:8"
+says err "model/chair.obj:11:8"
+says err "did you mean \`steel\`?"
+says chair.scene "shape steel mesh"
+expect 0 render model/chair.obj --quiet --size 48x36 --samples 4
+[[ -e chair.exr ]] || fault "no image named after the model"
+# Neither black nor white, and the model is in it.
+expect 0 info chair.exr
+rm model/chair.mtl
+expect 0 render model/chair.obj --quiet --size 24x18 --samples 4 -o grey.exr
+says err W0801
+
 finish

@@ -211,6 +211,9 @@ medium("blendphase", '<float name="sigma_t" value="1.5"/><rgb name="albedo" valu
 case("medium-glass", SKY + LAMP + FLOOR + BALL % '<bsdf type="dielectric"/><medium type="homogeneous" name="interior"><rgb name="sigma_t" value="0.7"/><rgb name="albedo" value="0.5"/></medium>', integrator="volpath", depth=40)
 case("medium-constvolume", SKY + LAMP + BALL % '<bsdf type="null"/><medium type="heterogeneous" name="interior"><volume type="constvolume" name="sigma_t"><float name="value" value="1"/><transform name="to_world"><scale value="2"/><translate x="-1" y="-1" z="-1"/></transform></volume><volume type="constvolume" name="albedo"><rgb name="value" value="0.8"/></volume></medium>', integrator="volpath", depth=40)
 
+AIR = '<medium type="homogeneous" id="air"><rgb name="sigma_t" value="0.08"/><rgb name="albedo" value="0.8"/></medium>'
+case("medium-air", LAMP + FLOOR + BALL % '<bsdf type="twosided"><bsdf type="diffuse"/></bsdf><ref name="exterior" id="air"/>', lens=sensor(AIR), integrator="volpath", depth=40, spp=32)
+
 GRID = '<medium type="heterogeneous" name="interior"><volume type="gridvolume" name="sigma_t"><string name="filename" value="puff.vol"/>%s</volume><rgb name="albedo" value="0.8"/><float name="scale" value="3"/></medium>'
 case("medium-grid", SKY + LAMP + FLOOR + '<shape type="cube"><transform name="to_world"><scale value="0.9"/></transform><bsdf type="null"/>%s</shape>' % (GRID % '<transform name="to_world"><scale value="1.8"/><translate x="-0.9" y="-0.9" z="-0.9"/></transform>'),
      integrator="volpath", depth=40, spp=8, tolerance=0.01, reason="voxels end half a voxel later")

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "exchange/gltf/gltf_import.h"
 #include "exchange/mitsuba/mitsuba_import.h"
+#include "exchange/obj/obj_import.h"
 #include "exchange/pbrt/pbrt_import.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ constexpr ImportFormat kImportFormats[] = {
     {"mitsuba", "a scene of Mitsuba (XML)", isMitsubaScene, importMitsuba},
     {"pbrt", "a scene of pbrt-v4", isPbrtScene, importPbrt},
     {"gltf", "a glTF 2.0 scene", isGltfScene, importGltf},
+    {"obj", "a Wavefront OBJ model", isObjModel, importObj},
 };
 
 std::string headOf(const std::filesystem::path& path) {

@@ -15,6 +15,13 @@ void wrongType(const XmlParam& param, std::string_view wanted, Import& import) {
 
 } // namespace
 
+void MitsubaContext::noteBounds(const Bounds3d& box, const Transform& place) {
+    if (box.empty()) return;
+    for (int corner = 0; corner < 8; ++corner)
+        bounds.add(place.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                                corner & 4 ? box.upper.z : box.lower.z}));
+}
+
 double mitsubaNumber(const XmlObject& object, std::string_view name, double otherwise, Import& import) {
     const XmlParam* const param = object.find(name);
     if (!param) return otherwise;

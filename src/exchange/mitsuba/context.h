@@ -5,6 +5,7 @@
 #include "exchange/mitsuba/xml_reader.h"
 #include "exchange/shared/import.h"
 #include "exchange/shared/placement.h"
+#include "math/bounds.h"
 
 #include <map>
 #include <optional>
@@ -33,6 +34,9 @@ struct MitsubaContext {
     std::map<const XmlObject*, std::pair<std::string, MaterialTraits>> materials;
     std::map<const XmlObject*, std::string> textures, media, groups;
     std::map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
+    Bounds3d bounds;                               // of the shapes so far, of the scene or of a group
+    std::map<const XmlObject*, Bounds3d> groupBounds;
+    const XmlObject* air = nullptr; // the medium that the sensor is in
     bool hideEmitters = false;
     bool seesMedia = false;          // the integrator is one for media
     std::optional<Transform> mirror; // of the whole scene, where its camera is a mirrored one
@@ -40,6 +44,8 @@ struct MitsubaContext {
     double samples = 0;              // of a pixel, 0: not stated
     int depth = 0;                   // of converters inside of each other
 
+    // A box of a shape's own space counts for the bounds.
+    void noteBounds(const Bounds3d&, const Transform& place);
     SceneNode& define(std::string kind) { return import.nodes.emplace_back(std::move(kind)); }
 };
 

@@ -114,16 +114,10 @@ const XmlParam* constantOf(const XmlParam* param) {
     return param->object->plugin == "constvolume" ? param->object->find("value") : nullptr;
 }
 
-std::string interiorOf(const XmlObject& shape, MitsubaContext& ctx) {
-    if (const XmlParam* const outside = shape.find("exterior"); outside && ctx.seesMedia)
-        ctx.import.leftOut(nullptr, outside->span, "`exterior`",
-                           "a shape has a medium inside; what is around it belongs to the shape that holds it");
-    const XmlParam* const inside = shape.find("interior");
-    if (!inside || !inside->object || inside->object->tag != "medium") return {};
-    const XmlObject& object = *inside->object;
+std::string mediumOf(const XmlObject& object, Span from, MitsubaContext& ctx) {
     if (!ctx.seesMedia) {
         if (ctx.media.emplace(&object, "-").second)
-            ctx.import.leftOut(nullptr, inside->span, "a medium",
+            ctx.import.leftOut(nullptr, from, "a medium",
                                "the integrator of this scene does not see media; `volpath` does");
         return {};
     }
@@ -141,6 +135,18 @@ std::string interiorOf(const XmlObject& shape, MitsubaContext& ctx) {
         warnOfUnused(object, ctx.import);
     }
     return name == "-" ? std::string() : name;
+}
+
+std::string interiorOf(const XmlObject& shape, MitsubaContext& ctx) {
+    const XmlParam* const outside = shape.find("exterior");
+    // What the camera is in is everywhere.
+    if (outside && ctx.seesMedia && !(ctx.air && outside->object == ctx.air))
+        ctx.import.leftOut(nullptr, outside->span, "`exterior`",
+                           "a shape has a medium inside; what is around it belongs to the shape that holds it, or is "
+                           "the medium of the sensor");
+    const XmlParam* const inside = shape.find("interior");
+    if (!inside || !inside->object || inside->object->tag != "medium") return {};
+    return mediumOf(*inside->object, inside->span, ctx);
 }
 
 } // namespace abbe::exchange

@@ -5,6 +5,8 @@
 
 namespace abbe::exchange {
 
+// The name of a medium, defined once; empty where it is left out, with a place for the reason.
+std::string mediumOf(const XmlObject& medium, Span from, MitsubaContext&);
 // The name of the medium inside a shape, defined once; empty without one, or where it is left out.
 std::string interiorOf(const XmlObject& shape, MitsubaContext&);
 

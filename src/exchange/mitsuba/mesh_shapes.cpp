@@ -67,6 +67,12 @@ std::optional<MeshData> loadMesh(const XmlObject& shape, const std::filesystem::
     }
 }
 
+void notePoints(const MeshData& mesh, const XmlObject& shape, MitsubaContext& ctx) {
+    Bounds3d box;
+    for (const Vec3& p : mesh.positions) box.add(Vec3d(p));
+    ctx.noteBounds(box, mitsubaTransform(shape));
+}
+
 // Lines of x y z radius; an empty line ends a strand.
 struct Strands {
     MeshData points;
@@ -103,6 +109,7 @@ Strands readStrands(const std::string& text) {
 } // namespace
 
 ShapeForm writeMesh(SceneNode& node, MeshData mesh, const XmlObject& shape, MitsubaContext& ctx) {
+    notePoints(mesh, shape, ctx);
     const std::string stem = shape.id.empty() ? shape.plugin : shape.id;
     node.word("mesh").text(ctx.import.files.write(stem, "ply", binaryPly(mesh)));
     writeTransform(node, mitsubaTransform(shape));
@@ -133,6 +140,7 @@ ShapeForm writeMeshFile(SceneNode& node, const XmlObject& shape, const MaterialT
                         (faces ? mesh->normals.empty() : !mesh->normals.empty()) &&
                         (!traits.textured || mesh->uvs.empty() || (turned && !traits.toUv));
     if (asItIs) {
+        notePoints(*mesh, shape, ctx);
         node.word("mesh").text(ctx.import.files.refer(*path));
         writeTransform(node, mitsubaTransform(shape));
         return {true, false, !turned};
@@ -168,6 +176,7 @@ ShapeForm writeCurves(SceneNode& node, const XmlObject& shape, MitsubaContext& c
             fmt::format("`{}` has no strands of at least {} lines with four numbers", path->string(), least));
         return {};
     }
+    notePoints(strands.points, shape, ctx);
     node.word("curves").text(
         ctx.import.files.write(shape.id.empty() ? shape.plugin : shape.id, "ply", binaryPly(strands.points)));
     node.child("basis").word(spline ? "bspline" : "linear");

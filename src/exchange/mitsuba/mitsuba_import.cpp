@@ -2,6 +2,7 @@
 
 #include "exchange/mitsuba/settings.h"
 #include "exchange/mitsuba/shapes.h"
+#include "exchange/shared/preview.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +13,8 @@ namespace {
 
 // Settings first, then what is referred to, then what is seen.
 std::size_t rankOf(const SceneNode& node) {
-    constexpr std::array<std::string_view, 9> kOrder = {"film",    "camera",   "render", "light", "medium",
-                                                        "texture", "material", "object", "shape"};
+    constexpr std::array<std::string_view, 10> kOrder = {"film",       "camera",  "render",   "light",  "medium",
+                                                         "atmosphere", "texture", "material", "object", "shape"};
     return static_cast<std::size_t>(std::ranges::find(kOrder, node.kind()) - kOrder.begin());
 }
 
@@ -39,6 +40,20 @@ void mirrorScene(MitsubaContext& ctx) {
     ctx.import.nodes.push_back(std::move(group));
 }
 
+// A scene without a sensor is a model: Mitsuba loads it, and has nothing to render it with.
+void writePreview(MitsubaContext& ctx) {
+    std::list<SceneNode>& nodes = ctx.import.nodes;
+    const auto shines = [](const SceneNode& node) {
+        return node.kind() == "light" ||
+               std::ranges::find(node.children(), "emission", &SceneNode::kind) != node.children().end();
+    };
+    if (std::ranges::none_of(nodes, shines))
+        for (SceneNode& light : previewLights()) nodes.push_back(std::move(light));
+    nodes.push_back(previewFilm());
+    nodes.push_back(previewCamera(ctx.bounds));
+    nodes.back().remark("The other scene has no sensor: this camera sees all of it.");
+}
+
 } // namespace
 
 bool isMitsubaScene(const std::filesystem::path&, std::string_view head) {
@@ -62,6 +77,7 @@ void importMitsuba(const std::filesystem::path& path, Import& import) {
         if (param.object && param.tag != "scene") param.used = true;
     mitsubaIgnore(root, {"id"});
     warnOfUnused(root, import);
+    if (root.objects("sensor").empty()) writePreview(ctx);
     if (ctx.mirror) mirrorScene(ctx);
     import.nodes.sort([](const SceneNode& a, const SceneNode& b) { return rankOf(a) < rankOf(b);
 });

@@ -1,3 +1,4 @@
+#include "exchange/mitsuba/media.h"
 #include "exchange/mitsuba/settings.h"
 #include "exchange/mitsuba/xml_values.h"
 
@@ -185,6 +186,20 @@ void writeFilm(const XmlObject* film, const MitsubaFilm& size, MitsubaContext& c
     warnOfUnused(*film, ctx.import);
 }
 
+// The medium of the first sensor is everywhere but in closed shapes.
+void writeAir(const XmlObject& sensor, MitsubaContext& ctx) {
+    const auto media = sensor.objects("medium");
+    if (media.empty() || media[0] == ctx.air) return;
+    if (ctx.air) {
+        ctx.import.leftOut(nullptr, sensor.span, "the medium of a second sensor", "that of the first is everywhere");
+        return;
+    }
+    const std::string name = mediumOf(*media[0], sensor.span, ctx);
+    if (name.empty()) return;
+    ctx.air = media[0];
+    ctx.define("atmosphere").name(name);
+}
+
 } // namespace
 
 void convertSensors(const std::vector<const XmlObject*>& sensors, MitsubaContext& ctx) {
@@ -198,10 +213,7 @@ void convertSensors(const std::vector<const XmlObject*>& sensors, MitsubaContext
         SceneNode camera("camera");
         camera.name(names.take(sensor->id, "camera"));
         const bool written = writeCamera(camera, *sensor, size, ctx);
-        if (sensor->find("medium") && ctx.seesMedia)
-            ctx.import.leftOut(nullptr, sensor->span, "the medium of a sensor",
-                               "a camera is in the shape that it is in");
-        for (const XmlObject* medium : sensor->objects("medium")) mitsubaIgnore(*medium, {"id"});
+        if (written) writeAir(*sensor, ctx);
         warnOfUnused(*sensor, ctx.import);
         if (written) ctx.import.nodes.push_back(std::move(camera));
         if (!std::exchange(first, false)) continue;

@@ -37,7 +37,9 @@ void convertGroup(const XmlObject& group, MitsubaContext& ctx) {
     name = ctx.objectNames.take(group.id, "object");
     SceneNode object("object");
     object.name(name);
+    const Bounds3d outer = std::exchange(ctx.bounds, {});
     for (const XmlObject* shape : group.objects("shape")) convertShape(*shape, &object, ctx);
+    ctx.groupBounds[&group] = std::exchange(ctx.bounds, outer);
     warnOfUnused(group, ctx.import);
     if (object.children().empty()) { // an object holds something
         ctx.groups[&group] = "-";
@@ -58,6 +60,7 @@ void convertInstance(const XmlObject& instance, SceneNode* parent, MitsubaContex
     SceneNode& node = parent ? parent->child("instance") : ctx.define("instance");
     node.name(ctx.groups[groups[0]]);
     writeTransform(node, map);
+    ctx.noteBounds(ctx.groupBounds[groups[0]], map);
     warnOfUnused(instance, ctx.import);
 }
 
@@ -185,6 +188,7 @@ ShapeForm writeFlat(SceneNode& node, const XmlObject& shape, MeshData mesh, cons
         for (const auto& q : mesh.quads) faces.child("-").number(q[0]).number(q[1]).number(q[2]).number(q[3]);
     }
     writeTransform(node, mitsubaTransform(shape));
+    ctx.noteBounds({{-1, -1, cube ? -1.0 : 0.0}, {1, 1, cube ? 1.0 : 0.0}}, mitsubaTransform(shape));
     return {true, cube && !flip, true};
 }
 
@@ -222,6 +226,8 @@ ShapeForm writeSphere(SceneNode& node, const XmlObject& shape, const MaterialTra
         ctx.import.diagnostics.error("E0802", shape.span, "a radius is above 0");
         return {};
     }
+    const Vec3d half(radius, radius, radius);
+    ctx.noteBounds({center - half, center + half}, map);
     if (traits.textured || traits.framed)
         // Mitsuba's pole is z, and longitude counts from x.
         map = axesTo({0, 1, 0}, {0, 0, 1}, {1, 0, 0}).then(Transform::translate(center)).then(map);
@@ -239,6 +245,7 @@ ShapeForm writeDisk(SceneNode& node, const XmlObject& shape, const MaterialTrait
     node.child("radius").number(1);
     noteRoundMap(node, shape, traits, ctx);
     const Transform map = mitsubaTransform(shape);
+    ctx.noteBounds({{-1, -1, 0}, {1, 1, 0}}, map);
     // Its angle runs the other way round where v is turned over.
     writeTransform(node, traits.textured || traits.framed ? Transform::scale({1, -1, 1}).then(map) : map);
     return {true, false};
@@ -257,6 +264,8 @@ ShapeForm writeCylinder(SceneNode& node, const XmlObject& shape, const MaterialT
         return {};
     }
     Transform map = mitsubaTransform(shape);
+    const Vec3d around(radius, radius, radius);
+    ctx.noteBounds({min(p0, p1) - around, max(p0, p1) + around}, map);
     if (traits.textured || traits.framed) {
         // Longitude counts from the first axis of the frame [Duff2017]; v grows from p0 to p1 there, and down here, so
         // that a mirror keeps the sense of the longitude.

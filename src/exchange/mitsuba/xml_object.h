@@ -34,7 +34,8 @@ struct XmlParam {
 struct XmlObject {
     std::string tag, plugin, id;
     Span span;
-    std::deque<XmlParam> params; // a deque: converters hold pointers
+    std::vector<XmlParam> params; // all there before converters hold pointers
+    enum class Walk : std::uint8_t { unseen, open, done } walk = Walk::unseen; // of the reader, which looks for cycles
 
     // The parameter of this name, marked as used, or null.
     const XmlParam* find(std::string_view name) const;
@@ -51,5 +52,16 @@ struct XmlScene {
     const XmlObject* root = nullptr;                // <scene>, or null after an error
     std::vector<std::filesystem::path> searchPaths; // folders of files that are not beside the one that names them
 };
+
+struct XmlVersion {
+    int major = 3, minor = 0;
+};
+
+// "0.5.0"; the other one where the text is none.
+XmlVersion xmlVersion(std::string_view text, XmlVersion otherwise);
+
+// What was written for older versions means the same in 3 (xml_upgrade.cpp). Before version 2 names were in camel case,
+// and textures had uoffset, voffset, uscale and vscale.
+void upgradeXmlObject(XmlObject&, XmlVersion);
 
 } // namespace abbe::exchange

@@ -2,7 +2,6 @@
 
 #include "base/file.h"
 #include "base/memory_limit.h"
-#include "exchange/mitsuba/xml_upgrade.h"
 #include "exchange/mitsuba/xml_values.h"
 #include "schema/scene_tree.h"
 #include "schema/suggest.h"
@@ -12,7 +11,6 @@
 #include <fmt/format.h>
 #include <limits>
 #include <pugixml.hpp>
-#include <set>
 
 namespace abbe::exchange {
 
@@ -42,9 +40,10 @@ class XmlReader {
     void resolve();
 
   private:
+    // A parameter that refers to an id, which is its text. Parameters move while their object is read.
     struct Reference {
-        XmlParam* param;
-        std::string id;
+        XmlObject* object;
+        std::size_t param;
     };
 
     Span spanOf(pugi::xml_node node) const;
@@ -167,7 +166,7 @@ void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
         return;
     }
     if (param.tag == "ref") {
-        references_.push_back({&param, attribute(node, "id")});
+        param.text = attribute(node, "id");
         return;
     }
     if (param.tag == "string" || param.tag == "boolean") return;
@@ -184,7 +183,9 @@ XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
         fault("E0802", node, fmt::format("this `{}` has no `type`", made.tag));
     if (!made.id.empty() && !ids_.emplace(made.id, &made).second)
         fault("E0802", node, fmt::format("two objects have the id `{}`", made.id));
-    for (const pugi::xml_node inner : node.children())
+    const auto children = node.children();
+    made.params.reserve(static_cast<std::size_t>(std::distance(children.begin(), children.end())));
+    for (const pugi::xml_node inner : children)
         if (inner.type() == pugi::node_element) child(inner, made, depth + 1);
     upgradeXmlObject(made, version_);
     return &made;
@@ -213,9 +214,10 @@ void XmlReader::nested(pugi::xml_node node, XmlObject& into, int depth) {
     // <spectrum value="…"/> is a value, <spectrum type="…"> an object.
     const bool isObject = isXmlTag(kXmlObjectTags, param.tag) && (param.tag != "spectrum" || node.attribute("type"));
     if (isObject)
-        param.object = object(node, depth);
+        param.object = object(node, depth); // of others: this parameter stays where it is
     else
         parameter(node, param);
+    if (param.tag == "ref") references_.push_back({&into, into.params.size() - 1});
 }
 
 void XmlReader::child(pugi::xml_node node, XmlObject& into, int depth) {
@@ -298,46 +300,48 @@ void XmlReader::resolve() {
     std::vector<std::string_view> names;
     for (const auto& [name, object] : ids_)
         if (names.size() < 1000) names.push_back(name);
-    for (const auto& [param, id] : references_) {
-        if (const auto found = ids_.find(id); found != ids_.end()) {
-            param->object = found->second;
+    for (const auto& [object, index] : references_) {
+        XmlParam& param = object->params[index];
+        if (const auto found = ids_.find(param.text); found != ids_.end()) {
+            param.object = found->second;
             continue;
         }
-        Diagnostic& d = import_.diagnostics.error("E0802", param->span, fmt::format("nothing has the id `{}`", id));
-        d.help = schema::didYouMean(schema::nearest(id, names));
-        param->used = true;
+        Diagnostic& d =
+            import_.diagnostics.error("E0802", param.span, fmt::format("nothing has the id `{}`", param.text));
+        d.help = schema::didYouMean(schema::nearest(param.text, names));
+        param.used = true;
     }
     cutCycles();
 }
 
 // References that lead back to where they are would never end: an iterative walk over what every object names.
 void XmlReader::cutCycles() {
-    std::set<const XmlObject*> done, path;
+    using enum XmlObject::Walk;
     struct Visit {
-        const XmlObject* object;
+        XmlObject* object;
         std::size_t next;
     };
     for (XmlObject& start : scene_.objects) {
-        if (done.contains(&start)) continue;
+        if (start.walk != unseen) continue;
         std::vector<Visit> stack{{&start, 0}};
-        path.insert(&start);
+        start.walk = open;
         while (!stack.empty()) {
             auto& [object, next] = stack.back();
             if (next == object->params.size()) {
-                path.erase(object);
-                done.insert(object);
+                object->walk = done;
                 stack.pop_back();
                 continue;
             }
-            const XmlParam& param = object->params[next++];
-            if (!param.object || done.contains(param.object)) continue;
-            if (path.contains(param.object)) {
+            XmlParam& param = object->params[next++];
+            if (!param.object || param.object->walk == done) continue;
+            if (param.object->walk == open) {
                 import_.diagnostics.error("E0802", param.span, fmt::format("`{}` contains itself", param.object->id));
-                const_cast<XmlParam&>(param).object = nullptr; // the scene is this reader's own
+                param.object = nullptr;
                 continue;
             }
-            path.insert(param.object);
-            stack.push_back({param.object, 0});
+            XmlObject* const inner = const_cast<XmlObject*>(param.object); // the scene is this reader's own
+            inner->walk = open;
+            stack.push_back({inner, 0});
         }
     }
 }
@@ -360,14 +364,8 @@ std::optional<fs::path> findXmlFile(const XmlScene& scene, const XmlParam& named
     if (fs::is_regular_file(beside, error)) return beside;
     for (const fs::path& other : scene.searchPaths)
         if (fs::is_regular_file(other / name, error)) return other / name;
-    Diagnostic& d = import.diagnostics.error("E0401", named.span, fmt::format("file not found: `{}`", named.text));
-    std::vector<std::string> there;
-    for (fs::directory_iterator it(beside.parent_path(), error), end; !error && it != end && there.size() < 1000;
-         it.increment(error))
-        there.push_back(it->path().filename().string());
-    std::ranges::sort(there);
-    const std::vector<std::string_view> names(there.begin(), there.end());
-    d.help = schema::didYouMean(schema::nearest(beside.filename().string(), names));
+    import.diagnostics.error("E0401", named.span, fmt::format("file not found: `{}`", named.text)).help =
+        suggestFile(beside);
     return std::nullopt;
 }
 

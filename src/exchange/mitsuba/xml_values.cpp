@@ -107,6 +107,19 @@ std::optional<std::vector<double>> xmlNumbers(std::string_view text) {
     }
 }
 
+std::optional<std::vector<double>> xmlHexColor(std::string_view text) {
+    if (text.size() != 7 || text[0] != '#') return std::nullopt;
+    std::vector<double> rgb;
+    for (std::size_t i = 1; i < 7; i += 2) {
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data() + i, text.data() + i + 2, value, 16);
+        if (error != std::errc() || end != text.data() + i + 2) return std::nullopt;
+        const double c = value / 255.0; // IEC 61966-2-1
+        rgb.push_back(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return rgb;
+}
+
 XmlStep xmlStep(std::string_view tag, const XmlAttribute& attribute) {
     if (tag == "matrix") return xmlMatrix(attribute("value"));
     if (tag == "lookat" || tag == "lookAt") return xmlLookAt(attribute);

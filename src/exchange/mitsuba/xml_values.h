@@ -23,4 +23,7 @@ struct XmlStep {
 // `attribute` gives the value of an attribute, empty where there is none.
 XmlStep xmlStep(std::string_view tag, const std::function<std::string(const char*)>& attribute);
 
+// "#ff8000" as linear red, green and blue.
+std::optional<std::vector<double>> xmlHexColor(std::string_view);
+
 } // namespace abbe::exchange

@@ -28,4 +28,7 @@ struct Import {
     void approximated(SceneNode* at, Span span, std::string_view what, std::string_view how);
 };
 
+// "did you mean `hill.obj`?", of the files beside one that is not there; or empty.
+std::string suggestFile(const std::filesystem::path& missing);
+
 } // namespace abbe::exchange

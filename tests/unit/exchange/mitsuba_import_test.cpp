@@ -86,6 +86,31 @@ TEST_CASE("cameras look where Mitsuba's do") {
     CHECK(holds(made.text, "output room.exr space=rec709") != holds(made.text, "output \"room.exr\" space=rec709"));
 }
 
+TEST_CASE("a scene without a sensor is seen whole, in light if it has none") {
+    const Imported made = importText(scene(R"(<shape type="sphere"><point name="center" x="10"/></shape>
+<shape type="shapegroup" id="g"><shape type="cube"/></shape>
+<shape type="instance"><ref id="g"/><transform name="to_world"><translate x="-10"/></transform></shape>)"));
+    CHECK(made.codes == "");
+    // From −11 to 11 in x, 2 high and deep: the camera is far enough away.
+    CHECK(holds(made.text, "// The other scene has no sensor"));
+    const std::size_t from = made.text.find("from ", made.text.find("camera perspective"));
+    REQUIRE(from != std::string::npos);
+    CHECK(std::stod(made.text.substr(from + 5)) > 11);
+    CHECK(holds(made.text, "light key sun"));
+    CHECK_FALSE(holds(importText(scene("<emitter type=\"constant\"/>")).text, "light key sun"));
+}
+
+TEST_CASE("what the camera is in is everywhere") {
+    const std::string air = R"(<medium type="homogeneous" id="air"><float name="sigma_t" value="0.1"/></medium>)";
+    const std::string sensor = "<sensor type=\"perspective\">" + air + "</sensor>";
+    const std::string ball = R"(<shape type="sphere"><ref name="exterior" id="air"/></shape>)";
+    const Imported made = importText(scene("<integrator type=\"volpath\"/>" + sensor + ball));
+    CHECK(made.codes == "");
+    CHECK(holds(made.text, "atmosphere air\n"));
+    CHECK(importText(scene("<integrator type=\"path\"/>" + sensor + ball)).codes == "W0801");
+    CHECK(importText(scene("<integrator type=\"volpath\"/>" + air + ball)).codes == "W0801");
+}
+
 TEST_CASE("defaults, includes and aliases") {
     const TemporaryFolder folder;
     writeText(fs::path(folder / "") / "part.xml", scene("<shape type=\"disk\" id=\"$name\"/>"));

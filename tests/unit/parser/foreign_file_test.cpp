@@ -90,7 +90,7 @@ TEST_CASE("one diagnostic says what to do with a file of another program") {
     const Diagnostic& d = diagnostics.all()[0];
     CHECK(d.code == "E0413");
     CHECK(d.message == "`" + path.string() + "` is a Wavefront OBJ file, not a scene");
-    CHECK(d.help ==
-          "write a scene that shows it: `shape mesh \"" + path.filename().string() + "\" { material diffuse { } }`");
+    CHECK(d.help == "`abbe render` takes it if its name ends in `.obj`; in a scene it is `shape mesh \"" +
+                        path.filename().string() + "\" { material diffuse { } }`");
     std::filesystem::remove(path);
 }
