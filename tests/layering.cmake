@@ -43,7 +43,14 @@ foreach(program mitsuba pbrt gltf obj)
     set(allowed_exchange/${program} ${allowed_exchange/shared} exchange/shared)
 endforeach()
 set(allowed_exchange/importer ${allowed_exchange/shared} exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj)
-set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/importer)
+set(allowed_exchange/stated ${allowed_exchange/shared} exchange/shared)
+foreach(program mitsuba pbrt gltf)
+    set(allowed_exchange/${program}_export ${allowed_exchange/stated} exchange/stated)
+endforeach()
+list(APPEND allowed_exchange/pbrt_export exchange/pbrt) # its map of the sphere
+set(writers exchange/stated exchange/mitsuba_export exchange/pbrt_export exchange/gltf_export)
+set(allowed_exchange/exporter ${allowed_exchange/shared} exchange/shared ${writers})
+set(exchange exchange/shared exchange/mitsuba exchange/pbrt exchange/gltf exchange/obj exchange/importer ${writers} exchange/exporter)
 set(allowed_app ${allowed_scene} parser scene packs ${exchange})
 set(allowed_pictures ${allowed_app} app)
 set(allowed_pages ${allowed_app} app)
@@ -61,7 +68,7 @@ set(folders base math spectrum denoise schema parser io volumes vdb render geome
 set(library_folders
     "embree3/=geometry" "opensubdiv/=geometry" "tbb/=base" "OpenEXR/=io" "Imath/=io" "png\\.h=io" "tiny_gltf=io" "draco/=io" "meshoptimizer\\.h=io" "OpenColorIO/=io"
     "OpenImageIO/=modules" "nanovdb/=volumes|vdb" "openvdb/=vdb"
-    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs" "zip\\.h=packs" "pugixml=exchange/mitsuba" "zlib\\.h=exchange/shared")
+    "CLI/=command_line" "nlohmann/=app|farm|reports|io|packs|exchange/gltf_export" "zip\\.h=packs" "pugixml=exchange/mitsuba|exchange/mitsuba_export" "zlib\\.h=exchange/shared")
 
 set(faults 0)
 macro(fault text)

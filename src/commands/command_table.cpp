@@ -44,6 +44,7 @@ const CommandTable& commandTable() {
         {"denoise", kPictures, kDenoiseHelp, makeCommand<DenoiseOptions>},
         {"check", kScenes, kCheckHelp, makeCommand<CheckOptions>},
         {"import", kScenes, kImportHelp, makeCommand<ImportOptions>},
+        {"export", kScenes, kExportHelp, makeCommand<ExportOptions>},
         {"pack", kScenes, kPackHelp, makeCommand<PackOptions>},
         {"explain", kScenes, kExplainHelp, makeCommand<ExplainOptions>},
         {"info", kScenes, kInfoHelp, makeCommand<InfoOptions>},

@@ -94,6 +94,22 @@ extern const char* const kImportHelp;
 void addArguments(Arguments&, ImportOptions&);
 ExitCode run(const ImportOptions&, const CommonOptions&);
 
+// `abbe export`: a scene for another program.
+enum class ExportTarget : std::uint8_t { mitsuba, pbrt, gltf };
+struct ExportOptions {
+    std::string path;
+    ExportTarget to = ExportTarget::mitsuba;
+    std::string output; // empty: named after the scene, in the current folder
+    bool force = false; // replaces a file that is there
+    std::vector<std::string> defines;
+
+    static bool makesFiles() { return true; }
+};
+
+extern const char* const kExportHelp;
+void addArguments(Arguments&, ExportOptions&);
+ExitCode run(const ExportOptions&, const CommonOptions&);
+
 // `abbe pack`: a scene with all that it reads.
 struct PackOptions {
     std::string path;

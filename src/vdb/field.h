@@ -2,7 +2,6 @@
 // OpenVDB.
 #pragma once
 
-#include "vdb/nano_file.h"
 #include "volumes/vdb_file.h"
 #include "volumes/volume_recipe.h"
 
@@ -13,6 +12,8 @@
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <string>
+#include <string_view>
+#include <vector>
 
 // Trees that the library has instantiated: their members come from there instead of being compiled in each
 // unit that makes a tree, which was most of the time that this folder took to compile.
@@ -37,7 +38,28 @@ extern template class tree::Tree<Vec3STree::RootNodeType>;
 
 namespace abbe::vdb {
 
-// An open file. Its heads are read, its grids are not.
+// In nano_file.cpp: NanoVDB files (.nvdb), of which grids of OpenVDB are made.
+// Whether a file that begins like this is one.
+bool looksLikeNanoVdb(std::string_view beginning);
+
+// An open file: its heads are read, its grids are not. Segments of different packing may follow each other.
+class NanoVdbFile {
+  public:
+    // Throws Failure.
+    explicit NanoVdbFile(const std::string& path);
+    std::vector<std::string> names() const;
+    // The first of that name, or null. Numbers that are packed with fewer bits become float. Throws Failure, also for
+    // grids of booleans, indices and points, and std::runtime_error where the library meets damage.
+    openvdb::GridBase::Ptr grid(const std::string& name) const;
+    const std::string& library() const { return library_; }         // version that wrote the file, "32.4.2"
+    const std::string& compression() const { return compression_; } // of the first segment: "none", "zip", "blosc"
+
+  private:
+    std::string path_, library_, compression_;
+    std::vector<std::string> names_; // in the order of the file
+};
+
+// An open file of either kind. Its heads are read, its grids are not.
 class VdbInput {
   public:
     explicit VdbInput(const std::string& path);

@@ -1,5 +1,3 @@
-#include "vdb/nano_file.h"
-
 #include "vdb/field.h"
 #include "vdb/output.h"
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Renders small scenes with Mitsuba and with Abbe's import of them, and tests tile by tile whether they agree.
 
-  mitsuba_compare.py ABBE [--only PART] [--nightly] [--keep FOLDER] [--list]
+  mitsuba_compare.py ABBE [--export] [--only PART] [--nightly] [--keep FOLDER] [--list]
+
+With --export it is the other way round: scenes of Abbe's, and what `abbe export --to mitsuba` makes of them.
 
 Of every case both programs render several pictures with independent random numbers. A tile's mean has the variance that
 its pixels show between them. The difference of two tiles is compared with its standard error, to which the relative
@@ -17,6 +19,7 @@ import tempfile
 import time
 
 import mitsuba_cases
+import mitsuba_export_cases
 
 BOUND = 5.5
 RENDERS = 3
@@ -46,6 +49,14 @@ def render_abbe(mi, np, case, path, abbe):
         values = np.array(bitmap, dtype=np.float64)
         pictures.append(values[:, :, [names.index(c) for c in "RGB"]])
     return np.stack(pictures), done.stderr
+
+
+def exported(path, abbe):
+    made = path.with_suffix(".xml")
+    done = subprocess.run([abbe, "export", str(path), "--to", "mitsuba", "-o", str(made), "--force"], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr[-2000:])
+    return made
 
 
 def tile_means(np, pictures):
@@ -82,9 +93,11 @@ def main():
     parser.add_argument("--nightly", action="store_true")
     parser.add_argument("--keep")
     parser.add_argument("--list", action="store_true")
+    parser.add_argument("--export", action="store_true")
     options = parser.parse_args()
     options.nightly = options.nightly or bool(os.environ.get("ABBE_NIGHTLY"))
-    cases = [c for c in mitsuba_cases.CASES if options.only in c.name and (options.nightly or not c.nightly)]
+    all_cases = mitsuba_export_cases.CASES if options.export else mitsuba_cases.CASES
+    cases = [c for c in all_cases if options.only in c.name and (options.nightly or not c.nightly)]
     if options.list:
         for c in cases:
             print(f"{c.name:28} {c.variant:16} {c.tolerance:6.3f} {c.reason}")
@@ -103,11 +116,15 @@ def main():
     failed = []
     begun, spent = time.time(), os.times()
     for case in cases:
-        path = folder / f"{case.name}.xml"
+        path = folder / f"{case.name}.{'scene' if options.export else 'xml'}"
         path.write_text(case.xml)
         try:
-            theirs = render_mitsuba(mi, np, case, path)
-            ours, _ = render_abbe(mi, np, case, path, options.abbe)
+            if options.export:
+                ours, _ = render_abbe(mi, np, case, path, options.abbe)
+                theirs = render_mitsuba(mi, np, case, exported(path, options.abbe))
+            else:
+                theirs = render_mitsuba(mi, np, case, path)
+                ours, _ = render_abbe(mi, np, case, path, options.abbe)
             ratio, text = compare(np, case, theirs, ours)
         except Exception as fault:  # whatever fails, the other cases count
             ratio, text = float("inf"), str(fault).strip()[-600:]

@@ -1,5 +1,6 @@
 #include "exchange/pbrt/pbrt_lights.h"
 
+#include "exchange/pbrt/pbrt_sphere_map.h"
 #include "io/exr_writer.h"
 #include "io/file.h"
 #include "io/image.h"

@@ -1,4 +1,4 @@
-#include "exchange/pbrt/pbrt_lights.h"
+#include "exchange/pbrt/pbrt_sphere_map.h"
 
 #include <algorithm>
 #include <cmath>
