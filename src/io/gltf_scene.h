@@ -66,7 +66,7 @@ class GltfAnimation {
     std::vector<double> keyTimes(int node) const;
     std::vector<double> weightTimes(int node) const;
 
-    // At any time in s. The node must be one of the file.
+    // At any time in s. The node must be one of the file. A scale of 0, which hides, has no inverse.
     Transform local(int node, double time) const;
     std::vector<double> weights(int node, double time) const;
     // Of the default scene, or under the node named `root`, wherever it is. Throws for cycles, nodes with two parents,

@@ -69,7 +69,6 @@ void GltfDocument::fail(const std::string& what) const {
 
 GltfDocument::GltfDocument(std::string_view bytes, std::string name) : name_(std::move(name)), bytes_(bytes.size()) {
     if (const auto fault = findContainerFault(bytes)) fail(fmt::format("byte {}: {}", fault->byte, fault->what));
-    if (bytes.size() > 0xffffffffu) fail("glTF files have at most 4 GiB; keep the buffers in files of their own");
     const std::optional<std::string> mended = mendedGltf(bytes);
     load(mended ? *mended : bytes);
     checkExtensions();
@@ -78,6 +77,7 @@ GltfDocument::GltfDocument(std::string_view bytes, std::string name) : name_(std
 }
 
 void GltfDocument::load(std::string_view bytes) {
+    if (bytes.size() > 0xffffffffu) fail("glTF files have at most 4 GiB; keep the buffers in files of their own");
     const std::filesystem::path parent = std::filesystem::path(name_).parent_path();
     std::string folder = parent.empty() ? std::string(".") : parent.string();
     tinygltf::TinyGLTF loader;

@@ -65,6 +65,11 @@ std::string dracoOf(const Wave& w, int speed, bool sequential) {
         const auto& t = w.triangles[f];
         mesh.SetFace(draco::FaceIndex(f), {draco::PointIndex(t[0]), draco::PointIndex(t[1]), draco::PointIndex(t[2])});
     }
+    if (speed == 0) { // stands before the counts
+        auto metadata = std::make_unique<draco::GeometryMetadata>();
+        metadata->AddEntryString("name", "wave");
+        mesh.AddMetadata(std::move(metadata));
+    }
     draco::Encoder encoder;
     encoder.SetSpeedOptions(speed, speed);
     encoder.SetEncodingMethod(sequential ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
