@@ -19,7 +19,8 @@ Examples:
   abbe render room.xml                         renders such a scene without keeping what it becomes)";
 
 void addArguments(Arguments& a, ImportOptions& o) {
-    a.argument("file", &o.path, "Scene of another program: Mitsuba 3 (.xml) or pbrt-v4 (.pbrt)").require();
+    a.argument("file", &o.path, "Scene of another program: Mitsuba 3 (.xml), pbrt-v4 (.pbrt), glTF (.glb, .gltf)")
+        .require();
     a.value("-o,--output", "FILE", &o.output, "Scene file to write (.scene); else named after the other");
     a.flag("--force", &o.force, "Replace a scene file that is there");
     addJson(a);

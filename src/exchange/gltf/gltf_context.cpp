@@ -1,6 +1,8 @@
 #include "exchange/gltf/gltf_context.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include "io/gltf_scene.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -39,6 +40,7 @@ struct GltfContext {
     bool hasLights = false;         // of its own
     bool measures = false;          // its cameras find their exposure
     double nit = 1;                 // nits that an emission of 1 has
+    double keyWork = 0;             // transforms that were evaluated for keys in the scene
     NameTable materialNames = {}, textureNames = {}, shapeNames = {}, objectNames = {}, lightNames = {},
               cameraNames = {};
 

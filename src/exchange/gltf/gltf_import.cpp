@@ -112,14 +112,15 @@ void importGltf(const std::filesystem::path& path, Import& import) {
     const std::string name = path.string();
     try {
         const std::string bytes = readFileBytes(name);
-        const FileId file = import.sources.add(name, std::string(gltfJson(bytes)));
         std::optional<GltfDocument> document;
         try {
             document.emplace(bytes, name);
         } catch (const IoError& fault) {
-            import.diagnostics.error("E0801", {file, 0, 0}, fault.what());
+            // Nothing of it is shown: it may be any file.
+            import.diagnostics.error("E0801", {import.sources.add(name, {}), 0, 0}, fault.what());
             return;
         }
+        const FileId file = import.sources.add(name, std::string(gltfJson(bytes)));
         const GltfPlaces places(file, import.sources.text(file));
         try {
             const GltfAnimation animation(*document, document->model().animations.empty() ? -1 : 0);

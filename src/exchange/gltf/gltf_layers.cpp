@@ -67,7 +67,7 @@ void GltfSurface::writeInside(SceneNode& node, const GltfObject& volume) {
     const Vec3d color = min(volume.color("attenuationColor", {1, 1, 1}), Vec3d(1, 1, 1));
     constexpr double kFarthest = 1e9; // m: then it is as good as clear
     const bool absorbs = distance > 0 && distance < kFarthest && color != Vec3d(1, 1, 1);
-    const bool tinted = baseTexture_ || vertex_.color || baseFactor_ != Vec3d(1, 1, 1);
+    const bool tinted = baseTexture_ || use_.color || baseFactor_ != Vec3d(1, 1, 1);
     if (!absorbs) {
         if (tinted) writeGltfProduct(node.child("transmission-color"), baseColor());
         return;

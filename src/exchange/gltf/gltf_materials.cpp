@@ -18,8 +18,8 @@ constexpr const char* kOldGloss = "KHR_materials_pbrSpecularGlossiness";
 
 } // namespace
 
-const GltfMaterial& GltfMaterials::of(int material, GltfVertexColors vertex) {
-    const auto [at, isNew] = made_.try_emplace({material, vertex});
+const GltfMaterial& GltfMaterials::of(int material, GltfUse use) {
+    const auto [at, isNew] = made_.try_emplace({material, use});
     GltfMaterial& made = at->second;
     if (!isNew) return made;
     static const tinygltf::Material kDefault;
@@ -29,16 +29,15 @@ const GltfMaterial& GltfMaterials::of(int material, GltfVertexColors vertex) {
     made.name = ctx_.materialNames.take(m.name, known ? fmt::format("material-{}", material) : "default");
     SceneNode node("material");
     node.name(made.name);
-    GltfSurface surface(m, material, vertex, ctx_, textures_);
+    GltfSurface surface(m, material, use, ctx_, textures_);
     surface.write(node);
     made.uvSet = surface.uvSet();
     ctx_.import.nodes.push_back(std::move(node));
     return made;
 }
 
-GltfSurface::GltfSurface(const tinygltf::Material& m, int index, GltfVertexColors vertex, GltfContext& ctx,
-                         GltfTextures& textures)
-    : m_(m), vertex_(vertex), ctx_(ctx), textures_(textures), where_(gltfName("material", "materials", index, m.name)),
+GltfSurface::GltfSurface(const tinygltf::Material& m, int index, GltfUse use, GltfContext& ctx, GltfTextures& textures)
+    : m_(m), use_(use), ctx_(ctx), textures_(textures), where_(gltfName("material", "materials", index, m.name)),
       span_(ctx.places.of("materials", index)) {
     const auto& p = m.pbrMetallicRoughness;
     baseFactor_ = {gltfEntry(p.baseColorFactor, 0, 1), gltfEntry(p.baseColorFactor, 1, 1),
@@ -90,7 +89,7 @@ void GltfSurface::writeColor(SceneNode& at, const char* property, Vec3d factor, 
 
 std::vector<GltfFactor> GltfSurface::baseColor() {
     std::vector<GltfFactor> factors = colorFactors(baseFactor_, baseTexture_);
-    if (!vertex_.color) return factors;
+    if (!use_.color) return factors;
     if (!baseTexture_ && baseFactor_ == Vec3d(1, 1, 1)) factors.clear();
     factors.emplace_back([](SceneNode& at) { at.word("attribute").text("color"); });
     return factors;
@@ -190,7 +189,7 @@ bool GltfSurface::writeOpacity(SceneNode& node) {
     std::vector<GltfFactor> factors;
     if (baseTexture_ && textures_.hasAlpha(baseTexture_))
         factors.emplace_back([&](SceneNode& at) { textures_.write(at, baseTexture_, GltfTexels::alpha); });
-    if (vertex_.alpha) factors.emplace_back([](SceneNode& at) { at.word("attribute").text("alpha"); });
+    if (use_.alpha) factors.emplace_back([](SceneNode& at) { at.word("attribute").text("alpha"); });
     if (mode == "BLEND") {
         if (factors.empty() && alphaFactor_ == 1) return false;
         if (alphaFactor_ < 1 || factors.empty()) factors.emplace_back([&](SceneNode& at) { at.number(alphaFactor_); });
@@ -222,6 +221,9 @@ void GltfSurface::writeEmission(SceneNode& node, bool open) {
     const double strength = std::min(strong.positive("emissiveStrength", 1), kMostNits / ctx_.nit);
     strong.warnOfUnused();
     if (!emits() || strength == 0) return;
+    if (use_.dark)
+        return ctx_.import.leftOut(&node, span_, fmt::format("what {} emits", where_),
+                                   "it is stretched while it moves");
     if (open)
         return ctx_.import.leftOut(&node, span_, fmt::format("what {} emits", where_),
                                    "a surface with holes cannot emit");

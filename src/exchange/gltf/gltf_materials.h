@@ -11,10 +11,11 @@ struct GltfMaterial {
     int uvSet = -1; // TEXCOORD that its textures use; -1: it has none
 };
 
-// What a primitive has that its material then uses: values at its vertices.
-struct GltfVertexColors {
-    bool color = false, alpha = false;
-    auto operator<=>(const GltfVertexColors&) const = default;
+// How a primitive uses its material.
+struct GltfUse {
+    bool color = false, alpha = false; // it has such values at its vertices
+    bool dark = false;                 // it cannot emit, as it is stretched while it moves
+    auto operator<=>(const GltfUse&) const = default;
 };
 
 class GltfMaterials {
@@ -22,18 +23,18 @@ class GltfMaterials {
     explicit GltfMaterials(GltfContext& ctx) : ctx_(ctx), textures_(ctx) {}
 
     // Defined once for each kind of primitive; -1 is the default material of the format.
-    const GltfMaterial& of(int material, GltfVertexColors);
+    const GltfMaterial& of(int material, GltfUse);
 
   private:
     GltfContext& ctx_;
     GltfTextures textures_;
-    std::map<std::pair<int, GltfVertexColors>, GltfMaterial> made_;
+    std::map<std::pair<int, GltfUse>, GltfMaterial> made_;
 };
 
 // One material while it is written (gltf_materials.cpp, and gltf_layers.cpp for what extensions add).
 class GltfSurface {
   public:
-    GltfSurface(const tinygltf::Material&, int index, GltfVertexColors, GltfContext&, GltfTextures&);
+    GltfSurface(const tinygltf::Material&, int index, GltfUse, GltfContext&, GltfTextures&);
 
     // Fills `material NAME …`.
     void write(SceneNode&);
@@ -71,7 +72,7 @@ class GltfSurface {
     bool emits() const;
 
     const tinygltf::Material& m_;
-    GltfVertexColors vertex_;
+    GltfUse use_;
     GltfContext& ctx_;
     GltfTextures& textures_;
     std::string where_;

@@ -24,7 +24,8 @@ void dropFlat(MeshData& mesh) {
 
 } // namespace
 
-GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& wish, const Transform& toBox) {
+GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& wish, const Transform& toBox,
+                                  bool dark) {
     const int index = ctx_.model().nodes[static_cast<std::size_t>(pose.node)].mesh;
     const tinygltf::Mesh& mesh = ctx_.model().meshes[static_cast<std::size_t>(index)];
     Parts made;
@@ -42,7 +43,7 @@ GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& w
         SceneNode shape("shape");
         const std::string name = ctx_.shapeNames.take(wish, fmt::format("mesh-{}", index));
         shape.name(name).word("mesh");
-        writeSurface(shape, mesh.primitives[i], primitive);
+        writeSurface(shape, mesh.primitives[i], primitive, dark);
         const Transform toScene = primitive.skinned ? Transform{} : toBox;
         for (const Vec3& p : primitive.mesh.positions) made.box.add(toScene.point(Vec3d(p)));
         shape.text(ctx_.import.files.write(name, "ply", binaryPly(primitive.mesh)));
@@ -53,7 +54,7 @@ GltfNodes::Parts GltfNodes::parts(const GltfNodePose& pose, const std::string& w
 }
 
 // The material, and in the mesh what it needs: one set of texture coordinates, and the values that it multiplies.
-void GltfNodes::writeSurface(SceneNode& shape, const tinygltf::Primitive& primitive, GltfPrimitive& part) {
+void GltfNodes::writeSurface(SceneNode& shape, const tinygltf::Primitive& primitive, GltfPrimitive& part, bool dark) {
     MeshData& mesh = part.mesh;
     const auto has = [&](std::string_view name) {
         return std::ranges::any_of(mesh.attributes, [&](const MeshAttribute& a) { return a.name == name; });
@@ -63,7 +64,7 @@ void GltfNodes::writeSurface(SceneNode& shape, const tinygltf::Primitive& primit
         ctx_.import.diagnostics.error(
             "E0802", ctx_.places.of("materials", -1),
             fmt::format("a primitive has material {}, but the file has {}", primitive.material, count));
-    const GltfMaterial& material = materials_.of(primitive.material, {has("color"), has("alpha")});
+    const GltfMaterial& material = materials_.of(primitive.material, {has("color"), has("alpha"), dark});
     shape.child("material").name(material.name);
     if (material.uvSet == 1) mesh.uvs = std::move(part.uvs1);
     if (material.uvSet < 0) mesh.uvs.clear();
@@ -109,8 +110,9 @@ void GltfNodes::writeVariants(SceneNode& shape, const tinygltf::Primitive& primi
             }
             names += fmt::format("{}`{}`", names.empty() ? "" : ", ", name);
         }
-        shape.remark(fmt::format("Variant {}: material `{}` of the file", names,
-                                 ctx_.model().materials[static_cast<std::size_t>(material)].name));
+        shape.remark(fmt::format("Variant {}: {} of the file", names,
+                                 gltfName("material", "materials", material,
+                                          ctx_.model().materials[static_cast<std::size_t>(material)].name)));
     }
 }
 

@@ -56,7 +56,7 @@ void writeGltfKeys(SceneNode& parent, const GltfKeys& keys) {
     }
 }
 
-GltfKeys gltfWorldKeys(const GltfContext& ctx, int node) {
+GltfKeys gltfWorldKeys(GltfContext& ctx, int node) {
     constexpr double kStep = 1.0 / 60; // s
     constexpr std::size_t kMostTimes = 20000;
     std::vector<int> above; // from the node upwards
@@ -81,6 +81,9 @@ GltfKeys gltfWorldKeys(const GltfContext& ctx, int node) {
         times.erase(std::unique(times.begin(), times.end()), times.end());
     }
     if (times.empty()) times.push_back(0);
+    constexpr double kCost = 16; // of a transform, in what a byte of the file may ask for
+    ctx.keyWork += kCost * static_cast<double>(times.size()) * static_cast<double>(above.size());
+    ctx.document.bound(ctx.keyWork, "the keys of nodes that move in each other");
     GltfKeys keys;
     for (const double time : times) {
         Transform world;
@@ -92,6 +95,7 @@ GltfKeys gltfWorldKeys(const GltfContext& ctx, int node) {
 
 void GltfNodes::write() {
     countUses();
+    checkWork();
     const auto& nodes = ctx_.pose.nodes();
     places_.resize(ctx_.model().nodes.size());
     for (const GltfNodePose& pose : nodes) {
@@ -114,6 +118,34 @@ void GltfNodes::countUses() {
         holds_[at] = holds_[at] || mesh >= 0 || gltfLightOf(ctx_, pose->node) >= 0;
         if (pose->parent >= 0 && holds_[at]) holds_[static_cast<std::size_t>(pose->parent)] = true;
     }
+}
+
+// Nodes share meshes, copies and skins, and accessors may have no bytes: what is made of them is not bounded by the
+// size of the file.
+void GltfNodes::checkWork() const {
+    const tinygltf::Model& model = ctx_.model();
+    double all = 0;
+    std::set<int> seen; // meshes that are made once
+    for (const GltfNodePose& pose : ctx_.pose.nodes()) {
+        const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(pose.node)];
+        if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) continue;
+        all += static_cast<double>(gltfInstanceCount(ctx_.document, pose.node));
+        if (isShared(pose) && !seen.insert(node.mesh).second) continue;
+        const bool skinned = node.skin >= 0 && static_cast<std::size_t>(node.skin) < model.skins.size();
+        const double joints =
+            skinned ? static_cast<double>(model.skins[static_cast<std::size_t>(node.skin)].joints.size()) : 0;
+        for (const tinygltf::Primitive& p : model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+            all += 1 + joints;
+            const auto count = [&](int accessor) {
+                return static_cast<double>(ctx_.document.count(accessor, fmt::format("meshes[{}]", node.mesh)));
+            };
+            const auto position = p.attributes.find("POSITION");
+            if (position != p.attributes.end())
+                all += count(position->second) * (1 + static_cast<double>(p.targets.size()));
+            if (p.indices >= 0) all += count(p.indices);
+        }
+    }
+    ctx_.document.bound(all, "the vertices, corners and copies of its nodes");
 }
 
 // A node that moves is a group with keys in that of the node above it: so their motions add up as in the file.
@@ -140,11 +172,14 @@ void GltfNodes::place(const GltfNodePose& pose) {
             writeTransform(outer, at.map);
             at.group = &outer;
         }
+        const bool even =
+            std::ranges::all_of(keys, [](const auto& key) { return key.second.uniformScale().has_value(); });
+        const bool stretched = at.stretched || !even || !at.map.uniformScale();
         SceneNode& group = nodeIn(at, "group");
         const std::string& name = ctx_.model().nodes[static_cast<std::size_t>(pose.node)].name;
         group.name(ctx_.objectNames.take(name, fmt::format("node-{}", pose.node)));
         writeGltfKeys(group, keys);
-        at = {&group, {}, at.depth + 1};
+        at = {&group, {}, at.depth + 1, false, stretched};
     }
     if (!at.map.isFinite()) {
         ctx_.import.diagnostics.error("E0802", ctx_.places.of("nodes", pose.node),
@@ -188,7 +223,7 @@ void GltfNodes::writeMesh(const GltfNodePose& pose, const Place& at) {
     const std::string& meshName = ctx_.model().meshes[static_cast<std::size_t>(node.mesh)].name;
     const std::string wish = (shared && !meshName.empty()) || node.name.empty() ? meshName : node.name;
     if (!shared && single) {
-        Parts made = parts(pose, wish, copies[0].then(pose.world));
+        Parts made = parts(pose, wish, copies[0].then(pose.world), at.stretched);
         bounds_.add(made.box);
         const bool skinned = node.skin >= 0; // it is in the scene already
         for (SceneNode& shape : made.shapes) {
@@ -198,9 +233,9 @@ void GltfNodes::writeMesh(const GltfNodePose& pose, const Place& at) {
         return;
     }
     std::pair<std::string, Bounds3d> own;
-    auto& [object, box] = shared ? objects_[node.mesh] : own;
+    auto& [object, box] = shared ? objects_[{node.mesh, at.stretched}] : own;
     if (object.empty()) {
-        Parts made = parts(pose, wish, {});
+        Parts made = parts(pose, wish, {}, at.stretched);
         if (made.shapes.empty()) return;
         object = ctx_.objectNames.take(wish, fmt::format("mesh-{}", node.mesh));
         box = made.box;
@@ -253,12 +288,15 @@ void GltfNodes::writeLight(const GltfNodePose& pose, const Place& at) {
     const std::string& name = ctx_.model().nodes[static_cast<std::size_t>(pose.node)].name;
     light.name(ctx_.lightNames.take(name, fmt::format("light-{}", pose.node)));
     if (!writeGltfLight(light, index, ctx_)) return;
-    const auto rigid = gltfRigid(at.map);
+    const auto rigid = gltfRigid(at.stretched ? pose.world : at.map);
     if (!rigid)
-        return ctx_.import.leftOut(nullptr, ctx_.places.of("nodes", pose.node), fmt::format("light[{}]", index),
+        return ctx_.import.leftOut(nullptr, ctx_.places.of("nodes", pose.node), fmt::format("lights[{}]", index),
                                    "its node has no size, so that it has no direction");
+    if (at.stretched)
+        ctx_.import.approximated(&light, ctx_.places.of("nodes", pose.node), fmt::format("lights[{}]", index),
+                                 "it is stretched while it moves: it stands as at 0 s");
     writeTransform(light, *rigid);
-    add(at, std::move(light));
+    add(at.stretched ? Place{} : at, std::move(light));
 }
 
 } // namespace abbe::exchange

@@ -21,8 +21,8 @@ using GltfKeys = std::vector<std::pair<double, Transform>>;
 // Fills `transform { … }`; nothing where the map is the identity and stands still.
 void writeGltfKeys(SceneNode& parent, const GltfKeys&);
 // The map of a node to the scene, with the moves of all nodes above it: keys at the times of each of them, and where
-// several move, between these, too.
-GltfKeys gltfWorldKeys(const GltfContext&, int node);
+// several move, between these, too. Throws IoError for more of them than anybody meant.
+GltfKeys gltfWorldKeys(GltfContext&, int node);
 
 class GltfNodes {
   public:
@@ -38,8 +38,9 @@ class GltfNodes {
     struct Place {
         SceneNode* group = nullptr;
         Transform map;
-        int depth = 0;       // of groups
-        bool hidden = false; // scaled to nothing
+        int depth = 0;          // of groups
+        bool hidden = false;    // scaled to nothing
+        bool stretched = false; // it moves, and not by turns, places and even sizes alone: what does cannot emit
     };
     // The shapes of a mesh, one for each primitive.
     struct Parts {
@@ -48,6 +49,7 @@ class GltfNodes {
     };
 
     void countUses();
+    void checkWork() const;
     void place(const GltfNodePose&);
     SceneNode& nodeIn(const Place&, const char* kind);
     void add(const Place&, SceneNode);
@@ -56,18 +58,19 @@ class GltfNodes {
     void writeLight(const GltfNodePose&, const Place&);
     void writeCopies(const Place&, const std::string& object, const std::vector<Transform>& copies);
     // gltf_meshes.cpp
-    Parts parts(const GltfNodePose&, const std::string& wish, const Transform& toBox);
-    void writeSurface(SceneNode& shape, const tinygltf::Primitive&, GltfPrimitive&);
+    Parts parts(const GltfNodePose&, const std::string& wish, const Transform& toBox, bool dark);
+    void writeSurface(SceneNode& shape, const tinygltf::Primitive&, GltfPrimitive&, bool dark);
     void writeVariants(SceneNode& shape, const tinygltf::Primitive&);
     void warnOfBending(const GltfNodePose&);
 
     GltfContext& ctx_;
     GltfMaterials materials_;
     Bounds3d bounds_;
-    std::map<int, int> uses_;                                 // of each mesh
-    std::map<int, std::pair<std::string, Bounds3d>> objects_; // of meshes that several nodes show, in their own space
-    std::vector<Place> places_;                               // of each node of the pose
-    std::vector<bool> holds_;                                 // whether it or what is below it is seen
+    std::map<int, int> uses_; // of each mesh
+    // Objects of meshes that several nodes show, in their own space; those that cannot emit by themselves.
+    std::map<std::pair<int, bool>, std::pair<std::string, Bounds3d>> objects_;
+    std::vector<Place> places_; // of each node of the pose
+    std::vector<bool> holds_;   // whether it or what is below it is seen
 };
 
 } // namespace abbe::exchange

@@ -67,6 +67,7 @@ TEST_CASE("glTF: a mesh with a plain material in front of a camera that is made 
 
 TEST_CASE("glTF: faults have places and codes") {
     CHECK(GltfCase("{").says("E0801"));
+    CHECK_FALSE(GltfCase("{ hunter2 }").says("hunter2")); // it may be any file
     CHECK(GltfCase(R"({"asset":{"version":"1.0"}})").says("E0801"));
     CHECK(GltfCase(gltfMaterial(R"("pbrMetallicRoughness":{"baseColorTexture":{"index":7}})")).says("E0802"));
     CHECK(GltfCase(gltfMaterial("\"alphaMode\":\"SHINY\"")).says("E0802"));
@@ -288,4 +289,40 @@ TEST_CASE("glTF: what is scaled to nothing is left out, and keys keep a size") {
 "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"scale"}}],"samplers":[{"input":5,"output":6}]}])"));
     INFO(moving.scene);
     CHECK(moving.has("scale 1e-05"));
+}
+
+TEST_CASE("glTF: what is stretched while it moves does not emit, and its lights stand still") {
+    const GltfCase made(gltfWall(R"("materials":[{"name":"lamp","emissiveFactor":[1,1,1]}],"scenes":[{"nodes":[0]}],
+"nodes":[{"scale":[1,2,1],"children":[1]},{"mesh":0,"children":[2]},{"translation":[0,1,0],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},
+"animations":[{"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}],"samplers":[{"input":5,"output":6}]}])"));
+    INFO(made.report());
+    INFO(made.scene);
+    CHECK(made.says("what material `lamp` emits is left out"));
+    CHECK_FALSE(made.has("emission"));
+    CHECK(made.has("light light-2 point { intensity 1 cd; transform { translate 0 2 0 } }"));
+    CHECK(made.has("group { transform { scale 1 2 1 }; group node-1 { transform { at 0 s"));
+}
+
+TEST_CASE("glTF: what a small file asks for is bounded") {
+    std::string many = gltfMaterial("\"alphaMode\":\"OPAQUE\"");
+    const std::string first = R"("bufferView":0,"byteOffset":0,"componentType":5126,"count":4,)";
+    many.replace(many.find(first), first.size(), R"("componentType":5126,"count":400000000,)");
+    CHECK(GltfCase(many).says("E0802"));
+    // 300 nodes that move in each other, the last of them with 400 cameras: each has keys of all
+    std::string nodes, channels, list;
+    for (int i = 1; i <= 300; ++i) {
+        nodes += ",{\"children\":[" + (i < 300 ? std::to_string(i + 1) : "301") + "]}";
+        channels += (i > 1 ? "," : "") + std::string(R"({"sampler":0,"target":{"node":)") + std::to_string(i) +
+                    R"(,"path":"translation"}})";
+    }
+    for (int i = 301; i < 701; ++i) list += (i > 301 ? "," : "") + std::to_string(i);
+    nodes.replace(nodes.rfind("301"), 3, list);
+    for (int i = 301; i < 701; ++i) nodes += ",{\"camera\":0}";
+    const GltfCase chain(gltfWall(
+        R"("materials":[{}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],"scenes":[{"nodes":[0,1]}],
+"nodes":[{"mesh":0})" +
+        nodes + R"(],"animations":[{"channels":[)" + channels + R"(],"samplers":[{"input":5,"output":6}]}])"));
+    INFO(chain.report());
+    CHECK(chain.says("the keys of nodes that move in each other"));
 }
