@@ -154,6 +154,9 @@ class StudyCommand {
         if (const ExitCode code = load(); code != ExitCode::done) return code;
         choosePlan();
         if (const ExitCode code = checkOutputs(); code != ExitCode::done) return code;
+        if (options_.effects && !options_.against.empty())
+            return refuse("E0756", "`--effects` does not go with `--against`",
+                          "curves are compared with another renderer");
         if (options_.effects) return studyEffects(options_, common_, *loaded_, build_, outputBase());
         InterruptGuard interrupt;
         if (const ExitCode code = findPeer(interrupt); code != ExitCode::done) return code;
@@ -370,6 +373,7 @@ void StudyCommand::tellStart() const {
                     options_.input.path, subject_.film.width, subject_.film.height, threadCount(),
                     threadCount() == 1 ? "" : "s", variants, variants == 1 ? "" : "s", ladder.front(), ladder.back(),
                     plan_.seeds, clockText(expectedSeconds(ladder.back()))));
+    if (!peer_.scene.empty()) say(fmt::format("  beside Mitsuba, {}", peer_.variant));
     for (const LeftOutVariant& v : plan_.chosen.leftOut) say(fmt::format("  without {}: {}", v.label, v.reason));
 }
 

@@ -12,6 +12,7 @@ namespace abbe {
 const char* const kMitsubaScript = R"python(
 import os, sys, time
 
+sys.path[:] = [folder for folder in sys.path if folder]  # what lies in the current folder is no module
 import drjit as dr
 import mitsuba as mi
 

@@ -23,6 +23,9 @@ printf '#!/bin/sh\nPYTHONPATH=%s exec %s "$@"\n' "$tests/support/peer_stub" "$py
 chmod +x stub
 export ABBE_PEER_PYTHON=$folder/stub
 
+# What lies in the current folder is not run.
+printf 'raise SystemExit("planted")\n' >drjit.py
+
 # Its curve stands in the report, with a slope of independent samples and against a reference of its own.
 expect 0 study room.xml "${small[@]}" --against mitsuba -o peer
 says out "Mitsuba"
@@ -56,6 +59,8 @@ says err "cannot be read"
 expect 1 study "$scenes/room.scene" --against mitsuba -o failed
 says err E0756
 expect 1 study room.xml --against mitsuba --camera camera -o failed
+says err E0756
+expect 1 study room.xml --against mitsuba --effects -o failed
 says err E0756
 expect 2 study room.xml --against pbrt
 says err "mitsuba:VARIANT"

@@ -8,8 +8,12 @@
 #include "schema/suggest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace abbe::exchange {
 
@@ -43,6 +47,11 @@ struct ObjStatements {
     std::vector<std::string_view> libraries;
     std::map<std::string_view, std::string_view> materials; // where each is used first
     std::string_view points, lines, smooth, coloredVertex, normal;
+    std::string_view group;            // of smoothing, that faces are in now; empty: none
+    std::set<std::string_view> groups; // that faces are in, "" among them
+
+    // Whether all faces are in one smoothing group, and the file has no normals itself.
+    bool smoothsAll() const { return normal.empty() && groups.size() == 1 && !groups.begin()->empty(); }
 };
 
 std::string_view afterObjBlanks(std::string_view text) {
@@ -77,21 +86,29 @@ void noteObjStatement(std::string_view line, ObjStatements& found) {
         found.points = line;
     else if (begins("vn") && found.normal.empty())
         found.normal = line;
-    else if (begins("s") && found.smooth.empty() && rest(1) != "off" && rest(1) != "0")
-        found.smooth = line;
-    else if (begins("v") && found.coloredVertex.empty() && objWordCount(line) >= 7)
+    else if (begins("s")) {
+        found.group = rest(1) == "off" || rest(1) == "0" ? std::string_view() : rest(1);
+        if (found.smooth.empty() && !found.group.empty()) found.smooth = line;
+    } else if (begins("v") && found.coloredVertex.empty() && objWordCount(line) >= 7)
         found.coloredVertex = line;
 }
 
 ObjStatements objStatements(std::string_view text) {
     ObjStatements found;
+    bool inGroup = false; // faces, since the last statement on smoothing
     while (!text.empty()) {
         const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
         // Nearly all lines are those of vertices and faces.
         const std::string_view line = afterObjBlanks(text.substr(0, end));
-        if (!line.empty() && line[0] != 'f') noteObjStatement(line, found);
+        if (!line.empty() && line[0] == 'f')
+            inGroup = true;
+        else if (!line.empty()) {
+            if (line[0] == 's' && std::exchange(inGroup, false)) found.groups.insert(found.group);
+            noteObjStatement(line, found);
+        }
         text.remove_prefix(std::min(end + 1, text.size()));
     }
+    if (inGroup) found.groups.insert(found.group);
     return found;
 }
 
@@ -146,6 +163,34 @@ Bounds3d objBounds(const MeshData& mesh) {
     return bounds;
 }
 
+// Normals of a smoothing group: means of those of the faces around a place, weighted by their corner's angles
+// [Thurmer1998]. Vertices in one place may differ in their texture coordinates.
+void smoothObj(MeshData& mesh) {
+    struct Less {
+        bool operator()(const Vec3& a, const Vec3& b) const {
+            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+        }
+    };
+    std::map<Vec3, Vec3d, Less> sums;
+    const auto add = [&](const auto& face) {
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const Vec3& at = mesh.positions[face[i]];
+            const Vec3d a = Vec3d(mesh.positions[face[(i + 1) % face.size()]]) - Vec3d(at);
+            const Vec3d b = Vec3d(mesh.positions[face[(i + face.size() - 1) % face.size()]]) - Vec3d(at);
+            const Vec3d n = cross(a, b);
+            const double size = length(n);
+            if (size > 0) sums[at] += n * (std::atan2(size, dot(a, b)) / size);
+        }
+    };
+    for (const auto& t : mesh.triangles) add(t);
+    for (const auto& q : mesh.quads) add(q);
+    for (const Vec3& at : mesh.positions) {
+        const auto found = sums.find(at);
+        const bool known = found != sums.end() && lengthSquared(found->second) > 0;
+        mesh.normals.push_back(known ? Vec3(normalize(found->second)) : Vec3(0, 0, 0));
+    }
+}
+
 // The faces of all groups of one material, with the vertices that they use. `vertexOf` has an entry for each vertex of
 // the file, all of them kUnusedObjVertex before and after.
 constexpr std::uint32_t kUnusedObjVertex = 0xffffffffu;
@@ -179,29 +224,36 @@ MeshData objFacesOf(const MeshFile& file, const std::vector<const MeshGroup*>& g
     return part;
 }
 
-// Grey where the file has no material of the name.
-void writeObjMaterial(SceneNode& shape, const std::string& name, std::string_view place, ObjModel& model) {
-    SceneNode& use = shape.child("material");
-    const auto found = model.library.find(name);
-    if (found == model.library.end()) {
-        use.word("diffuse").child("reflectance").number(0.5);
-        if (name.empty() || (model.hasLibrary && model.library.empty())) return; // said before
-        std::vector<std::string_view> names;
-        for (const auto& [known, material] : model.library) names.push_back(known);
+// Materials that are used and not there. A library that is not there was said before.
+void noteUnknownMaterials(const ObjStatements& statements, ObjModel& model) {
+    if (model.hasLibrary && model.library.empty()) return;
+    std::vector<std::string_view> names;
+    for (const auto& [known, material] : model.library) names.push_back(known);
+    for (const auto& [name, place] : statements.materials) {
+        if (name.empty() || model.library.contains(name)) continue;
         model.import.diagnostics
             .warning("W0801", model.text.spanOf(place),
                      fmt::format("the material `{}` is left out: {}; grey stands for it", name,
                                  model.hasLibrary ? "no library has it" : "there is no `mtllib`"))
             .help = schema::didYouMean(schema::nearest(name, names));
+        if (!model.hasLibrary) return; // once for all
+    }
+}
+
+// Grey where there is none.
+void writeObjMaterial(SceneNode& shape, const MtlMaterial* found, ObjModel& model) {
+    SceneNode& use = shape.child("material");
+    if (!found) {
+        use.word("diffuse").child("reflectance").number(0.5);
         return;
     }
     SceneNode material("material");
-    const std::string known = model.materials.take(name, "material");
+    const std::string known = model.materials.take(found->name, "material");
     material.name(known);
-    writeMtlMaterial(material, found->second, model.surface, model.import);
+    writeMtlMaterial(material, *found, model.surface, model.import);
     model.import.nodes.push_back(std::move(material));
     use.name(known);
-    writeMtlEmission(shape, found->second, model.surface, model.import);
+    writeMtlEmission(shape, *found, model.surface, model.import);
 }
 
 void noteWhatIsPassedOver(const ObjStatements& statements, ObjModel& model) {
@@ -211,31 +263,33 @@ void noteWhatIsPassedOver(const ObjStatements& statements, ObjModel& model) {
     leave(statements.lines, "`l`", "lines have no surface; `shape curves` has strands of a width");
     leave(statements.points, "`p`", "points have no surface; `shape points` has spheres");
     leave(statements.coloredVertex, "the colours of vertices", "`v` has three coordinates; PLY files keep colours");
-    if (!statements.smooth.empty() && statements.normal.empty())
+    if (!statements.smooth.empty() && statements.normal.empty() && !statements.smoothsAll())
         model.import.approximated(nullptr, model.text.spanOf(statements.smooth), "`s`",
-                                  "faces without `vn` are flat; export the normals");
+                                  "with more than one group, faces without `vn` are flat; export the normals");
 }
 
-// One shape for each material, in the order in which they are used first. The file itself does where it has only one.
-void writeObjShapes(const MeshFile& file, const fs::path& path, const ObjStatements& statements, ObjModel& model) {
-    std::vector<std::pair<std::string, std::vector<const MeshGroup*>>> parts;
-    std::map<std::string_view, std::size_t> partOf;
+// One shape for each material, in the order in which they are used first, and one for all faces without. The file
+// itself does where there is only one.
+void writeObjShapes(const MeshFile& file, const fs::path& path, bool asItIs, ObjModel& model) {
+    std::vector<std::pair<const MtlMaterial*, std::vector<const MeshGroup*>>> parts;
+    std::map<const MtlMaterial*, std::size_t> partOf;
     for (const MeshGroup& g : file.groups) {
-        const auto [at, isNew] = partOf.try_emplace(g.material, parts.size());
-        if (isNew) parts.emplace_back(g.material, std::vector<const MeshGroup*>());
+        const auto found = model.library.find(g.material);
+        const MtlMaterial* const material = found == model.library.end() ? nullptr : &found->second;
+        const auto [at, isNew] = partOf.try_emplace(material, parts.size());
+        if (isNew) parts.emplace_back(material, std::vector<const MeshGroup*>());
         parts[at->second].second.push_back(&g);
     }
     std::list<SceneNode> shapes;
-    std::vector<std::uint32_t> vertexOf(parts.size() > 1 ? file.mesh.positions.size() : 0, kUnusedObjVertex);
-    for (const auto& [name, groups] : parts) {
+    const bool whole = asItIs && parts.size() == 1;
+    std::vector<std::uint32_t> vertexOf(whole ? 0 : file.mesh.positions.size(), kUnusedObjVertex);
+    for (const auto& [material, groups] : parts) {
         SceneNode& shape = shapes.emplace_back("shape");
-        const std::string& wish = name.empty() ? model.stem : name;
+        const std::string& wish = material ? material->name : model.stem;
         shape.name(model.shapes.take(wish, "model")).word("mesh");
-        shape.text(parts.size() == 1
-                       ? model.import.files.refer(path)
-                       : model.import.files.write(wish, "ply", binaryPly(objFacesOf(file, groups, vertexOf))));
-        const auto place = statements.materials.find(name);
-        writeObjMaterial(shape, name, place == statements.materials.end() ? std::string_view() : place->second, model);
+        shape.text(whole ? model.import.files.refer(path)
+                         : model.import.files.write(wish, "ply", binaryPly(objFacesOf(file, groups, vertexOf))));
+        writeObjMaterial(shape, material, model);
     }
     model.import.nodes.splice(model.import.nodes.end(), shapes);
 }
@@ -250,7 +304,7 @@ bool isObjModel(const fs::path& path, std::string_view) {
 void importObj(const fs::path& path, Import& import) {
     try {
         const LargeFile bytes(path.string());
-        const MeshFile file = parseObj(bytes.bytes(), path.string());
+        MeshFile file = parseObj(bytes.bytes(), path.string());
         ObjText text(path.string(), bytes.bytes(), import.sources);
         const ObjStatements statements = objStatements(bytes.bytes());
         const Bounds3d bounds = objBounds(file.mesh);
@@ -263,7 +317,9 @@ void importObj(const fs::path& path, Import& import) {
         for (SceneNode& light : previewLights()) import.nodes.push_back(std::move(light));
         readMtlLibraries(statements, model);
         noteWhatIsPassedOver(statements, model);
-        writeObjShapes(file, path, statements, model);
+        noteUnknownMaterials(statements, model);
+        if (statements.smoothsAll()) smoothObj(file.mesh);
+        writeObjShapes(file, path, !statements.smoothsAll(), model);
     } catch (const IoError& fault) {
         import.diagnostics.error("E0402", {}, fault.what());
     }

@@ -1,6 +1,7 @@
 // OBJ models with material libraries in, scene text and diagnostics out. Whatever comes out is a legal scene.
 #include "base/diagnostic_format.h"
 #include "exchange/importer/importer.h"
+#include "io/mesh_file.h"
 #include "parser/parse.h"
 #include "scene/registry.h"
 #include "schema/scene_tree.h"
@@ -195,14 +196,43 @@ TEST_CASE("a library or a material that is not there is a warning, and grey") {
     other.write("model.obj", fmt::format("mtllib a b.mtl\n{}usemtl rad\n{}", kSquare, kFace));
     other.import();
     CHECK(other.says("no library has it"));
+    CHECK(other.has("shape model mesh \"model.obj\""));
     CHECK(other.diagnostics.all()[0].help == "did you mean `red`?");
+}
+
+TEST_CASE("a smoothing group has the normals that its file leaves out") {
+    const auto normalOf = [](const std::string& smoothing) {
+        ObjCase c;
+        // A roof over the line from 1 to 2, which both faces share; its ends differ in their texture coordinates.
+        c.write("model.obj",
+                smoothing + "v 0 1 0\nv 0 1 1\nv -1 0 0\nv 1 0 0\nvt 0 0\nvt 1 1\nf 1/1 3/1 2/1\nf 1/2 2/2 4/2\n");
+        c.import();
+        const std::string mesh = c.has("model.ply") ? c.folder / "model-files/model.ply" : c.folder / "model.obj";
+        const MeshData read = readMesh(mesh).mesh;
+        return read.normals.empty() ? Vec3() : read.normals[0];
+    };
+    const Vec3 normal = normalOf("s 1\n");
+    CHECK(normal.x == doctest::Approx(0).epsilon(1e-5));
+    CHECK(normal.y > 0.9);
+    for (const char* other : {"", "s off\n", "s 0\n"}) CHECK(normalOf(other) == Vec3());
+}
+
+TEST_CASE("any number of materials without a library are one warning, and one shape") {
+    ObjCase c;
+    std::string text(kSquare);
+    for (int i = 0; i < 2000; ++i) text += fmt::format("usemtl m{}\n{}", i, kFace);
+    c.write("model.obj", text);
+    c.import();
+    CHECK(c.diagnostics.all().size() == 1);
+    CHECK(c.has("shape model mesh \"model.obj\" { material diffuse { reflectance 0.5 } }"));
 }
 
 TEST_CASE("what a model says besides faces is not lost without a word") {
     ObjCase c;
     c.write("model.mtl", "newmtl m\nmap_Kd paint.png\n");
     c.write("paint.png", "");
-    c.write("model.obj", "mtllib model.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\ns 1\nf 1 2 3\nl 1 2\np 1\n");
+    c.write("model.obj",
+            "mtllib model.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\ns 1\nf 1 2 3\ns 2\nf 1 2 3\nl 1 2\np 1\n");
     c.import();
     for (const char* part :
          {"`l` is left out", "`p` is left out", "colours of vertices", "`s` is approximated", "no texture coordinates"})
