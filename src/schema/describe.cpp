@@ -224,8 +224,14 @@ std::string diagnosticsMarkdown() {
                        "`abbe explain codes` prints this page.\n"
                        "Codes with an E are errors: nothing is rendered. Codes with a W are warnings.\n";
     constexpr std::pair<std::string_view, std::string_view> kAreas[] = {
-        {"01", "Syntax"},           {"02", "Names"},  {"03", "Values and units"},     {"04", "Files"},
-        {"05", "The `scene` line"}, {"06", "Scenes"}, {"07", "Materials and lights"},
+        {"01", "Syntax"},
+        {"02", "Names"},
+        {"03", "Values and units"},
+        {"04", "Files"},
+        {"05", "The `scene` line"},
+        {"06", "Scenes"},
+        {"07", "Materials and lights"},
+        {"08", "Scenes of other programs"},
     };
     for (const auto& [area, heading] : kAreas) {
         text += fmt::format("\n## {}\n", heading);

@@ -77,17 +77,21 @@ double indexOf(const StatedThing& m, const char* property, double otherwise) {
     return ior.curve ? indexAtD(*ior.curve) : otherwise;
 }
 
+Vec3d reflectedColor(const Curve& curve, GltfWriter& w) {
+    schema::SpectrumValue stated;
+    stated.form = schema::SpectrumValue::Form::table;
+    return rgbOf(StatedCurve(stated, schema::SpectrumRole::albedo, curve), w.out.scene.daylight());
+}
+
 // What a metal reflects of light that comes straight on, as a colour.
 Vec3d metalColor(const StatedThing& m, const char* property, GltfWriter& w) {
     const auto* const index = m.value<schema::ComplexIndex>(property);
     if (!index) return {0.8, 0.8, 0.8};
-    const SampledCurve reflected([&](double nm) {
-        const double n = index->n->at(nm), k = index->k->at(nm);
-        return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
-    });
-    schema::SpectrumValue stated;
-    stated.form = schema::SpectrumValue::Form::table;
-    return rgbOf(StatedCurve(stated, schema::SpectrumRole::albedo, reflected), w.out.scene.daylight());
+    return reflectedColor(SampledCurve([&](double nm) {
+                              const double n = index->n->at(nm), k = index->k->at(nm);
+                              return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+                          }),
+                          w);
 }
 
 void lookOf(GltfLook& look, const StatedThing& m, int depth);
@@ -111,6 +115,12 @@ void glassLook(GltfLook& look, const StatedThing& m, bool thin) {
     if (const StatedSpectrum color = m.spectrum("attenuation-color"); color.curve) {
         volume["attenuationColor"] = colorOf(rgbOf(*color.curve, look.w.out.scene.daylight()));
         volume["attenuationDistance"] = m.number("attenuation-distance", 1);
+    } else if (const StatedCurve* sigma = m.spectrum("absorption").curve; sigma && sigma->maximum() > 0) {
+        // What is left after the mean free path in the middle of the spectrum, or the shortest.
+        const double distance = 1 / (sigma->at(550) > 0 ? sigma->at(550) : sigma->maximum());
+        const SampledCurve left([&](double nm) { return std::exp(-sigma->at(nm) * distance); });
+        volume["attenuationColor"] = colorOf(reflectedColor(left, look.w));
+        volume["attenuationDistance"] = rounded(distance);
     }
 }
 
@@ -176,7 +186,7 @@ std::size_t gltfMaterial(const StatedThing& material, GltfWriter& w) {
     lookOf(look, material, 0);
     look.json["pbrMetallicRoughness"] = look.pbr;
     look.json["doubleSided"] = true;
-    if (const StatedThing* normal = material.reference("normal"))
+    if (const StatedThing* normal = normalMapOf(material, w.out))
         if (const auto texture = gltfTexture(*normal, w)) look.json["normalTexture"] = {{"index", *texture}};
     Export::ignore(material, {"priority"});
     w.out.leaveOutUnused(material);

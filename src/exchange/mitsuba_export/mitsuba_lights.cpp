@@ -116,7 +116,8 @@ void writeBeam(const LightSiteThere& site) {
     xmlTransform(node, Transform::scale({radius, radius, radius}).then(mapToAxis(at, axis)));
     xmlChild(node, "bsdf", "null");
     site.spectrum(xmlChild(node, "emitter", "directionalarea"), "radiance", *stated);
-    Export::ignore(site.light, {"divergence"});
+    if (site.light.has("divergence"))
+        site.w.out.approximated(site.light.span, "`divergence`", "the beam does not spread");
     site.w.remark(node);
 }
 
@@ -144,8 +145,6 @@ void writeMitsubaLight(pugi::xml_node parent, const Placed& placed, MitsubaWrite
         w.out.leftOut(light.span, fmt::format("light `{}`", light.type), "Mitsuba has nothing like it");
         return;
     }
-    if (hiddenFromCamera(placed) && !w.hidesLights)
-        w.out.leftOut(placed.span, "`visible-to` of a light", "Mitsuba hides all lights from the camera or none");
     row->write({parent, placed, light, w});
     w.out.leaveOutUnused(light);
 }

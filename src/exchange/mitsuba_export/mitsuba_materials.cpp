@@ -113,12 +113,15 @@ void writeThinBsdf(pugi::xml_node parent, std::string_view id, const StatedThing
     xmlNumber(node, "ext_ior", 1);
 }
 
-void writeMixBsdf(pugi::xml_node parent, std::string_view id, const StatedThing& m, MitsubaWriter& w) {
+void writeMixBsdf(pugi::xml_node parent, std::string_view id, const StatedThing& m, bool blackBehind,
+                  MitsubaWriter& w) {
     pugi::xml_node node = xmlChild(parent, "bsdf", "blendbsdf", {}, id);
     writeMitsubaNumber(node, "weight", m.textured("amount", 0.5), w);
     for (const char* part : {"first", "second"})
         if (const StatedThing* inner = m.reference(part))
-            writeInner(node, inner->name.empty() ? "" : w.takeId(inner->name, {}), *inner, false, w);
+            writeInner(node, inner->name.empty() ? "" : w.takeId(inner->name, {}), *inner, blackBehind, w);
+    Export::ignore(m, {"priority"});
+    w.out.leaveOutUnused(m);
 }
 
 // A clear coat over a matte base is plastic; Mitsuba has no coats over others.
@@ -127,7 +130,7 @@ void writeLayeredBsdf(pugi::xml_node parent, std::string_view id, const StatedTh
     if (!base || base->type != "diffuse") {
         w.out.leftOut(m.span, "the coat of `layered`", "Mitsuba has coats on matte materials alone");
         Export::ignore(m, {"ior", "roughness", "tint", "absorption", "thickness", "darkening"});
-        if (base) writeInner(parent, id, *base, false, w);
+        if (base) writeInner(parent, id, *base, true, w); // both sides are there already, or one is enough
         return;
     }
     const double alpha = alphaOf(m, "roughness", 0, w);
@@ -210,7 +213,6 @@ constexpr MaterialRow kMaterials[] = {
     {"conductor", writeConductorBsdf, true},
     {"dielectric", writeDielectricBsdf, false},
     {"thin-dielectric", writeThinBsdf, false},
-    {"mix", writeMixBsdf, false}, // its parts are
     {"layered", writeLayeredBsdf, true},
     {"openpbr", writePrincipledBsdf, true},
     {"hair", writeHairBsdf, false},
@@ -239,12 +241,11 @@ pugi::xml_node openModifiers(pugi::xml_node parent, std::string& id, const State
         parent = xmlChild(parent, "bsdf", "mask", {}, std::exchange(id, {}));
         writeMitsubaNumber(parent, "opacity", opacity, w);
     }
-    const auto textureOf = [&](const char* property) { return m.reference(property); };
-    if (const StatedThing* map = textureOf("normal")) {
+    if (const StatedThing* map = normalMapOf(m, w.out)) {
         parent = xmlChild(parent, "bsdf", "normalmap", {}, std::exchange(id, {}));
         writeMitsubaTexture(parent, "normalmap", *map, true, w);
     }
-    if (const StatedThing* map = textureOf("bump.map")) {
+    if (const StatedThing* map = m.reference("bump.map")) {
         parent = xmlChild(parent, "bsdf", "bumpmap", {}, std::exchange(id, {}));
         xmlNumber(parent, "scale", m.number("bump", 0));
         writeMitsubaTexture(parent, "texture", *map, true, w);
@@ -269,6 +270,7 @@ void writeInner(pugi::xml_node parent, std::string_view wish, const StatedThing&
             if (side) writeInner(both, side->name.empty() ? "" : w.takeId(side->name, {}), *side, true, w);
         return w.out.leaveOutUnused(m);
     }
+    if (m.type == "mix") return writeMixBsdf(parent, id, m, blackBehind, w); // its parts have sides
     const auto row = std::ranges::find(kMaterials, std::string_view(m.type), &MaterialRow::type);
     if (row == std::end(kMaterials)) return;
     if (row->bothSides && !blackBehind && !isTransparent(m)) {
@@ -282,10 +284,24 @@ void writeInner(pugi::xml_node parent, std::string_view wish, const StatedThing&
 
 } // namespace
 
-void writeMitsubaMaterial(pugi::xml_node shape, const StatedThing* material, MitsubaWriter& w) {
+namespace {
+
+// Whether no light gets through to the other side.
+bool isOpaque(const StatedThing& m) {
+    const auto row = std::ranges::find(kMaterials, std::string_view(m.type), &MaterialRow::type);
+    const StatedNumber opacity = m.textured("opacity", 1);
+    if (row == std::end(kMaterials) || !row->bothSides || isTransparent(m)) return false;
+    if (opacity.texture || opacity.value != 1) return false;
+    const StatedThing* const base = m.type == "layered" ? m.reference("base") : nullptr;
+    return !base || isOpaque(*base);
+}
+
+} // namespace
+
+void writeMitsubaMaterial(pugi::xml_node shape, const StatedThing* material, bool outsideAlone, MitsubaWriter& w) {
     if (!material) { // grey and matte, on both sides
-        xmlValue(xmlChild(xmlChild(shape, "bsdf", "twosided"), "bsdf", "diffuse"), "spectrum", "reflectance", "0.5");
-        return;
+        pugi::xml_node parent = outsideAlone ? shape : xmlChild(shape, "bsdf", "twosided");
+        return xmlValue(xmlChild(parent, "bsdf", "diffuse"), "spectrum", "reflectance", "0.5");
     }
     // A two-sided one that is black behind is the front alone, by the front's name.
     const StatedThing* const front = material->type == "two-sided" && material->name.empty() &&
@@ -293,13 +309,14 @@ void writeMitsubaMaterial(pugi::xml_node shape, const StatedThing* material, Mit
                                          ? material->reference("front")
                                          : nullptr;
     const StatedThing& named = front ? *front : *material;
-    if (front && isDefaultGrey(*front)) return; // what a shape has there without any
-    if (named.name.empty()) return writeInner(shape, {}, named, front != nullptr, w);
-    std::string& id = (front ? w.oneSided : w.materials)[&named];
+    const bool blackBehind = front || (outsideAlone && isOpaque(named));
+    if (blackBehind && isDefaultGrey(named)) return; // what a shape has there without any
+    if (named.name.empty()) return writeInner(shape, {}, named, blackBehind, w);
+    std::string& id = (blackBehind ? w.oneSided : w.materials)[&named];
     if (id.empty()) {
         id = w.takeId(named.name, {});
         const pugi::xml_node last = w.root.last_child();
-        writeInner(w.root, id, named, front != nullptr, w);
+        writeInner(w.root, id, named, blackBehind, w);
         w.remark(last ? last.next_sibling() : w.root.first_child());
     }
     shape.append_child("ref").append_attribute("id") = id.c_str();

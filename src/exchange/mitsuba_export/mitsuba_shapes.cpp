@@ -35,7 +35,8 @@ struct ShapeSite {
     const Placed& placed;
     const StatedThing& thing;
     std::string id;
-    bool framed; // its texture coordinates count
+    bool framed;   // its texture coordinates count
+    bool textured; // for a texture, and not for a highlight alone
     MitsubaWriter& w;
 
     pugi::xml_node node(std::string_view type) const { return xmlChild(parent, "shape", type, {}, id); }
@@ -73,14 +74,14 @@ Nodes writeQuadShape(const ShapeSite& site) {
         for (int r = 0; r < 3; ++r) square.a[r][2] = n[r];
     }
     square.t = (p[0] + p[2]) * 0.5;
-    if (site.framed) square = Transform::scale({1, -1, 1}).then(square);
+    if (site.textured) square = Transform::scale({1, -1, 1}).then(square);
     pugi::xml_node node = site.node("rectangle");
     xmlTransform(node, square.then(site.placed.toWorld));
     return {node};
 }
 
 Nodes writeBoxShape(const ShapeSite& site) {
-    if (site.framed || site.placed.toWorld.determinant() < 0)
+    if (site.textured || site.placed.toWorld.determinant() < 0)
         return {writePolygons(site, *polygonsOf(site.thing, site.w.out.scene))};
     const auto [lower, upper] = boxCorners(site.thing);
     pugi::xml_node node = site.node("cube");
@@ -223,6 +224,20 @@ Nodes writeStrands(const ShapeSite& site) {
     return {node};
 }
 
+// A square with the coordinates that a rectangle has there, as importers write it; nothing for other meshes.
+std::optional<Transform> squareOf(const MeshData& mesh) {
+    constexpr Vec2 kUvs[4] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    const bool one = mesh.positions.size() == 4 && mesh.normals.empty() && mesh.triangles.empty() &&
+                     mesh.quads == std::vector<std::array<std::uint32_t, 4>>{{0, 1, 2, 3}};
+    if (!one || !std::ranges::equal(mesh.uvs, kUvs)) return std::nullopt;
+    const Vec3d a(mesh.positions[0]), b(mesh.positions[1]), c(mesh.positions[2]), d(mesh.positions[3]);
+    const Vec3d n = cross(b - a, d - a);
+    if (!(a + c == b + d) || !(lengthSquared(n) > 0)) return std::nullopt;
+    Transform square = columnsTo((b - a) * 0.5, (d - a) * 0.5, normalize(n));
+    square.t = (a + c) * 0.5;
+    return square;
+}
+
 // The file itself, where Mitsuba reads it as it is.
 Nodes writeMeshNode(const ShapeSite& site) {
     auto mesh = meshOf(site.thing, site.w.out.scene);
@@ -233,6 +248,11 @@ Nodes writeMeshNode(const ShapeSite& site) {
         ignoreCage(site.thing);
     }
     const Transform& map = site.placed.toWorld;
+    if (const auto square = mesh->file.empty() ? squareOf(mesh->mesh) : std::nullopt) {
+        pugi::xml_node node = site.node("rectangle");
+        xmlTransform(node, square->then(map));
+        return {node};
+    }
     const bool asItIs =
         !mesh->file.empty() && mesh->mesh.quads.empty() && map.determinant() > 0 && site.thing.type == "mesh";
     if (!asItIs) return {writePolygons(site, std::move(mesh->mesh))};
@@ -257,10 +277,27 @@ constexpr ShapeRow kShapes[] = {
     {"subdivision", writeMeshNode}, {"curves", writeStrands},
 };
 
+// A whole sphere or box, and the camera is not in it: what is inside of it is not seen.
+bool isSeenFromOutside(const Placed& placed, const MitsubaWriter& w) {
+    const StatedThing& thing = *placed.thing;
+    const auto& cameras = w.out.scene.cameras();
+    if (cameras.empty() || (thing.type != "sphere" && thing.type != "box")) return false;
+    const auto back = placed.toWorld.inverse();
+    if (!back) return false;
+    return std::ranges::all_of(cameras, [&](const StatedThing* camera) {
+        const Vec3d eye = back->point(cameraToWorld(*camera, w.out.scene).t);
+        if (thing.type == "sphere")
+            return length(eye - thing.vector("center").value_or(Vec3d())) > thing.number("radius", 0.5);
+        const auto [lower, upper] = boxCorners(thing);
+        return minComponent(eye - lower) < 0 || minComponent(upper - eye) < 0;
+    });
+}
+
 // What is the same for a shape's parts: material, interior, emission.
 void finishShape(pugi::xml_node node, const Placed& placed, const StatedThing* material, MitsubaWriter& w) {
+    const bool parentIsWorld = node.parent() == w.body;
     const StatedThing& thing = *placed.thing;
-    writeMitsubaMaterial(node, material, w);
+    writeMitsubaMaterial(node, material, parentIsWorld && isSeenFromOutside(placed, w), w);
     if (const StatedThing* medium = thing.reference("interior"))
         writeMitsubaMedium(node, *medium, w);
     else
@@ -278,14 +315,17 @@ void writeSurface(pugi::xml_node parent, const Placed& placed, MitsubaWriter& w)
         return;
     }
     const StatedThing* const material = thing.reference("material");
-    const bool framed = (material && material->usesCoordinates()) || thing.spectrum("emission").texture;
-    const ShapeSite site{parent, placed, thing, w.takeId(thing.name, thing.type), framed, w};
+    const bool shows = thing.spectrum("emission").texture != nullptr;
+    const bool framed = (material && material->usesCoordinates(true)) || shows;
+    const bool textured = (material && material->usesCoordinates(false)) || shows;
+    const ShapeSite site{parent, placed, thing, w.takeId(thing.name, thing.type), framed, textured, w};
     if (thing.has("at")) w.out.approximated(thing.span, "a shape that deforms", "by what it is first");
     for (pugi::xml_node node : row->write(site)) finishShape(node, placed, material, w);
     if (thing.type == "mesh")
         if (const auto mesh = meshOf(thing, w.out.scene))
             for (const StatedMesh::Part& part : mesh->parts) {
-                const ShapeSite one{parent, placed, thing, w.takeId(site.id + "-" + part.group, {}), framed, w};
+                const ShapeSite one{parent, placed,   thing, w.takeId(site.id + "-" + part.group, {}),
+                                    framed, textured, w};
                 if (!part.mesh.triangles.empty() || !part.mesh.quads.empty())
                     finishShape(writePolygons(one, part.mesh), placed, part.material, w);
             }
@@ -330,7 +370,8 @@ void writeSurfaceLight(pugi::xml_node parent, const Placed& placed, MitsubaWrite
     for (const bool back : {false, true}) {
         if (back && !both) break;
         Placed side = placed;
-        const ShapeSite site{parent, side, light, back ? id + "-back" : id, pattern.texture != nullptr, w};
+        const ShapeSite site{
+            parent, side, light, back ? id + "-back" : id, pattern.texture != nullptr, pattern.texture != nullptr, w};
         for (pugi::xml_node node : row->write(site)) {
             if (back) xmlFlag(node, "flip_normals", true);
             xmlValue(xmlChild(node, "bsdf", "diffuse"), "spectrum", "reflectance", "0");
@@ -361,13 +402,16 @@ void writeMitsubaShape(pugi::xml_node parent, const Placed& placed, MitsubaWrite
                       "places that are computed are not written for Mitsuba; state each as an `instance`");
         return;
     }
-    if (thing.kind == schema::Kind::light) {
+    const bool light = thing.kind == schema::Kind::light;
+    if (!placed.visibleTo.empty() && !(w.hidesLights && (light || thing.spectrum("emission"))))
+        w.out.leftOut(placed.span, "`visible-to`",
+                      light ? "Mitsuba hides all lights from the camera or none"
+                            : "every ray sees every shape in Mitsuba");
+    if (light) {
         const bool surface =
             thing.type == "quad" || thing.type == "disk" || thing.type == "sphere" || thing.type == "mesh";
         return surface ? writeSurfaceLight(parent, placed, w) : writeMitsubaLight(parent, placed, w);
     }
-    if (!placed.visibleTo.empty() && !(w.hidesLights && thing.spectrum("emission")))
-        w.out.leftOut(placed.span, "`visible-to` of a shape", "every ray sees every shape in Mitsuba");
     writeSurface(parent, placed, w);
 }
 

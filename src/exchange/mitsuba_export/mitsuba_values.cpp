@@ -17,9 +17,9 @@ std::string tableText(const PlainSpectrum& s) {
         text += fmt::format("{}{}:{}", text.empty() ? "" : ", ", numberText(nm), numberText(value));
     };
     if (s.rows.empty()) return "360:0, 830:0";
-    if (!s.light && s.rows.front().first > 360) add(360, s.rows.front().second);
+    if (!s.light && s.rows.front().first > 360 && s.rows.front().second != 0) add(360, s.rows.front().second);
     for (const auto& [nm, value] : s.rows) add(nm, value);
-    if (!s.light && s.rows.back().first < 830) add(830, s.rows.back().second);
+    if (!s.light && s.rows.back().first < 830 && s.rows.back().second != 0) add(830, s.rows.back().second);
     return text;
 }
 

@@ -53,8 +53,8 @@ void writeMitsubaNumber(pugi::xml_node parent, std::string_view name, const Stat
 void writeMitsubaTexture(pugi::xml_node parent, std::string_view name, const StatedThing& texture, bool data,
                          MitsubaWriter&);
 
-// A shape's material, by reference or in place; `blackBehind` where the shape alone says so.
-void writeMitsubaMaterial(pugi::xml_node shape, const StatedThing* material, MitsubaWriter&);
+// A shape's material, by reference or in place. `outsideAlone`: nothing sees its other side.
+void writeMitsubaMaterial(pugi::xml_node shape, const StatedThing* material, bool outsideAlone, MitsubaWriter&);
 void writeMitsubaMedium(pugi::xml_node shape, const StatedThing& medium, MitsubaWriter&);
 // Absorption inside of a clear material, as a medium.
 void writeMitsubaAbsorption(pugi::xml_node shape, const StatedThing* material, MitsubaWriter&);

@@ -122,7 +122,7 @@ PbrtForms formsOf(const StatedThing& thing, const std::string& stem, PbrtWriter&
         PbrtList list;
         list.number("radius", thing.number("radius", 0.5));
         const StatedThing* const material = thing.kind == schema::Kind::shape ? thing.reference("material") : nullptr;
-        const bool framed = material && material->usesCoordinates();
+        const bool framed = material && material->usesCoordinates(true);
         Transform before = framed ? poleToY() : Transform();
         if (!(center == Vec3d())) before = before.then(Transform::translate(center));
         return {{shapeLine("sphere", list), before}};

@@ -340,7 +340,7 @@ void addRelief(PbrtList& list, const StatedThing& m, PbrtWriter& w) {
         }
     }
     m.has("bump");
-    if (const StatedThing* map = m.reference("normal")) {
+    if (const StatedThing* map = normalMapOf(m, w.out)) {
         const auto* const file = map->type == "image" ? map->value<schema::Text>("file") : nullptr;
         if (file)
             list.text("string", "normalmap", w.out.files.refer(file->value));

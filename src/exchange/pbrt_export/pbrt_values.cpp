@@ -30,9 +30,9 @@ std::string pbrtTable(const PlainSpectrum& s) {
     };
     if (s.rows.empty()) return "360 0 830 0";
     // Reflectances go on beyond the ends of a table here; pbrt's are zero there.
-    if (!s.light && s.rows.front().first > 360) add(360, s.rows.front().second);
+    if (!s.light && s.rows.front().first > 360 && s.rows.front().second != 0) add(360, s.rows.front().second);
     for (const auto& [nm, value] : s.rows) add(nm, value);
-    if (!s.light && s.rows.back().first < 830) add(830, s.rows.back().second);
+    if (!s.light && s.rows.back().first < 830 && s.rows.back().second != 0) add(830, s.rows.back().second);
     return text;
 }
 

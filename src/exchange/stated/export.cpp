@@ -29,9 +29,17 @@ void Export::ignore(const StatedThing& thing, std::initializer_list<std::string_
     for (const std::string_view property : properties) thing.has(property);
 }
 
+const StatedThing* normalMapOf(const StatedThing& material, Export& to) {
+    const auto* const stated = material.value<schema::WeightedReference>("normal");
+    if (stated && stated->weight != 1)
+        to.approximated(stated->span.valid() ? stated->span : material.span, "`strength=` of a normal map", "it is 1");
+    return material.reference("normal");
+}
+
 bool canBeInstanced(const std::vector<Placed>& object) {
     return std::ranges::all_of(object, [](const Placed& p) {
-        return p.thing && p.thing->kind == schema::Kind::shape && !p.thing->spectrum("emission") &&
+        const bool plain = p.visibleTo.empty() && !p.moves; // else something is to be said of each
+        return plain && p.thing && p.thing->kind == schema::Kind::shape && !p.thing->spectrum("emission") &&
                !p.thing->reference("interior");
     });
 }

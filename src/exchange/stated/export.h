@@ -31,6 +31,9 @@ struct Export {
     std::vector<std::string> remarks_ = {};
 };
 
+// The map of normals of a material; another strength than 1 is W0802.
+const StatedThing* normalMapOf(const StatedThing& material, Export&);
+
 // Whether instances of it can be instances elsewhere: surfaces alone, without light, media and other instances.
 bool canBeInstanced(const std::vector<Placed>& object);
 // What an instance shows, in its own space: for objects that cannot be instanced.

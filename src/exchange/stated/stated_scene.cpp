@@ -120,24 +120,29 @@ StatedSpectrum StatedThing::spectrum(std::string_view property) const {
 const StatedThing* StatedThing::reference(std::string_view property) const {
     const auto* const all = find(property);
     if (!all) return nullptr;
-    for (const BoundValue& v : *all)
-        if (const auto* r = std::get_if<schema::Reference>(&v))
-            return r->valid() ? &scene_->things_[r->index] : nullptr;
+    for (const BoundValue& v : *all) {
+        if (const auto* r = std::get_if<schema::Reference>(&v)) return scene_->thing(*r);
+        if (const auto* w = std::get_if<schema::WeightedReference>(&v)) return scene_->thing(w->reference);
+    }
     return nullptr;
 }
 
-bool StatedThing::usesCoordinates(int depth) const {
+bool StatedThing::usesCoordinates(bool alsoStretched, int depth) const {
     constexpr int kDeepest = 16;
     if (depth > kDeepest) return false;
     if (kind == schema::Kind::texture) return true;
+    const auto inner = [&](schema::Reference r) {
+        return r.valid() && scene_->thing(r)->usesCoordinates(alsoStretched, depth + 1);
+    };
     for (const auto& [property, all] : values_)
         for (const BoundValue& v : all) {
             if (const auto* spectrum = std::get_if<schema::TexturedSpectrum>(&v); spectrum && spectrum->texture)
                 return true;
             const auto* const number = std::get_if<schema::TexturedNumber>(&v);
-            if (number && (number->texture || (property.ends_with("anisotropy") && number->value != 0))) return true;
-            const auto* const to = std::get_if<schema::Reference>(&v);
-            if (to && to->valid() && scene_->thing(*to)->usesCoordinates(depth + 1)) return true;
+            const bool stretched = alsoStretched && property.ends_with("anisotropy");
+            if (number && (number->texture || (stretched && number->value != 0))) return true;
+            if (const auto* to = std::get_if<schema::Reference>(&v); to && inner(*to)) return true;
+            if (const auto* to = std::get_if<schema::WeightedReference>(&v); to && inner(to->reference)) return true;
         }
     return false;
 }

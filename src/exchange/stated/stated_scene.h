@@ -80,9 +80,9 @@ class StatedThing {
     // All values of a property that may be repeated.
     const std::vector<schema::BoundValue>* find(std::string_view property) const;
 
-    // Whether texture coordinates count: a texture, or a highlight that is stretched, in it or what it refers to.
-    // Nothing is used by asking.
-    bool usesCoordinates(int depth = 0) const;
+    // Whether texture coordinates count: a texture (or a highlight that is stretched along them), in it or what it
+    // refers to. Nothing is used by asking.
+    bool usesCoordinates(bool alsoStretched, int depth = 0) const;
 
     struct Unused {
         std::string property;

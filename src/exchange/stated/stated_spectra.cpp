@@ -101,7 +101,7 @@ PlainSpectrum plainSpectrum(const StatedCurve& curve, double scale, double step)
     } else if (out.light && isDaylight(curve)) {
         out.form = PlainSpectrum::Form::rgb; // which Rec. 709 has as its white
         out.rgb = {times(1), times(1), times(1)};
-    } else if (v.form == StatedForm::blackbody && std::abs(scale - 1) < 1e-4) { // its table may have been coarser
+    } else if (v.form == StatedForm::blackbody && std::abs(scale - 1) < 1e-3) { // its table may have been coarser
         out.form = PlainSpectrum::Form::blackbody;
         out.value = v.numbers[0];
     } else {

@@ -11,10 +11,12 @@
 #include "unit/io/temporary_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 using namespace abbe;
@@ -192,6 +194,8 @@ TEST_CASE("export to Mitsuba and back: the same scene") {
     for (
         const char* bsdf :
         {R"(<bsdf type="twosided" id="m"><bsdf type="diffuse"><rgb name="reflectance" value="0.3, 0.2, 0.7"/></bsdf></bsdf>)",
+         R"(<bsdf type="mask" id="m"><float name="opacity" value="0.4"/><bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)",
+         R"(<bsdf type="plastic" id="m"><float name="int_ior" value="1.4"/><float name="ext_ior" value="1"/><rgb name="diffuse_reflectance" value="0.3, 0.4, 0.5"/></bsdf>)",
          R"(<bsdf type="dielectric" id="m"><float name="int_ior" value="1.45"/><float name="ext_ior" value="1"/></bsdf>)",
          R"(<bsdf type="roughdielectric" id="m"><float name="int_ior" value="1.45"/><float name="ext_ior" value="1"/><string name="distribution" value="ggx"/><float name="alpha" value="0.12"/></bsdf>)",
          R"(<bsdf type="thindielectric" id="m"><float name="int_ior" value="1.45"/><float name="ext_ior" value="1"/></bsdf>)",
@@ -208,6 +212,7 @@ TEST_CASE("export to Mitsuba and back: the same scene") {
       <emitter type="directional" id="d"><vector name="direction" value="-1, -2, -1"/><spectrum type="blackbody" name="irradiance"><float name="temperature" value="3200"/></spectrum></emitter>
       <shape type="rectangle" id="wall"><transform name="to_world"><rotate y="1" angle="30"/><translate x="0.3"/></transform>
       <bsdf type="diffuse" id="paint"><rgb name="reflectance" value="0.1, 0.9, 0.3"/></bsdf></shape>
+      <shape type="disk" id="half"><bsdf type="blendbsdf" id="both"><float name="weight" value="0.3"/><bsdf type="diffuse" id="one"/><bsdf type="conductor" id="two"/></bsdf></shape>
       <shape type="cube" id="crate"><transform name="to_world"><scale value="0.3"/></transform><bsdf type="twosided" id="wood"><bsdf type="diffuse"/></bsdf></shape>
       <shape type="disk" id="plate"><transform name="to_world"><translate y="1"/></transform><emitter type="area"><rgb name="radiance" value="3, 2, 1"/></emitter></shape>)"));
 }
@@ -369,4 +374,56 @@ TEST_CASE("export: every type and property of the language") {
             }
     }
     CHECK(tried > 300);
+}
+
+// A property that a scene states changes what is written, or is said to be missing.
+TEST_CASE("export: no property is dropped without a word") {
+    const schema::TypeTable types = makeTypeTable();
+    Exchange ex;
+    // What changes no picture, or is the default in the example.
+    const std::set<std::string> silent = {"priority", "portals", "attenuation-distance", "time",
+                                          "shutter",  "at",      "texture-cache"};
+    const std::array<std::string, 8> bases = {"",
+                                              "points 0 0 0  1 0 0  1 1 0  0 1 0",
+                                              "points { - 0 0 0; - 1 0 0; - 1 1 0 }; faces { - 0 1 2 }",
+                                              "power 100 lm",
+                                              "points { - 0 0 0; - 1 0 0; - 1 1 0 }; faces { - 0 1 2 }; power 100 lm",
+                                              "index metal Au",
+                                              "first diffuse { reflectance 0.8 }; second diffuse { reflectance 0.1 }",
+                                              "base diffuse { reflectance 0.7 }"};
+    int tried = 0;
+    for (const schema::TypeInfo& type : types.all()) {
+        const bool material = type.kind == schema::Kind::material;
+        if (!material && type.kind != schema::Kind::shape && type.kind != schema::Kind::light) continue;
+        for (const schema::FieldInfo& field : type.fields) {
+            if (field.example.empty() || silent.contains(std::string(field.name))) continue;
+            const double stated = std::atof(field.example.data() + field.name.size());
+            if (!field.defaultText.empty() && std::atof(field.defaultText.c_str()) == stated) continue; // nothing new
+            std::string example(field.example); // some state the default
+            if (field.name == "material") example = "material diffuse { reflectance 0.3 }";
+            if (field.name == "normal" && !material) example = "normal 1 1 0";
+            if (field.name == "axis") example = "axis 1 1 0";
+            for (const std::string& base : bases) {
+                const auto body = [&](const std::string& inside) {
+                    const std::string text = fmt::format("{} {{ {} }}", type.name, inside);
+                    return kLit + (material ? "shape sphere { material " + text + " }"
+                                            : fmt::format("{} {}", schema::keyword(type.kind), text));
+                };
+                bool any = false;
+                for (const char* format : {"mitsuba", "pbrt", "gltf"}) {
+                    const std::string without = ex.exported(format, body(base));
+                    const std::string codes = ex.codes;
+                    const std::string with = ex.exported(format, body(base + "; " + example));
+                    if (without.empty() || with.empty()) continue;
+                    any = true;
+                    if (!codes.empty()) continue; // the whole thing is another there, and that is said
+                    ++tried;
+                    CHECK_MESSAGE((with != without || ex.codes != codes), format, ": ", schema::keyword(type.kind), " ",
+                                  type.name, " { ", base, "; ", example, " }");
+                }
+                if (any) break;
+            }
+        }
+    }
+    CHECK(tried > 150);
 }
