@@ -1,11 +1,9 @@
+#include "app/exported_scene.h"
 #include "app/json.h"
 #include "app/load.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
-#include "exchange/exporter/exporter.h"
-#include "io/file.h"
 #include "scene/build.h"
-#include "scene/build_context.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -78,15 +76,9 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
         return checked;
     }
     const std::size_t before = loaded->diagnostics.warningCount();
-    CurveLibrary curves;
-    const exchange::StatedScene scene(loaded->tree, loaded->types,
-                                      [&](const schema::SpectrumValue& value, schema::SpectrumRole role,
-                                          Diagnostics& found) { return curves.curve(value, role, found); });
-    const std::string bytes = exchange::exportScene(format, scene, target, loaded->diagnostics);
+    writeExport(format, *loaded, target);
     const std::size_t remarks = loaded->diagnostics.warningCount() - before;
     common.console.report(loaded->diagnostics, loaded->sources);
-    fs::create_directories(fs::path(target).parent_path(), error);
-    writeAtomically(target, bytes);
     common.console.data(exportResultText(target, format.name, remarks, common.json));
     return ExitCode::done;
 }

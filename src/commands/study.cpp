@@ -1,3 +1,4 @@
+#include "app/exported_scene.h"
 #include "app/json.h"
 #include "app/program_end.h"
 #include "base/parallel.h"
@@ -27,6 +28,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <utility>
 
 namespace abbe {
 
@@ -175,7 +177,7 @@ class StudyCommand {
     ExitCode load();
     ExitCode checkOutputs();
     void choosePlan();
-    std::optional<std::string> peerScene() const;
+    std::string peerScene();
     ExitCode findPeer(InterruptGuard&);
     std::optional<PeerEnd> runPeer(InterruptGuard&, const StudyStore&, StudyProgressLine&);
     bool probe(InterruptGuard&);
@@ -255,28 +257,27 @@ ExitCode StudyCommand::checkOutputs() {
     return ExitCode::done;
 }
 
-// The scene in the format of the peer. Scenes of this program's need an export: this is its place.
-std::optional<std::string> StudyCommand::peerScene() const {
+// The scene in the format of the peer: its own file, or an export beside the report.
+std::string StudyCommand::peerScene() {
     const auto* format = loaded_->import ? exchange::importFormat(options_.input.path) : nullptr;
     if (format && format->name == "mitsuba") return options_.input.path;
-    return std::nullopt;
+    const std::string target = outputBase() + ".xml";
+    const Diagnostics told = std::exchange(loaded_->diagnostics, {});
+    writeExport(*exchange::findExportFormat("mitsuba"), *loaded_, target);
+    messages_->diagnostics(loaded_->diagnostics, loaded_->sources);
+    loaded_->diagnostics = told;
+    say(fmt::format("Mitsuba renders {}", target));
+    return target;
 }
 
 // Before anything is rendered: whether there is a peer, and whether it can render the scene.
 ExitCode StudyCommand::findPeer(InterruptGuard& interrupt) {
     if (options_.against.empty()) return ExitCode::done;
-    const auto scene = peerScene();
-    if (!scene)
-        return refuse(
-            "E0756",
-            fmt::format("`{}` is no scene of Mitsuba's, so that Mitsuba cannot render it", options_.input.path),
-            "give a scene that was written for Mitsuba, `abbe study room.xml --against mitsuba`; other scenes "
-            "would have to be exported first");
     if (!options_.build.camera.empty())
         return refuse("E0756", "`--camera` does not go with `--against`",
                       "Mitsuba renders the first sensor of its scene");
     const std::size_t colon = options_.against.find(':');
-    peer_.scene = *scene;
+    peer_.scene = peerScene();
     peer_.variant = colon == std::string::npos ? std::string() : options_.against.substr(colon + 1);
     peer_.width = subject_.film.width;
     peer_.height = subject_.film.height;

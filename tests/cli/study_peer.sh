@@ -56,8 +56,10 @@ ABBE_PEER_PYTHON=$folder/nowhere expect 3 study room.xml "${small[@]}" --against
 says err "cannot be started"
 STUB_FAULT=damaged expect 3 study room.xml "${small[@]}" --against mitsuba -o failed
 says err "cannot be read"
-expect 1 study "$scenes/room.scene" --against mitsuba -o failed
-says err E0756
+# A scene of this program's is exported for it.
+expect 0 study "$scenes/room.scene" "${small[@]}" --against mitsuba -o exported
+says exported.xml "<scene"
+says exported.csv "Mitsuba"
 expect 1 study room.xml --against mitsuba --camera camera -o failed
 says err E0756
 expect 1 study room.xml --against mitsuba --effects -o failed
