@@ -12,7 +12,7 @@
 namespace abbe::exchange {
 
 // The bytes of a .glb file, images inside: surfaces as triangles, materials of the metallic-roughness model with
-// extensions of Khronos', cameras, and lights that are points or directions. In metres with y up. Throws IoError.
+// ratified extensions, cameras, and lights that are points or directions. In metres with y up. Throws IoError.
 std::string exportGltf(Export&);
 
 using GltfJson = nlohmann::ordered_json; // the same scene gives the same bytes

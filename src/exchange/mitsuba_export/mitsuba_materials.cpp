@@ -145,7 +145,7 @@ void writeLayeredBsdf(pugi::xml_node parent, std::string_view id, const StatedTh
                        "by plastic; how its base depends on the direction of light differs by a few percent");
 }
 
-// Burley's model has the same lobes in another order.
+// The principled model [Burley2012] has the same lobes in another order.
 void writePrincipledBsdf(pugi::xml_node parent, std::string_view id, const StatedThing& m, MitsubaWriter& w) {
     const bool thin = m.word("geometry-thin-walled") == "on";
     pugi::xml_node node = xmlChild(parent, "bsdf", thin ? "principledthin" : "principled", {}, id);

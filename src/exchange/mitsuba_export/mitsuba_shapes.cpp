@@ -156,8 +156,8 @@ Nodes writeCylinderShape(const ShapeSite& site) {
     xmlNumber(node, "radius", mirrored ? rounded(radius * *map.uniformScale()) : radius);
     if (!mirrored) xmlTransform(node, map);
     if (thing.word("caps") == "off") return {node};
-    return {node, writeDiskNode(site, site.id + "-top", center + axis * half, axis, radius),
-            writeDiskNode(site, site.id + "-bottom", center - axis * half, -axis, radius)};
+    return {node, writeDiskNode(site, site.w.takeId(site.id + "-top", {}), center + axis * half, axis, radius),
+            writeDiskNode(site, site.w.takeId(site.id + "-bottom", {}), center - axis * half, -axis, radius)};
 }
 
 Nodes writeFarShape(const ShapeSite& site) {
@@ -370,8 +370,13 @@ void writeSurfaceLight(pugi::xml_node parent, const Placed& placed, MitsubaWrite
     for (const bool back : {false, true}) {
         if (back && !both) break;
         Placed side = placed;
-        const ShapeSite site{
-            parent, side, light, back ? id + "-back" : id, pattern.texture != nullptr, pattern.texture != nullptr, w};
+        const ShapeSite site{parent,
+                             side,
+                             light,
+                             back ? w.takeId(id + "-back", {}) : id,
+                             pattern.texture != nullptr,
+                             pattern.texture != nullptr,
+                             w};
         for (pugi::xml_node node : row->write(site)) {
             if (back) xmlFlag(node, "flip_normals", true);
             xmlValue(xmlChild(node, "bsdf", "diffuse"), "spectrum", "reflectance", "0");

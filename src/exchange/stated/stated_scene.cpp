@@ -226,6 +226,27 @@ Transform StatedScene::transformOf(const Definition& definition, bool& moves) co
     return {};
 }
 
+// The places of a grid, each as an instance; false for other places, which need the built scene.
+bool StatedScene::placeGrid(const Placed& all, std::vector<Placed>& out) {
+    constexpr double kMost = 100000;
+    const auto grid = all.thing->vector("grid");
+    if (!grid || !(grid->x * grid->y * grid->z <= kMost)) return false;
+    const Vec3d spacing = all.thing->vector("spacing").value_or(Vec3d(1, 1, 1)),
+                middle = (*grid - Vec3d(1, 1, 1)) * 0.5;
+    for (double z = 0; z < grid->z; ++z)
+        for (double y = 0; y < grid->y; ++y)
+            for (double x = 0; x < grid->x; ++x) {
+                const Vec3d at = Vec3d(x, y, z) - middle;
+                Placed one = all;
+                one.object = all.thing->target;
+                one.thing = nullptr;
+                one.toWorld =
+                    Transform::translate({at.x * spacing.x, at.y * spacing.y, at.z * spacing.z}).then(all.toWorld);
+                out.push_back(std::move(one));
+            }
+    return true;
+}
+
 void StatedScene::place(const Definition& d, const Transform& toWorld, const std::vector<std::string>& visible,
                         std::vector<Placed>& out) {
     Placed placed{nullptr, {}, {}, false, visible, d.span};
@@ -240,6 +261,7 @@ void StatedScene::place(const Definition& d, const Transform& toWorld, const std
         placed.object = d.target;
     else
         placed.thing = &bound(d);
+    if (d.kind == schema::Kind::instances && placeGrid(placed, out)) return;
     if (placed.thing) {
         placed.thing->find("transform");
         placed.thing->find("visible-to");

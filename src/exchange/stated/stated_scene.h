@@ -139,6 +139,7 @@ class StatedScene final : private schema::Resolver {
     void collect(const std::vector<schema::Definition>&, const Transform&, const std::vector<std::string>& visible,
                  std::vector<Placed>&);
     void place(const schema::Definition&, const Transform&, const std::vector<std::string>&, std::vector<Placed>&);
+    static bool placeGrid(const Placed&, std::vector<Placed>&);
     Transform transformOf(const schema::Definition&, bool& moves) const;
 
     const Curve* curve(const schema::SpectrumValue&, schema::SpectrumRole, Diagnostics&) override;

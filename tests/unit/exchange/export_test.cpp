@@ -182,6 +182,18 @@ TEST_CASE("export to Mitsuba: exposure is in the light, and what is missing is s
     CHECK(hasText(ex.messages, "shape `points` is left out"));
 }
 
+TEST_CASE("export: a grid of instances is instances") {
+    Exchange ex;
+    const std::string scene = kLit + "object peg { shape sphere { radius 0.1 } }\ninstances peg { grid 2 1 1; spacing "
+                                     "3 1 1; transform { translate 0 2 0 } }";
+    const std::string text = ex.exported("mitsuba", scene);
+    CHECK(hasText(text, R"(<matrix value="1 0 0 -1.5 0 1 0 2 0 0 1 0 0 0 0 1" />)"));
+    CHECK(hasText(text, R"(<matrix value="1 0 0 1.5 0 1 0 2 0 0 1 0 0 0 0 1" />)"));
+    CHECK(ex.codes.empty());
+    ex.exported("pbrt", kLit + "object peg { shape sphere { radius 0.1 } }\ninstances peg { scatter 5 }");
+    CHECK(ex.codes == "W0801");
+}
+
 TEST_CASE("export to Mitsuba and back: the same scene") {
     const std::string light =
         R"(<emitter type="constant" id="all"><rgb name="radiance" value="0.6, 0.5, 0.4"/></emitter>)";
