@@ -3,6 +3,7 @@
 #include "app/load.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
+#include "exchange/exporter/exporter.h"
 #include "scene/build.h"
 
 #include <filesystem>

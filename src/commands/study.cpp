@@ -9,6 +9,7 @@
 #include "commands/command_table.h"
 #include "commands/measured_scene.h"
 #include "commands/study_effects.h"
+#include "exchange/exporter/exporter.h"
 #include "exchange/importer/importer.h"
 #include "io/file.h"
 #include "pages/pages.h"
