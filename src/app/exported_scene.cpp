@@ -15,6 +15,7 @@ void writeExport(const exchange::ExportFormat& format, LoadedScene& loaded, cons
     const std::string bytes = exchange::exportScene(format, scene, target, loaded.diagnostics);
     std::error_code error;
     std::filesystem::create_directories(std::filesystem::path(target).parent_path(), error);
+    flushFileSystem(std::filesystem::path(target).parent_path().string());
     writeAtomically(target, bytes);
 }
 

@@ -9,6 +9,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -16,6 +17,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 namespace abbe {
 
@@ -121,24 +123,38 @@ void removeIfLeft(int folder, const char* name, bool ofThisHost) {
     ::close(file);
 }
 
-void removeLeftovers(const Place& place, const std::string& host) {
-    const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir(place.folder.c_str()), &::closedir);
-    if (!folder) return;
-    const std::string beginning = beginningOf(place.name, host.size());
-    const std::size_t size = beginning.size() + host.size() + 1 + kRandom.size() + kEnding.size();
-    while (const dirent* const entry = ::readdir(folder.get())) {
-        const std::string_view name = entry->d_name;
-        if (name.size() != size || !name.starts_with(beginning) || !name.ends_with(kEnding)) continue;
-        removeIfLeft(::dirfd(folder.get()), entry->d_name, name.substr(beginning.size()).starts_with(host));
-    }
+// Temporary files that a folder holds, whosever they are.
+std::vector<std::string> temporaryFilesIn(const std::string& folder) {
+    std::vector<std::string> names;
+    const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(folder.c_str()), &::closedir);
+    if (!entries) return names;
+    while (const dirent* const entry = ::readdir(entries.get()))
+        if (std::string_view(entry->d_name).ends_with(kEnding)) names.emplace_back(entry->d_name);
+    return names;
 }
 
-// Once for each file that this process writes: others come only from processes that end later.
+void removeLeftovers(const Place& place, const std::string& host, const std::vector<std::string>& names) {
+    const int folder = ::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return;
+    const std::string beginning = beginningOf(place.name, host.size());
+    const std::size_t size = beginning.size() + host.size() + 1 + kRandom.size() + kEnding.size();
+    for (const std::string& name : names)
+        if (name.size() == size && name.starts_with(beginning))
+            removeIfLeft(folder, name.c_str(), std::string_view(name).substr(beginning.size()).starts_with(host));
+    ::close(folder);
+}
+
+// Once for each file that this process writes: others come only from processes that end later. A folder is looked
+// through once, since a scene may have ten thousand files in one.
 void removeLeftoversOnce(const std::string& target, const Place& place, const std::string& host) {
     static std::mutex mutex;
     static std::set<std::string> done;
+    static std::map<std::string, std::vector<std::string>> folders;
     const std::lock_guard lock(mutex);
-    if (done.insert(target).second) removeLeftovers(place, host);
+    if (!done.insert(target).second) return;
+    const auto [found, isNew] = folders.try_emplace(place.folder);
+    if (isNew) found->second = temporaryFilesIn(place.folder);
+    if (!found->second.empty()) removeLeftovers(place, host, found->second);
 }
 
 // Whether it is ours to write: somebody who looked for leftovers may have come between its making and its lock.
@@ -172,6 +188,13 @@ void giveMode(int file, const std::string& target) {
 
 } // namespace
 
+void flushFileSystem(const std::string& folder) {
+    const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::syncfs(descriptor);
+    ::close(descriptor);
+}
+
 TemporaryFile::TemporaryFile(const std::string& target) : target_(target) {
     static const std::string host = hostMark();
     const Place place = placeOf(target);
@@ -195,21 +218,21 @@ TemporaryFile::~TemporaryFile() {
     ::close(descriptor_);
 }
 
-int TemporaryFile::publish() {
+int TemporaryFile::publish(Flush flush) {
     giveMode(descriptor_, target_);
-    if (::fsync(descriptor_) != 0) return errno;
+    if (flush == Flush::now && ::fsync(descriptor_) != 0) return errno;
     // Network file systems report lost data when a descriptor is closed; the lock lasts as long as the other one.
     const int copy = ::dup(descriptor_);
     if (copy < 0 || ::close(copy) != 0) return errno;
     return ::rename(path_.c_str(), target_.c_str()) == 0 ? 0 : errno;
 }
 
-int TemporaryFile::commit() {
-    const int error = publish();
+int TemporaryFile::commit(Flush flush) {
+    const int error = publish(flush);
     if (error != 0) ::unlink(path_.c_str());
     ::close(descriptor_);
     descriptor_ = -1;
-    if (error == 0) syncFolder(placeOf(target_).folder);
+    if (error == 0 && flush == Flush::now) syncFolder(placeOf(target_).folder);
     return error;
 }
 

@@ -42,6 +42,13 @@ class RegularFile {
 // Empty, or why a library that opens files itself is not to be given this one.
 inline std::string whyNotRegular(const std::string& path) { return RegularFile(path).why(); }
 
+// Whether a file is on the disk before it gets its name. `later` is for one of many, which flushFileSystem() follows,
+// or for one that nobody misses when the machine stops.
+enum class Flush : bool { now, later };
+
+// All that was written to the file system of a folder, as far as that can be had.
+void flushFileSystem(const std::string& folder);
+
 // A file that nobody else touches until it gets its name.
 // Beside the file that it is to become: `room.exr.abbe-HOST-RANDOM.tmp`, a name that nothing had, which only this user
 // may read. It is removed with the object unless commit() was called. What a killed process left behind is removed by
@@ -58,12 +65,12 @@ class TemporaryFile {
     int error() const { return error_; }
     int descriptor() const { return descriptor_; }
     const std::string& path() const { return path_; }
-    // Onto the disk, with the mode and group of the file that it replaces, or the mode that a new one gets; then under
-    // its name. Once. After a fault it is removed, and what was there stays.
-    int commit();
+    // Onto the disk (or later, if asked for), with the mode and group of the file that it replaces, or the mode that a
+    // new one gets; then under its name. Once. After a fault it is removed, and what was there stays.
+    int commit(Flush = Flush::now);
 
   private:
-    int publish();
+    int publish(Flush);
 
     std::string target_, path_;
     int descriptor_ = -1, error_ = 0;

@@ -87,6 +87,7 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
     common.console.report(diagnostics, sources);
     if (!text) return ExitCode::faulty;
     fs::create_directories(fs::path(scene).parent_path(), error);
+    flushFileSystem(fs::path(scene).parent_path().string()); // side files before what names them
     writeAtomically(scene, *text);
     if (const ExitCode end = checkWritten(scene, common.console); end != ExitCode::done) return end;
     common.console.data(importResultText(scene, *format, diagnostics, common.json));

@@ -110,15 +110,15 @@ const std::string& AtomicFile::temporaryPath() {
     return temporary_.path();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Flush flushed) {
     flush();
-    if (const int error = temporary_.commit(); error != 0) failToWrite(path_, error);
+    if (const int error = temporary_.commit(flushed); error != 0) failToWrite(path_, error);
 }
 
-void writeAtomically(const std::string& path, std::span<const char> bytes) {
+void writeAtomically(const std::string& path, std::span<const char> bytes, Flush flush) {
     AtomicFile file(path);
     file.write(bytes);
-    file.commit();
+    file.commit(flush);
 }
 
 } // namespace abbe

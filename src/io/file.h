@@ -54,7 +54,7 @@ class AtomicFile {
     std::uint64_t position() const { return begin_ + waiting_.size(); }
     // Where all bytes so far are until commit().
     const std::string& temporaryPath();
-    void commit();
+    void commit(Flush = Flush::now);
 
   private:
     void flush();
@@ -67,6 +67,6 @@ class AtomicFile {
 };
 
 // A whole file at once.
-void writeAtomically(const std::string& path, std::span<const char> bytes);
+void writeAtomically(const std::string& path, std::span<const char> bytes, Flush = Flush::now);
 
 } // namespace abbe

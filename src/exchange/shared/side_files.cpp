@@ -29,12 +29,13 @@ SideFiles::SideFiles(std::filesystem::path scene) : scene_(std::move(scene)) {
 std::string SideFiles::write(std::string_view stem, std::string_view extension, std::span<const char> bytes) {
     const std::string safe = safeStem(stem);
     std::string name = fmt::format("{}.{}", safe, extension);
-    for (int number = 2; names_.contains(name); ++number) name = fmt::format("{}-{}.{}", safe, number, extension);
+    for (int& number = next_.try_emplace(name, 2).first->second; names_.contains(name); ++number)
+        name = fmt::format("{}-{}.{}", safe, number, extension);
     const auto folder = scene_.parent_path() / folder_;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw IoError(fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
-    writeAtomically((folder / name).string(), bytes);
+    writeAtomically((folder / name).string(), bytes, Flush::later);
     names_.insert(name);
     return (folder_ / name).generic_string();
 }

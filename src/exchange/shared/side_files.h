@@ -17,8 +17,9 @@ class SideFiles {
     // `scene`: the file that will be written, "out/room.scene". Nothing is made on disk before the first write().
     explicit SideFiles(std::filesystem::path scene);
 
-    // Writes a file, atomically, and returns its path as the scene names it, "room-files/ball.ply". `stem` is any text:
-    // letters, digits, `-` and `_` of it are kept, and a number is added where the name is taken. Throws IoError.
+    // Writes a file, atomically but without waiting for the disk (base/file.h, flushFileSystem), and returns its path
+    // as the scene names it, "room-files/ball.ply". `stem` is any text: letters, digits, `-` and `_` of it are kept,
+    // and a number is added where the name is taken. Throws IoError.
     std::string write(std::string_view stem, std::string_view extension, std::span<const char> bytes);
     // A file that exists as the scene names it: relative to the scene's folder where it is in or beside that
     // folder ("../textures/a.png" goes up at most two folders), else absolute.
@@ -29,7 +30,8 @@ class SideFiles {
 
   private:
     std::filesystem::path scene_, folder_;
-    std::set<std::string, std::less<>> names_; // of files written by this import
+    std::set<std::string, std::less<>> names_;     // of files written by this import
+    std::map<std::string, int, std::less<>> next_; // number to try for a name
 };
 
 // Unique names for what a scene defines: materials, shapes, lights and others have one table each.
