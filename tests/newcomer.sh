@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The first hour of somebody who has nothing but the README, in an empty folder:  newcomer.sh [PROGRAM]
-# Builds with the launcher, as the README says, or takes the program that is given; renders the README's scene; then twelve
+# Builds with the launcher, as the README says, or takes the program that is given; renders the README's scene; then thirteen
 # scenes as beginners write them (tests/first_scenes), each with what is expected of it in comments:
 #   expect: picture        renders, and its PNG is neither black nor white nor empty, or a warning says so
 #   expect: warning TEXT   a warning has that text
