@@ -18,8 +18,10 @@ for target in "${targets[@]}"; do
     memory=512
     [[ $target == vdb* ]] && memory=4096 # grids as they are in memory
     count=$runs
+    options=$ASAN_OPTIONS
+    [[ $target == vdb_fork ]] && options+=:max_allocation_size_mb=2048 # as CMakeLists.txt explains
     [[ -v most[$target] ]] && ((count > most[$target])) && count=${most[$target]}
-    "$folder/fuzz_$target" -runs="$count" -memory=$memory -findings="$folder" "$corpus/${target%_fork}" || {
+    ASAN_OPTIONS=$options "$folder/fuzz_$target" -runs="$count" -memory=$memory -findings="$folder" "$corpus/${target%_fork}" || {
         echo "FAULT: fuzz_$target"
         faults=$((faults + 1))
     }
