@@ -3,6 +3,7 @@
 #include "exchange/mitsuba/bsdfs.h"
 #include "exchange/mitsuba/media.h"
 #include "exchange/mitsuba/settings.h"
+#include "exchange/shared/placement.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -202,17 +203,6 @@ void noteRoundMap(SceneNode& node, const XmlObject& shape, const MaterialTraits&
     if (traits.textured && traits.toUv)
         ctx.import.leftOut(&node, shape.span, "`to_uv`",
                            fmt::format("textures cannot be scaled on a `{}`", shape.plugin));
-}
-
-// Columns are where the axes of our shape go.
-Transform axesTo(Vec3d x, Vec3d y, Vec3d z) {
-    Transform map;
-    for (int r = 0; r < 3; ++r) {
-        map.a[r][0] = x[r];
-        map.a[r][1] = y[r];
-        map.a[r][2] = z[r];
-    }
-    return map;
 }
 
 ShapeForm writeSphere(SceneNode& node, const XmlObject& shape, const MaterialTraits& traits, MitsubaContext& ctx) {

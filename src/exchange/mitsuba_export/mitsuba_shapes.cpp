@@ -1,4 +1,5 @@
 #include "exchange/mitsuba_export/mitsuba_writer.h"
+#include "exchange/shared/placement.h"
 #include "exchange/shared/ply_writer.h"
 #include "exchange/shared/scene_node.h"
 #include "exchange/stated/stated_mesh.h"
@@ -17,17 +18,6 @@ void xmlVector(pugi::xml_node parent, const char* tag, const char* name, Vec3d v
 }
 
 Vec3d roundedVector(Vec3d v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
-
-// Columns are where the axes go.
-Transform columnsTo(Vec3d x, Vec3d y, Vec3d z) {
-    Transform map;
-    for (int r = 0; r < 3; ++r) {
-        map.a[r][0] = x[r];
-        map.a[r][1] = y[r];
-        map.a[r][2] = z[r];
-    }
-    return map;
-}
 
 // One shape there: its node, whether its coordinates count, and where it is.
 struct ShapeSite {
@@ -68,7 +58,7 @@ Nodes writeQuadShape(const ShapeSite& site) {
     if (length(p[0] + p[2] - p[1] - p[3]) > 1e-9 * length(p[2] - p[0]))
         return {writePolygons(site, *polygonsOf(site.thing, site.w.out.scene))};
     // The square from −1 to 1; where coordinates count, with v the other way round.
-    Transform square = columnsTo((p[1] - p[0]) * 0.5, (p[3] - p[0]) * 0.5, {0, 0, 1});
+    Transform square = axesTo((p[1] - p[0]) * 0.5, (p[3] - p[0]) * 0.5, {0, 0, 1});
     if (site.thing.has("points")) {
         const Vec3d n = normalize(cross(p[1] - p[0], p[3] - p[0]));
         for (int r = 0; r < 3; ++r) square.a[r][2] = n[r];
@@ -105,7 +95,7 @@ Nodes writeSphereShape(const ShapeSite& site) {
                   .then(map);
     pugi::xml_node node = site.node("sphere");
     if (site.framed)
-        map = columnsTo({0, 0, 1}, {1, 0, 0}, {0, 1, 0}).then(Transform::translate(center)).then(map);
+        map = axesTo({0, 0, 1}, {1, 0, 0}, {0, 1, 0}).then(Transform::translate(center)).then(map);
     else if (!(center == Vec3d()))
         xmlVector(node, "point", "center", center);
     xmlNumber(node, "radius", site.thing.number("radius", 0.5));
@@ -119,7 +109,7 @@ Transform circleTo(Vec3d center, Vec3d normal, double radius) {
     const Transform size = Transform::scale({radius, radius, 1});
     if (n == Vec3d(0, 0, 1)) return size.then(Transform::translate(center));
     const Transform up = uprightTo({}, n);
-    return size.then(columnsTo(up.vector({1, 0, 0}), up.vector({0, 0, -1}), n)).then(Transform::translate(center));
+    return size.then(axesTo(up.vector({1, 0, 0}), up.vector({0, 0, -1}), n)).then(Transform::translate(center));
 }
 
 pugi::xml_node writeDiskNode(const ShapeSite& site, std::string_view id, Vec3d center, Vec3d normal, double radius) {
@@ -233,7 +223,7 @@ std::optional<Transform> squareOf(const MeshData& mesh) {
     const Vec3d a(mesh.positions[0]), b(mesh.positions[1]), c(mesh.positions[2]), d(mesh.positions[3]);
     const Vec3d n = cross(b - a, d - a);
     if (!(a + c == b + d) || !(lengthSquared(n) > 0)) return std::nullopt;
-    Transform square = columnsTo((b - a) * 0.5, (d - a) * 0.5, normalize(n));
+    Transform square = axesTo((b - a) * 0.5, (d - a) * 0.5, normalize(n));
     square.t = (a + c) * 0.5;
     return square;
 }

@@ -1,5 +1,6 @@
 // The directives of pbrt's scene description: of PbrtMachine.
 #include "exchange/pbrt/pbrt_machine.h"
+#include "exchange/shared/placement.h"
 #include "io/file.h"
 
 #include <algorithm>
@@ -65,14 +66,7 @@ void PbrtMachine::lookAt(PbrtScanner& scanner, const PbrtToken& word) {
     if (lengthSquared(across) <= 1e-24 * lengthSquared(up) * lengthSquared(ahead))
         return void(shared_.faults().error("E0802", word.span, "`LookAt` looks along its own up"));
     const Vec3d z = normalize(ahead), x = normalize(across), y = cross(z, x);
-    Transform worldFromCamera;
-    for (int r = 0; r < 3; ++r) {
-        worldFromCamera.a[r][0] = x[r];
-        worldFromCamera.a[r][1] = y[r];
-        worldFromCamera.a[r][2] = z[r];
-    }
-    worldFromCamera.t = from;
-    if (const auto cameraFromWorld = worldFromCamera.inverse()) applyMatrix(*cameraFromWorld, false, word.span);
+    if (const auto cameraFromWorld = axesTo(x, y, z, from).inverse()) applyMatrix(*cameraFromWorld, false, word.span);
 }
 
 // Sixteen numbers, column by column.

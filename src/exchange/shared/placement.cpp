@@ -13,6 +13,17 @@ bool isDiagonal(const Transform& m) {
 
 } // namespace
 
+Transform axesTo(Vec3d x, Vec3d y, Vec3d z, Vec3d origin) {
+    Transform map;
+    for (int r = 0; r < 3; ++r) {
+        map.a[r][0] = x[r];
+        map.a[r][1] = y[r];
+        map.a[r][2] = z[r];
+    }
+    map.t = origin;
+    return map;
+}
+
 bool isIdentity(const Transform& m) {
     return isDiagonal(m) && m.a[0][0] == 1 && m.a[1][1] == 1 && m.a[2][2] == 1 && m.t == Vec3d();
 }

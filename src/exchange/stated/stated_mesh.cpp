@@ -1,5 +1,6 @@
 #include "exchange/stated/stated_mesh.h"
 
+#include "exchange/shared/placement.h"
 #include "io/mesh_file.h"
 
 #include <algorithm>
@@ -234,15 +235,7 @@ std::pair<Vec3d, Vec3d> boxCorners(const StatedThing& thing) {
 Transform uprightTo(Vec3d place, Vec3d axis) {
     const Vec3d y = normalize(axis);
     const Vec3d x = normalize(cross(y, std::abs(y.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0)));
-    const Vec3d z = cross(x, y);
-    Transform map;
-    for (int r = 0; r < 3; ++r) {
-        map.a[r][0] = x[r];
-        map.a[r][1] = y[r];
-        map.a[r][2] = z[r];
-    }
-    map.t = place;
-    return map;
+    return axesTo(x, y, cross(x, y), place);
 }
 
 bool isRound(const StatedThing& thing) {
