@@ -247,6 +247,18 @@ void writeWrapper(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, 
     writeTexture(bump ? property.child("map") : property, *textures[0], true, traits, ctx);
 }
 
+// Light without polarisation goes straight on through such a filter, half of it or all.
+void writePolarizing(SceneNode& at, const XmlObject& bsdf, MitsubaContext& ctx) {
+    double passes = bsdf.plugin == "retarder" ? 1 : 0.5;
+    if (const XmlParam* const t = bsdf.find("transmittance"))
+        if (const auto spectrum = readSpectrum(*t, SpectrumUse::reflectance, ctx)) passes *= luminanceOf(*spectrum);
+    at.word("diffuse").child("reflectance").number(0);
+    at.child("opacity").number(1 - std::clamp(passes, 0.0, 1.0));
+    mitsubaIgnore(bsdf, {"theta", "delta", "polarizing", "left_handed"});
+    ctx.import.approximated(&at, bsdf.span, fmt::format("`{}`", bsdf.plugin),
+                            "polarisation is not followed: what passes is what passes of light that has none");
+}
+
 void writeUnknown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, MitsubaContext& ctx) {
     at.word("diffuse");
     ctx.import.leftOut(&at, bsdf.span, fmt::format("BSDF `{}`", bsdf.plugin),
@@ -264,7 +276,9 @@ void writeKnown(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits, Mi
     if (type == "dielectric" || type == "roughdielectric")
         return writeDielectric(at, bsdf, type != "dielectric", traits, ctx);
     if (type == "thindielectric") return writeThinDielectric(at, bsdf, ctx);
-    if (type == "plastic" || type == "roughplastic") return writePlastic(at, bsdf, type != "plastic", traits, ctx);
+    if (type == "plastic" || type == "roughplastic" || type == "pplastic")
+        return writePlastic(at, bsdf, type != "plastic", traits, ctx);
+    if (type == "polarizer" || type == "retarder" || type == "circular") return writePolarizing(at, bsdf, ctx);
     if (type == "principled" || type == "principledthin")
         return writePrincipled(at, bsdf, type != "principled", traits, ctx);
     if (type == "hair") return writeHair(at, bsdf, ctx);
@@ -292,7 +306,7 @@ bool writeRoughness(SceneNode& at, const XmlObject& bsdf, std::string_view prefi
     const double v = std::clamp(mitsubaNumber(bsdf, "alpha_v", 0.1, ctx.import), 1e-4, 1.0);
     // αv = (1 − anisotropy) αu, and the mean square is that of the round one (docs/language/materials.md).
     at.child(roughness).number(rootOf(std::sqrt((u * u + v * v) / 2)));
-    const bool dielectric = at.values().size() > 0 && at.values().back() == "dielectric";
+    const bool dielectric = at.values().ends_with("dielectric");
     traits.framed = traits.framed || u != v;
     if (u != v && !dielectric)
         at.child(std::string(prefix.empty() ? "" : prefix) + (prefix.empty() ? "anisotropy" : "roughness-anisotropy"))
@@ -315,20 +329,23 @@ void writeMaterial(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits,
 }
 
 const std::pair<std::string, MaterialTraits>& materialOf(const XmlObject& bsdf, MitsubaContext& ctx) {
-    if (const auto found = ctx.materials.find(&bsdf); found != ctx.materials.end()) return found->second;
+    if (const auto* const found = ctx.materialOf[bsdf.number]) return *found;
+    const auto keep = [&](std::string name, const MaterialTraits& traits) -> const std::pair<std::string, MaterialTraits>& {
+        return *(ctx.materialOf[bsdf.number] = &ctx.materials.emplace_back(std::move(name), traits));
+    };
     if (bsdf.plugin == "null") { // needs no definition
         MaterialTraits none;
         none.boundary = true;
         warnOfUnused(bsdf, ctx.import);
-        return ctx.materials[&bsdf] = {"boundary", none};
+        return keep("boundary", none);
     }
     const std::string name = ctx.materialNames.take(bsdf.id, bsdf.plugin + "-material");
     SceneNode made("material");
     made.name(name);
     MaterialTraits traits;
     writeMaterial(made, bsdf, traits, ctx);
-    ctx.import.nodes.push_back(std::move(made));
-    return ctx.materials[&bsdf] = {name, traits};
+    ctx.add(std::move(made));
+    return keep(name, traits);
 }
 
 } // namespace abbe::exchange

@@ -1,6 +1,7 @@
 #include "exchange/mitsuba/context.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace abbe::exchange {
@@ -17,9 +18,13 @@ void wrongType(const XmlParam& param, std::string_view wanted, Import& import) {
 
 void MitsubaContext::noteBounds(const Bounds3d& box, const Transform& place) {
     if (box.empty()) return;
-    for (int corner = 0; corner < 8; ++corner)
-        bounds.add(place.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                                corner & 4 ? box.upper.z : box.lower.z}));
+    const Vec3d middle = place.point((box.lower + box.upper) * 0.5), half = (box.upper - box.lower) * 0.5;
+    const auto reach = [&](const auto& row) {
+        return std::abs(row[0]) * half.x + std::abs(row[1]) * half.y + std::abs(row[2]) * half.z;
+    };
+    const Vec3d around{reach(place.a[0]), reach(place.a[1]), reach(place.a[2])};
+    bounds.add(middle - around);
+    bounds.add(middle + around);
 }
 
 double mitsubaNumber(const XmlObject& object, std::string_view name, double otherwise, Import& import) {
@@ -59,7 +64,7 @@ std::optional<Vec3d> mitsubaVector(const XmlObject& object, std::string_view nam
 
 Transform mitsubaTransform(const XmlObject& object, std::string_view name) {
     const XmlParam* const param = object.find(name);
-    return param ? param->transform : Transform{};
+    return param && param->transform ? *param->transform : Transform{};
 }
 
 void mitsubaIgnore(const XmlObject& object, std::initializer_list<std::string_view> names) {

@@ -7,10 +7,12 @@
 #include "exchange/shared/placement.h"
 #include "math/bounds.h"
 
-#include <map>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <vector>
 
 namespace abbe::exchange {
 
@@ -26,18 +28,20 @@ struct MaterialTraits {
 };
 
 struct MitsubaContext {
-    MitsubaContext(Import& to, const XmlScene& from) : import(to), scene(from) {}
+    MitsubaContext(Import& to, const XmlScene& from) : import(to), scene(from), materialOf(from.objects.size()) {}
 
     Import& import;
     const XmlScene& scene;
     NameTable materialNames, textureNames, shapeNames, mediumNames, objectNames;
-    std::map<const XmlObject*, std::pair<std::string, MaterialTraits>> materials;
-    std::map<const XmlObject*, std::string> textures, media, groups;
-    std::map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
-    Bounds3d bounds;                               // of the shapes so far, of the scene or of a group
-    std::map<const XmlObject*, Bounds3d> groupBounds;
+    std::deque<std::pair<std::string, MaterialTraits>> materials;
+    std::vector<const std::pair<std::string, MaterialTraits>*> materialOf; // of an object by its number, or null
+    std::unordered_map<const XmlObject*, std::string> textures, media, groups;
+    std::unordered_map<const XmlObject*, SceneNode> volumes; // of media that fill no shape: voxels
+    Bounds3d bounds;                                         // of the shapes so far, of the scene or of a group
+    std::unordered_map<const XmlObject*, Bounds3d> groupBounds;
     const XmlObject* air = nullptr; // the medium that the sensor is in
     bool hideEmitters = false;
+    bool settles = false;            // nobody looks into the nodes of the scene again
     bool seesMedia = false;          // the integrator is one for media
     std::optional<Transform> mirror; // of the whole scene, where its camera is a mirrored one
     double maxDepth = 0;             // scattering events, 0: no limit
@@ -46,6 +50,11 @@ struct MitsubaContext {
 
     // A box of a shape's own space counts for the bounds.
     void noteBounds(const Bounds3d&, const Transform& place);
+    // A node of the scene that is all there.
+    void add(SceneNode node) {
+        if (settles) node.settle();
+        import.nodes.push_back(std::move(node));
+    }
     SceneNode& define(std::string kind) { return import.nodes.emplace_back(std::move(kind)); }
 };
 

@@ -1,6 +1,10 @@
 #include "exchange/mitsuba/settings.h"
+#include "exchange/shared/ies_writer.h"
+#include "io/file.h"
+#include "io/image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -39,12 +43,6 @@ void writeAmount(SceneNode& light, const char* property, const char* unit, const
     MitsubaSpectrum shape = spectrum;
     if (shape.kind == MitsubaSpectrum::Kind::flat) shape.value = 1;
     writeSpectrum(color, shape, SpectrumUse::light, span, ctx);
-}
-
-void hideFromCamera(SceneNode& light, bool placed, const MitsubaContext& ctx) {
-    if (!ctx.hideEmitters) return;
-    SceneNode& rays = light.child("visible-to").word("reflections");
-    if (placed) rays.word("shadows");
 }
 
 Vec3d positionOf(const XmlObject& emitter, const Transform& map, MitsubaContext& ctx) {
@@ -131,33 +129,6 @@ void convertEnvmap(const XmlObject& emitter, MitsubaContext& ctx) {
     hideFromCamera(light, false, ctx);
 }
 
-// z is up in the sky's own space.
-void convertSky(const XmlObject& emitter, MitsubaContext& ctx) {
-    const Transform map = mitsubaTransform(emitter);
-    SceneNode& light = ctx.define("light").name(ctx.shapeNames.take(emitter.id, "sky")).word("daylight");
-    ctx.import.approximated(&light, emitter.span, fmt::format("`{}`", emitter.plugin),
-                            "by Abbe's own daylight, in absolute units: brightness and colours differ");
-    const auto sun = mitsubaVector(emitter, "sun_direction", ctx.import);
-    if (sun)
-        light.child("toward").vector({-sun->x, -sun->z, sun->y});
-    else
-        ctx.import.leftOut(&light, emitter.span, "the date and place of the sun",
-                           "without `sun_direction` the sun stands where daylight has it by default");
-    light.child("turbidity").number(std::clamp(mitsubaNumber(emitter, "turbidity", 3, ctx.import), 1.0, 10.0));
-    MaterialTraits none;
-    writeColor(light, "ground-albedo", emitter, "albedo", SpectrumUse::reflectance, 0.3, none, ctx);
-    if (emitter.plugin == "sky" || mitsubaNumber(emitter, "sun_scale", 1, ctx.import) == 0)
-        light.child("sun").word("off");
-    for (const char* param : {"sky_scale", "sun_scale", "scale"})
-        if (const double factor = mitsubaNumber(emitter, param, 1, ctx.import); factor != 1 && factor != 0)
-            ctx.import.leftOut(&light, emitter.span, fmt::format("`{}`", param),
-                               "daylight is as bright as it is; the camera has an `exposure`");
-    mitsubaIgnore(emitter, {"sun_aperture", "year", "month", "day", "hour", "minute", "second", "latitude", "longitude",
-                            "timezone", "complex_sun", "to_world", "stretch", "resolution"});
-    writeTransform(light, Transform::rotate({1, 0, 0}, kPiD / 2).then(map));
-    hideFromCamera(light, false, ctx);
-}
-
 void leaveOutEmitter(const XmlObject& emitter, std::string_view why, MitsubaContext& ctx) {
     ctx.import.leftOut(nullptr, emitter.span, fmt::format("emitter `{}`", emitter.plugin), why);
     for (const XmlParam& param : emitter.params) param.used = true;
@@ -178,14 +149,78 @@ void convertDirectionalArea(const XmlObject& emitter, const XmlObject& shape, Mi
     writeAmount(light, "irradiance", "lx", *spectrum, emitter.span, ctx);
 }
 
+// The picture lies in the plane at distance 1 of what Mitsuba's cameras see, where a 1 of it is an irradiance of π.
+void convertProjector(const XmlObject& emitter, MitsubaContext& ctx) {
+    const double scale = mitsubaNumber(emitter, "scale", 1, ctx.import);
+    const Transform map = mitsubaTransform(emitter);
+    const auto inverse = map.inverse();
+    const XmlParam* const picture = emitter.find("irradiance");
+    const bool isPicture = picture && isTexture(*picture);
+    RgbImage image;
+    std::string stem = "projector";
+    if (isPicture) {
+        const XmlParam* const file = picture->object->find("filename");
+        const auto path = file ? findXmlFile(ctx.scene, *file, ctx.import) : std::nullopt;
+        if (!file) return leaveOutEmitter(emitter, "its picture is in no file", ctx);
+        if (!path) return;
+        stem = path->stem().string();
+        try {
+            image = readImage(path->string());
+        } catch (const IoError& fault) {
+            return leaveOutEmitter(emitter, fault.what(), ctx);
+        }
+        for (const XmlParam& param : picture->object->params) param.used = true;
+    } else {
+        image.window = {0, 0, 1, 1};
+        image.rgb = {1, 1, 1};
+    }
+    const int width = image.width(), height = image.height();
+    const double aspect = static_cast<double>(width) / height;
+    const double tangent = std::tan(horizontalFov(emitter, aspect, ctx) * kDegree / 2);
+    if (!inverse) return leaveOutEmitter(emitter, "its transform has no inverse", ctx);
+    const auto at = [&](Vec3d d, std::size_t channel) {
+        const Vec3d w = normalize(inverse->vector(d));
+        if (w.z <= 1e-3) return 0.0;
+        const double u = (1 - w.x / (w.z * tangent)) / 2, v = (1 - w.y * aspect / (w.z * tangent)) / 2;
+        if (u < 0 || u >= 1 || v < 0 || v >= 1) return 0.0;
+        const auto pixel = static_cast<std::size_t>(static_cast<int>(v * height) * width + static_cast<int>(u * width));
+        return static_cast<double>(image.rgb[3 * pixel + channel]) * scale * kPiD * kNitsOfOne / std::pow(w.z, 3);
+    };
+    const auto write = [&](const std::string& text, const std::string& name) -> SceneNode* {
+        if (text.empty()) return nullptr;
+        SceneNode& light = ctx.define("light").name(ctx.shapeNames.take(emitter.id, "projector")).word("ies");
+        light.text(ctx.import.files.write(name, "ies", text)).child("position").vector(map.t);
+        return &light;
+    };
+    if (isPicture) {
+        constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
+        for (std::size_t c = 0; c < 3; ++c)
+            if (SceneNode* const light =
+                    write(iesFile([&](Vec3d d) { return kLuminance[c] * at(d, c); }), fmt::format("{}-{}", stem, "rgb"[c])))
+                light->child("color").word("rgb").vector({c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0});
+    } else if (auto spectrum = lightSpectrum(emitter, "irradiance", ctx)) {
+        const double y = luminanceOf(*spectrum) / scale; // lightSpectrum() has taken the factor in
+        if (SceneNode* const light = write(iesFile([&](Vec3d d) { return y * at(d, 0); }), stem)) {
+            if (spectrum->kind == MitsubaSpectrum::Kind::flat) spectrum->value = 1;
+            writeSpectrum(light->child("color"), *spectrum, SpectrumUse::light, emitter.span, ctx);
+        }
+    }
+    ctx.import.approximated(nullptr, emitter.span, "`projector`",
+                            "its picture became photometric files in steps of half a degree");
+}
+
 } // namespace
+
+void hideFromCamera(SceneNode& light, bool placed, const MitsubaContext& ctx) {
+    if (!ctx.hideEmitters) return;
+    SceneNode& rays = light.child("visible-to").word("reflections");
+    if (placed) rays.word("shadows");
+}
 
 void noteEmitterTextures(const XmlObject& emitter, MaterialTraits& traits) {
     for (const XmlParam& param : emitter.params)
         if (isTexture(param)) {
-            if (const auto map = std::ranges::find(param.object->params, "to_uv", &XmlParam::name);
-                map != param.object->params.end() && !traits.textured)
-                traits.toUv = map->transform;
+            if (param.object->has("to_uv") && !traits.textured) traits.toUv = mitsubaTransform(*param.object, "to_uv");
             traits.textured = true;
         }
 }
@@ -225,7 +260,7 @@ void convertEmitter(const XmlObject& emitter, MitsubaContext& ctx) {
     else if (type == "sunsky" || type == "sky" || type == "sun" || type == "timed_sunsky")
         convertSky(emitter, ctx);
     else if (type == "projector")
-        leaveOutEmitter(emitter, "no light throws a picture", ctx);
+        convertProjector(emitter, ctx);
     else
         leaveOutEmitter(emitter,
                         type == "area" || type == "directionalarea" ? "it belongs into a shape" : "no light is like it",

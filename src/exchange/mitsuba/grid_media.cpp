@@ -70,14 +70,6 @@ std::optional<VolGrid> gridOf(const XmlObject& volume, MitsubaContext& ctx) {
     return grid;
 }
 
-// Its mean, where an albedo varies from voxel to voxel.
-double meanOf(const XmlObject& volume, MitsubaContext& ctx) {
-    const auto grid = gridOf(volume, ctx);
-    if (!grid) return 1;
-    ctx.import.approximated(nullptr, volume.span, "a grid of albedos", "by its mean");
-    return std::accumulate(grid->values.begin(), grid->values.end(), 0.0) / static_cast<double>(grid->values.size());
-}
-
 // Where voxel centres are: (i + 0.5) / n of the unit cube, or of the file's box.
 Transform gridPlace(const XmlObject& volume, const VolGrid& grid, MitsubaContext& ctx) {
     Transform map = Transform::translate({0.5, 0.5, 0.5})
@@ -96,12 +88,20 @@ void writeGridAlbedo(SceneNode& node, const XmlObject& medium, MitsubaContext& c
     if (!albedo)
         node.child("albedo").number(0.75);
     else if (!constant)
-        node.child("albedo").number(std::clamp(meanOf(*albedo->object, ctx), 0.0, 1.0));
+        node.child("albedo").number(std::clamp(meanOfGrid(*albedo->object, ctx), 0.0, 1.0));
     else if (const auto spectrum = readSpectrum(*constant, SpectrumUse::reflectance, ctx))
         writeSpectrum(node.child("albedo"), *spectrum, SpectrumUse::reflectance, constant->span, ctx);
 }
 
 } // namespace
+
+double meanOfGrid(const XmlObject& volume, MitsubaContext& ctx) {
+    const auto grid = gridOf(volume, ctx);
+    mitsubaIgnore(volume, {"filter_type", "wrap_mode", "raw", "accel", "max_value", "use_grid_bbox", "to_world"});
+    if (!grid) return 1;
+    ctx.import.approximated(nullptr, volume.span, "a grid of colours", "by its mean, in grey");
+    return std::accumulate(grid->values.begin(), grid->values.end(), 0.0) / static_cast<double>(grid->values.size());
+}
 
 const SceneNode* gridVolumeOf(const XmlObject& shape, MitsubaContext& ctx) {
     const XmlParam* const inside = shape.find("interior");
@@ -114,8 +114,9 @@ const SceneNode* gridVolumeOf(const XmlObject& shape, MitsubaContext& ctx) {
     node.name(ctx.mediumNames.take(medium.id, "volume"));
     const XmlObject& volume = *density->object;
     if (const auto grid = gridOf(volume, ctx)) {
+        const VdbGrid voxels{"density", grid->values};
         node.word("vdb").text(ctx.import.files.write(medium.id.empty() ? "volume" : medium.id, "vdb",
-                                                     vdbFile(grid->counts, grid->values)));
+                                                     vdbFile(grid->counts, std::span(&voxels, 1))));
         node.child("extinction").number(mitsubaNumber(medium, "scale", 1, ctx.import)).word("per-m");
         writeGridAlbedo(node, medium, ctx);
         if (const auto phases = medium.objects("phase"); !phases.empty())

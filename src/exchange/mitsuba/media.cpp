@@ -15,8 +15,7 @@ constexpr int kMostNestedPhases = 8; // they may double at every level
 // Values at even steps of the cosine from −1 (straight back) to 1.
 void writeTabulatedPhase(SceneNode& at, const XmlObject& phase, MitsubaContext& ctx) {
     const XmlParam* const param = phase.find("values");
-    const auto values =
-        param ? (param->numbers.empty() ? xmlNumbers(param->text) : std::optional(param->numbers)) : std::nullopt;
+    const auto values = param ? xmlNumbers(param->text) : std::nullopt;
     if (!values || values->size() < 2) {
         ctx.import.diagnostics.error("E0802", phase.span, "`tabphase` has at least two `values`");
         at.word("isotropic");

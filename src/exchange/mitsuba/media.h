@@ -13,6 +13,8 @@ std::string interiorOf(const XmlObject& shape, MitsubaContext&);
 // The medium inside a shape as a volume of its own, where it is one of voxels: `volume NAME vdb …`; null otherwise. It
 // fills the bounds of its grid (grid_media.cpp).
 const SceneNode* gridVolumeOf(const XmlObject& shape, MitsubaContext&);
+// The mean of a grid that stands where nothing varies from place to place, which is said.
+double meanOfGrid(const XmlObject& volume, MitsubaContext&);
 void writePhase(SceneNode& at, const XmlObject& phase, int depth, MitsubaContext&);
 // The value of a parameter that is no grid; null for grids.
 const XmlParam* constantOf(const XmlParam*);

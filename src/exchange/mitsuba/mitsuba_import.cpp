@@ -11,11 +11,16 @@ namespace abbe::exchange {
 
 namespace {
 
-// Settings first, then what is referred to, then what is seen.
-std::size_t rankOf(const SceneNode& node) {
+// Settings first, then what is referred to, then what is seen; each kind in the order of the file.
+void putInOrder(std::list<SceneNode>& nodes) {
     constexpr std::array<std::string_view, 10> kOrder = {"film",       "camera",  "render",   "light",  "medium",
                                                          "atmosphere", "texture", "material", "object", "shape"};
-    return static_cast<std::size_t>(std::ranges::find(kOrder, node.kind()) - kOrder.begin());
+    std::array<std::list<SceneNode>, kOrder.size() + 1> ranks;
+    while (!nodes.empty()) {
+        const auto rank = static_cast<std::size_t>(std::ranges::find(kOrder, nodes.front().kind()) - kOrder.begin());
+        ranks[rank].splice(ranks[rank].end(), nodes, nodes.begin());
+    }
+    for (std::list<SceneNode>& rank : ranks) nodes.splice(nodes.end(), rank);
 }
 
 void writeRender(MitsubaContext& ctx) {
@@ -69,6 +74,7 @@ void importMitsuba(const std::filesystem::path& path, Import& import) {
     reserveTypeNames(ctx.materialNames, ctx.textureNames, ctx.mediumNames);
     for (const XmlObject* integrator : root.objects("integrator")) readIntegrator(*integrator, ctx);
     convertSensors(root.objects("sensor"), ctx);
+    ctx.settles = !ctx.mirror && !root.objects("sensor").empty();
     writeRender(ctx);
     for (const XmlObject* emitter : root.objects("emitter")) convertEmitter(*emitter, ctx);
     for (const XmlObject* shape : root.objects("shape")) convertShape(*shape, nullptr, ctx);
@@ -79,8 +85,7 @@ void importMitsuba(const std::filesystem::path& path, Import& import) {
     warnOfUnused(root, import);
     if (root.objects("sensor").empty()) writePreview(ctx);
     if (ctx.mirror) mirrorScene(ctx);
-    import.nodes.sort([](const SceneNode& a, const SceneNode& b) { return rankOf(a) < rankOf(b);
-});
-} // namespace abbe::exchange
+    putInOrder(import.nodes);
+}
 
 } // namespace abbe::exchange

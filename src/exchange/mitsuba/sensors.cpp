@@ -31,34 +31,6 @@ MitsubaFilm filmOf(const XmlObject* film, MitsubaContext& ctx) {
     return f;
 }
 
-// Horizontal angle in degrees [Mitsuba 3 documentation, "Perspective pinhole camera"].
-double horizontalFov(const XmlObject& sensor, double aspect, MitsubaContext& ctx) {
-    std::string axis = mitsubaText(sensor, "fov_axis", "x");
-    double fov = 0;
-    if (sensor.has("fov"))
-        fov = mitsubaNumber(sensor, "fov", 45, ctx.import);
-    else {
-        std::string focal = mitsubaText(sensor, "focal_length", "50mm");
-        if (focal.ends_with("mm")) focal.resize(focal.size() - 2);
-        const auto numbers = xmlNumbers(focal);
-        const double millimetres = numbers && numbers->size() == 1 && (*numbers)[0] > 0 ? (*numbers)[0] : 50;
-        fov = 2 * std::atan(std::sqrt(36.0 * 36 + 24 * 24) / (2 * millimetres)) / kDegree;
-        axis = "diagonal";
-    }
-    if (!(fov > 0 && fov < 180)) {
-        ctx.import.diagnostics.error("E0802", sensor.span, "a field of view is between 0 and 180 degrees");
-        return 45;
-    }
-    const double tangent = std::tan(fov * kDegree / 2);
-    const bool smaller = axis == "smaller", wide = aspect > 1;
-    double across = tangent;
-    if (axis == "y" || (smaller && wide) || (axis == "larger" && !wide))
-        across = tangent * aspect;
-    else if (axis == "diagonal")
-        across = tangent / std::sqrt(1 + 1 / (aspect * aspect));
-    return std::clamp(2 * std::atan(across) / kDegree, 0.001, 179.9);
-}
-
 // Mitsuba's cameras look along +z with +x to the left, ours along −z with +x to the right.
 void placeCamera(SceneNode& camera, const Transform& map) {
     // Of a mirrored camera the scene is mirrored instead (mitsuba_import.cpp).
@@ -133,7 +105,10 @@ bool writeCamera(SceneNode& camera, const XmlObject& sensor, const MitsubaFilm& 
         camera.word("perspective");
         writeRadianceMeter(camera, sensor, ctx);
     } else {
-        ctx.import.leftOut(nullptr, sensor.span, fmt::format("sensor `{}`", type), "no camera is like it");
+        ctx.import.leftOut(nullptr, sensor.span, fmt::format("sensor `{}`", type),
+                           type == "irradiancemeter"
+                               ? "cameras see radiance: a white `diffuse` surface in its place shows irradiance / π"
+                               : "no camera is like it");
         for (const XmlParam& param : sensor.params) param.used = true;
         return false;
     }
@@ -202,14 +177,58 @@ void writeAir(const XmlObject& sensor, MitsubaContext& ctx) {
 
 } // namespace
 
-void convertSensors(const std::vector<const XmlObject*>& sensors, MitsubaContext& ctx) {
+// [Mitsuba 3 documentation, "Perspective pinhole camera"].
+double horizontalFov(const XmlObject& sensor, double aspect, MitsubaContext& ctx) {
+    std::string axis = mitsubaText(sensor, "fov_axis", "x");
+    double fov = 0;
+    if (sensor.has("fov"))
+        fov = mitsubaNumber(sensor, "fov", 45, ctx.import);
+    else {
+        std::string focal = mitsubaText(sensor, "focal_length", "50mm");
+        if (focal.ends_with("mm")) focal.resize(focal.size() - 2);
+        const auto numbers = xmlNumbers(focal);
+        const double millimetres = numbers && numbers->size() == 1 && (*numbers)[0] > 0 ? (*numbers)[0] : 50;
+        fov = 2 * std::atan(std::sqrt(36.0 * 36 + 24 * 24) / (2 * millimetres)) / kDegree;
+        axis = "diagonal";
+    }
+    if (!(fov > 0 && fov < 180)) {
+        ctx.import.diagnostics.error("E0802", sensor.span, "a field of view is between 0 and 180 degrees");
+        return 45;
+    }
+    const double tangent = std::tan(fov * kDegree / 2);
+    const bool smaller = axis == "smaller", wide = aspect > 1;
+    double across = tangent;
+    if (axis == "y" || (smaller && wide) || (axis == "larger" && !wide))
+        across = tangent * aspect;
+    else if (axis == "diagonal")
+        across = tangent / std::sqrt(1 + 1 / (aspect * aspect));
+    return std::clamp(2 * std::atan(across) / kDegree, 0.001, 179.9);
+}
+
+void convertSensors(std::vector<const XmlObject*> sensors, MitsubaContext& ctx) {
+    // A batch renders side by side what several sensors see.
+    const XmlObject* batchFilm = nullptr;
+    std::size_t batchSize = 1;
+    if (!sensors.empty() && sensors[0]->plugin == "batch") {
+        const XmlObject& batch = *sensors[0];
+        const auto inner = batch.objects("sensor"), films = batch.objects("film");
+        sensors.erase(sensors.begin());
+        sensors.insert(sensors.begin(), inner.begin(), inner.end());
+        if (!films.empty()) batchFilm = films[0];
+        batchSize = std::max<std::size_t>(inner.size(), 1);
+        ctx.import.approximated(nullptr, batch.span, "sensor `batch`",
+                                "its sensors are cameras, each with a picture of its own");
+        batch.objects("sampler");
+        warnOfUnused(batch, ctx.import);
+    }
     if (!sensors.empty() && mitsubaTransform(*sensors[0]).determinant() < 0) ctx.mirror = Transform::scale({-1, 1, 1});
     NameTable names;
     bool first = true;
     for (const XmlObject* sensor : sensors) {
         const auto films = sensor->objects("film"), samplers = sensor->objects("sampler");
-        const XmlObject* const film = films.empty() ? nullptr : films[0];
-        const MitsubaFilm size = filmOf(film, ctx);
+        const XmlObject* const film = batchFilm ? batchFilm : films.empty() ? nullptr : films[0];
+        MitsubaFilm size = filmOf(film, ctx);
+        if (batchFilm) size.width = size.cropWidth = std::max(1.0, std::floor(size.width / static_cast<double>(batchSize)));
         SceneNode camera("camera");
         camera.name(names.take(sensor->id, "camera"));
         const bool written = writeCamera(camera, *sensor, size, ctx);
@@ -244,8 +263,8 @@ void readIntegrator(const XmlObject& integrator, MitsubaContext& ctx) {
     }
     constexpr std::array<std::string_view, 5> kWithMedia = {"volpath", "volpathmis", "prbvolpath", "volpath_simple",
                                                             "volpathsimple"};
-    constexpr std::array<std::string_view, 6> kPaths = {"path",      "ptracer", "prb",
-                                                        "prb_basic", "bdpt",    "prb_projective"};
+    constexpr std::array<std::string_view, 7> kPaths = {"path", "ptracer",        "prb",              "prb_basic",
+                                                        "bdpt", "prb_projective", "direct_projective"};
     ctx.seesMedia = std::ranges::find(kWithMedia, type) != kWithMedia.end();
     ctx.hideEmitters = mitsubaFlag(integrator, "hide_emitters", false, ctx.import);
     double depth = mitsubaNumber(integrator, "max_depth", -1, ctx.import);

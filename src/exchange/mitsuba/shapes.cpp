@@ -58,9 +58,13 @@ void convertInstance(const XmlObject& instance, SceneNode* parent, MitsubaContex
     }
     convertGroup(*groups[0], ctx);
     if (ctx.groups[groups[0]] == "-") return;
-    SceneNode& node = parent ? parent->child("instance") : ctx.define("instance");
+    SceneNode node("instance");
     node.name(ctx.groups[groups[0]]);
     writeTransform(node, map);
+    if (parent)
+        parent->adopt(std::move(node));
+    else
+        ctx.add(std::move(node));
     ctx.noteBounds(ctx.groupBounds[groups[0]], map);
     warnOfUnused(instance, ctx.import);
 }
@@ -77,6 +81,9 @@ void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& c
     MaterialTraits traits;
     if (bsdf) traits = materialOf(*bsdf, ctx).second;
     const auto emitters = shape.objects("emitter");
+    for (const XmlObject* sensor : shape.objects("sensor"))
+        ctx.import.leftOut(nullptr, sensor->span, fmt::format("sensor `{}` of a shape", sensor->plugin),
+                           "cameras see radiance: a white `diffuse` surface in its place shows irradiance / π");
     // Voxels behind a surface that is none stand for themselves.
     const bool voxels = traits.boundary && !parent && emitters.empty() && gridVolumeOf(shape, ctx);
     const std::string inside = voxels ? std::string() : interiorOf(shape, ctx);
@@ -100,12 +107,9 @@ void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& c
     if (parent)
         parent->adopt(std::move(node));
     else
-        ctx.import.nodes.push_back(std::move(node));
+        ctx.add(std::move(node));
 }
 
-} // namespace
-
-namespace {
 
 // A second copy in the same place shows nothing new, and copies of copies would double at every level.
 void convertMerged(const XmlObject& merged, SceneNode* parent, MitsubaContext& ctx) {
@@ -172,14 +176,14 @@ MeshData cubeMesh() {
     return mesh;
 }
 
-ShapeForm writeFlat(SceneNode& node, const XmlObject& shape, MeshData mesh, const MaterialTraits& traits,
-                    MitsubaContext& ctx) {
+ShapeForm writeFlat(SceneNode& node, const XmlObject& shape, const MaterialTraits& traits, MitsubaContext& ctx) {
     const bool flip = mitsubaFlag(shape, "flip_normals", false, ctx.import);
     const bool cube = shape.plugin == "cube";
     if (!traits.textured && !flip) {
         constexpr double kSides[3] = {2, 2, 2};
         node.word(cube ? "box" : "quad").child("size").numbers(std::span(kSides, cube ? 3 : 2));
     } else {
+        MeshData mesh = cube ? cubeMesh() : rectangleMesh();
         if (flip) flipFaces(mesh);
         turnCoordinates(mesh, traits);
         node.word("mesh");
@@ -288,8 +292,7 @@ void turnCoordinates(MeshData& mesh, const MaterialTraits& traits) {
 ShapeForm writeGeometry(SceneNode& node, const XmlObject& shape, const MaterialTraits& traits, MitsubaContext& ctx) {
     const std::string& type = shape.plugin;
     mitsubaIgnore(shape, {"silhouette_sampling_weight", "id"});
-    if (type == "rectangle") return writeFlat(node, shape, rectangleMesh(), traits, ctx);
-    if (type == "cube") return writeFlat(node, shape, cubeMesh(), traits, ctx);
+    if (type == "rectangle" || type == "cube") return writeFlat(node, shape, traits, ctx);
     if (type == "sphere") return writeSphere(node, shape, traits, ctx);
     if (type == "disk") return writeDisk(node, shape, traits, ctx);
     if (type == "cylinder") return writeCylinder(node, shape, traits, ctx);

@@ -98,7 +98,7 @@ MitsubaSpectrum rgbSpectrum(Vec3d rgb) {
 std::vector<double> numberList(const XmlObject& object, std::string_view name) {
     const XmlParam* const param = object.find(name);
     if (!param) return {};
-    if (!param->numbers.empty()) return param->numbers;
+    if (!param->numbers.empty()) return {param->numbers.begin(), param->numbers.end()};
     return xmlNumbers(param->text).value_or(std::vector<double>());
 }
 

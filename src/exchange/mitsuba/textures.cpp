@@ -1,5 +1,8 @@
 #include "exchange/mitsuba/textures.h"
 
+#include "exchange/mitsuba/media.h"
+
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace abbe::exchange {
@@ -20,7 +23,7 @@ void noteMap(const XmlObject& texture, MaterialTraits& traits, MitsubaContext& c
     const bool first = !traits.textured;
     traits.textured = true;
     const XmlParam* const param = texture.find("to_uv");
-    const Transform map = param ? param->transform : Transform{};
+    const Transform map = mitsubaTransform(texture, "to_uv");
     if (first && !isIdentity(map)) traits.toUv = map;
     if (!first && !sameMap(map, traits.toUv.value_or(Transform{})))
         ctx.import.approximated(nullptr, param ? param->span : texture.span, "`to_uv`",
@@ -66,6 +69,28 @@ void writeAttribute(SceneNode& at, const XmlObject& texture, MitsubaContext& ctx
         ctx.import.leftOut(nullptr, texture.span, "`scale` of a mesh attribute", "values are used as they are");
 }
 
+// A picture in space: nothing here holds one, so that its mean stands for it.
+void writeVolumeTexture(SceneNode& at, const XmlObject& texture, MitsubaContext& ctx) {
+    const auto volumes = texture.objects("volume");
+    const XmlObject* const volume = volumes.empty() ? nullptr : volumes[0];
+    std::string grey = "0.5";
+    if (volume && volume->plugin == "constvolume") {
+        const XmlParam* const value = volume->find("value");
+        SceneNode color("color");
+        if (value)
+            if (const auto spectrum = readSpectrum(*value, SpectrumUse::reflectance, ctx))
+                writeSpectrum(color, *spectrum, SpectrumUse::reflectance, value->span, ctx);
+        if (!color.empty()) grey = color.values();
+    } else if (volume && volume->plugin == "gridvolume") {
+        grey = numberText(std::clamp(meanOfGrid(*volume, ctx), 0.0, 1.0));
+    } else {
+        ctx.import.leftOut(nullptr, texture.span, "texture `volume`", "its volume is no grid; grey stands for it");
+    }
+    at.word("ramp");
+    at.child("stop").number(0).word(grey);
+    at.child("stop").number(1).word(grey);
+}
+
 void writeTextureType(SceneNode& at, const XmlObject& texture, bool data, MaterialTraits& traits, MitsubaContext& ctx) {
     if (ctx.depth >= kMostNestedTextures) {
         ctx.import.diagnostics.error("E0802", texture.span,
@@ -81,6 +106,8 @@ void writeTextureType(SceneNode& at, const XmlObject& texture, bool data, Materi
         writeChecker(at, texture, data, traits, ctx);
     else if (texture.plugin == "mesh_attribute")
         writeAttribute(at, texture, ctx);
+    else if (texture.plugin == "volume")
+        writeVolumeTexture(at, texture, ctx);
     else {
         ctx.import.leftOut(nullptr, texture.span, fmt::format("texture `{}`", texture.plugin),
                            "nothing here is like it; grey stands for it");

@@ -4,9 +4,12 @@
 #include "base/source.h"
 #include "math/transform.h"
 
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <filesystem>
-#include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,16 +21,36 @@ struct XmlObject;
 // The tag of a parameter whose value made no sense, which was said: it is as if it were not there.
 inline constexpr const char* kBrokenTag = "broken";
 
-// One parameter of an object. Only what its tag says is set.
+// The numbers of a parameter: one, or three.
+class XmlParamNumbers {
+  public:
+    void assign(std::size_t count, double value) { count_ = count, values_.fill(value); }
+    void set(std::span<const double> values) {
+        count_ = std::min(values.size(), values_.size());
+        std::copy_n(values.begin(), count_, values_.begin());
+    }
+    void clear() { count_ = 0; }
+    std::size_t size() const { return count_; }
+    bool empty() const { return count_ == 0; }
+    double operator[](std::size_t i) const { return values_[i]; }
+    const double* begin() const { return values_.data(); }
+    const double* end() const { return values_.data() + count_; }
+
+  private:
+    std::array<double, 3> values_{};
+    std::size_t count_ = 0;
+};
+
+// One parameter of an object. Only what its tag says is set. Scenes have millions of them.
 struct XmlParam {
     std::string tag;  // "float", "rgb", "ref", "bsdf", …
     std::string name; // in today's spelling; empty for most nested objects
     std::string text; // the attribute `value`, or the file of a spectrum
     Span span;
-    std::vector<double> numbers;       // of float, integer, point, vector, rgb, and spectra that are numbers alone
-    Transform transform;               // of `transform`
-    const XmlObject* object = nullptr; // a nested object, or the one that is referred to
-    mutable bool used = false;         // some converter asked for it
+    XmlParamNumbers numbers;              // of float, integer, point, vector, rgb, and spectra that are numbers alone
+    std::unique_ptr<Transform> transform; // of `transform`
+    const XmlObject* object = nullptr;    // a nested object, or the one that is referred to
+    mutable bool used = false;            // some converter asked for it
 };
 
 // <TAG type="PLUGIN" id="ID"> … </TAG>
@@ -35,6 +58,8 @@ struct XmlObject {
     std::string tag, plugin, id;
     Span span;
     std::vector<XmlParam> params; // all there before converters hold pointers
+    std::size_t number = 0;       // among the objects of the scene
+    bool complete = false;        // all of it was read
     enum class Walk : std::uint8_t { unseen, open, done } walk = Walk::unseen; // of the reader, which looks for cycles
 
     // The parameter of this name, marked as used, or null.
@@ -59,6 +84,9 @@ struct XmlVersion {
 
 // "0.5.0"; the other one where the text is none.
 XmlVersion xmlVersion(std::string_view text, XmlVersion otherwise);
+
+// A parameter that upgraded skies have: y is up in their own space, not z.
+inline constexpr const char* kSkyWithYUp = "y_is_up";
 
 // What was written for older versions means the same in 3 (xml_upgrade.cpp). Before version 2 names were in camel case,
 // and textures had uoffset, voffset, uscale and vscale.

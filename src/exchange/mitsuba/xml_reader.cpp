@@ -10,7 +10,9 @@
 #include <array>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 #include <pugixml.hpp>
+#include <unordered_map>
 
 namespace abbe::exchange {
 
@@ -50,7 +52,8 @@ class XmlReader {
     Diagnostic& fault(const char* code, pugi::xml_node node, std::string text) {
         return import_.diagnostics.error(code, spanOf(node), std::move(text));
     }
-    std::string attribute(pugi::xml_node node, const char* name);
+    // Stays until the file is read.
+    std::string_view attribute(pugi::xml_node node, const char* name);
     std::string replaced(pugi::xml_node node, std::string text);
     XmlObject* object(pugi::xml_node node, int depth);
     void child(pugi::xml_node node, XmlObject& into, int depth);
@@ -58,6 +61,7 @@ class XmlReader {
     void nested(pugi::xml_node node, XmlObject& into, int depth);
     void parameter(pugi::xml_node node, XmlParam& param);
     void numbers(pugi::xml_node node, XmlParam& param);
+    std::optional<std::size_t> triple(pugi::xml_node node, std::span<double, 3> into);
     void transform(pugi::xml_node node, XmlParam& param);
     void includeFile(pugi::xml_node node, XmlObject& into, int depth);
     void cutCycles();
@@ -65,10 +69,11 @@ class XmlReader {
     XmlScene& scene_;
     Import& import_;
     std::map<std::string, std::string, std::less<>> defaults_;
-    std::map<std::string, const XmlObject*, std::less<>> ids_;
+    std::unordered_map<std::string_view, const XmlObject*> ids_;
     std::vector<std::pair<std::string, std::string>> aliases_; // of an id, and the other name
     std::vector<Reference> references_;
-    std::vector<fs::path> open_; // files that are being read
+    std::deque<std::string> replaced_; // attributes whose `$name` were replaced
+    std::vector<fs::path> open_;       // files that are being read
     std::size_t files_ = 0;
     XmlVersion version_;
     FileId file_ = FileId::none;
@@ -102,38 +107,48 @@ std::string XmlReader::replaced(pugi::xml_node node, std::string text) {
     return text;
 }
 
-std::string XmlReader::attribute(pugi::xml_node node, const char* name) {
-    std::string text = node.attribute(name).value();
-    return text.find('$') == std::string::npos ? text : replaced(node, std::move(text));
+std::string_view XmlReader::attribute(pugi::xml_node node, const char* name) {
+    const std::string_view text = node.attribute(name).value();
+    return text.find('$') == std::string_view::npos ? text : replaced_.emplace_back(replaced(node, std::string(text)));
+}
+
+// Attributes x, y and z, those that are not there as 0.
+std::optional<std::size_t> XmlReader::triple(pugi::xml_node node, std::span<double, 3> into) {
+    constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string_view text = attribute(node, kAxes[i]);
+        if (!text.empty() && xmlNumbers(text, into.subspan(i, 1)) != 1) return std::nullopt;
+    }
+    return 3;
 }
 
 void XmlReader::numbers(pugi::xml_node node, XmlParam& param) {
-    std::string text = attribute(node, "value");
-    if (text.empty() && (node.attribute("x") || node.attribute("y") || node.attribute("z")))
-        for (const char* axis : {"x", "y", "z"}) {
-            const std::string part = attribute(node, axis);
-            text += (part.empty() ? "0" : part) + " ";
-        }
-    if (const auto hex = xmlHexColor(text); hex && param.tag != "float") {
-        param.numbers = *hex;
-        return;
-    }
+    const std::string_view text = attribute(node, "value");
     const bool one = param.tag == "float" || param.tag == "integer";
-    const auto found = xmlNumbers(text);
-    if (!found || found->empty() || (one && found->size() != 1) ||
-        (!one && found->size() != 3 && found->size() != 1 && found->size() != 2)) {
+    std::array<double, 3> values{};
+    std::optional<std::size_t> count;
+    if (text.empty() && (node.attribute("x") || node.attribute("y") || node.attribute("z"))) {
+        count = triple(node, values);
+    } else if (const auto hex = one ? std::nullopt : xmlHexColor(text)) {
+        values = *hex;
+        count = 3;
+    } else {
+        count = xmlNumbers(text, values);
+    }
+    if (!count || *count < 1 || *count > (one ? 1 : 3)) {
         fault("E0802", node,
               fmt::format("`{}` is no {}", text, one ? "finite number" : "list of three finite numbers"));
         param.tag = kBrokenTag; // said once
-        param.numbers.clear();
         return;
     }
-    param.numbers = *found;
-    if (!one && param.numbers.size() == 1) param.numbers.assign(3, param.numbers[0]);
-    if (!one && param.numbers.size() == 2) param.numbers.push_back(0);
+    if (!one && count == 1)
+        param.numbers.assign(3, values[0]);
+    else
+        param.numbers.set(std::span(values).first(one ? 1 : 3));
 }
 
 void XmlReader::transform(pugi::xml_node node, XmlParam& param) {
+    Transform map;
     for (const pugi::xml_node step : node.children()) {
         if (step.type() != pugi::node_element) continue;
         const XmlStep done = xmlStep(step.name(), [&](const char* name) { return attribute(step, name); });
@@ -141,12 +156,13 @@ void XmlReader::transform(pugi::xml_node node, XmlParam& param) {
             fault("E0802", step, fmt::format("this `{}` cannot be used: {}", step.name(), done.fault));
             continue;
         }
-        param.transform = param.transform.then(done.map);
+        map = map.then(done.map);
     }
-    if (!param.transform.isFinite()) {
+    if (!map.isFinite()) {
         fault("E0802", node, "the transform has numbers that are not finite");
-        param.transform = {};
+        map = {};
     }
+    param.transform = std::make_unique<Transform>(map);
 }
 
 void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
@@ -154,11 +170,12 @@ void XmlReader::parameter(pugi::xml_node node, XmlParam& param) {
     if (param.tag == "transform") return transform(node, param);
     param.text = attribute(node, "value");
     if (param.tag == "spectrum") {
-        if (const std::string file = attribute(node, "filename"); !file.empty()) {
+        if (const std::string_view file = attribute(node, "filename"); !file.empty()) {
             param.tag = "spectrum-file";
             param.text = file;
-        } else if (const auto found = xmlNumbers(param.text); found && found->size() == 1)
-            param.numbers = *found;
+        } else if (std::array<double, 1> one{}; xmlNumbers(param.text, one) == 1) {
+            param.numbers.set(one);
+        }
         return;
     }
     if (param.tag == "blackbody") { // of version 0.5
@@ -179,6 +196,7 @@ XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
     made.plugin = attribute(node, "type");
     made.id = attribute(node, "id");
     made.span = spanOf(node);
+    made.number = scene_.objects.size() - 1;
     if (made.plugin.empty() && made.tag != "scene")
         fault("E0802", node, fmt::format("this `{}` has no `type`", made.tag));
     if (!made.id.empty() && !ids_.emplace(made.id, &made).second)
@@ -188,6 +206,7 @@ XmlObject* XmlReader::object(pugi::xml_node node, int depth) {
     for (const pugi::xml_node inner : children)
         if (inner.type() == pugi::node_element) child(inner, made, depth + 1);
     upgradeXmlObject(made, version_);
+    made.complete = true;
     return &made;
 }
 
@@ -217,7 +236,12 @@ void XmlReader::nested(pugi::xml_node node, XmlObject& into, int depth) {
         param.object = object(node, depth); // of others: this parameter stays where it is
     else
         parameter(node, param);
-    if (param.tag == "ref") references_.push_back({&into, into.params.size() - 1});
+    if (param.tag != "ref") return;
+    const auto found = ids_.find(param.text);
+    if (found != ids_.end() && found->second->complete)
+        param.object = found->second;
+    else
+        references_.push_back({&into, into.params.size() - 1});
 }
 
 void XmlReader::child(pugi::xml_node node, XmlObject& into, int depth) {
@@ -297,15 +321,17 @@ void XmlReader::file(const fs::path& path, Span from, XmlObject* into, int depth
 void XmlReader::resolve() {
     for (const auto& [id, other] : aliases_)
         if (const auto found = ids_.find(id); found != ids_.end()) ids_.emplace(other, found->second);
-    std::vector<std::string_view> names;
-    for (const auto& [name, object] : ids_)
-        if (names.size() < 1000) names.push_back(name);
+    std::vector<std::string_view> names; // for who looks in vain
     for (const auto& [object, index] : references_) {
         XmlParam& param = object->params[index];
         if (const auto found = ids_.find(param.text); found != ids_.end()) {
             param.object = found->second;
             continue;
         }
+        constexpr std::size_t kMostNames = 1000;
+        if (names.empty() && ids_.size() <= kMostNames)
+            for (const auto& [name, named] : ids_) names.push_back(name);
+        std::ranges::sort(names);
         Diagnostic& d =
             import_.diagnostics.error("E0802", param.span, fmt::format("nothing has the id `{}`", param.text));
         d.help = schema::didYouMean(schema::nearest(param.text, names));
@@ -314,16 +340,19 @@ void XmlReader::resolve() {
     cutCycles();
 }
 
-// References that lead back to where they are would never end: an iterative walk over what every object names.
+// References that lead back to where they are would never end: an iterative walk over what every object names. Those to
+// what was complete before them lead to nothing that they are in.
 void XmlReader::cutCycles() {
+    if (references_.empty()) return;
     using enum XmlObject::Walk;
     struct Visit {
         XmlObject* object;
         std::size_t next;
     };
+    std::vector<Visit> stack;
     for (XmlObject& start : scene_.objects) {
         if (start.walk != unseen) continue;
-        std::vector<Visit> stack{{&start, 0}};
+        stack.push_back({&start, 0});
         start.walk = open;
         while (!stack.empty()) {
             auto& [object, next] = stack.back();

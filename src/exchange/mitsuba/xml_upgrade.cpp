@@ -31,8 +31,8 @@ void upgradeTexture(XmlObject& object) {
     map.name = "to_uv";
     map.span = object.span;
     const double u = takeNumber(object, "uscale", 1), v = takeNumber(object, "vscale", 1);
-    map.transform = Transform::scale({u, v, 1});
-    map.transform.t = {takeNumber(object, "uoffset", 0), takeNumber(object, "voffset", 0), 0};
+    map.transform = std::make_unique<Transform>(Transform::scale({u, v, 1}));
+    map.transform->t = {takeNumber(object, "uoffset", 0), takeNumber(object, "voffset", 0), 0};
     object.params.push_back(std::move(map));
 }
 
@@ -54,6 +54,12 @@ void upgradeXmlObject(XmlObject& object, XmlVersion version) {
         if (object.plugin == "diffuse" && param.name == "diffuse_reflectance") param.name = "reflectance";
     }
     upgradeTexture(object);
+    if (object.plugin == "sky" || object.plugin == "sun" || object.plugin == "sunsky") {
+        XmlParam& up = object.params.emplace_back();
+        up.name = kSkyWithYUp;
+        up.span = object.span;
+        up.used = true;
+    }
 }
 
 } // namespace abbe::exchange

@@ -8,48 +8,50 @@ namespace abbe::exchange {
 
 namespace {
 
-using XmlAttribute = std::function<std::string(const char*)>;
+using XmlAttribute = std::function<std::string_view(const char*)>;
 
 bool isXmlBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ','; }
 
-// x, y and z, or `value` with one number or three.
-std::optional<Vec3d> xmlTriple(const XmlAttribute& attribute, double otherwise) {
-    Vec3d v{otherwise, otherwise, otherwise};
-    if (const std::string value = attribute("value"); !value.empty()) {
-        const auto numbers = xmlNumbers(value);
-        if (!numbers || (numbers->size() != 1 && numbers->size() != 3)) return std::nullopt;
-        return numbers->size() == 1 ? Vec3d((*numbers)[0], (*numbers)[0], (*numbers)[0])
-                                    : Vec3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-    }
-    const auto part = [&](const char* name, double& to) {
-        const std::string text = attribute(name);
-        if (text.empty()) return true;
-        const auto numbers = xmlNumbers(text);
-        if (!numbers || numbers->size() != 1) return false;
-        to = (*numbers)[0];
-        return true;
-    };
-    if (!part("x", v.x) || !part("y", v.y) || !part("z", v.z)) return std::nullopt;
-    return v;
+// Exactly so many numbers.
+template <std::size_t N> std::optional<std::array<double, N>> exactly(std::string_view text) {
+    std::array<double, N> numbers{};
+    return xmlNumbers(text, numbers) == N ? std::optional(numbers) : std::nullopt;
 }
 
-std::optional<Vec3d> xmlPoint(const std::string& text) {
-    const auto numbers = xmlNumbers(text);
-    if (!numbers || numbers->size() != 3) return std::nullopt;
-    return Vec3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+// x, y and z, or `value` with one number or three.
+std::optional<Vec3d> xmlTriple(const XmlAttribute& attribute, double otherwise) {
+    std::array<double, 3> v{};
+    if (const std::string_view value = attribute("value"); !value.empty()) {
+        const auto count = xmlNumbers(value, v);
+        if (count == 1) return Vec3d(v[0], v[0], v[0]);
+        return count == 3 ? std::optional(Vec3d(v[0], v[1], v[2])) : std::nullopt;
+    }
+    constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string_view text = attribute(kAxes[i]);
+        v[i] = otherwise;
+        if (!text.empty() && xmlNumbers(text, std::span(v).subspan(i, 1)) != 1) return std::nullopt;
+    }
+    return Vec3d(v[0], v[1], v[2]);
+}
+
+std::optional<Vec3d> xmlPoint(std::string_view text) {
+    const auto numbers = exactly<3>(text);
+    return numbers ? std::optional(Vec3d((*numbers)[0], (*numbers)[1], (*numbers)[2])) : std::nullopt;
 }
 
 // 16 numbers row by row, or 9 of the upper left.
-XmlStep xmlMatrix(const std::string& text) {
-    const auto numbers = xmlNumbers(text);
-    if (!numbers || (numbers->size() != 16 && numbers->size() != 9)) return {{}, "a matrix has 16 numbers, or 9"};
-    const std::size_t n = numbers->size() == 16 ? 4 : 3;
+XmlStep xmlMatrix(std::string_view text) {
+    std::array<double, 16> numbers{};
+    const auto count = xmlNumbers(text, numbers);
+    if (count != 16 && count != 9) return {{}, "a matrix has 16 numbers, or 9"};
+    const std::size_t n = count == 16 ? 4 : 3;
     Transform map;
     for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c) map.a[r][c] = (*numbers)[r * n + c];
+        for (std::size_t c = 0; c < 3; ++c) map.a[r][c] = numbers[r * n + c];
     if (n == 4) {
-        map.t = {(*numbers)[3], (*numbers)[7], (*numbers)[11]};
-        if ((*numbers)[12] != 0 || (*numbers)[13] != 0 || (*numbers)[14] != 0 || (*numbers)[15] != 1)
+        map.t = {numbers[3], numbers[7], numbers[11]};
+        if (numbers[12] != 0 || numbers[13] != 0 || numbers[14] != 0 || numbers[15] != 1)
             return {{}, "the last row of a matrix is 0 0 0 1"};
     }
     return {map, {}};
@@ -59,7 +61,7 @@ XmlStep xmlMatrix(const std::string& text) {
 XmlStep xmlLookAt(const XmlAttribute& attribute) {
     const auto origin = xmlPoint(attribute("origin")), target = xmlPoint(attribute("target"));
     if (!origin || !target) return {{}, "it needs `origin` and `target` of three numbers"};
-    const std::string upText = attribute("up");
+    const std::string_view upText = attribute("up");
     const auto up = upText.empty() ? std::optional(Vec3d(0, 1, 0)) : xmlPoint(upText);
     if (!up) return {{}, "`up` has three numbers"};
     const Vec3d forward = *target - *origin;
@@ -92,30 +94,50 @@ Transform xmlRotation(Vec3d axis, double radians) {
 
 } // namespace
 
-std::optional<std::vector<double>> xmlNumbers(std::string_view text) {
-    std::vector<double> list;
-    for (std::size_t at = 0;;) {
-        while (at < text.size() && isXmlBlank(text[at])) ++at;
-        if (at == text.size()) return list;
-        if (text[at] == '+') ++at;
+namespace {
+
+// Calls `take` for every number; false if something else is there.
+template <typename F> bool forNumbers(std::string_view text, const F& take) {
+    for (const char *at = text.data(), *const last = at + text.size();;) {
+        while (at != last && isXmlBlank(*at)) ++at;
+        if (at == last) return true;
+        if (*at == '+') ++at;
         double value = 0;
-        const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), value);
-        if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-        at = static_cast<std::size_t>(end - text.data());
-        if (at < text.size() && !isXmlBlank(text[at])) return std::nullopt;
-        list.push_back(value);
+        const auto [end, error] = std::from_chars(at, last, value);
+        if (error != std::errc() || !std::isfinite(value)) return false;
+        if (end != last && !isXmlBlank(*end)) return false;
+        at = end;
+        take(value);
     }
 }
 
-std::optional<std::vector<double>> xmlHexColor(std::string_view text) {
+} // namespace
+
+std::optional<std::vector<double>> xmlNumbers(std::string_view text) {
+    std::vector<double> list;
+    return forNumbers(text, [&](double value) { list.push_back(value); }) ? std::optional(std::move(list))
+                                                                          : std::nullopt;
+}
+
+std::optional<std::size_t> xmlNumbers(std::string_view text, std::span<double> into) {
+    std::size_t count = 0;
+    const bool sound = forNumbers(text, [&](double value) {
+        if (count < into.size()) into[count] = value;
+        ++count;
+    });
+    return sound ? std::optional(count) : std::nullopt;
+}
+
+std::optional<std::array<double, 3>> xmlHexColor(std::string_view text) {
     if (text.size() != 7 || text[0] != '#') return std::nullopt;
-    std::vector<double> rgb;
-    for (std::size_t i = 1; i < 7; i += 2) {
+    std::array<double, 3> rgb{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const char* const digits = text.data() + 1 + 2 * i;
         int value = 0;
-        const auto [end, error] = std::from_chars(text.data() + i, text.data() + i + 2, value, 16);
-        if (error != std::errc() || end != text.data() + i + 2) return std::nullopt;
+        const auto [end, error] = std::from_chars(digits, digits + 2, value, 16);
+        if (error != std::errc() || end != digits + 2) return std::nullopt;
         const double c = value / 255.0; // IEC 61966-2-1
-        rgb.push_back(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+        rgb[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     }
     return rgb;
 }
@@ -130,8 +152,8 @@ XmlStep xmlStep(std::string_view tag, const XmlAttribute& attribute) {
     if (!v) return {{}, "it needs numbers"};
     if (tag == "translate") return {Transform::translate(*v), {}};
     if (tag == "scale") return {Transform::scale(*v), {}};
-    const auto angle = xmlNumbers(attribute("angle"));
-    if (!angle || angle->size() != 1) return {{}, "it needs an `angle`"};
+    const auto angle = exactly<1>(attribute("angle"));
+    if (!angle) return {{}, "it needs an `angle`"};
     if (!(lengthSquared(*v) > 0)) return {{}, "it needs an axis: x, y and z are 0"};
     return {xmlRotation(*v, (*angle)[0] * kDegree), {}};
 }

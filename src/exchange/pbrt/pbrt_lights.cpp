@@ -1,6 +1,7 @@
 #include "exchange/pbrt/pbrt_lights.h"
 
 #include "exchange/pbrt/pbrt_sphere_map.h"
+#include "exchange/shared/ies_writer.h"
 #include "io/exr_writer.h"
 #include "io/file.h"
 #include "io/image.h"
@@ -179,34 +180,10 @@ void PbrtLights::infiniteImage(Making& m, const std::string& file) {
         fmt::format("it was resampled to {} × {} pixels of latitude and longitude", 2 * rows, rows));
 }
 
-namespace {
-
-// Photometric file of type C: candela by vertical angle from the axis and horizontal angle about it.
-std::string pbrtIesText(int vertical, int horizontal, const std::vector<double>& candela) {
-    std::string text = "IESNA:LM-63-2002\nTILT=NONE\n";
-    text += fmt::format("1 -1 1 {} {} 1 2 0 0 0\n1 1 0\n", vertical, horizontal);
-    for (int v = 0; v < vertical; ++v) text += fmt::format("{}\n", 180.0 * v / (vertical - 1));
-    for (int h = 0; h < horizontal; ++h) text += fmt::format("{}\n", 360.0 * h / (horizontal - 1));
-    for (const double value : candela) text += fmt::format("{}\n", value);
-    return text;
-}
-
-} // namespace
-
-// The file's axis points down and its plane of 0° lies towards +x, as the light has it without `toward`; `at` gives the
-// intensity in a direction of our world, so that nothing has to be turned.
+// `at` gives the intensity in a direction of our world, so that nothing has to be turned.
 template <typename At> void PbrtLights::measured(Making& m, std::string_view stem, Vec3d colour, const At& at) {
-    constexpr int kVertical = 361, kHorizontal = 721;
-    std::vector<double> candela;
-    candela.reserve(static_cast<std::size_t>(kVertical) * kHorizontal);
-    for (int h = 0; h < kHorizontal; ++h)
-        for (int v = 0; v < kVertical; ++v) {
-            const double theta = v * kPiD / (kVertical - 1), phi = h * 2 * kPiD / (kHorizontal - 1);
-            const Vec3d d{std::sin(theta) * std::cos(phi), -std::cos(theta), -std::sin(theta) * std::sin(phi)};
-            candela.push_back(at(d) * kUnitLuminance);
-        }
-    if (std::ranges::max(candela) <= 0) return;
-    const std::string text = pbrtIesText(kVertical, kHorizontal, candela);
+    const std::string text = iesFile([&](Vec3d direction) { return at(direction) * kUnitLuminance; });
+    if (text.empty()) return;
     SceneNode light = m.node;
     light.word("ies").text(shared_.out.files.write(stem, "ies", text));
     light.child("position").vector(m.place.t);

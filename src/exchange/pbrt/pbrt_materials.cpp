@@ -151,7 +151,7 @@ void PbrtMaterials::conductor(Making& m) {
         for (const SceneNode& child : gloss.children())
             if (child.kind() == "roughness") {
                 SceneNode& ours = m.node().child("specular-roughness");
-                for (const std::string& value : child.values()) ours.word(value);
+                ours.word(child.values());
                 for (const SceneNode& inner : child.children()) ours.adopt(inner);
                 isRough = true;
             }
@@ -430,9 +430,9 @@ const PbrtMaterial* PbrtMaterials::withOpacity(const PbrtMaterial& of, const Pbr
     made.node = SceneNode("material");
     made.node.name(made.word);
     if (of.word.empty()) made.node.word("diffuse");
-    bool first = true;
-    for (const std::string& value : of.node.values())
-        if (!std::exchange(first, false)) made.node.word(value);
+    // What stands behind the name of the other one.
+    const std::size_t name = SceneNode("material").name(of.word).values().size();
+    if (!of.word.empty()) made.node.word(of.node.values().substr(std::min(name + 1, of.node.values().size())));
     for (const SceneNode& child : of.node.children()) made.node.adopt(child);
     made.node.adopt(std::move(opacity));
     shared_.definitions.push_back(made.node);

@@ -1,11 +1,13 @@
 #include "exchange/pbrt/pbrt_media.h"
 
-#include "exchange/shared/vdb_writer.h"
+#include "base/file.h"
+#include "exchange/shared/inflate.h"
 #include "schema/suggest.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <vector>
 
@@ -118,20 +120,55 @@ std::optional<std::array<int, 3>> PbrtMedia::counts(const PbrtParams& params, st
 
 // pbrt's voxels have their middles at (i + 1/2) / n of the box from p0 to p1, those of our files at i.
 void PbrtMedia::grid(PbrtMedium& made, const PbrtParams& params, const Transform& place, const std::string& stem,
-                     std::array<int, 3> counts, std::span<const float> density) {
+                     std::array<int, 3> counts, std::span<const VdbGrid> grids) {
     Diagnostics& faults = shared_.faults();
     const Vec3d p0 = params.point("p0", {0, 0, 0}, faults), p1 = params.point("p1", {1, 1, 1}, faults);
     const Vec3d step{(p1.x - p0.x) / counts[0], (p1.y - p0.y) / counts[1], (p1.z - p0.z) / counts[2]};
     if (step.x == 0 || step.y == 0 || step.z == 0)
         return void(faults.error("E0802", params.directive, "the box of this grid is empty"));
-    made.node.word("vdb").text(shared_.out.files.write(stem, "vdb", vdbFile(counts, density)));
+    made.node.word("vdb").text(shared_.out.files.write(stem, "vdb", vdbFile(counts, grids)));
     writeTransform(made.node, Transform::scale(step).then(Transform::translate(p0 + step * 0.5)).then(place));
     phase(made.node, params);
-    for (const char* emission : {"Le", "Lescale", "temperature", "temperatureoffset", "temperaturescale",
-                                 "temperaturecutoff", "emissivescale"})
-        if (params.has(emission) && std::string_view(emission) != "Lescale")
-            shared_.out.leftOut(&made.node, params.spanOf(emission), fmt::format("`{}` of a grid", emission),
-                                "what a grid emits is not carried over");
+}
+
+namespace {
+
+// The most that a black body emits at any wavelength, in W per m², sr and nm.
+double planckPeak(double kelvin) { return 4.0956759e-15 * std::pow(kelvin, 5); }
+
+// Of a place with that number in a grid; nothing is emitted by what is colder than pbrt's least.
+double pbrtKelvin(const PbrtParams& params, double value, Diagnostics& faults) {
+    const double offset = params.number("temperatureoffset", params.number("temperaturecutoff", 0, faults), faults);
+    const double kelvin = (value - offset) * params.number("temperaturescale", 1, faults);
+    return kelvin > 100 && kelvin < 1e6 ? kelvin : 0;
+}
+
+} // namespace
+
+std::vector<float> PbrtMedia::temperatures(const PbrtParams& params, std::size_t voxels) {
+    const auto values = params.numbers("temperature");
+    std::vector<float> kelvin;
+    if (values.size() != voxels) return kelvin;
+    for (const double value : values) kelvin.push_back(static_cast<float>(pbrtKelvin(params, value, shared_.faults())));
+    return kelvin;
+}
+
+// pbrt's black bodies are all equally bright, at the wavelength where they emit most: the amount of what emits takes
+// that in.
+std::vector<float> PbrtMedia::flames(SceneNode& node, const PbrtParams& params, std::span<const float> density,
+                                     std::span<const float> kelvin) {
+    const auto factors = params.numbers("Lescale");
+    std::vector<float> amounts;
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        const double factor = factors.size() == density.size() ? factors[i] : factors.empty() ? 1 : factors[0];
+        const double peak = kelvin.empty() ? 1 : kelvin[i] > 0 ? planckPeak(static_cast<double>(kelvin[i])) : 0;
+        amounts.push_back(peak > 0 ? static_cast<float>(std::max(density[i] * factor / peak, 0.0)) : 0);
+    }
+    if (!kelvin.empty())
+        shared_.out.approximated(&node, params.spanOf("temperature"), "what a grid emits by its temperature",
+                                 "it is pbrt's in the middles of voxels; between them temperature and amount vary, and "
+                                 "not the light");
+    return amounts;
 }
 
 void PbrtMedia::uniformGrid(PbrtMedium& made, const PbrtParams& params, const Transform& place,
@@ -140,8 +177,30 @@ void PbrtMedia::uniformGrid(PbrtMedium& made, const PbrtParams& params, const Tr
     const auto size = counts(params, "density", 1);
     if (!size) return;
     const auto values = params.numbers("density");
-    grid(made, params, place, name, *size, std::vector<float>(values.begin(), values.end()));
+    const std::vector<float> density(values.begin(), values.end());
+    const std::vector<float> kelvin = temperatures(params, density.size());
+    const bool shines = !kelvin.empty() || params.has("Le");
+    std::vector<float> flame;
+    if (shines) flame = flames(made.node, params, density, kelvin);
+    std::vector<VdbGrid> grids{{"density", density}};
+    if (!kelvin.empty()) grids.push_back({"temperature", kelvin});
+    if (shines) grids.push_back({"flame", flame});
+    if (params.has("temperature") && kelvin.empty())
+        shared_.faults().error("E0802", params.spanOf("temperature"),
+                               fmt::format("`temperature` has not the {} values of `density`", density.size()));
+    grid(made, params, place, name, *size, grids);
     for (const auto& [param, property] : kPbrtCoefficients) coefficient(made.node, params, param, property, scale);
+    if (shines) made.node.child("flame").word("flame");
+    if (!kelvin.empty()) {
+        made.node.child("temperature").word("temperature");
+        coefficient(made.node, params, "sigma_a", "emissivity", scale);
+    } else if (shines) {
+        const PbrtParam* const absorption = params.find("sigma_a");
+        const auto sigma = absorption ? pbrtSpectrum(*absorption, PbrtUse::unbounded, shared_) : std::nullopt;
+        const PbrtLight light = pbrtLight(params, "Le", params.find("Le")->colorSpace, shared_);
+        if (!light.spectrum.isBlack())
+            pbrtEmission(made.node.child("emission"), sigma ? *sigma : PbrtSpectrum::flat(1), light, scale);
+    }
 }
 
 // Colours at voxels: their mean over the channels is the density, and the colour of all of it that of the whole.
@@ -163,7 +222,12 @@ void PbrtMedia::rgbGrid(PbrtMedium& made, const PbrtParams& params, const Transf
         }
     }
     const double all = (dot(sums[0], Vec3d(1, 1, 1)) + dot(sums[1], Vec3d(1, 1, 1))) / 3;
-    grid(made, params, place, name, *size, density);
+    const VdbGrid whole{"density", density};
+    grid(made, params, place, name, *size, std::span(&whole, 1));
+    for (const char* emission : {"Le", "Lescale"})
+        if (params.has(emission))
+            shared_.out.leftOut(&made.node, params.spanOf(emission), fmt::format("`{}` of a grid of colours", emission),
+                                "what it emits is not carried over");
     for (std::size_t k = 0; k < 2; ++k)
         PbrtSpectrum::colour(max(all > 0 ? sums[k] / all : Vec3d(), Vec3d()))
             .write(made.node.child(kPbrtCoefficients[k].second), PbrtUse::unbounded, scale);
@@ -171,10 +235,85 @@ void PbrtMedia::rgbGrid(PbrtMedium& made, const PbrtParams& params, const Transf
                              "its density varies from place to place, its colour is the mean everywhere");
 }
 
+namespace {
+
+// The largest number of a grid in a NanoVDB file of layout 32, if it can be had: the file is damaged, packed by Blosc or
+// has no such grid otherwise.
+std::optional<double> nanovdbMaximum(const std::filesystem::path& path, std::string_view wanted) {
+    RegularFile file(path.string());
+    const auto read = [&](std::uint64_t offset, auto& value) {
+        std::array<char, sizeof value> bytes;
+        if (file.readAt(offset, bytes) != bytes.size()) return false;
+        std::memcpy(&value, bytes.data(), sizeof value);
+        return true;
+    };
+    constexpr std::uint64_t kHeader = 16, kEntry = 176, kMaximum = 736 + 36; // behind grid and tree, of the root
+    constexpr std::size_t kLongestName = 256;
+    for (std::uint64_t at = 0; at + kHeader < file.size();) {
+        std::uint64_t magic = 0;
+        std::uint16_t grids = 0;
+        if (!read(at, magic) || magic != 0x304244566f6e614eull || !read(at + 12, grids)) return std::nullopt;
+        std::uint64_t entry = at + kHeader, data = entry;
+        for (int i = 0; i < grids; ++i) { // names stand between the entries, grids behind all of them
+            std::uint32_t length = 0;
+            if (!read(data + 136, length) || length > kLongestName) return std::nullopt;
+            data += kEntry + length;
+        }
+        for (int i = 0; i < grids; ++i) {
+            std::uint64_t packed = 0;
+            std::uint32_t length = 0;
+            std::uint16_t codec = 0;
+            if (!read(entry + 8, packed) || !read(entry + 136, length) || !read(entry + 168, codec)) return std::nullopt;
+            std::string name(length, '\0');
+            if (file.readAt(entry + kEntry, name) == length && std::string_view(name.c_str()) == wanted) {
+                std::string head(kMaximum + 4, '\0');
+                if (codec == 1) {
+                    std::string part(std::min<std::uint64_t>(packed, 65536), '\0');
+                    part.resize(file.readAt(data + 8, part));
+                    head = inflated(part, Packing::zlib, head.size()).bytes;
+                } else if (codec != 0 || file.readAt(data, head) != head.size()) {
+                    return std::nullopt;
+                }
+                if (head.size() < kMaximum + 4) return std::nullopt;
+                float maximum = 0;
+                std::memcpy(&maximum, head.data() + kMaximum, sizeof maximum);
+                return std::isfinite(maximum) ? std::optional(static_cast<double>(maximum)) : std::nullopt;
+            }
+            entry += kEntry + length;
+            data += packed;
+        }
+        at = data;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+void PbrtMedia::nanovdbEmission(SceneNode& node, const PbrtParams& params, const std::filesystem::path& file) {
+    Diagnostics& faults = shared_.faults();
+    for (const char* known : {"temperaturecutoff", "temperatureoffset", "temperaturescale"}) params.find(known);
+    const double factor = params.number("Lescale", 1, faults);
+    const auto most = nanovdbMaximum(file, "temperature");
+    const double kelvin = most ? pbrtKelvin(params, *most, faults) : 0;
+    if (kelvin > 0 && factor > 0) {
+        SceneNode& grid = node.child("temperature").word("temperature");
+        const double scale = params.number("temperaturescale", 1, faults);
+        grid.key("scale", scale).key("offset", pbrtKelvin(params, *most, faults) - *most * scale);
+        coefficient(node, params, "sigma_a", "emissivity",
+                    params.number("scale", 1, faults) * factor / planckPeak(kelvin));
+        shared_.out.approximated(&node, params.directive, "what a volume emits by its temperature",
+                                 fmt::format("it is as bright as pbrt's where it is hottest, at {:.4g} K, and darker "
+                                             "where it is colder, as black bodies are",
+                                             kelvin));
+    } else if (params.has("Lescale") && factor > 0) {
+        shared_.out.leftOut(&node, params.spanOf("Lescale"), "what a volume emits by its temperature",
+                            "how hot it gets cannot be read from its file: write `temperature` and `emissivity` of the "
+                            "volume by hand");
+    }
+}
+
 void PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transform& place) {
     Diagnostics& faults = shared_.faults();
-    for (const char* known : {"Lescale", "temperaturecutoff", "temperatureoffset", "temperaturescale"})
-        params.find(known);
     std::filesystem::path file = shared_.file(params.text("filename", "", faults));
     std::error_code error;
     if (!std::filesystem::exists(file, error)) { // some scenes are handed on with what their grids were made from
@@ -186,9 +325,7 @@ void PbrtMedia::nanovdb(PbrtMedium& made, const PbrtParams& params, const Transf
     const double scale = params.number("scale", 1, faults);
     for (const auto& [param, property] : kPbrtCoefficients) coefficient(made.node, params, param, property, scale);
     phase(made.node, params);
-    if (params.has("Lescale"))
-        shared_.out.leftOut(&made.node, params.spanOf("Lescale"), "what a volume emits by its temperature",
-                            "write `temperature` and `emissivity` of the volume by hand");
+    nanovdbEmission(made.node, params, file);
     writeTransform(made.node, place);
 }
 

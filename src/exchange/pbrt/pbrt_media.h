@@ -2,12 +2,15 @@
 #pragma once
 
 #include "exchange/pbrt/pbrt_spectrum.h"
+#include "exchange/shared/vdb_writer.h"
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace abbe::exchange {
 
@@ -32,10 +35,14 @@ class PbrtMedia {
     void coefficient(SceneNode&, const PbrtParams&, const char* param, const char* property, double scale);
     std::optional<std::array<int, 3>> counts(const PbrtParams&, std::string_view grid, std::size_t channels);
     void grid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& stem,
-              std::array<int, 3> counts, std::span<const float> density);
+              std::array<int, 3> counts, std::span<const VdbGrid> grids);
+    std::vector<float> temperatures(const PbrtParams&, std::size_t voxels);
+    std::vector<float> flames(SceneNode&, const PbrtParams&, std::span<const float> density,
+                              std::span<const float> kelvin);
     void uniformGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
     void rgbGrid(PbrtMedium&, const PbrtParams&, const Transform& place, const std::string& name);
     void nanovdb(PbrtMedium&, const PbrtParams&, const Transform& place);
+    void nanovdbEmission(SceneNode&, const PbrtParams&, const std::filesystem::path& file);
     void cloud(PbrtMedium&, const PbrtParams&, const Transform& place);
 
     PbrtShared& shared_;

@@ -229,6 +229,27 @@ PbrtTexture PbrtTextures::pattern(const Making& m) {
     return finish(m, std::move(made));
 }
 
+// Values at the corners of the unit square: v10 where u is 1 and v is 0.
+PbrtTexture PbrtTextures::bilinear(const Making& m) {
+    PbrtTexture made;
+    SceneNode& node = m.node->word("ramp");
+    node.child("over").word("u");
+    for (const int u : {0, 1}) {
+        SceneNode& side = node.child("stop").number(u).word("ramp");
+        side.child("over").word("v");
+        for (const int v : {0, 1}) {
+            SceneNode& corner = side.child("stop").number(v);
+            const std::string name = fmt::format("v{}{}", u, v);
+            if (m.isSpectrum)
+                writeSpectrum(corner, m.params, name, PbrtSpectrum::flat(v), made.uvs);
+            else
+                writeNumber(corner, m.params, name, v, made.uvs);
+        }
+    }
+    PbrtTextures::addUvs(made.uvs, {mapping(m)});
+    return finish(m, std::move(made));
+}
+
 PbrtTexture PbrtTextures::constant(const Making& m) {
     PbrtTexture made;
     made.isPlain = true;
@@ -270,6 +291,8 @@ void PbrtTextures::define(const std::string& name, bool isSpectrum, const std::s
         made = checker(m);
     else if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble")
         made = pattern(m);
+    else if (type == "bilerp")
+        made = bilinear(m);
     else if (type == "constant")
         made = constant(m);
     else if (type == "dots")

@@ -57,6 +57,7 @@ class PbrtTextures {
     PbrtTexture mixture(const Making&, bool byDirection);
     PbrtTexture checker(const Making&);
     PbrtTexture pattern(const Making&);
+    PbrtTexture bilinear(const Making&);
     PbrtTexture constant(const Making&);
     PbrtTexture dots(const Making&);
     PbrtUv mapping(const Making&);

@@ -99,22 +99,33 @@ bool isPlainWord(std::string_view text) {
            std::ranges::find(kKeywords, text) == kKeywords.end();
 }
 
-std::string numberText(double value) {
+namespace {
+
+void appendNumber(std::string& out, double value) {
     ABBE_CHECK(std::isfinite(value));
     std::array<char, 32> digits;
     const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value);
-    return {digits.data(), result.ptr};
+    out.append(digits.data(), result.ptr);
+}
+
+} // namespace
+
+std::string numberText(double value) {
+    std::string text;
+    appendNumber(text, value);
+    return text;
 }
 
 SceneNode& SceneNode::word(std::string_view text) {
-    values_.emplace_back(text);
+    if (!text.empty()) values_.append(1, ' ').append(text);
     return *this;
 }
 
 SceneNode& SceneNode::name(std::string_view text) { return isPlainWord(text) ? word(text) : this->text(text); }
 
 SceneNode& SceneNode::number(double value) {
-    values_.push_back(numberText(value));
+    values_ += ' ';
+    appendNumber(values_, value);
     return *this;
 }
 
@@ -125,18 +136,16 @@ SceneNode& SceneNode::numbers(std::span<const double> values) {
 
 SceneNode& SceneNode::vector(Vec3d v) { return number(v.x).number(v.y).number(v.z); }
 
-SceneNode& SceneNode::text(std::string_view value) {
-    values_.push_back(quotedText(value));
-    return *this;
-}
+SceneNode& SceneNode::text(std::string_view value) { return word(quotedText(value)); }
 
 SceneNode& SceneNode::key(std::string_view name, std::string_view word) {
-    values_.push_back(std::string(name) + '=' + (isPlainWord(word) ? std::string(word) : quotedText(word)));
+    values_.append(1, ' ').append(name).append(1, '=').append(isPlainWord(word) ? std::string(word) : quotedText(word));
     return *this;
 }
 
 SceneNode& SceneNode::key(std::string_view name, double value) {
-    values_.push_back(std::string(name) + '=' + numberText(value));
+    values_.append(1, ' ').append(name).append(1, '=');
+    appendNumber(values_, value);
     return *this;
 }
 
@@ -145,7 +154,7 @@ SceneNode& SceneNode::child(std::string name) { return children_.emplace_back(st
 SceneNode& SceneNode::adopt(SceneNode node) { return children_.emplace_back(std::move(node)); }
 
 SceneNode& SceneNode::absorb(SceneNode other) {
-    values_.insert(values_.end(), other.values_.begin(), other.values_.end());
+    values_ += other.values_;
     children_.splice(children_.end(), other.children_);
     remarks_.insert(remarks_.end(), other.remarks_.begin(), other.remarks_.end());
     return *this;
@@ -169,95 +178,102 @@ SceneNode& SceneNode::remark(std::string_view text) {
     return *this;
 }
 
-// Writes nodes behind each other into one text.
+// Writes nodes behind each other into one text. A node is tried on one line, and taken back where it does not fit.
 class ScenePrinter {
   public:
     void file(const SceneNode& node, const SceneNode* before) {
-        if (before && (before->name_ != node.name_ || !node.remarks_.empty() || isBlock(*before) || isBlock(node)))
-            out_ += '\n';
-        print(node, 0);
+        const bool apart = before && (before->name_ != node.name_ || !node.remarks_.empty() || wasBlock_);
+        if (apart) out_ += '\n';
+        const std::size_t begin = out_.size();
+        if (node.form_ == SceneNode::Form::parts)
+            wasBlock_ = print(node, 0);
+        else
+            out_ += node.values_, wasBlock_ = node.form_ == SceneNode::Form::block;
+        if (before && !apart && wasBlock_) out_.insert(begin, 1, '\n');
     }
     std::string take() { return std::move(out_); }
 
-  private:
-    static std::string head(const SceneNode& node) {
-        std::string text = node.name_;
-        for (const std::string& value : node.values_) text.append(1, ' ').append(value);
-        return text;
+    // Whether it took more than one line, or a longer one than others have.
+    bool print(const SceneNode& node, std::size_t indent) {
+        for (const std::string& remark : node.remarks_)
+            out_.append(indent, ' ').append("// ").append(remark).append(1, '\n');
+        out_.append(indent, ' ');
+        const std::size_t begin = out_.size();
+        const bool fits = onOneLine(node, begin + kLineLength - indent);
+        if (!fits && !node.children_.empty()) {
+            out_.resize(begin);
+            out_.append(node.name_).append(node.values_).append(" {\n");
+            block(node, indent + kIndent);
+            out_.append(indent, ' ').append(1, '}');
+        }
+        out_ += '\n';
+        return !fits;
     }
 
-    // The node on one line, or nothing where that would be too long or lose remarks.
-    static bool onOneLine(const SceneNode& node, std::size_t room, std::string& line) {
-        line += head(node);
-        if (line.size() > room) return false;
+  private:
+    // False where the text would go beyond `end`, or lose remarks.
+    bool onOneLine(const SceneNode& node, std::size_t end) {
+        out_.append(node.name_).append(node.values_);
+        if (out_.size() > end) return false;
         if (node.children_.empty()) return true;
-        line += " { ";
+        out_ += " { ";
         bool first = true;
         for (const SceneNode& child : node.children_) {
             if (!child.remarks_.empty()) return false;
-            if (!std::exchange(first, false)) line += "; ";
-            if (!onOneLine(child, room, line)) return false;
+            if (!std::exchange(first, false)) out_ += "; ";
+            if (!onOneLine(child, end)) return false;
         }
-        line += " }";
-        return line.size() <= room;
-    }
-
-    static bool isBlock(const SceneNode& node) {
-        std::string line;
-        return !onOneLine(node, kLineLength, line);
-    }
-
-    void print(const SceneNode& node, std::size_t indent) {
-        for (const std::string& remark : node.remarks_)
-            out_.append(indent, ' ').append("// ").append(remark).append(1, '\n');
-        std::string line;
-        out_.append(indent, ' ');
-        if (node.children_.empty()) {
-            out_.append(head(node)).append(1, '\n');
-        } else if (onOneLine(node, kLineLength - indent, line)) {
-            out_.append(line).append(1, '\n');
-        } else {
-            out_.append(head(node)).append(" {\n");
-            block(node, indent + kIndent);
-            out_.append(indent, ' ').append("}\n");
-        }
+        out_ += " }";
+        return out_.size() <= end;
     }
 
     // Rows stand several to a line.
     void block(const SceneNode& node, std::size_t indent) {
-        std::string rows;
-        const auto flush = [&] {
-            if (!rows.empty()) out_.append(indent, ' ').append(std::exchange(rows, {})).append(1, '\n');
+        std::size_t length = 0; // of the line of rows that is not ended
+        const auto end = [&] {
+            if (std::exchange(length, 0) > 0) out_ += '\n';
         };
         for (const SceneNode& child : node.children_) {
             if (child.name_ != "-" || !child.children_.empty() || !child.remarks_.empty()) {
-                flush();
+                end();
                 print(child, indent);
                 continue;
             }
-            const std::string row = head(child);
-            if (!rows.empty() && indent + rows.size() + row.size() + 2 > kLineLength) flush();
-            if (!rows.empty()) rows += "; ";
-            rows += row;
+            const std::size_t row = child.name_.size() + child.values_.size();
+            if (indent + length + row + 2 > kLineLength) end();
+            if (length == 0)
+                out_.append(indent, ' ');
+            else
+                out_ += "; ";
+            out_.append(child.name_).append(child.values_);
+            length += row + (length == 0 ? 0 : 2);
         }
-        flush();
+        end();
     }
 
     std::string out_;
+    bool wasBlock_ = false;
 };
 
-std::string printScene(std::span<const SceneNode> nodes) {
+void SceneNode::settle() {
+    if (form_ != Form::parts) return;
+    ScenePrinter printer;
+    form_ = printer.print(*this, 0) ? Form::block : Form::line;
+    values_ = printer.take();
+    values_.shrink_to_fit();
+    children_.clear();
+    if (!remarks_.empty()) remarks_.resize(1); // whether there are any still counts
+}
+
+template <typename Nodes> std::string printed(const Nodes& nodes) {
     ScenePrinter printer;
     const SceneNode* before = nullptr;
     for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
     return printer.take();
 }
 
-std::string printScene(const std::list<SceneNode>& nodes) {
-    ScenePrinter printer;
-    const SceneNode* before = nullptr;
-    for (const SceneNode& node : nodes) printer.file(node, std::exchange(before, &node));
-    return printer.take();
-}
+std::string printScene(std::span<const SceneNode> nodes) { return printed(nodes); }
+
+std::string printScene(const std::list<SceneNode>& nodes) { return printed(nodes); }
 
 } // namespace abbe::exchange

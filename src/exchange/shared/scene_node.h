@@ -4,6 +4,7 @@
 
 #include "math/vec.h"
 
+#include <cstdint>
 #include <list>
 #include <span>
 #include <string>
@@ -20,7 +21,7 @@ class SceneNode {
     // `name` is a word of the language; rows are nodes called `-`.
     explicit SceneNode(std::string name) : name_(std::move(name)) {}
 
-    // A word of the language: a type, a unit, `$parameter`. Not checked.
+    // A word of the language: a type, a unit, `$parameter`; or several as they are printed. Not checked.
     SceneNode& word(std::string_view);
     // A name that somebody chose: as it is where it is a legal word, else quoted.
     SceneNode& name(std::string_view);
@@ -41,17 +42,23 @@ class SceneNode {
     // A line of comment above the node. Line ends make several; what a comment may not hold is left out.
     SceneNode& remark(std::string_view);
 
+    // Prints the node, for the top level of a file, and forgets what it is made of: of millions of nodes the text alone
+    // is kept. Nothing can be added or asked but kind() from then on.
+    void settle();
+
     const std::string& kind() const { return name_; }
-    const std::vector<std::string>& values() const { return values_; }
+    // What stands behind the name, as it is printed.
+    std::string_view values() const { return std::string_view(values_).substr(values_.empty() ? 0 : 1); }
     const std::list<SceneNode>& children() const { return children_; }
     bool empty() const { return values_.empty() && children_.empty(); }
 
   private:
     friend class ScenePrinter;
     std::string name_;
-    std::vector<std::string> values_; // as they are printed; keys too
-    std::list<SceneNode> children_;   // a list: references to children stay valid
+    std::string values_;            // as they are printed, a blank before each; keys too
+    std::list<SceneNode> children_; // a list: references to children stay valid
     std::vector<std::string> remarks_;
+    enum class Form : std::uint8_t { parts, line, block } form_ = Form::parts; // settled: values_ is the whole text
 };
 
 // Whether a text may stand as a name without quotes.

@@ -3,6 +3,7 @@
 #include "io/file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fmt/format.h>
 
 namespace abbe::exchange {
@@ -53,12 +54,24 @@ std::string SideFiles::refer(const std::filesystem::path& file) const {
 
 std::string NameTable::take(std::string_view wish, std::string_view fallback) {
     const std::string base(wish.empty() ? fallback : wish);
-    if (taken_.insert(base).second) return base;
+    if (!made(base) && taken_.insert(base).second) return base;
     int& number = next_.try_emplace(base, 2).first->second;
     std::string name;
-    do name = fmt::format("{}-{}", base, number++);
-    while (!taken_.insert(name).second);
+    do name = base + '-' + std::to_string(number++);
+    while (taken_.contains(name));
     return name;
+}
+
+// Whether a name with a number behind it was given to somebody.
+bool NameTable::made(const std::string& name) const {
+    const std::size_t dash = name.rfind('-');
+    if (next_.empty() || dash == std::string::npos) return false;
+    int number = 0;
+    const char* const end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + dash + 1, end, number);
+    if (error != std::errc() || rest != end) return false;
+    const auto found = next_.find(name.substr(0, dash));
+    return found != next_.end() && number < found->second;
 }
 
 void reserveTypeNames(NameTable& materials, NameTable& textures, NameTable& media) {

@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace abbe::exchange {
 
@@ -41,8 +43,10 @@ class NameTable {
     std::string take(std::string_view wish, std::string_view fallback);
 
   private:
-    std::set<std::string, std::less<>> taken_;
-    std::map<std::string, int, std::less<>> next_; // number to try for a wish
+    bool made(const std::string& name) const;
+
+    std::unordered_set<std::string> taken_;     // those that were wished for
+    std::unordered_map<std::string, int> next_; // number to try for a wish; those below it count as taken
 };
 
 // The names of types, so that none that a foreign scene gives hides one (W0202).

@@ -117,17 +117,11 @@ void writeVdbBuffers(VdbWriter& out, const VdbRoot& root) {
             for (const auto& [leafNumber, leaf] : lower.leaves) out.put(leaf.mask).put(kAllValues).put(leaf.values);
 }
 
-} // namespace
-
-std::string vdbFile(std::array<int, 3> counts, std::span<const float> values) {
-    ABBE_CHECK(values.size() == static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
-                                    static_cast<std::size_t>(counts[2]));
-    const VdbRoot root = vdbTree(counts, values);
-    VdbWriter out;
-    out.put(std::int64_t{0x56444220}).put(kVdbVersion).put(std::uint32_t{6}).put(std::uint32_t{0}).put(char{1});
-    out.raw("00000000-0000-0000-0000-000000000000");
-    out.put(std::uint32_t{0}).put(std::uint32_t{1}); // metadata of the file, grids
-    out.text("density").text("Tree_float_5_4_3").text("");
+void writeVdbGrid(VdbWriter& out, std::array<int, 3> counts, const VdbGrid& grid) {
+    ABBE_CHECK(grid.values.size() == static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
+                                         static_cast<std::size_t>(counts[2]));
+    const VdbRoot root = vdbTree(counts, grid.values);
+    out.text(grid.name).text("Tree_float_5_4_3").text("");
     const std::size_t positions = out.size();
     out.put(std::int64_t{0}).put(std::int64_t{0}).put(std::int64_t{0});
     out.patch(positions, static_cast<std::int64_t>(out.size()));
@@ -141,6 +135,16 @@ std::string vdbFile(std::array<int, 3> counts, std::span<const float> values) {
     out.patch(positions + 8, static_cast<std::int64_t>(out.size()));
     writeVdbBuffers(out, root);
     out.patch(positions + 16, static_cast<std::int64_t>(out.size()));
+}
+
+} // namespace
+
+std::string vdbFile(std::array<int, 3> counts, std::span<const VdbGrid> grids) {
+    VdbWriter out;
+    out.put(std::int64_t{0x56444220}).put(kVdbVersion).put(std::uint32_t{6}).put(std::uint32_t{0}).put(char{1});
+    out.raw("00000000-0000-0000-0000-000000000000");
+    out.put(std::uint32_t{0}).put(static_cast<std::uint32_t>(grids.size())); // metadata of the file, grids
+    for (const VdbGrid& grid : grids) writeVdbGrid(out, counts, grid);
     return out.take();
 }
 

@@ -5,12 +5,18 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace abbe::exchange {
 
-// A file with the one grid `density` of floats: the value of voxel x, y, z, which is values[(z * ny + y) * nx + x], has
-// its centre at the point x, y, z of the file. Zero elsewhere; blocks of zeros are left out. Requires as many values
-// as the product of the counts.
-std::string vdbFile(std::array<int, 3> counts, std::span<const float> values);
+struct VdbGrid {
+    std::string_view name; // "density"
+    std::span<const float> values;
+};
+
+// A file with grids of floats: the value of voxel x, y, z, which is values[(z * ny + y) * nx + x], has its centre at
+// the point x, y, z of the file. Zero elsewhere; blocks of zeros are left out. Requires as many values in each grid as
+// the product of the counts.
+std::string vdbFile(std::array<int, 3> counts, std::span<const VdbGrid> grids);
 
 } // namespace abbe::exchange

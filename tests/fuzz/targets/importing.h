@@ -10,12 +10,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <unistd.h>
 
 namespace abbe::fuzz {
 
 using Importer = void (*)(const std::filesystem::path&, exchange::Import&);
 
-// Where side files go; every input writes the same names again.
+// Where side files go: in memory where the system has such a folder. Every input writes the same names again.
 class SideFolder {
   public:
     SideFolder() { require(::mkdtemp(path_.data()), "no temporary folder"); }
@@ -28,7 +29,11 @@ class SideFolder {
     const std::string& path() const { return path_; }
 
   private:
-    std::string path_ = (std::filesystem::temp_directory_path() / "abbe-fuzz-import-XXXXXX").string();
+    static std::filesystem::path parent() {
+        const char* const memory = "/dev/shm";
+        return ::access(memory, W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
+    }
+    std::string path_ = (parent() / "abbe-fuzz-import-XXXXXX").string();
 };
 
 // The import ends, and without errors it makes a scene file that can be read.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
+#include <sstream>
 #include <string>
+#include <vector>
 
 using namespace abbe;
 using namespace abbe::exchange;
@@ -17,10 +19,18 @@ const SceneNode& childOf(const SceneNode& node, const std::string& name) {
     return *found;
 }
 
+// The numbers that a property begins with.
+std::vector<double> numbersOf(const SceneNode& node, const std::string& name) {
+    std::istringstream text{std::string(childOf(node, name).values())};
+    std::vector<double> list;
+    for (double value = 0; text >> value;) list.push_back(value);
+    return list;
+}
+
 Vec3d vectorOf(const SceneNode& node, const std::string& name) {
-    const auto& values = childOf(node, name).values();
+    const auto values = numbersOf(node, name);
     REQUIRE(values.size() == 3);
-    return {std::stod(values[0]), std::stod(values[1]), std::stod(values[2])};
+    return {values[0], values[1], values[2]};
 }
 
 // Where the corners of a box are in the frame: from −1 to 1 both ways. They are in front of the camera.
@@ -32,9 +42,9 @@ Framing framingOf(const Bounds3d& box) {
     const SceneNode camera = previewCamera(box), film = previewFilm();
     const Vec3d from = vectorOf(camera, "from"), back = normalize(from - vectorOf(camera, "look-at"));
     const Vec3d right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
-    const double across = std::tan(std::stod(childOf(camera, "fov").values()[0]) * kDegree / 2);
-    const auto& size = childOf(film, "size").values();
-    const double aspect = std::stod(size[0]) / std::stod(size[1]);
+    const double across = std::tan(numbersOf(camera, "fov").at(0) * kDegree / 2);
+    const auto size = numbersOf(film, "size");
+    const double aspect = size.at(0) / size.at(1);
     Framing f;
     for (int i = 0; i < 8; ++i) {
         const Vec3d p = Vec3d(i & 1 ? box.upper.x : box.lower.x, i & 2 ? box.upper.y : box.lower.y,
