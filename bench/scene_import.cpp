@@ -51,10 +51,11 @@ const char* const kXmlHead = "<scene version=\"3.0.0\">\n<integrator type=\"path
 std::string mitsubaShapes(double bytes) {
     std::string text = kXmlHead;
     for (int i = 0; static_cast<double>(text.size()) < bytes; ++i) {
-        text += fmt::format("<bsdf type=\"roughconductor\" id=\"metal_{}\">\n    <float name=\"alpha\" value=\"{:.6f}\"/>\n"
-                            "    <string name=\"distribution\" value=\"ggx\"/>\n"
-                            "    <rgb name=\"specular_reflectance\" value=\"{:.6f}, {:.6f}, {:.6f}\"/>\n</bsdf>\n",
-                            i, between(0, 0.15f), between(0, 1), between(0, 1), between(0, 1));
+        text +=
+            fmt::format("<bsdf type=\"roughconductor\" id=\"metal_{}\">\n    <float name=\"alpha\" value=\"{:.6f}\"/>\n"
+                        "    <string name=\"distribution\" value=\"ggx\"/>\n"
+                        "    <rgb name=\"specular_reflectance\" value=\"{:.6f}, {:.6f}, {:.6f}\"/>\n</bsdf>\n",
+                        i, between(0, 0.15f), between(0, 1), between(0, 1), between(0, 1));
         text += fmt::format("<shape type=\"sphere\" id=\"ball_{0}\">\n"
                             "    <point name=\"center\" x=\"{1:.6f}\" y=\"{2:.6f}\" z=\"{3:.6f}\"/>\n"
                             "    <float name=\"radius\" value=\"{4:.6f}\"/>\n    <ref id=\"metal_{0}\"/>\n</shape>\n",
@@ -93,8 +94,7 @@ void measure(const char* what, const fs::path& file, const std::string& text) {
         abbe::SourceMap sources;
         abbe::Diagnostics diagnostics;
         const std::clock_t start = std::clock();
-        const auto scene =
-            importScene(*format, file, fs::path(file).replace_extension(".scene"), sources, diagnostics);
+        const auto scene = importScene(*format, file, fs::path(file).replace_extension(".scene"), sources, diagnostics);
         best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
         remarks = diagnostics.all().size();
         made = scene ? scene->size() : 0;

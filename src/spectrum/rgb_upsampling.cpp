@@ -7,7 +7,10 @@
 #include "spectrum/sensor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 namespace abbe {
 
@@ -181,7 +184,29 @@ ReflectanceFit ReflectanceFitter::fit(const Vec3d& wanted) const {
     return walk.deltaE < best.deltaE ? walk : best;
 }
 
-ReflectanceFit fitReflectance(const Vec3d& rgb, const RgbSpace& space) { return ReflectanceFitter(space).fit(rgb); }
+namespace {
+
+// Of the space that was asked for last: scenes have thousands of colours in one, and its tables take longer than a fit.
+const ReflectanceFitter& fitterOf(const RgbSpace& space) {
+    struct Last {
+        std::array<double, 8> primaries{};
+        std::string illuminant;
+        std::optional<ReflectanceFitter> fitter;
+    };
+    thread_local Last last;
+    const std::array<double, 8> primaries = {space.red.x,  space.red.y,  space.green.x, space.green.y,
+                                             space.blue.x, space.blue.y, space.white.x, space.white.y};
+    if (!last.fitter || last.primaries != primaries || last.illuminant != space.illuminant) {
+        last.fitter.emplace(space);
+        last.primaries = primaries;
+        last.illuminant = space.illuminant;
+    }
+    return *last.fitter;
+}
+
+} // namespace
+
+ReflectanceFit fitReflectance(const Vec3d& rgb, const RgbSpace& space) { return fitterOf(space).fit(rgb); }
 
 namespace {
 

@@ -8,7 +8,7 @@ With --export it is the other way round: scenes of Abbe's, and what `abbe export
 Of every case both programs render several pictures with independent random numbers. A tile's mean has the variance that
 its pixels show between them. The difference of two tiles is compared with its standard error, to which the relative
 difference that the case allows is added. The bound on the ratio was fixed before: with 64 tiles, three channels and
-about 130 cases, 5.5 standard errors are passed by chance in one run of a thousand. Exit code 77: there is no Mitsuba.
+about 150 cases, 5.5 standard errors are passed by chance in one run of a thousand. Exit code 77: there is no Mitsuba.
 """
 import argparse
 import os

@@ -145,7 +145,9 @@ void writeHair(SceneNode& at, const XmlObject& bsdf, MitsubaContext& ctx) {
     }
     number("longitudinal-roughness", "longitudinal_roughness", 0.3, 1);
     number("azimuthal-roughness", "azimuthal_roughness", 0.3, 1);
-    at.child("scale-angle").number(std::clamp(mitsubaNumber(bsdf, "scale_tilt", 2, ctx.import), -28.0, 28.0)).word("deg");
+    at.child("scale-angle")
+        .number(std::clamp(mitsubaNumber(bsdf, "scale_tilt", 2, ctx.import), -28.0, 28.0))
+        .word("deg");
     at.child("ior").number(std::clamp(relativeIndex(bsdf, 1.55, ctx), 1.05, 3.0));
     mitsubaIgnore(bsdf, {"use_pigmentation"});
 }

@@ -330,7 +330,8 @@ void writeMaterial(SceneNode& at, const XmlObject& bsdf, MaterialTraits& traits,
 
 const std::pair<std::string, MaterialTraits>& materialOf(const XmlObject& bsdf, MitsubaContext& ctx) {
     if (const auto* const found = ctx.materialOf[bsdf.number]) return *found;
-    const auto keep = [&](std::string name, const MaterialTraits& traits) -> const std::pair<std::string, MaterialTraits>& {
+    const auto keep = [&](std::string name,
+                          const MaterialTraits& traits) -> const std::pair<std::string, MaterialTraits>& {
         return *(ctx.materialOf[bsdf.number] = &ctx.materials.emplace_back(std::move(name), traits));
     };
     if (bsdf.plugin == "null") { // needs no definition

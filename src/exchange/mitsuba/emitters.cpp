@@ -177,7 +177,7 @@ void convertProjector(const XmlObject& emitter, MitsubaContext& ctx) {
     const int width = image.width(), height = image.height();
     const double aspect = static_cast<double>(width) / height;
     const double tangent = std::tan(horizontalFov(emitter, aspect, ctx) * kDegree / 2);
-    if (!inverse) return leaveOutEmitter(emitter, "its transform has no inverse", ctx);
+    if (!inverse || !(scale > 0)) return leaveOutEmitter(emitter, "it is dark, or its transform has no inverse", ctx);
     const auto at = [&](Vec3d d, std::size_t channel) {
         const Vec3d w = normalize(inverse->vector(d));
         if (w.z <= 1e-3) return 0.0;
@@ -195,8 +195,8 @@ void convertProjector(const XmlObject& emitter, MitsubaContext& ctx) {
     if (isPicture) {
         constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
         for (std::size_t c = 0; c < 3; ++c)
-            if (SceneNode* const light =
-                    write(iesFile([&](Vec3d d) { return kLuminance[c] * at(d, c); }), fmt::format("{}-{}", stem, "rgb"[c])))
+            if (SceneNode* const light = write(iesFile([&](Vec3d d) { return kLuminance[c] * at(d, c); }),
+                                               fmt::format("{}-{}", stem, "rgb"[c])))
                 light->child("color").word("rgb").vector({c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0});
     } else if (auto spectrum = lightSpectrum(emitter, "irradiance", ctx)) {
         const double y = luminanceOf(*spectrum) / scale; // lightSpectrum() has taken the factor in

@@ -228,7 +228,8 @@ void convertSensors(std::vector<const XmlObject*> sensors, MitsubaContext& ctx) 
         const auto films = sensor->objects("film"), samplers = sensor->objects("sampler");
         const XmlObject* const film = batchFilm ? batchFilm : films.empty() ? nullptr : films[0];
         MitsubaFilm size = filmOf(film, ctx);
-        if (batchFilm) size.width = size.cropWidth = std::max(1.0, std::floor(size.width / static_cast<double>(batchSize)));
+        if (batchFilm)
+            size.width = size.cropWidth = std::max(1.0, std::floor(size.width / static_cast<double>(batchSize)));
         SceneNode camera("camera");
         camera.name(names.take(sensor->id, "camera"));
         const bool written = writeCamera(camera, *sensor, size, ctx);
@@ -263,8 +264,8 @@ void readIntegrator(const XmlObject& integrator, MitsubaContext& ctx) {
     }
     constexpr std::array<std::string_view, 5> kWithMedia = {"volpath", "volpathmis", "prbvolpath", "volpath_simple",
                                                             "volpathsimple"};
-    constexpr std::array<std::string_view, 7> kPaths = {"path", "ptracer",        "prb",              "prb_basic",
-                                                        "bdpt", "prb_projective", "direct_projective"};
+    constexpr std::array<std::string_view, 7> kPaths = {
+        "path", "ptracer", "prb", "prb_basic", "bdpt", "prb_projective", "direct_projective"};
     ctx.seesMedia = std::ranges::find(kWithMedia, type) != kWithMedia.end();
     ctx.hideEmitters = mitsubaFlag(integrator, "hide_emitters", false, ctx.import);
     double depth = mitsubaNumber(integrator, "max_depth", -1, ctx.import);

@@ -110,7 +110,6 @@ void convertSurface(const XmlObject& shape, SceneNode* parent, MitsubaContext& c
         ctx.add(std::move(node));
 }
 
-
 // A second copy in the same place shows nothing new, and copies of copies would double at every level.
 void convertMerged(const XmlObject& merged, SceneNode* parent, MitsubaContext& ctx) {
     if (!ctx.groups.emplace(&merged, "-").second) {

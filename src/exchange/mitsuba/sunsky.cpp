@@ -33,7 +33,8 @@ Vec3d sunOfDate(const XmlObject& emitter, Import& import) {
     const std::chrono::sys_days date = std::chrono::year(year) / std::chrono::month(month) / std::chrono::day(day);
     const double n = date.time_since_epoch().count() - 10957.5 + hours / 24; // days since noon of 1 January 2000
     const double anomaly = (357.528 + 0.9856003 * n) * kDegree;
-    const double along = (280.460 + 0.9856474 * n + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * kDegree;
+    const double along =
+        (280.460 + 0.9856474 * n + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * kDegree;
     const double tilt = (23.439 - 0.0000004 * n) * kDegree;
     const double ascension = std::atan2(std::cos(tilt) * std::sin(along), std::cos(along));
     const double sinDecline = std::sin(tilt) * std::sin(along);
@@ -91,6 +92,29 @@ void writeSun(const XmlObject& emitter, Vec3d sun, double height, double turbidi
     hideFromCamera(light, false, ctx);
 }
 
+// `sun`: where it is seen, in the sky's own axes with y up.
+void writeDaylight(const XmlObject& emitter, const Transform& axes, Vec3d sun, bool shines, double scale,
+                   MitsubaContext& ctx) {
+    SceneNode& light = ctx.define("light").name(ctx.shapeNames.take(emitter.id, "sky")).word("daylight");
+    ctx.import.approximated(&light, emitter.span, fmt::format("`{}`", emitter.plugin),
+                            "by Abbe's own daylight, whose brightness and colours differ, and whose ground shines "
+                            "below the horizon, where Mitsuba's sky is black");
+    light.child("toward").vector(-sun);
+    light.child("turbidity").number(std::clamp(mitsubaNumber(emitter, "turbidity", 3, ctx.import), 1.0, 10.0));
+    MaterialTraits none;
+    const XmlParam* const albedo = emitter.find("albedo");
+    if (albedo && isTexture(*albedo))
+        ctx.import.leftOut(&light, albedo->span, "a texture of `albedo`", "the ground is alike everywhere");
+    else
+        writeColor(light, "ground-albedo", emitter, "albedo", SpectrumUse::reflectance, 0.3, none, ctx);
+    if (!shines) light.child("sun").word("off");
+    if (scale != 1)
+        ctx.import.leftOut(&light, emitter.span, fmt::format("a sky {:.4g} times as bright", scale),
+                           "daylight is as bright as it is; the camera has an `exposure`");
+    writeTransform(light, axes);
+    hideFromCamera(light, false, ctx);
+}
+
 } // namespace
 
 // Brightness is absolute in both programs, so that daylight stands for Mitsuba's sky as it is; what is made brighter or
@@ -118,27 +142,13 @@ void convertSky(const XmlObject& emitter, MitsubaContext& ctx) {
     }
     const double aperture = mitsubaNumber(emitter, "sun_aperture", kSunDiameter, ctx.import);
     const bool ownSun = skyScale > 0 && sunScale == 1 && std::abs(aperture - kSunDiameter) < 0.01;
-    if (skyScale > 0) {
-        SceneNode& light = ctx.define("light").name(ctx.shapeNames.take(emitter.id, "sky")).word("daylight");
-        ctx.import.approximated(&light, emitter.span, fmt::format("`{}`", emitter.plugin),
-                                "by Abbe's own daylight, whose brightness and colours differ, and whose ground shines "
-                                "below the horizon, where Mitsuba's sky is black");
-        light.child("toward").vector(-local);
-        light.child("turbidity").number(std::clamp(turbidity, 1.0, 10.0));
-        MaterialTraits none;
-        writeColor(light, "ground-albedo", emitter, "albedo", SpectrumUse::reflectance, 0.3, none, ctx);
-        if (!ownSun) light.child("sun").word("off");
-        if (skyScale != 1)
-            ctx.import.leftOut(&light, emitter.span, fmt::format("a sky {:.4g} times as bright", skyScale),
-                               "daylight is as bright as it is; the camera has an `exposure`");
-        writeTransform(light, axes);
-        hideFromCamera(light, false, ctx);
-    }
+    if (skyScale > 0) writeDaylight(emitter, axes, local, ownSun, skyScale, ctx);
     if (sunScale > 0 && !ownSun && local.y > 0) writeSun(emitter, sun, local.y, turbidity, sunScale, ctx);
-    mitsubaIgnore(emitter, {"albedo", "complex_sun", "to_world", "stretch", "resolution", "extend", "sun_radius_scale",
-                            "year", "month", "day", "hour", "minute", "second", "latitude", "longitude", "timezone",
-                            "start_year", "start_month", "start_day", "end_year", "end_month", "end_day",
-                            "window_start_time", "window_end_time", "shutter_open", "shutter_close"});
+    mitsubaIgnore(emitter,
+                  {"albedo", "complex_sun", "to_world", "stretch", "resolution", "extend", "sun_radius_scale"});
+    mitsubaIgnore(emitter, {"year", "month", "day", "hour", "minute", "second", "latitude", "longitude", "timezone"});
+    mitsubaIgnore(emitter, {"start_year", "start_month", "start_day", "end_year", "end_month", "end_day"});
+    mitsubaIgnore(emitter, {"window_start_time", "window_end_time", "shutter_open", "shutter_close"});
     if (emitter.plugin == "timed_sunsky")
         ctx.import.approximated(nullptr, emitter.span, "the mean of a sky over time", "by the sky of one moment");
 }

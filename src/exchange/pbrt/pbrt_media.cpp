@@ -237,8 +237,8 @@ void PbrtMedia::rgbGrid(PbrtMedium& made, const PbrtParams& params, const Transf
 
 namespace {
 
-// The largest number of a grid in a NanoVDB file of layout 32, if it can be had: the file is damaged, packed by Blosc or
-// has no such grid otherwise.
+// The largest number of a grid in a NanoVDB file of layout 32, if it can be had: the file is damaged, packed by Blosc
+// or has no such grid otherwise.
 std::optional<double> nanovdbMaximum(const std::filesystem::path& path, std::string_view wanted) {
     RegularFile file(path.string());
     const auto read = [&](std::uint64_t offset, auto& value) {
@@ -263,7 +263,8 @@ std::optional<double> nanovdbMaximum(const std::filesystem::path& path, std::str
             std::uint64_t packed = 0;
             std::uint32_t length = 0;
             std::uint16_t codec = 0;
-            if (!read(entry + 8, packed) || !read(entry + 136, length) || !read(entry + 168, codec)) return std::nullopt;
+            if (!read(entry + 8, packed) || !read(entry + 136, length) || !read(entry + 168, codec))
+                return std::nullopt;
             std::string name(length, '\0');
             if (file.readAt(entry + kEntry, name) == length && std::string_view(name.c_str()) == wanted) {
                 std::string head(kMaximum + 4, '\0');

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 #include <fstream>
+#include <sstream>
+#include <vector>
 
 using namespace abbe;
 using namespace abbe::exchange;
@@ -191,7 +193,9 @@ TEST_CASE("what has no counterpart is said, and stands in the scene") {
     }
     CHECK(importText(ball("<bsdf type=\"measured\"><string name=\"filename\" value=\"a.bsdf\"/></bsdf>")).codes ==
           "W0801");
-    CHECK(importText(scene("<emitter type=\"projector\"/>")).codes == "W0801");
+    CHECK(
+        importText(scene("<emitter type=\"projector\"><texture type=\"checkerboard\" name=\"irradiance\"/></emitter>"))
+            .codes == "W0801");
     const Imported rough = importText(ball("<bsdf type=\"roughconductor\"/>"));
     CHECK(rough.codes == "W0802");
     CHECK(holds(rough.text, "// Approximated: distribution `beckmann`"));
@@ -244,4 +248,98 @@ TEST_CASE("depth counts what scatters between the segments of a path") {
     CHECK(importText(scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"1\"/></integrator>")).codes ==
           "W0802");
     CHECK_FALSE(holds(importText(scene("<integrator type=\"path\"/>")).text, "max-depth"));
+}
+
+namespace {
+
+// The numbers behind a word.
+std::vector<double> numbersBehind(const std::string& text, const std::string& word) {
+    std::vector<double> list;
+    if (const std::size_t at = text.find(word + " "); at != std::string::npos) {
+        std::istringstream rest(text.substr(at + word.size()));
+        for (double value = 0; rest >> value;) list.push_back(value);
+    }
+    return list;
+}
+
+} // namespace
+
+TEST_CASE("the sun of a sky stands where date and place have it") {
+    // What Mitsuba 3.9.1 answers, z up: for its defaults, and for the Cape in summer.
+    const auto check = [](const std::string& params, Vec3d sun) {
+        const Imported made = importText(scene("<emitter type=\"sunsky\">" + params + "</emitter>"));
+        const auto toward = numbersBehind(made.text, "toward");
+        REQUIRE(toward.size() == 3);
+        CHECK(toward[0] == doctest::Approx(-sun.x).epsilon(0.002));
+        CHECK(toward[1] == doctest::Approx(-sun.z).epsilon(0.002));
+        CHECK(toward[2] == doctest::Approx(sun.y).epsilon(0.002));
+    };
+    check("", {0.05138545, 0.69174796, 0.7203085});
+    check("<float name=\"latitude\" value=\"-33\"/><float name=\"longitude\" value=\"20\"/>"
+          "<float name=\"timezone\" value=\"2\"/><float name=\"hour\" value=\"10\"/>"
+          "<integer name=\"month\" value=\"12\"/><integer name=\"day\" value=\"21\"/>",
+          {-0.05217244, -0.5833583, 0.8105375});
+}
+
+TEST_CASE("a stated sun is one of the world, and sun and sky have brightnesses of their own") {
+    const std::string turned = "<vector name=\"sun_direction\" value=\"0, 0.6, 0.8\"/><transform name=\"to_world\">"
+                               "<rotate x=\"1\" angle=\"-90\"/></transform>";
+    const Imported sky = importText(scene("<emitter type=\"sunsky\">" + turned + "</emitter>"));
+    CHECK(holds(sky.text, "daylight {"));
+    const auto toward = numbersBehind(sky.text, "toward"); // its own y is up, and the transform is none any more
+    CHECK(toward.at(1) == doctest::Approx(-0.6));
+    CHECK(toward.at(2) == doctest::Approx(-0.8));
+    CHECK_FALSE(holds(sky.text, "sun off"));
+    const Imported bright =
+        importText(scene("<emitter type=\"sunsky\">" + turned + "<float name=\"sun_scale\" value=\"2\"/></emitter>"));
+    CHECK(holds(bright.text, "sun off"));
+    CHECK(holds(bright.text, "light sun"));
+    CHECK(numbersBehind(bright.text, "irradiance").at(0) > 800); // twice some 450 W/m² of visible light
+    CHECK(numbersBehind(bright.text, "irradiance").at(0) < 1300);
+    const Imported old =
+        importText(scene("<emitter type=\"sun\"><vector name=\"sunDirection\" value=\"0, 1, 0\"/></emitter>", "0.6.0"));
+    CHECK_FALSE(holds(old.text, "daylight"));
+    CHECK(holds(old.text, "toward 0 -1 0"));
+    CHECK(importText(scene("<emitter type=\"sunsky\"><float name=\"hour\" value=\"23\"/></emitter>")).codes == "W0801");
+}
+
+TEST_CASE("hair is brown or absorbs what is stated, and thin sheets have gloss only where light passes") {
+    const auto hair = [](const std::string& params) {
+        return importText(ball("<bsdf type=\"hair\">" + params + "</bsdf>")).text;
+    };
+    CHECK(holds(hair(""), "eumelanin 1.3"));
+    CHECK(holds(hair("<float name=\"eumelanin\" value=\"0.3\"/>"), "eumelanin 0.3"));
+    CHECK(holds(hair("<rgb name=\"sigma_a\" value=\"0.5\"/><float name=\"scale\" value=\"2\"/>"), "absorption 1"));
+    const auto thin = [](const std::string& params) {
+        return importText(ball("<bsdf type=\"principledthin\">" + params + "</bsdf>")).text;
+    };
+    CHECK(holds(thin(""), "specular-weight 0"));
+    CHECK(holds(thin("<float name=\"diff_trans\" value=\"1\"/>"), "subsurface-weight 0.5"));
+    CHECK(holds(thin("<float name=\"spec_trans\" value=\"1\"/>"), "transmission-color 0.5"));
+    CHECK(holds(thin("<float name=\"spec_trans\" value=\"0.25\"/>"), "amount 0.25"));
+    CHECK(holds(importText(ball("<bsdf type=\"principled\"><rgb name=\"base_color\" value=\"0.25\"/>"
+                                "<float name=\"spec_trans\" value=\"1\"/></bsdf>"))
+                    .text,
+                "transmission-color 0.5"));
+    CHECK(holds(importText(ball("<bsdf type=\"polarizer\"/>")).text, "opacity 0.5"));
+    CHECK(holds(importText(ball("<bsdf type=\"retarder\"/>")).text, "opacity 0"));
+}
+
+TEST_CASE("sensors in a batch are cameras, and what measures irradiance is said") {
+    const Imported batch = importText(scene(R"(<sensor type="batch"><sensor type="perspective" id="left"/>
+<sensor type="thinlens" id="right"/><film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="80"/></film>
+</sensor>)"));
+    CHECK(holds(batch.text, "camera left perspective"));
+    CHECK(holds(batch.text, "camera right perspective"));
+    CHECK(holds(batch.text, "size 100 80"));
+    const Imported meter = importText(scene("<shape type=\"rectangle\"><sensor type=\"irradiancemeter\"/></shape>"));
+    CHECK(meter.codes == "W0801");
+    CHECK(holds(meter.messages, "irradiance / π"));
+}
+
+TEST_CASE("a projector throws its picture as a photometric file") {
+    const Imported made =
+        importText(scene("<emitter type=\"projector\"><rgb name=\"irradiance\" value=\"2\"/></emitter>"));
+    CHECK(holds(made.text, "light projector ies \"room-files/projector.ies\""));
+    CHECK(made.codes == "W0802");
 }

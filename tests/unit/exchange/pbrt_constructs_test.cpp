@@ -2,6 +2,8 @@
 #include "io/mesh_file.h"
 #include "unit/exchange/pbrt_cases.h"
 
+#include <cstdint>
+#include <cstring>
 #include <doctest/doctest.h>
 
 using namespace abbe;
@@ -250,4 +252,52 @@ TEST_CASE("pbrt: portals are counter-clockwise from inside, whichever way the wo
     const std::string at = "LightSource \"infinite\" \"string filename\" \"none.exr\" "
                            "\"point3 portal\" [-1 -1 3 1 -1 3 1 1 3 -1 1 3]\n";
     CHECK(PbrtCase(pbrtWorld(at)).says("error[E0802]"));
+}
+
+TEST_CASE("pbrt: grids that emit, by their temperature or a spectrum") {
+    const auto grid = [](const std::string& params) {
+        return pbrtWorld("MakeNamedMedium \"g\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer ny\" 1 "
+                         "\"integer nz\" 1 \"float density\" [1 3] \"rgb sigma_a\" [2 2 2] " +
+                         params + "\nMediumInterface \"g\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+    };
+    const PbrtCase hot(grid("\"float temperature\" [1 2] \"float temperaturescale\" 1000 \"float Lescale\" 5"));
+    CHECK(hot.has("temperature temperature"));
+    CHECK(hot.has("flame flame"));
+    CHECK(hot.has("emissivity rgb 2 2 2"));
+    CHECK(hot.says("W0802"));
+    const PbrtCase even(grid("\"rgb Le\" [1 1 1] \"float Lescale\" [0 4]"));
+    CHECK(even.has("flame flame"));
+    CHECK(even.has("emission table"));
+    CHECK_FALSE(even.has("temperature"));
+    CHECK(even.report() == "");
+    CHECK(PbrtCase(grid("\"float temperature\" [1 2 3]")).says("E0802"));
+}
+
+TEST_CASE("pbrt: a NanoVDB file tells how hot it is") {
+    // A file of one grid: header, entry, name, and of the grid itself the maximum alone.
+    std::string file(16 + 176 + 12 + 1024, '\0');
+    const auto put = [&](std::size_t at, const auto& value) { std::memcpy(file.data() + at, &value, sizeof value); };
+    put(0, std::uint64_t{0x304244566f6e614e});
+    put(12, std::uint16_t{1});
+    put(16 + 8, std::uint64_t{1024});
+    put(16 + 136, std::uint32_t{12});
+    std::memcpy(file.data() + 16 + 176, "temperature", 11);
+    put(16 + 176 + 12 + 772, 20.0f);
+    PbrtCase made;
+    writeAll(made.folder / "fire.nvdb", file);
+    made.import(pbrtWorld("MakeNamedMedium \"n\" \"string type\" \"nanovdb\" \"string filename\" \"fire.nvdb\" "
+                          "\"float temperaturescale\" 100 \"float Lescale\" 2\nMediumInterface \"n\" \"\"\n"
+                          "Material \"interface\"\nShape \"sphere\"\n"));
+    CHECK(made.has("temperature temperature scale=100 offset=0"));
+    CHECK(made.has("emissivity 0.01525")); // 2 over the 131.1 W of a black body of 2000 K at its peak
+    CHECK(made.says("at 2000 K"));
+}
+
+TEST_CASE("pbrt: values at the corners of a texture") {
+    const PbrtCase made(
+        pbrtWorld("Texture \"t\" \"float\" \"bilerp\" \"float v10\" 0.5\nMaterial \"dielectric\" \"texture "
+                  "roughness\" \"t\"\nShape \"sphere\"\n"));
+    CHECK(made.has("ramp"));
+    CHECK(made.has("over u"));
+    CHECK(made.has("stop 0 0.5"));
 }
