@@ -23,7 +23,7 @@ std::string safeStem(std::string_view text) {
 
 } // namespace
 
-SideFiles::SideFiles(std::filesystem::path scene) : scene_(std::move(scene)) {
+SideFiles::SideFiles(std::filesystem::path scene, Target target) : scene_(std::move(scene)), target_(target) {
     folder_ = scene_.stem().string() + "-files";
 }
 
@@ -32,11 +32,13 @@ std::string SideFiles::write(std::string_view stem, std::string_view extension, 
     std::string name = fmt::format("{}.{}", safe, extension);
     for (int& number = next_.try_emplace(name, 2).first->second; names_.contains(name); ++number)
         name = fmt::format("{}-{}.{}", safe, number, extension);
-    const auto folder = scene_.parent_path() / folder_;
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw IoError(fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
-    writeAtomically((folder / name).string(), bytes, Flush::later);
+    if (target_ == Target::disk) {
+        const auto folder = scene_.parent_path() / folder_;
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error) throw IoError(fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
+        writeAtomically((folder / name).string(), bytes, Flush::later);
+    }
     names_.insert(name);
     return (folder_ / name).generic_string();
 }

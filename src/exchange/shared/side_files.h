@@ -17,7 +17,9 @@ namespace abbe::exchange {
 class SideFiles {
   public:
     // `scene`: the file that will be written, "out/room.scene". Nothing is made on disk before the first write().
-    explicit SideFiles(std::filesystem::path scene);
+    // `nowhere`: files get their names and are not written, for who asks only what an import makes of a text.
+    enum class Target : bool { disk, nowhere };
+    explicit SideFiles(std::filesystem::path scene, Target = Target::disk);
 
     // Writes a file, atomically but without waiting for the disk (base/file.h, flushFileSystem), and returns its path
     // as the scene names it, "room-files/ball.ply". `stem` is any text: letters, digits, `-` and `_` of it are kept,
@@ -32,6 +34,7 @@ class SideFiles {
 
   private:
     std::filesystem::path scene_, folder_;
+    Target target_;
     std::set<std::string, std::less<>> names_;     // of files written by this import
     std::map<std::string, int, std::less<>> next_; // number to try for a name
 };

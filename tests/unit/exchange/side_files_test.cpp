@@ -64,3 +64,22 @@ TEST_CASE("a mesh written as PLY is read as it was") {
     CHECK(back.attributes[0].name == "color");
     CHECK(back.attributes[0].values == mesh.attributes[0].values);
 }
+
+TEST_CASE("side files that go nowhere have names alone") {
+    const TemporaryFolder folder;
+    SideFiles files(std::filesystem::path(folder / "") / "room.scene", SideFiles::Target::nowhere);
+    CHECK(files.write("ball", "ply", std::string("x")) == "room-files/ball.ply");
+    CHECK(files.write("ball", "ply", std::string("x")) == "room-files/ball-2.ply");
+    CHECK_FALSE(std::filesystem::exists(folder / "room-files"));
+}
+
+TEST_CASE("names with numbers that were given to nobody are free, and others are not") {
+    NameTable names;
+    CHECK(names.take("ball-2", "x") == "ball-2");
+    CHECK(names.take("ball", "x") == "ball");
+    CHECK(names.take("ball", "x") == "ball-3");
+    CHECK(names.take("ball-3", "x") == "ball-3-2");
+    CHECK(names.take("ball-4", "x") == "ball-4");
+    CHECK(names.take("", "x") == "x");
+    CHECK(names.take("", "x") == "x-2");
+}
