@@ -7,6 +7,7 @@
 #include "media/grid_medium.h"
 #include "media/phase_functions.h"
 #include "spectrum/curve.h"
+#include "support/made_grids.h"
 #include "transport/medium_tracker.h"
 #include "volumes/brick_walk.h"
 #include "volumes/noise.h"

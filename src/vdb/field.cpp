@@ -12,7 +12,6 @@
 #include <fstream>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/Prune.h>
-#include <openvdb/tree/LeafManager.h>
 
 namespace abbe::vdb {
 
@@ -153,8 +152,7 @@ template <typename Value> Value repaired(const Value& v, bool active, const Valu
 template <typename Tree> void repairLeaves(Tree& tree, Repairs& repairs) {
     using Value = typename Tree::ValueType;
     const Value background = tree.background(), zero = openvdb::zeroVal<Value>();
-    openvdb::tree::LeafManager<Tree> leaves(tree);
-    leaves.foreach ([&](typename Tree::LeafNodeType& leaf, std::size_t) {
+    forEachLeaf(tree, [&](typename Tree::LeafNodeType& leaf) {
         Value* values = leaf.buffer().data();
         for (openvdb::Index i = 0; i < Tree::LeafNodeType::SIZE; ++i) {
             const Value v = repaired(values[i], leaf.isValueOn(i), background, repairs);
@@ -167,13 +165,11 @@ template <typename Tree> void repairLeaves(Tree& tree, Repairs& repairs) {
 template <typename Tree> void repairTiles(Tree& tree, Repairs& repairs) {
     using Value = typename Tree::ValueType;
     const Value background = tree.background();
-    auto it = tree.beginValueAll();
-    it.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
-    for (; it; ++it) {
-        const Value v = repaired(*it, it.isValueOn(), background, repairs);
-        it.setValue(v);
-        if (v == openvdb::zeroVal<Value>()) it.setValueOff();
-    }
+    forEachTile(tree, [&](const auto& tile) {
+        const Value v = repaired<Value>(*tile, tile.isValueOn(), background, repairs);
+        tile.setValue(v);
+        if (v == openvdb::zeroVal<Value>()) tile.setValueOff();
+    });
 }
 
 template <typename GridType> Field<GridType> repairedField(typename GridType::Ptr grid, const std::string& subject) {
@@ -194,9 +190,7 @@ template <typename GridType> Field<GridType> repairedField(typename GridType::Pt
 template <typename GridType> void checkExtent(const GridType& grid, const std::string& subject) {
     constexpr int kMostRootTiles = 8;
     int tiles = 0;
-    auto tile = grid.tree().cbeginValueOn();
-    tile.setMaxDepth(0);
-    for (; tile; ++tile) ++tiles;
+    for (auto tile = grid.tree().root().cbeginValueOn(); tile; ++tile) ++tiles;
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     for (int a = 0; a < 3 && !box.empty(); ++a)
         if (tiles > kMostRootTiles || box.min()[a] < -kFarthestVoxel || box.max()[a] > kFarthestVoxel)
@@ -218,12 +212,18 @@ template <typename From> openvdb::FloatGrid::Ptr converted(const openvdb::GridBa
 template <typename From> openvdb::Vec3SGrid::Ptr convertedVectors(const openvdb::GridBase& grid) {
     using openvdb::Vec3s;
     const auto& source = static_cast<const From&>(grid);
-    auto result = openvdb::Vec3SGrid::create(openvdb::Vec3STree::Ptr(
-        new openvdb::Vec3STree(source.tree(), openvdb::zeroVal<Vec3s>(), openvdb::TopologyCopy())));
+    const auto& tree = source.tree();
+    auto result = openvdb::Vec3SGrid::create(
+        openvdb::Vec3STree::Ptr(new openvdb::Vec3STree(tree, openvdb::zeroVal<Vec3s>(), openvdb::TopologyCopy())));
     result->insertMeta(source);
     result->setTransform(source.transform().copy());
-    auto accessor = source.getConstAccessor();
-    for (auto it = result->beginValueOn(); it; ++it) it.setValue(Vec3s(accessor.getValue(it.getCoord())));
+    forEachTile(result->tree(), [&](const auto& tile) {
+        if (tile.isValueOn()) tile.setValue(Vec3s(tree.getValue(tile.getCoord())));
+    });
+    forEachLeaf(result->tree(), [&](openvdb::Vec3STree::LeafNodeType& leaf) {
+        const auto* from = tree.probeConstLeaf(leaf.origin()); // there, as both have the same shape
+        for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) voxel.setValue(Vec3s(from->getValue(voxel.pos())));
+    });
     return result;
 }
 

@@ -2,6 +2,7 @@
 // OpenVDB.
 #pragma once
 
+#include "base/parallel.h"
 #include "volumes/vdb_file.h"
 #include "volumes/volume_recipe.h"
 
@@ -13,6 +14,7 @@
 #include <openvdb/openvdb.h>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 // Trees that the library has instantiated: their members come from there instead of being compiled in each
@@ -37,6 +39,31 @@ extern template class tree::Tree<Vec3STree::RootNodeType>;
 #endif
 
 namespace abbe::vdb {
+
+// Walks over trees with few templates of the library's: its leaf managers and iterators over whole trees instantiate a
+// scheduler and four levels of iterators for each type of value.
+
+// Calls function(leaf) for every leaf, from many threads.
+template <typename Tree, typename Function> void forEachLeaf(Tree& tree, const Function& function) {
+    using Leaf =
+        std::conditional_t<std::is_const_v<Tree>, const typename Tree::LeafNodeType, typename Tree::LeafNodeType>;
+    std::vector<Leaf*> leaves;
+    tree.getNodes(leaves);
+    parallelFor(leaves.size(), [&](std::size_t i) { function(*leaves[i]); });
+}
+
+// Calls function(iterator) for every tile, active or not: what no leaf covers.
+template <typename Tree, typename Function> void forEachTile(Tree& tree, const Function& function) {
+    const auto tilesOf = [&](auto& node) {
+        for (auto tile = node.beginValueAll(); tile; ++tile) function(tile);
+    };
+    auto& root = tree.root();
+    tilesOf(root);
+    for (auto upper = root.beginChildOn(); upper; ++upper) {
+        tilesOf(*upper);
+        for (auto lower = upper->beginChildOn(); lower; ++lower) tilesOf(*lower);
+    }
+}
 
 // In nano_file.cpp: NanoVDB files (.nvdb), of which grids of OpenVDB are made.
 // Whether a file that begins like this is one.

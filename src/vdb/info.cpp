@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <mutex>
-#include <openvdb/tree/LeafManager.h>
 
 namespace abbe::vdb {
 
@@ -45,8 +44,7 @@ template <typename Tree> Statistics statisticsOf(const Tree& tree) {
     Statistics all;
     std::mutex mutex;
     const auto background = tree.background();
-    openvdb::tree::LeafManager<const Tree> leaves(tree);
-    leaves.foreach ([&](const typename Tree::LeafNodeType& leaf, std::size_t) {
+    forEachLeaf(tree, [&](const typename Tree::LeafNodeType& leaf) {
         Statistics s;
         for (openvdb::Index i = 0; i < Tree::LeafNodeType::SIZE; ++i) {
             const auto& v = leaf.getValue(i);
@@ -58,9 +56,9 @@ template <typename Tree> Statistics statisticsOf(const Tree& tree) {
         const std::lock_guard lock(mutex);
         all.add(s);
     });
-    auto tile = tree.cbeginValueOn();
-    tile.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) all.add(number(*tile));
+    forEachTile(tree, [&](const auto& tile) {
+        if (tile.isValueOn()) all.add(number<typename Tree::ValueType>(*tile));
+    });
     return all;
 }
 

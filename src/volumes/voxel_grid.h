@@ -10,7 +10,6 @@
 #include <memory>
 #include <nanovdb/NanoVDB.h>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -201,21 +200,5 @@ extern template class BasicVoxelGrid<Vec3>;
 
 // How many active voxels have a component that is not within [lower, upper].
 std::uint64_t countOutside(const VectorGrid&, float lower, float upper);
-
-// One voxel of a grid that is made in memory.
-struct Voxel {
-    Vec3i place;
-    float value = 0;
-};
-struct VectorVoxel {
-    Vec3i place;
-    Vec3 value;
-};
-
-// A grid of the given voxels, all active, 0 elsewhere. For procedural fields and tests.
-// Requires: values finite and not negative, facts.indexToWorld invertible.
-VoxelGrid makeVoxelGrid(std::span<const Voxel> voxels, GridFacts facts);
-// The same of vectors, whose components may be negative.
-VectorGrid makeVectorGrid(std::span<const VectorVoxel> voxels, GridFacts facts);
 
 } // namespace abbe

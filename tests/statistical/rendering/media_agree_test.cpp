@@ -1,5 +1,6 @@
 // One medium as a homogeneous one, as voxels and by noise; and one whose bounds are wrong on purpose.
 #include "media/grid_medium.h"
+#include "support/made_grids.h"
 #include "support/media.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"

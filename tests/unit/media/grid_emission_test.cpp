@@ -3,6 +3,7 @@
 #include "media/grid_medium.h"
 #include "spectrum/emission_curves.h"
 #include "support/chi_square.h"
+#include "support/made_grids.h"
 #include "support/media.h"
 
 #include <doctest/doctest.h>

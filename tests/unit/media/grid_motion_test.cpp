@@ -1,5 +1,6 @@
 // Volumes that drift while the shutter is open, and the colour of their voxels.
 #include "media/grid_medium.h"
+#include "support/made_grids.h"
 #include "support/media.h"
 #include "support/statistics.h"
 

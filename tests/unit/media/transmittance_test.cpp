@@ -2,6 +2,7 @@
 #include "media/atmosphere.h"
 #include "media/grid_medium.h"
 #include "media/homogeneous.h"
+#include "support/made_grids.h"
 #include "support/media.h"
 #include "support/statistics.h"
 #include "transport/medium_tracker.h"

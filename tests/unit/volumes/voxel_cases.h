@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/hash.h"
-#include "volumes/voxel_grid.h"
+#include "support/made_grids.h"
 
 #include <random>
 #include <vector>
