@@ -181,22 +181,6 @@ std::unique_ptr<const Curve> cauchy(const std::vector<double>& v) {
     });
 }
 
-const RgbSpace& rgbSpace(schema::RgbSpaceName space) {
-    switch (space) {
-    case schema::RgbSpaceName::linRec709:
-        return rgb::rec709;
-    case schema::RgbSpaceName::linRec2020:
-        return rgb::rec2020;
-    case schema::RgbSpaceName::linP3D65:
-        return rgb::p3d65;
-    case schema::RgbSpaceName::linAp1:
-        return rgb::ap1;
-    case schema::RgbSpaceName::linAp0:
-        return rgb::ap0;
-    }
-    return rgb::rec709;
-}
-
 } // namespace
 
 const Curve* CurveLibrary::keep(std::unique_ptr<const Curve> curve) {

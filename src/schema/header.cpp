@@ -1,6 +1,7 @@
 #include "schema/definition_reader.h"
 #include "schema/entry.h"
 #include "schema/suggest.h"
+#include "spectrum/color_space.h"
 
 #include <algorithm>
 #include <array>
@@ -15,22 +16,23 @@ constexpr int kEdition = 1;
 
 struct SpaceName {
     std::string_view name;
-    RgbSpaceName space;
+    RgbSpaceName id;
+    const RgbSpace& space;
 };
 
 // Ids of the Color Interop Forum first, in the order of the enumeration, then the aliases.
 constexpr auto kSpaces = std::to_array<SpaceName>({
-    {"lin_rec709_scene", RgbSpaceName::linRec709},
-    {"lin_rec2020_scene", RgbSpaceName::linRec2020},
-    {"lin_p3d65_scene", RgbSpaceName::linP3D65},
-    {"lin_ap1_scene", RgbSpaceName::linAp1},
-    {"lin_ap0_scene", RgbSpaceName::linAp0},
-    {"srgb-linear", RgbSpaceName::linRec709},
-    {"rec709", RgbSpaceName::linRec709},
-    {"rec2020", RgbSpaceName::linRec2020},
-    {"p3", RgbSpaceName::linP3D65},
-    {"acescg", RgbSpaceName::linAp1},
-    {"aces2065-1", RgbSpaceName::linAp0},
+    {"lin_rec709_scene", RgbSpaceName::linRec709, rgb::rec709},
+    {"lin_rec2020_scene", RgbSpaceName::linRec2020, rgb::rec2020},
+    {"lin_p3d65_scene", RgbSpaceName::linP3D65, rgb::p3d65},
+    {"lin_ap1_scene", RgbSpaceName::linAp1, rgb::ap1},
+    {"lin_ap0_scene", RgbSpaceName::linAp0, rgb::ap0},
+    {"srgb-linear", RgbSpaceName::linRec709, rgb::rec709},
+    {"rec709", RgbSpaceName::linRec709, rgb::rec709},
+    {"rec2020", RgbSpaceName::linRec2020, rgb::rec2020},
+    {"p3", RgbSpaceName::linP3D65, rgb::p3d65},
+    {"acescg", RgbSpaceName::linAp1, rgb::ap1},
+    {"aces2065-1", RgbSpaceName::linAp0, rgb::ap0},
 });
 
 void readEdition(const Node& node, Diagnostics& diagnostics) {
@@ -84,10 +86,11 @@ void readKey(const Key& key, Header& header, Diagnostics& diagnostics) {
 
 std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias) {
     const auto found = std::ranges::find(kSpaces, idOrAlias, &SpaceName::name);
-    return found == kSpaces.end() ? std::nullopt : std::optional(found->space);
+    return found == kSpaces.end() ? std::nullopt : std::optional(found->id);
 }
 
 std::string_view rgbSpaceId(RgbSpaceName space) { return kSpaces[static_cast<std::size_t>(space)].name; }
+const RgbSpace& rgbSpace(RgbSpaceName space) { return kSpaces[static_cast<std::size_t>(space)].space; }
 
 std::string rgbSpaceList() {
     std::vector<std::string_view> names;

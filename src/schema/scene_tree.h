@@ -13,12 +13,17 @@
 #include <string>
 #include <vector>
 
+namespace abbe {
+struct RgbSpace;
+}
+
 namespace abbe::schema {
 
 // Colour space of `rgb` values; ids are those of the Color Interop Forum.
 enum class RgbSpaceName : std::uint8_t { linRec709, linRec2020, linP3D65, linAp1, linAp0 };
 std::optional<RgbSpaceName> findRgbSpace(std::string_view idOrAlias);
 std::string_view rgbSpaceId(RgbSpaceName);
+const RgbSpace& rgbSpace(RgbSpaceName);
 
 // `scene 1 length=mm rgb=acescg up=y`
 struct Header {

@@ -19,22 +19,6 @@ namespace {
 
 constexpr double kFirstWavelength = 360, kLastWavelength = 830;
 
-const RgbSpace& spaceOf(schema::RgbSpaceName name) {
-    switch (name) {
-    case schema::RgbSpaceName::linRec709:
-        return rgb::rec709;
-    case schema::RgbSpaceName::linRec2020:
-        return rgb::rec2020;
-    case schema::RgbSpaceName::linP3D65:
-        return rgb::p3d65;
-    case schema::RgbSpaceName::linAp1:
-        return rgb::ap1;
-    case schema::RgbSpaceName::linAp0:
-        return rgb::ap0;
-    }
-    return rgb::rec709;
-}
-
 bool isLightRole(SpectrumRole role) {
     return role == SpectrumRole::emission || role == SpectrumRole::shape || role == SpectrumRole::tint;
 }
@@ -43,7 +27,7 @@ std::optional<Vec3d> rec709Of(const StatedCurve& curve) {
     const auto& v = curve.stated;
     const Vec3d given(v.numbers[0], v.numbers[1], v.numbers[2]);
     const Vec3d c =
-        v.space == schema::RgbSpaceName::linRec709 ? given : toRgb(toXyz(given, spaceOf(v.space)), rgb::rec709);
+        v.space == schema::RgbSpaceName::linRec709 ? given : toRgb(toXyz(given, rgbSpace(v.space)), rgb::rec709);
     const double most = curve.role == SpectrumRole::albedo ? 1 : INFINITY;
     const auto within = [&](double x) { return x >= 0 && x <= most; };
     return within(c.x) && within(c.y) && within(c.z) ? std::optional(c) : std::nullopt;
