@@ -70,6 +70,12 @@ void Console::report(const Diagnostics& diagnostics, const SourceMap& sources) c
     writeMessage(brief ? formatShort(diagnostics, sources) : formatHuman(diagnostics, sources, options));
 }
 
+void Console::report(const CodedFault& fault) const {
+    Diagnostics diagnostics;
+    diagnostics.error(fault.code, {}, fault.what()).help = fault.help;
+    report(diagnostics, {});
+}
+
 std::string shellQuoted(std::string_view argument) {
     constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=:,./@%";
     if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) return std::string(argument);

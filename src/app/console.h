@@ -6,14 +6,24 @@
 #include "base/source.h"
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace abbe {
 
 enum class ColorMode : std::uint8_t { automatic, always, never };
 enum class MessageFormat : std::uint8_t { human, brief, json };
+
+// What keeps a command from going on, with a code of the catalogue and what to do. Each part of the program that has
+// such faults throws a kind of its own.
+struct CodedFault : std::runtime_error {
+    CodedFault(std::string diagnosticCode, const std::string& message, std::string advice)
+        : std::runtime_error(message), code(std::move(diagnosticCode)), help(std::move(advice)) {}
+    std::string code, help;
+};
 
 // Where messages go: everything but data goes to stderr, data to stdout. What cannot be written is lost and ends
 // nothing (base/text_output.h). Control characters of names, paths and files are shown as `\u001b`. Cheap to copy.
@@ -40,6 +50,7 @@ class Console {
     void data(std::string_view text) const;
     // All diagnostics of a run; in JSON on stdout, else on stderr. Nothing for an empty list, except in JSON.
     void report(const Diagnostics&, const SourceMap&) const;
+    void report(const CodedFault&) const;
 
   private:
     bool interactive_ = false, color_ = false;

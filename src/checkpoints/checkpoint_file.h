@@ -1,13 +1,13 @@
 // Renders on disk: to be continued, or to be put together from parts. docs/checkpoints.md describes the bytes.
 #pragma once
 
+#include "app/console.h"
 #include "base/work_clock.h"
 #include "film/film_planes.h"
 #include "render/render_state.h"
 
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,10 +36,8 @@ struct CheckpointHeader {
 };
 
 // A file that is no checkpoint, is damaged, or does not belong.
-struct CheckpointFault : std::runtime_error {
-    CheckpointFault(std::string diagnosticCode, const std::string& message, std::string advice)
-        : std::runtime_error(message), code(std::move(diagnosticCode)), help(std::move(advice)) {}
-    std::string code, help;
+struct CheckpointFault : CodedFault {
+    using CodedFault::CodedFault;
 };
 
 // Writes the film's planes and the tiles in step with them; a render may go on meanwhile and is held up for one tile at

@@ -93,9 +93,9 @@ void lockPlan(const PathLock& lock, const FarmFolder& folder) {
                         "wait for its end, or look for one that hangs");
 }
 
-ShotStatus statusNow(const FarmPlan& plan, const FarmFolder& folder) {
+ShotStatus statusNow(const FarmPlan& plan, const FarmFolder& folder, TaskRecords& records) {
     const auto engine = makeEngine(plan.engine, folder);
-    return statusOf(plan, folder, plan.outcome ? std::vector<QueuedTask>() : engine->queue(plan));
+    return statusOf(plan, folder, records, plan.outcome ? std::vector<QueuedTask>() : engine->queue(plan));
 }
 
 ExitCode codeOf(std::optional<ShotOutcome> outcome) {
@@ -112,9 +112,7 @@ void folderArgument(Arguments& a, std::string& folder) {
 std::span<const CommandEntry> farmActions() { return kFarmActions; }
 
 ExitCode reportFarmFault(const FarmFault& fault, const Console& console) {
-    Diagnostics diagnostics;
-    diagnostics.error(fault.code, {}, fault.what()).help = fault.help;
-    console.report(diagnostics, {});
+    console.report(fault);
     return fault.code == "E0763" ? ExitCode::system : ExitCode::faulty;
 }
 
@@ -163,7 +161,8 @@ ExitCode run(const FarmStatusOptions& options, const CommonOptions& common) {
     return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         const FarmPlan plan = folder.readPlan();
-        const ShotStatus status = statusNow(plan, folder);
+        TaskRecords records(folder);
+        const ShotStatus status = statusNow(plan, folder, records);
         common.console.data(common.json ? statusJson(plan, folder, status).text(true) + "\n"
                                         : statusTable(plan, folder, status));
         return codeOf(status.outcome);
@@ -174,9 +173,11 @@ ExitCode run(const FarmWatchOptions& options, const CommonOptions& common) {
     return reportingFaults(common.console, [&] {
         const FarmFolder folder(options.folder);
         std::size_t lines = 0;
+        TaskRecords records(folder);
         for (;;) {
             const FarmPlan plan = folder.readPlan();
-            const ShotStatus status = statusNow(plan, folder);
+            records.forgetUndone();
+            const ShotStatus status = statusNow(plan, folder, records);
             const std::string table = statusTable(plan, folder, status);
             if (common.json) {
                 common.console.data(statusJson(plan, folder, status).text() + "\n");

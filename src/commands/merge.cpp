@@ -66,9 +66,7 @@ ExitCode run(const MergeOptions& options, const CommonOptions& common) {
         render.soFar = options.soFar;
         return run(render, common);
     } catch (const CheckpointFault& fault) {
-        Diagnostics diagnostics;
-        diagnostics.error(fault.code, {}, fault.what()).help = fault.help;
-        common.console.report(diagnostics, {});
+        common.console.report(fault);
         return ExitCode::faulty;
     }
 }

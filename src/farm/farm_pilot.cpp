@@ -23,7 +23,7 @@ std::string faultOf(const ProcessEnd& end) {
     std::string fault = end.err.substr(0, end.err.find('\n'));
     std::istringstream lines(end.out);
     for (std::string line; std::getline(lines, line);) {
-        const auto event = nlohmann::json::parse(line, nullptr, false);
+        const auto event = nlohmann::ordered_json::parse(line, nullptr, false);
         if (event.is_object() && event.value("event", "") == "error")
             fault = event.value("code", "") + ": " + event.value("message", "");
     }
@@ -56,7 +56,7 @@ double measureSample(const FarmPlan& plan, const FarmFolder& folder) {
         if (entry.path().filename().string().starts_with("pilot.")) std::filesystem::remove(entry.path(), ignored);
     std::istringstream lines(end.out);
     for (std::string line; std::getline(lines, line);) {
-        const auto event = nlohmann::json::parse(line, nullptr, false);
+        const auto event = nlohmann::ordered_json::parse(line, nullptr, false);
         if (!event.is_object() || event.value("event", "") != "done") continue;
         const double paths = event.value("paths", 0.0), seconds = event.value("core_seconds", 0.0);
         if (end.code == 0 && paths > 0 && seconds > 0) return seconds / paths;

@@ -2,21 +2,20 @@
 // folder and in the queue of the engine that runs it; docs/farm.md describes both.
 #pragma once
 
+#include "app/console.h"
+
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace abbe {
 
-// What keeps a shot from going on; with a code of the catalogue.
-struct FarmFault : std::runtime_error {
-    FarmFault(std::string diagnosticCode, const std::string& message, std::string advice)
-        : std::runtime_error(message), code(std::move(diagnosticCode)), help(std::move(advice)) {}
-    std::string code, help;
+// What keeps a shot from going on.
+struct FarmFault : CodedFault {
+    using CodedFault::CodedFault;
 };
 
 enum class FarmEngineKind : std::uint8_t { slurm, local };

@@ -14,9 +14,16 @@ namespace {
 // Error falls at least as fast as one over the root of the samples.
 constexpr double kSpare = 1.1, kMostGrowth = 4;
 
-std::vector<FarmTask> undone(const FarmPlan& plan, const FarmFolder& folder, std::vector<FarmTask> tasks) {
-    std::erase_if(tasks, [&](const FarmTask& t) { return readTaskRecord(plan, folder, t).done(); });
+std::vector<FarmTask> undone(const FarmPlan& plan, TaskRecords& records, std::vector<FarmTask> tasks) {
+    std::erase_if(tasks, [&](const FarmTask& t) { return records.of(plan, t).done(); });
     return tasks;
+}
+
+// What of a round is not done yet, and can be.
+RoundWork missingOf(const FarmPlan& plan, TaskRecords& records, int round) {
+    return {round, undone(plan, records, tasksOf(plan, round, FarmTask::Kind::part)),
+            undone(plan, records, tasksOf(plan, round, FarmTask::Kind::gather)),
+            undone(plan, records, tasksOf(plan, round, FarmTask::Kind::merge))};
 }
 
 std::string nameOfFrame(const FarmPlan& plan, int frame) {
@@ -24,11 +31,11 @@ std::string nameOfFrame(const FarmPlan& plan, int frame) {
 }
 
 // What the measured parts took, which knows more than the pilot did.
-double measuredSampleSeconds(const FarmPlan& plan, const FarmFolder& folder, int round) {
+double measuredSampleSeconds(const FarmPlan& plan, TaskRecords& records, int round) {
     double seconds = 0, samples = 0;
     const FarmRound& r = plan.rounds[static_cast<std::size_t>(round)];
     for (const FarmTask& task : tasksOf(plan, round, FarmTask::Kind::part)) {
-        const TaskRecord record = readTaskRecord(plan, folder, task);
+        const TaskRecord& record = records.of(plan, task);
         if (record.coreSeconds <= 0 || record.starts != 1) continue; // of one that went on, a part is known
         seconds += record.coreSeconds;
         samples += static_cast<double>(plan.width) * plan.height * (r.to - r.from) / r.parts;
@@ -37,13 +44,13 @@ double measuredSampleSeconds(const FarmPlan& plan, const FarmFolder& folder, int
 }
 
 // The frames whose error is above the goal, and the samples that should do.
-RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
+RoundEnd planMore(FarmPlan& plan, TaskRecords& records, int round) {
     RoundEnd end;
     FarmRound next;
     const FarmRound last = plan.rounds[static_cast<std::size_t>(round)];
     double worst = 0;
     for (const FarmTask& task : tasksOf(plan, round, FarmTask::Kind::merge)) {
-        const double noise = readTaskRecord(plan, folder, task).noise;
+        const double noise = records.of(plan, task).noise;
         if (noise <= plan.noise) continue; // 0: nothing differs between samples, as in a black frame
         next.frames.push_back(task.frame);
         worst = std::max(worst, noise);
@@ -65,7 +72,7 @@ RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
     const double wanted = std::ceil(last.to * factor / replicates) * replicates;
     next.from = last.to;
     next.to = static_cast<std::uint32_t>(std::clamp<double>(wanted, last.to + replicates, plan.samples));
-    plan.sampleSeconds = measuredSampleSeconds(plan, folder, round);
+    plan.sampleSeconds = measuredSampleSeconds(plan, records, round);
     next.parts = partsOf(plan, next.from, next.to);
     end.said = fmt::format("{} of {} have up to {:.3g} % noise; a round to {} samples is next", next.frames.size(),
                            last.frames.size(), 100 * worst, next.to);
@@ -75,10 +82,10 @@ RoundEnd planMore(FarmPlan& plan, const FarmFolder& folder, int round) {
 }
 
 // Why a round cannot be done, if so: the first task that would end the same way again.
-std::string hopelessTask(const FarmPlan& plan, const FarmFolder& folder, const RoundWork& work) {
+std::string hopelessTask(const FarmPlan& plan, const FarmFolder& folder, TaskRecords& records, const RoundWork& work) {
     for (const auto* tasks : {&work.parts, &work.gatherings, &work.merges})
         for (const FarmTask& task : *tasks) {
-            const TaskRecord record = readTaskRecord(plan, folder, task);
+            const TaskRecord& record = records.of(plan, task);
             // What is merged may only lack what failed itself.
             if (!record.hopeless() || (task.kind != FarmTask::Kind::part && !work.parts.empty())) continue;
             return fmt::format("{} ended with {}{}", folder.nameOf(plan, task), *record.exit,
@@ -95,26 +102,20 @@ RoundWork workOf(const FarmPlan& plan, int round) {
             tasksOf(plan, round, FarmTask::Kind::merge)};
 }
 
-RoundWork missingOf(const FarmPlan& plan, const FarmFolder& folder, int round) {
-    RoundWork work{round, undone(plan, folder, tasksOf(plan, round, FarmTask::Kind::part)),
-                   undone(plan, folder, tasksOf(plan, round, FarmTask::Kind::gather)),
-                   undone(plan, folder, tasksOf(plan, round, FarmTask::Kind::merge))};
-    return work;
-}
-
 RoundEnd closeRound(FarmPlan& plan, const FarmFolder& folder, int round) {
     RoundEnd end;
     if (plan.cancelled) return {ShotOutcome::cancelled, {}, "the shot was cancelled"};
-    end.work = missingOf(plan, folder, round);
+    TaskRecords records(folder);
+    end.work = missingOf(plan, records, round);
     if (end.work.empty()) {
-        if (plan.noise > 0) return planMore(plan, folder, round);
+        if (plan.noise > 0) return planMore(plan, records, round);
         end.outcome = ShotOutcome::done;
         end.said = plan.animation ? fmt::format("all {} frames are done", plan.rounds[0].frames.size())
                                   : std::string("the image is done");
         return end;
     }
     FarmRound& r = plan.rounds[static_cast<std::size_t>(round)];
-    const std::string hopeless = hopelessTask(plan, folder, end.work);
+    const std::string hopeless = hopelessTask(plan, folder, records, end.work);
     if (!hopeless.empty() || r.tries >= plan.mostTries) {
         end.outcome = ShotOutcome::failed;
         const FarmTask& first = !end.work.parts.empty()        ? end.work.parts[0]

@@ -12,9 +12,6 @@ namespace abbe {
 // All that a new round has to do.
 RoundWork workOf(const FarmPlan&, int round);
 
-// What of a round is not done yet, and can be.
-RoundWork missingOf(const FarmPlan&, const FarmFolder&, int round);
-
 struct RoundEnd {
     std::optional<ShotOutcome> outcome; // of the shot; nothing: there is more to do
     RoundWork work;                     // what is missing of the round, or a new one, of the frames that need it

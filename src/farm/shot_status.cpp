@@ -1,7 +1,5 @@
 #include "farm/shot_status.h"
 
-#include "farm/task_record.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -67,7 +65,8 @@ std::string timeText(double seconds) {
 
 } // namespace
 
-ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, const std::vector<QueuedTask>& queued) {
+ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, TaskRecords& records,
+                    const std::vector<QueuedTask>& queued) {
     ShotStatus status;
     Queue queue;
     for (const QueuedTask& task : queued) queue.emplace(task.name, &task);
@@ -82,7 +81,7 @@ ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, const std::v
             const double samples = static_cast<double>(round.to - round.from) / round.parts;
             for (int piece = 1; piece <= round.parts; ++piece) {
                 const FarmTask task{FarmTask::Kind::part, r, frame, piece};
-                const TaskRecord record = readTaskRecord(plan, folder, task);
+                const TaskRecord& record = records.of(plan, task);
                 const TaskState state = stateOf(plan, folder, task, record, queue);
                 ++f.parts;
                 f.done += state == TaskState::done;
@@ -95,7 +94,7 @@ ShotStatus statusOf(const FarmPlan& plan, const FarmFolder& folder, const std::v
                 all += samples;
             }
             const FarmTask merge{FarmTask::Kind::merge, r, frame, 1};
-            f.merged = readTaskRecord(plan, folder, merge).done();
+            f.merged = records.of(plan, merge).done();
         }
         f.samples = noise.all;
         f.noise = noise.noise();

@@ -4,6 +4,7 @@
 #include "app/json.h"
 #include "farm/farm_engine.h"
 #include "farm/farm_plan.h"
+#include "farm/task_record.h"
 
 #include <optional>
 #include <string>
@@ -31,7 +32,7 @@ struct ShotStatus {
 };
 
 // `queue`: of the engine.
-ShotStatus statusOf(const FarmPlan&, const FarmFolder&, const std::vector<QueuedTask>& queue);
+ShotStatus statusOf(const FarmPlan&, const FarmFolder&, TaskRecords&, const std::vector<QueuedTask>& queue);
 
 std::string statusTable(const FarmPlan&, const FarmFolder&, const ShotStatus&);
 Json statusJson(const FarmPlan&, const FarmFolder&, const ShotStatus&);

@@ -10,7 +10,7 @@ namespace abbe {
 
 namespace {
 
-using Event = nlohmann::json;
+using Event = nlohmann::ordered_json; // the only kind that the program instantiates
 
 double numberIn(const Event& event, const char* name) {
     const auto found = event.find(name);
@@ -60,6 +60,19 @@ TaskRecord readTaskRecord(const FarmPlan& plan, const FarmFolder& folder, const 
         record.fault.clear();
     }
     return record;
+}
+
+const TaskRecord& TaskRecords::of(const FarmPlan& plan, const FarmTask& task) {
+    const auto [known, isNew] = known_.try_emplace(folder_.nameOf(plan, task));
+    if (isNew) known->second = {readTaskRecord(plan, folder_, task), folder_.outputOf(plan, task)};
+    return known->second.record;
+}
+
+void TaskRecords::forgetUndone() {
+    std::error_code error;
+    std::erase_if(known_, [&](const auto& known) {
+        return !known.second.record.done() || !std::filesystem::exists(known.second.output, error);
+    });
 }
 
 void writeTaskResult(const FarmPlan& plan, const FarmFolder& folder, const FarmTask& task, int exit) {

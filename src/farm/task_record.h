@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 namespace abbe {
 
@@ -28,6 +29,24 @@ struct TaskRecord {
 
 // Of files that may be written at this moment; nothing is there yet before the task begins.
 TaskRecord readTaskRecord(const FarmPlan&, const FarmFolder&, const FarmTask&);
+
+// The records of a shot's tasks, each read when it is asked for first.
+class TaskRecords {
+  public:
+    explicit TaskRecords(const FarmFolder& folder) : folder_(folder) {}
+    // Until the next forgetUndone(). Of one shot's plan, which may grow meanwhile.
+    const TaskRecord& of(const FarmPlan&, const FarmTask&);
+    // Whoever looks again later reads only what was not done, or whose file is gone.
+    void forgetUndone();
+
+  private:
+    struct Known {
+        TaskRecord record;
+        std::string output;
+    };
+    const FarmFolder& folder_;
+    std::unordered_map<std::string, Known> known_; // by the tasks' names
+};
 
 // How a run of it ended. Throws IoError.
 void writeTaskResult(const FarmPlan&, const FarmFolder&, const FarmTask&, int exit);

@@ -82,7 +82,7 @@ std::string line(const CostRow& row, double seconds) {
     return text + "\n";
 }
 
-CostRow readRow(const nlohmann::json& json) {
+CostRow readRow(const nlohmann::ordered_json& json) {
     CostRow row;
     row.id = json.at("id").get<std::string>();
     row.label = json.at("label").get<std::string>();
@@ -132,7 +132,7 @@ std::optional<CostReport> readCost(std::span<const ImageAttribute> attributes) {
     const auto* text = found == attributes.end() ? nullptr : std::get_if<std::string>(&found->value);
     if (!text) return std::nullopt;
     try {
-        const auto json = nlohmann::json::parse(*text);
+        const auto json = nlohmann::ordered_json::parse(*text);
         CostReport cost;
         cost.seconds = json.at("seconds").get<double>();
         cost.accounted = json.value("accounted", 0.0);
@@ -143,7 +143,7 @@ std::optional<CostReport> readCost(std::span<const ImageAttribute> attributes) {
         cost.untouched = json.value("untouched", std::uint64_t{0});
         for (const auto& row : json.at("rows")) cost.rows.push_back(readRow(row));
         return cost;
-    } catch (const nlohmann::json::exception&) { // of another program, or of a later one
+    } catch (const nlohmann::ordered_json::exception&) { // of another program, or of a later one
         return std::nullopt;
     }
 }

@@ -172,14 +172,16 @@ TEST_CASE("a noise goal asks for as many samples as error needs that falls by th
 
 TEST_CASE("the status counts parts, and the noise of their mean") {
     Shot shot;
-    ShotStatus status = statusOf(shot.plan, shot.folder, {});
+    TaskRecords records(shot.folder);
+    ShotStatus status = statusOf(shot.plan, shot.folder, records, {});
     CHECK(status.idle);
     CHECK(!status.outcome);
     CHECK(status.fraction == 0);
     shot.finish({FarmTask::Kind::part, 0, 1, 1}, 0.1);
     shot.finish({FarmTask::Kind::part, 0, 1, 2}, 0.1);
     shot.finish({FarmTask::Kind::part, 0, 2, 1}, 0.1, 3);
-    status = statusOf(shot.plan, shot.folder, {{"r1.0002.p2", "running", "n1"}});
+    records.forgetUndone();
+    status = statusOf(shot.plan, shot.folder, records, {{"r1.0002.p2", "running", "n1"}});
     CHECK(!status.idle);
     CHECK(status.frames[0].done == 2);
     CHECK(status.frames[0].noise == doctest::Approx(0.1 / std::sqrt(2)));
@@ -187,6 +189,11 @@ TEST_CASE("the status counts parts, and the noise of their mean") {
     CHECK(status.frames[1].failed == 1);
     CHECK(status.frames[1].running == 1);
     CHECK(status.fraction == doctest::Approx(0.5));
+    // What is done is not read again while its file is there.
+    fs::remove(shot.folder.outputOf(shot.plan, {FarmTask::Kind::part, 0, 1, 1}));
+    CHECK(statusOf(shot.plan, shot.folder, records, {}).frames[0].done == 2);
+    records.forgetUndone();
+    CHECK(statusOf(shot.plan, shot.folder, records, {}).frames[0].done == 1);
     // Lines that are torn count for nothing.
     std::ofstream(shot.folder.eventsFile(shot.plan, {FarmTask::Kind::part, 0, 2, 2})) << "{\"event\":\"sta";
     CHECK(readTaskRecord(shot.plan, shot.folder, {FarmTask::Kind::part, 0, 2, 2}).starts == 0);
