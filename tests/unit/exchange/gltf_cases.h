@@ -1,9 +1,8 @@
 // Imports of glTF scenes that stand in tests as text.
 #pragma once
 
-#include "base/diagnostic_format.h"
 #include "exchange/importer/importer.h"
-#include "unit/io/temporary_folder.h"
+#include "unit/exchange/import_case.h"
 
 #include <algorithm>
 #include <cstring>
@@ -13,14 +12,8 @@
 
 namespace abbe::exchange {
 
-// What a scene becomes, with the files that it reads and writes in a folder of its own. The file beside it, case.bin,
-// is that of gltfWall().
-struct GltfCase {
-    TemporaryFolder folder;
-    SourceMap sources;
-    Diagnostics diagnostics;
-    std::string scene; // empty after errors
-
+// The file beside it, case.bin, is that of gltfWall().
+struct GltfCase : ImportCase {
     // `picture`: what stands in tex.png, if anything.
     explicit GltfCase(const std::string& text, const std::string& picture = {}) {
         if (!picture.empty()) writeAll(folder / "tex.png", picture);
@@ -44,8 +37,6 @@ struct GltfCase {
         }
         return line.find(text) != std::string::npos;
     }
-    std::string report() const { return formatShort(diagnostics, sources); }
-    bool says(std::string_view text) const { return report().find(text) != std::string::npos; }
 };
 
 // The buffer of a square of 2 × 2 m in the plane z = 0 that faces +z: positions, normals, coordinates of which v = 0 is

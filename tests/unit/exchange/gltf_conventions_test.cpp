@@ -15,18 +15,11 @@ namespace {
 
 // The mean Y of a part of the picture in nits, whatever the exposure.
 double gltfNits(const GltfCase& made, PixelBounds part = {3, 3, 5, 5}, std::uint32_t samples = 256) {
-    INFO(made.report());
-    INFO(made.scene);
-    const std::string path = made.folder / "case.scene";
     std::string scene = made.scene;
     const std::size_t film = scene.find("film {");
     REQUIRE(film != std::string::npos);
     scene.replace(film, scene.find('\n', film) - film, "film { size 8 8; filter box }");
-    writeAll(path, scene);
-    const auto loaded = abbe::test::TestScene::load(path);
-    INFO(loaded.report());
-    REQUIRE_FALSE(loaded.diagnostics().hasErrors());
-    return abbe::test::render(loaded, samples).film.tile(part).mean * 72983;
+    return renderImported(made, scene, part, samples).mean * 72983;
 }
 
 // The square, seen from z = 5 by a camera that shows just it, with lights and a material.

@@ -1,21 +1,15 @@
 // Imports of pbrt scenes that stand in tests as text.
 #pragma once
 
-#include "base/diagnostic_format.h"
 #include "exchange/pbrt/pbrt_import.h"
-#include "unit/io/temporary_folder.h"
+#include "unit/exchange/import_case.h"
 
 #include <string>
 
 namespace abbe::exchange {
 
-// What a scene becomes, with the files that it reads and writes in a folder of its own.
-struct PbrtCase {
-    TemporaryFolder folder;
-    SourceMap sources;
-    Diagnostics diagnostics;
-    std::string scene; // without its header
-
+// Its `scene` is without the header.
+struct PbrtCase : ImportCase {
     explicit PbrtCase(const std::string& text) { import(text); }
     // For those that write files first.
     PbrtCase() = default;
@@ -28,8 +22,6 @@ struct PbrtCase {
     }
 
     bool has(std::string_view text) const { return scene.find(text) != std::string::npos; }
-    std::string report() const { return formatShort(diagnostics, sources); }
-    bool says(std::string_view text) const { return report().find(text) != std::string::npos; }
 };
 
 // A view along z, and what stands behind WorldBegin.

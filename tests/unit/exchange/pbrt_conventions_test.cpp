@@ -14,14 +14,8 @@ namespace {
 
 // The mean Y of a part of the picture, with the exposure.
 double pbrtPixel(const PbrtCase& made, PixelBounds part = {3, 3, 5, 5}, std::uint32_t samples = 256) {
-    INFO(made.report());
-    INFO(made.scene);
-    const std::string path = made.folder / "case.scene";
-    writeAll(path, "scene 1\n" + made.scene);
-    const auto scene = abbe::test::TestScene::load(path);
-    INFO(scene.report());
-    REQUIRE_FALSE(scene.diagnostics().hasErrors());
-    return abbe::test::render(scene, samples).film.tile(part).mean * scene.built().exposure;
+    const ImportedPixel pixel = renderImported(made, "scene 1\n" + made.scene, part, samples);
+    return pixel.mean * pixel.exposure;
 }
 
 double pbrtPixel(const std::string& world) { return pbrtPixel(PbrtCase(pbrtWorld(world))); }
