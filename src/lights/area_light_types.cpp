@@ -36,7 +36,7 @@ template <typename Params> void addCommonFields(std::vector<FieldInfo>& fields) 
                          .synonyms({"to-world", "matrix"}));
 }
 
-template <typename Params> schema::Field<Params, Vec3d> centerField() {
+template <typename Params> schema::Field centerField() {
     return schema::field(FieldType::vector3, "center", &Params::center)
         .unit({Dimension::length})
         .byDefault("0 0 0")
@@ -45,7 +45,7 @@ template <typename Params> schema::Field<Params, Vec3d> centerField() {
         .synonyms({"centre", "position"});
 }
 
-template <typename Params> schema::Field<Params, double> radiusField() {
+template <typename Params> schema::Field radiusField() {
     return schema::field(FieldType::quantity, "radius", &Params::radius)
         .unit({Dimension::length})
         .byDefault("0.5 m")

@@ -22,7 +22,7 @@ FieldKey numberKey(std::string_view name, double lower, std::string_view doc) {
     return key;
 }
 
-Field<VdbParams, std::optional<Text>> gridField(std::string_view name, std::optional<Text> VdbParams::*member) {
+Field gridField(std::string_view name, std::optional<Text> VdbParams::*member) {
     return field<VdbParams, std::optional<Text>>(FieldType::text, name, member).key(gridKey());
 }
 

@@ -8,8 +8,11 @@
 #include "spectrum/curve.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -280,114 +283,122 @@ struct TypeInfo {
     const FieldInfo* find(std::string_view field) const;
 };
 
-// Fluent construction of one field. `Member` is stored from the matching BoundValue alternative; std::optional members
-// stay empty when unset. Float, double and integer members accept the alternatives of their field type.
-template <typename Params, typename Member> class Field {
+// Stores the matching alternative of a value. std::optional members stay empty when unset; float, double and integer
+// members accept the alternatives of their field type.
+template <typename M> void assign(M& member, const BoundValue& value) {
+    if constexpr (std::is_arithmetic_v<M>) {
+        if (const auto* d = std::get_if<double>(&value)) member = static_cast<M>(*d);
+        if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
+        if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
+        if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
+    } else if constexpr (std::is_same_v<M, TexturedSpectrum>) {
+        if (const auto* curve = std::get_if<const Curve*>(&value)) member.curve = *curve;
+        if (const auto* textured = std::get_if<TexturedSpectrum>(&value)) member = *textured;
+    } else if constexpr (std::is_same_v<M, TexturedNumber>) {
+        if (const auto* number = std::get_if<double>(&value)) member.value = *number;
+        if (const auto* q = std::get_if<Quantity>(&value)) member.value = q->value;
+        if (const auto* textured = std::get_if<TexturedNumber>(&value)) member = *textured;
+    } else if constexpr (std::is_same_v<M, QuantityOrWord>) {
+        if (const auto* q = std::get_if<Quantity>(&value)) member = {q->value, {}};
+        if (const auto* choice = std::get_if<Choice>(&value)) member.word = choice->word;
+    } else if constexpr (std::is_same_v<M, Transform>) {
+        if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
+    } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
+        if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
+    } else if constexpr (std::is_same_v<M, std::vector<NamedNumbers>>) {
+        if (const auto* one = std::get_if<NamedNumbers>(&value)) member.push_back(*one);
+    } else if constexpr (std::is_same_v<M, std::vector<SpectrumStop>>) {
+        if (const auto* one = std::get_if<SpectrumStop>(&value)) member.push_back(*one);
+    } else if constexpr (std::is_same_v<M, std::vector<WeightedReference>>) {
+        if (const auto* one = std::get_if<WeightedReference>(&value)) member.push_back(*one);
+    } else if constexpr (std::is_same_v<M, std::vector<GroupReference>>) {
+        if (const auto* one = std::get_if<GroupReference>(&value)) member.push_back(*one);
+    } else if (const auto* same = std::get_if<M>(&value)) {
+        member = *same;
+    }
+}
+template <typename M> void assign(std::optional<M>& member, const BoundValue& value) {
+    assign(member.emplace(), value);
+}
+
+// What a field has to know of the type of its member. Tables have hundreds of fields: what is made for each pair of a
+// struct and a member takes longer to compile than all else in them.
+struct MemberType {
+    void (*store)(void* member, const BoundValue&) = nullptr; // null for enumerations, which words() stores
+    void* (*append)(void* member, double time, Span) = nullptr;
+    std::size_t enumBytes = 0;
+    bool canMove = false, texturable = false, repeats = false; // as in FieldInfo
+};
+
+template <typename M> MemberType memberType() {
+    MemberType type;
+    if constexpr (requires(M m) { m.emplace_back().time; })
+        type.append = [](void* member, double time, Span span) -> void* {
+            auto& moment = static_cast<M*>(member)->emplace_back();
+            moment.time = time;
+            moment.span = span;
+            return &moment;
+        };
+    else if constexpr (std::is_enum_v<M>)
+        type.enumBytes = sizeof(M);
+    else
+        type.store = [](void* member, const BoundValue& value) { assign(*static_cast<M*>(member), value); };
+    type.canMove = std::is_same_v<M, KeyedTransform> || std::is_same_v<M, std::optional<KeyedTransform>>;
+    type.texturable = std::is_same_v<M, TexturedSpectrum> || std::is_same_v<M, TexturedNumber>;
+    type.repeats = std::is_same_v<M, std::vector<SharpRow>> || std::is_same_v<M, std::vector<WeightedReference>> ||
+                   std::is_same_v<M, std::vector<SpectrumStop>> || std::is_same_v<M, std::vector<NamedNumbers>>;
+    return type;
+}
+
+// Bytes from the start of the struct to the member, which is what a pointer to a member is (Itanium C++ ABI).
+template <typename Params, typename Member> std::ptrdiff_t placeOf(Member Params::*member) {
+    return std::bit_cast<std::ptrdiff_t>(member);
+}
+
+// Fluent construction of one field; see field().
+class Field {
   public:
-    Field(FieldType type, std::string_view name, Member Params::*member) : member_(member) {
-        info_.type = type;
-        info_.name = name;
-        info_.canMove = std::is_same_v<Member, KeyedTransform> || std::is_same_v<Member, std::optional<KeyedTransform>>;
-        info_.texturable = std::is_same_v<Member, TexturedSpectrum> || std::is_same_v<Member, TexturedNumber>;
-        info_.repeats =
-            std::is_same_v<Member, std::vector<SharpRow>> || std::is_same_v<Member, std::vector<WeightedReference>> ||
-            std::is_same_v<Member, std::vector<SpectrumStop>> || std::is_same_v<Member, std::vector<NamedNumbers>>;
-        if constexpr (requires(Member m) { m.emplace_back().time; })
-            info_.append = [member](void* params, double time, Span span) -> void* {
-                auto& moment = (static_cast<Params*>(params)->*member).emplace_back();
-                moment.time = time;
-                moment.span = span;
-                return &moment;
-            };
-        else if constexpr (!std::is_enum_v<Member>) // see words()
-            info_.store = [member](void* params, const BoundValue& value) {
-                assign(static_cast<Params*>(params)->*member, value);
-            };
-    }
-    Field& doc(std::string_view d) { return info_.doc = d, *this; }
-    Field& example(std::string_view e) { return info_.example = e, *this; }
-    Field& byDefault(std::string d) { return info_.defaultText = std::move(d), *this; }
-    Field& unit(std::vector<Dimension> d) { return info_.dimensions = std::move(d), *this; }
-    Field& range(double lower, double upper) { return info_.lower = lower, info_.upper = upper, *this; }
-    Field& role(SpectrumRole r) { return info_.role = r, *this; }
-    Field& to(Kind k) { return info_.referenceKind = k, *this; }
-    Field& choices(std::vector<std::string_view> c) { return info_.choices = std::move(c), *this; }
+    Field(FieldType, std::string_view name, std::ptrdiff_t place, const MemberType&);
+    Field& doc(std::string_view);
+    Field& example(std::string_view);
+    Field& byDefault(std::string_view);
+    Field& unit(std::initializer_list<Dimension>);
+    Field& range(double lower, double upper);
+    Field& role(SpectrumRole);
+    Field& to(Kind);
+    Field& choices(std::initializer_list<std::string_view>);
+    Field& choices(std::vector<std::string_view>);
     // The choices of a member that is an enumeration, in the order of its enumerators; the first is the default.
-    Field& words(std::span<const std::string_view> list) requires std::is_enum_v<Member> {
-        info_.choices.assign(list.begin(), list.end());
-        info_.defaultText = list.front();
-        info_.store = [member = member_, list](void* params, const BoundValue& value) {
-            const auto* choice = std::get_if<Choice>(&value);
-            const auto found = choice ? std::ranges::find(list, choice->word) : list.end();
-            if (found != list.end()) static_cast<Params*>(params)->*member = static_cast<Member>(found - list.begin());
-        };
-        return *this;
-    }
-    Field& key(FieldKey k) { return info_.keys.push_back(std::move(k)), *this; }
-    Field& synonyms(std::vector<std::string_view> s) { return info_.synonyms = std::move(s), *this; }
+    Field& words(std::span<const std::string_view> list);
+    Field& key(FieldKey);
+    Field& synonyms(std::initializer_list<std::string_view>);
+    Field& synonyms(std::vector<std::string_view>);
     // A number without a unit that comes to more than `most`, in SI units, was probably meant in `unit`.
-    Field& usually(double most, std::string_view unit) { return info_.usual = most, info_.usualUnit = unit, *this; }
-    Field& group(std::string_view g) { return info_.group = g, *this; }
-    Field& note(std::string_view n) { return info_.note = n, *this; }
-    Field& elsewhere(std::string_view text) { return info_.elsewhere = text, *this; }
+    Field& usually(double most, std::string_view unit);
+    Field& group(std::string_view);
+    Field& note(std::string_view);
+    Field& elsewhere(std::string_view);
     // Where the values of a repeated `group=` go.
-    Field& groups(std::vector<GroupReference> Params::*member) {
-        info_.store = [plain = info_.store, member](void* params, const BoundValue& value) {
-            assign(static_cast<Params*>(params)->*member, value);
-            plain(params, value);
-        };
-        return *this;
+    template <typename Params> Field& groups(std::vector<GroupReference> Params::*member) {
+        return groupsAt(placeOf(member));
     }
-    Field& required() { return info_.required = true, *this; }
-    Field& tiles() { return info_.tiles = true, *this; }
-    Field& namedRows() { return info_.namedRows = true, *this; }
-    Field& block(std::vector<FieldInfo> b) { return info_.block = std::move(b), *this; }
-    Field& argument(int position) { return info_.argument = position, *this; }
-    operator FieldInfo() const { return info_; }
+    Field& required();
+    Field& tiles();
+    Field& namedRows();
+    Field& block(std::vector<FieldInfo>);
+    Field& argument(int position);
+    operator FieldInfo() const;
 
   private:
-    template <typename M> static void assign(M& member, const BoundValue& value) {
-        if constexpr (std::is_arithmetic_v<M>) {
-            if (const auto* d = std::get_if<double>(&value)) member = static_cast<M>(*d);
-            if (const auto* i = std::get_if<std::int64_t>(&value)) member = static_cast<M>(*i);
-            if (const auto* q = std::get_if<Quantity>(&value)) member = static_cast<M>(q->value);
-            if (const auto* b = std::get_if<bool>(&value)) member = static_cast<M>(*b);
-        } else if constexpr (std::is_same_v<M, TexturedSpectrum>) {
-            if (const auto* curve = std::get_if<const Curve*>(&value)) member.curve = *curve;
-            if (const auto* textured = std::get_if<TexturedSpectrum>(&value)) member = *textured;
-        } else if constexpr (std::is_same_v<M, TexturedNumber>) {
-            if (const auto* number = std::get_if<double>(&value)) member.value = *number;
-            if (const auto* q = std::get_if<Quantity>(&value)) member.value = q->value;
-            if (const auto* textured = std::get_if<TexturedNumber>(&value)) member = *textured;
-        } else if constexpr (std::is_same_v<M, QuantityOrWord>) {
-            if (const auto* q = std::get_if<Quantity>(&value)) member = {q->value, {}};
-            if (const auto* choice = std::get_if<Choice>(&value)) member.word = choice->word;
-        } else if constexpr (std::is_same_v<M, Transform>) {
-            if (const auto* keyed = std::get_if<KeyedTransform>(&value)) member = keyed->at(0);
-        } else if constexpr (std::is_same_v<M, std::vector<SharpRow>>) {
-            if (const auto* row = std::get_if<SharpRow>(&value)) member.push_back(*row);
-        } else if constexpr (std::is_same_v<M, std::vector<NamedNumbers>>) {
-            if (const auto* one = std::get_if<NamedNumbers>(&value)) member.push_back(*one);
-        } else if constexpr (std::is_same_v<M, std::vector<SpectrumStop>>) {
-            if (const auto* one = std::get_if<SpectrumStop>(&value)) member.push_back(*one);
-        } else if constexpr (std::is_same_v<M, std::vector<WeightedReference>>) {
-            if (const auto* one = std::get_if<WeightedReference>(&value)) member.push_back(*one);
-        } else if constexpr (std::is_same_v<M, std::vector<GroupReference>>) {
-            if (const auto* one = std::get_if<GroupReference>(&value)) member.push_back(*one);
-        } else if (const auto* same = std::get_if<M>(&value)) {
-            member = *same;
-        }
-    }
-    template <typename M> static void assign(std::optional<M>& member, const BoundValue& value) {
-        assign(member.emplace(), value);
-    }
-    Member Params::*member_;
+    Field& groupsAt(std::ptrdiff_t place);
+
+    std::ptrdiff_t place_;
+    std::size_t enumBytes_;
     FieldInfo info_;
 };
 
-template <typename Params, typename Member>
-Field<Params, Member> field(FieldType type, std::string_view name, Member Params::*member) {
-    return {type, name, member};
+template <typename Params, typename Member> Field field(FieldType type, std::string_view name, Member Params::*member) {
+    return {type, name, placeOf(member), memberType<Member>()};
 }
 
 // All types of all kinds, in the order of the manual. Assembled in one place (src/scene/registry.cpp).
