@@ -244,7 +244,7 @@ std::string studyTable(const StudyReport& report, const StudyFacts& facts) {
 namespace {
 
 constexpr std::size_t kShownBlocks = 5;
-constexpr const char* kChannels[] = {"X", "Y", "Z"};
+constexpr const char* kChannelNames[] = {"X", "Y", "Z"};
 
 std::string signedPercent(double part) { return fmt::format("{:+.2g} %", 100 * part); }
 
@@ -291,11 +291,12 @@ std::string verifyText(const VerifyReport& r, const VerifyFacts& facts) {
                             verifyPercent(s.error), s.estimator.how);
     if (a.whole.judged)
         text += fmt::format("  whole picture: {} ± {} in {}; of {} tiles {} are too noisy to be judged\n",
-                            signedPercent(a.whole.difference), verifyPercent(a.whole.error), kChannels[a.whole.channel],
-                            a.tiles, a.unjudged);
+                            signedPercent(a.whole.difference), verifyPercent(a.whole.error),
+                            kChannelNames[a.whole.channel], a.tiles, a.unjudged);
     for (const BlockTest& b : a.worstBlocks(kShownBlocks)) {
-        text += fmt::format("  pixels {},{} to {},{}: {} ± {} in {}\n", b.bounds.x0, b.bounds.y0, b.bounds.x1 - 1,
-                            b.bounds.y1 - 1, signedPercent(b.difference), verifyPercent(b.error), kChannels[b.channel]);
+        text +=
+            fmt::format("  pixels {},{} to {},{}: {} ± {} in {}\n", b.bounds.x0, b.bounds.y0, b.bounds.x1 - 1,
+                        b.bounds.y1 - 1, signedPercent(b.difference), verifyPercent(b.error), kChannelNames[b.channel]);
         for (const std::string& sight : sights(*facts.scene, b.bounds)) text += fmt::format("    {}\n", sight);
     }
     const std::string v = verdictOf(a);
@@ -318,7 +319,7 @@ std::string verifyJson(const VerifyReport& r, const VerifyFacts& facts) {
                              {"y0", b.bounds.y0},
                              {"x1", b.bounds.x1},
                              {"y1", b.bounds.y1},
-                             {"channel", kChannels[b.channel]},
+                             {"channel", kChannelNames[b.channel]},
                              {"difference", b.difference},
                              {"error", b.error},
                              {"score", b.score},
@@ -340,7 +341,7 @@ std::string verifyJson(const VerifyReport& r, const VerifyFacts& facts) {
                          {"level", a.level},
                          {"difference", a.whole.difference},
                          {"error", a.whole.error},
-                         {"channel", kChannels[a.whole.channel]},
+                         {"channel", kChannelNames[a.whole.channel]},
                          {"detectable", a.whole.judged ? Json(a.detectable()) : Json()},
                          {"tiles", a.tiles},
                          {"unjudged", a.unjudged},
