@@ -72,9 +72,19 @@ endfunction()
 # The main program of every test, compiled once: doctest's own code is as much as ten tests.
 add_library(abbe_doctest_main OBJECT ${PROJECT_SOURCE_DIR}/tests/support/doctest_main.cpp)
 
-# abbe_test(name folders DEPS … LABEL …): one doctest executable from every .cpp of some folders under tests/.
+# abbe_second_test(name suffix label filter): another test of an executable, of what a filter of doctest's takes of it.
+function(abbe_second_test name suffix label filter)
+    add_test(NAME ${name}_${suffix} COMMAND test_${name} ${filter})
+    set_tests_properties(${name}_${suffix} PROPERTIES LABELS ${label} FAIL_REGULAR_EXPRESSION "test cases: +0 ")
+endfunction()
+
+# abbe_test(name folders DEPS … LABEL … [INPUT | INPUT_SUITE] [SWEEP]): one doctest executable from every .cpp of some
+# folders under tests/. INPUT: it has the label "input", too; INPUT_SUITE: those of its cases that are in the suite
+# "input" have it. SWEEP: cases in the suite "sweep" take long, because they look at all of something, and have the
+# label "program" in place of "quick". APART: patterns of the files that are a test of their own, NAME_apart, so that two
+# cores share a long test.
 function(abbe_test name folders)
-    cmake_parse_arguments(A "INPUT" "LABEL" "DEPS" ${ARGN})
+    cmake_parse_arguments(A "INPUT;INPUT_SUITE;SWEEP" "LABEL;APART" "DEPS" ${ARGN})
     list(TRANSFORM folders REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/tests/\\1/*.cpp")
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folders})
     if(NOT sources)
@@ -88,12 +98,26 @@ function(abbe_test name folders)
     if(NOT A_LABEL STREQUAL statistical OR ABBE_SANITIZE)
         abbe_rarely_run(g test_${name})
     endif()
-    add_test(NAME ${name} COMMAND test_${name})
+    if(A_SWEEP)
+        add_test(NAME ${name} COMMAND test_${name} -tse=sweep)
+        abbe_second_test(${name} sweep program -ts=sweep)
+    elseif(A_APART)
+        add_test(NAME ${name} COMMAND test_${name} -sfe=${A_APART})
+        abbe_second_test(${name} apart ${A_LABEL} -sf=${A_APART})
+    else()
+        add_test(NAME ${name} COMMAND test_${name})
+    endif()
     if(NOT A_LABEL STREQUAL statistical)
         add_dependencies(quick_tests test_${name})
+        if(A_LABEL STREQUAL quick)
+            add_dependencies(unit_tests test_${name})
+        endif()
         if(A_INPUT)
             add_dependencies(input_tests test_${name})
             list(APPEND A_LABEL input)
+        elseif(A_INPUT_SUITE)
+            add_dependencies(input_tests test_${name})
+            abbe_second_test(${name} input input -ts=input)
         endif()
     endif()
     set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}")

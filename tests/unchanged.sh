@@ -30,6 +30,20 @@ unchanged_tests() { # PRESET SHARED_INPUTS
     done
 }
 
+# Those of the files, one a line, that are not as they were when the check of that name passed last; all of them where one of its rules has
+# changed, or with `all`. note_files afterwards, if it passes.
+changed_files() { # CHECK SCOPE RULE… <FILES
+    local now=build/$1.now passed=build/$1.passed rules
+    rules=$(cat "${@:3}" | sha256sum | cut -d ' ' -f 1)
+    xargs -r -d '\n' sha256sum | sed "s/^/$rules /" | sort >"$now"
+    [[ $2 != all && -f $passed ]] || : >"$passed"
+    comm -23 "$now" "$passed" | cut -d ' ' -f 4-
+}
+
+note_files() { # CHECK
+    mv "build/$1.now" "build/$1.passed"
+}
+
 # Leaves stamps of the tests that passed, as a report of ctest has them.
 note_passed() { # PRESET SHARED_INPUTS REPORT
     local name

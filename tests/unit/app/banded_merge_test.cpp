@@ -258,7 +258,7 @@ TEST_CASE("a part made of parts in rows holds what a render of all of their samp
     }
 }
 
-TEST_CASE("damage to layers is found when they are brought") {
+TEST_CASE("damage to layers is found when they are brought" * doctest::test_suite("sweep")) {
     const BandFolder folder;
     const PixelBounds small{0, 0, 17, 1};
     writeSamples(folder / "whole", small, 0, 6, true);

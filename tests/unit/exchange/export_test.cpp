@@ -363,7 +363,7 @@ TEST_CASE("export to glTF: what is read back") {
 
 // Whatever a scene states is written, or said to be missing: nothing crashes, and every example of the reference goes
 // through every writer.
-TEST_CASE("export: every type and property of the language") {
+TEST_CASE("export: every type and property of the language" * doctest::test_suite("sweep")) {
     const schema::TypeTable types = makeTypeTable();
     Exchange ex;
     int tried = 0;
@@ -389,7 +389,7 @@ TEST_CASE("export: every type and property of the language") {
 }
 
 // A property that a scene states changes what is written, or is said to be missing.
-TEST_CASE("export: no property is dropped without a word") {
+TEST_CASE("export: no property is dropped without a word" * doctest::test_suite("sweep")) {
     const schema::TypeTable types = makeTypeTable();
     Exchange ex;
     // What changes no picture, or is the default in the example.

@@ -77,7 +77,7 @@ int shootAt(const Mesh& mesh, Random& random) {
 
 } // namespace
 
-TEST_CASE("mesh: random meshes, sound or not, do no harm") {
+TEST_CASE("mesh: random meshes, sound or not, do no harm" * doctest::test_suite("input")) {
     Random random(123);
     int refused = 0, met = 0;
     for (int i = 0; i < tries(); ++i) {

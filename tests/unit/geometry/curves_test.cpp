@@ -122,7 +122,7 @@ bool soundFrame(const SurfaceHit& h) {
 
 } // namespace
 
-TEST_CASE("curves: segments pass through what their basis promises") {
+TEST_CASE("curves: segments pass through what their basis promises" * doctest::test_suite("input")) {
     const SizedPoint p[] = {{{0, 0, 0}, 1}, {{1, 0, 0}, 2}, {{1, 1, 0}, 3}, {{0, 1, 1}, 5}};
     const auto same = [](Vec3d a, Vec3d b) { return length(a - b) < 1e-12; };
     const CurveSegment linear(CurveBasis::linear, p), bspline(CurveBasis::bspline, p);

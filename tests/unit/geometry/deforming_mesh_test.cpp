@@ -177,7 +177,8 @@ TEST_CASE("deformation: points go along, whether or not faces have materials of 
     }
 }
 
-TEST_CASE("deformation: a mesh in three steps is at every time the mesh that stands there") {
+TEST_CASE("deformation: a mesh in three steps is at every time the mesh that stands there" *
+          doctest::test_suite("input")) {
     const std::vector<MeshData> keys{ball(0), ball(1), ball(2)};
     const DeformingMesh mesh = deforming(keys);
     const auto scene = sceneOf(mesh);
@@ -338,7 +339,7 @@ TEST_CASE("deformation: curves bend and change their width") {
         }
 }
 
-TEST_CASE("deformation: points move, grow and turn") {
+TEST_CASE("deformation: points move, grow and turn" * doctest::test_suite("input")) {
     for (const PointForm form : {PointForm::sphere, PointForm::disk, PointForm::orientedDisk}) {
         CAPTURE(int(form));
         Random random(2);

@@ -213,7 +213,7 @@ TEST_CASE("displacement: normals are continuous across a texture's seams and sha
             CHECK(dot(sharp.mesh.normals[seam.copy + i], sharp.mesh.normals[seam.original + i]) < 0.9f);
 }
 
-TEST_CASE("displacement: rates follow the displaced length and the budget") {
+TEST_CASE("displacement: rates follow the displaced length and the budget" * doctest::test_suite("input")) {
     UvWave wave;
     wave.fu = 60;
     wave.fv = 0;

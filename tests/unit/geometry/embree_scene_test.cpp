@@ -97,7 +97,7 @@ TEST_CASE("scene: each shape is met where it is, with its own binding") {
     CHECK(scene->rejectedRays() == 0);
 }
 
-TEST_CASE("scene: rays that are not finite are refused and counted") {
+TEST_CASE("scene: rays that are not finite are refused and counted" * doctest::test_suite("input")) {
     const Quad quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
     EmbreeSceneBuilder builder;
     builder.addShape(quad, {});
@@ -116,7 +116,7 @@ TEST_CASE("scene: rays that are not finite are refused and counted") {
     CHECK(scene->intersect({{0, 0, 1}, {0, 0, -1}}, hit));
 }
 
-TEST_CASE("scene: empty scenes are built and never met") {
+TEST_CASE("scene: empty scenes are built and never met" * doctest::test_suite("input")) {
     const auto scene = EmbreeSceneBuilder().build();
     SurfaceHit hit;
     CHECK_FALSE(scene->intersect({{0, 0, 1}, {0, 0, -1}}, hit));
@@ -186,7 +186,7 @@ TEST_CASE("scene: instances equal baked geometry, mirrored and sheared too") {
     }
 }
 
-TEST_CASE("scene: an object of several shapes, placed many times beside plain shapes") {
+TEST_CASE("scene: an object of several shapes, placed many times beside plain shapes" * doctest::test_suite("input")) {
     const Quad quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
     const Sphere sphere({0, 0, -2}, 0.5);
     const Mesh mesh(cube({-0.5f, 2, -0.5f}, {0.5f, 3, 0.5f}));

@@ -64,7 +64,8 @@ InstanceComparison compare(const Intersector& a, const Intersector& b, Vec3d cen
 
 } // namespace
 
-TEST_CASE("instance: maps that place nothing are named, small and mirrored ones are not") {
+TEST_CASE("instance: maps that place nothing are named, small and mirrored ones are not" *
+          doctest::test_suite("input")) {
     CHECK_FALSE(Placement::findFault(Transform()));
     CHECK_FALSE(Placement::findFault(Transform::scale({-1, 1e-6, 1e6})));
     CHECK_FALSE(Placement::findFault(Transform::scale({1e-9, 1e-9, 1e-9})));
@@ -127,7 +128,7 @@ TEST_CASE("instance: random maps give the hits of the baked mesh") {
     CHECK(all.differing < all.met / 500);
 }
 
-TEST_CASE("instance: objects in objects are what they would be side by side") {
+TEST_CASE("instance: objects in objects are what they would be side by side" * doctest::test_suite("input")) {
     const Mesh ball(icosphere(2, {}, 0.3));
     const Sphere stone({0, -0.6, 0}, 0.25);
     Random random(23);

@@ -48,7 +48,7 @@ TEST_CASE("mesh: quads are the two triangles that Embree traces, bent ones too")
 }
 
 // docs/hard_cases.md, case 11.
-TEST_CASE("mesh: vertex normals that are absent, zero, not finite or inverted") {
+TEST_CASE("mesh: vertex normals that are absent, zero, not finite or inverted" * doctest::test_suite("input")) {
     MeshData m;
     m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     m.triangles = {{0, 1, 2}};
@@ -76,7 +76,7 @@ TEST_CASE("mesh: vertex normals that are absent, zero, not finite or inverted") 
 }
 
 // docs/hard_cases.md, case 10.
-TEST_CASE("mesh: uvs that give no direction leave a finite frame") {
+TEST_CASE("mesh: uvs that give no direction leave a finite frame" * doctest::test_suite("input")) {
     MeshData m;
     m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     m.triangles = {{0, 1, 2}};
@@ -132,7 +132,7 @@ TEST_CASE("mesh: sampling meets faces in proportion to their area") {
 }
 
 // docs/hard_cases.md, case 9.
-TEST_CASE("cleanMesh: removes faces without area and nothing else") {
+TEST_CASE("cleanMesh: removes faces without area and nothing else" * doctest::test_suite("input")) {
     MeshData m = icosphere(3, {}, 1);
     const std::size_t good = m.triangles.size();
     m.triangles.push_back({0, 0, 1});
@@ -154,7 +154,7 @@ TEST_CASE("cleanMesh: removes faces without area and nothing else") {
     CHECK(m.quads.size() == 1);
 }
 
-TEST_CASE("cleanMesh: small faces of a large mesh stay") {
+TEST_CASE("cleanMesh: small faces of a large mesh stay" * doctest::test_suite("input")) {
     MeshData m;
     m.positions = {{0, 0, 0}, {1e5f, 0, 0}, {0, 1e5f, 0}, {1e-3f, 0, 0}, {0, 1e-3f, 0}};
     m.triangles = {{0, 1, 2}, {0, 3, 4}};
@@ -163,7 +163,7 @@ TEST_CASE("cleanMesh: small faces of a large mesh stay") {
     CHECK(m.triangles.size() == 2);
 }
 
-TEST_CASE("cleanMesh: names what makes a mesh unusable") {
+TEST_CASE("cleanMesh: names what makes a mesh unusable" * doctest::test_suite("input")) {
     MeshData m;
     m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     m.triangles = {{0, 1, 2}};

@@ -104,7 +104,8 @@ TEST_CASE("motion: a group that moves around an object that moves and grows") {
     check(compare(Motion().then(grow).then(Transform::translate({10, 0, 0})).then(orbit), 0, 1));
 }
 
-TEST_CASE("motion: times outside the shutter and NaN are refused, not passed to Embree") {
+TEST_CASE("motion: times outside the shutter and NaN are refused, not passed to Embree" *
+          doctest::test_suite("input")) {
     const Mesh mesh(blade());
     EmbreeSceneBuilder builder;
     builder.setShutter(0, 1);

@@ -134,7 +134,7 @@ MeshData wavy(bool uvs) {
 
 } // namespace
 
-TEST_CASE("dp/du and dp/dv: meshes with and without texture coordinates, boxes, quads") {
+TEST_CASE("dp/du and dp/dv: meshes with and without texture coordinates, boxes, quads" * doctest::test_suite("input")) {
     check(Mesh(wavy(true)));
     check(Mesh(wavy(false)));
     check(Mesh(boxMesh({-0.7, -0.5, -0.6}, {0.7, 0.5, 0.6})));
@@ -228,7 +228,8 @@ TEST_CASE("a turned shape keeps its texture") {
     }
 }
 
-TEST_CASE("degenerate texture coordinates have no derivatives, but finite footprints (case 10)") {
+TEST_CASE("degenerate texture coordinates have no derivatives, but finite footprints (case 10)" *
+          doctest::test_suite("input")) {
     MeshData m;
     m.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     m.quads = {{0, 1, 2, 3}};

@@ -51,7 +51,7 @@ std::unique_ptr<Intersector> pointsIntersector(const Shape& shape) {
 
 } // namespace
 
-TEST_CASE("points: met where their spheres and disks are") {
+TEST_CASE("points: met where their spheres and disks are" * doctest::test_suite("input")) {
     for (PointForm form : kForms) {
         CAPTURE(int(form));
         Random random(3);
@@ -130,7 +130,7 @@ TEST_CASE("points: no ray that leaves a point meets it again") {
             }
 }
 
-TEST_CASE("points: those without width are left out and counted") {
+TEST_CASE("points: those without width are left out and counted" * doctest::test_suite("input")) {
     Random random(5);
     for (PointForm form : kForms) {
         PointData data = cloud(form, 100, 0.1f, random);

@@ -107,7 +107,7 @@ TEST_CASE("subdivision: an infinitely creased cube is a cube") {
     CHECK(diced.seams.size() == 8 * 2 + 12);
 }
 
-TEST_CASE("subdivision: seams keep their sides apart and their positions together") {
+TEST_CASE("subdivision: seams keep their sides apart and their positions together" * doctest::test_suite("input")) {
     const DicedSurface diced = diceLevel(seamedCube(), 3);
     const MeshData& m = diced.mesh;
     REQUIRE(m.uvs.size() == m.positions.size());
@@ -140,7 +140,7 @@ TEST_CASE("subdivision: far from the origin the normals stay") {
     for (std::size_t i = 0; i < here.normals.size(); ++i) CHECK(here.normals[i] == there.normals[i]);
 }
 
-TEST_CASE("subdivision: a deformed cage is diced like the cage at rest") {
+TEST_CASE("subdivision: a deformed cage is diced like the cage at rest" * doctest::test_suite("input")) {
     for (const auto& [name, cage, closed] : namedCages()) {
         CAPTURE(name);
         SubdivisionCage bent = cage;
@@ -187,7 +187,7 @@ TEST_CASE("subdivision: edges are cut to the length asked for") {
     CHECK(plan.bytes <= 1 << 20);
 }
 
-TEST_CASE("subdivision: the budget lowers the rates before anything is made") {
+TEST_CASE("subdivision: the budget lowers the rates before anything is made" * doctest::test_suite("input")) {
     const SubdivisionSurface surface(cubeCage());
     const DicingPlan free = surface.plan({Dicing::Mode::level, 6, {}}, kPlentyOfMemory);
     CHECK(free.coarser == 1);
@@ -215,7 +215,7 @@ TEST_CASE("subdivision: the estimate of triangles is near the truth") {
     }
 }
 
-TEST_CASE("subdivision: faults of cages are found and named") {
+TEST_CASE("subdivision: faults of cages are found and named" * doctest::test_suite("input")) {
     const auto fault = [](auto change) {
         SubdivisionCage cage = cubeCage();
         change(cage);
@@ -246,7 +246,7 @@ TEST_CASE("subdivision: faults of cages are found and named") {
     CHECK(fault([](auto& c) { c.uvCorners.assign(24, 0); }) == "corner 0 names texture vertex 0, but there are 0");
 }
 
-TEST_CASE("subdivision: random cages, sound or not, do no harm") {
+TEST_CASE("subdivision: random cages, sound or not, do no harm" * doctest::test_suite("input")) {
     Random random(99);
     int sound = 0;
     const int count = nightly() ? 10'000 : 1000;

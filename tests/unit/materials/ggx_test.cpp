@@ -121,7 +121,8 @@ Point randomPoint(test::Random& random, int i) {
 }
 
 // Interpolation is worst at the cusps at grazing incidence and at the critical angle of very rough surfaces.
-TEST_CASE("mirror: between nodes the table is right to 1.5e-3, within a degree of grazing to 6e-3") {
+TEST_CASE("mirror: between nodes the table is right to 1.5e-3, within a degree of grazing to 6e-3" *
+          doctest::test_suite("sweep")) {
     test::Random random(1);
     test::Moments all;
     for (int i = 0; i < 400; ++i) {
@@ -134,7 +135,8 @@ TEST_CASE("mirror: between nodes the table is right to 1.5e-3, within a degree o
     CHECK(all.mean() < 3e-4);
 }
 
-TEST_CASE("interface: between nodes the table is right to 3e-3 for indices from 1.1 to 2.6, both sides") {
+TEST_CASE("interface: between nodes the table is right to 3e-3 for indices from 1.1 to 2.6, both sides" *
+          doctest::test_suite("sweep")) {
     test::Random random(2);
     test::Moments all;
     for (int i = 0; i < 400; ++i) {

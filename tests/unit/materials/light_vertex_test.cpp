@@ -250,7 +250,7 @@ double sumTest(const Moments& a, const Moments& b, const Moments& c) {
     return normalTwoSided((a.mean() - b.mean() - c.mean()) / error);
 }
 
-TEST_CASE("light paths bring to the eye what camera paths gather, whatever scatters") {
+TEST_CASE("light paths bring to the eye what camera paths gather, whatever scatters" * doctest::test_suite("sweep")) {
     const int samples = chiSquareSamples() / 8;
     const double level = sidak(1e-3, static_cast<int>(surfaces().size()) * 6);
     for (const Surface& s : surfaces())

@@ -22,7 +22,8 @@ double expected(Vec3d wo, double alphaX, double alphaY) {
     return sum / count;
 }
 
-TEST_CASE("stretched mirror: between nodes the table is right to 3e-3, within a degree of grazing to 1e-2") {
+TEST_CASE("stretched mirror: between nodes the table is right to 3e-3, within a degree of grazing to 1e-2" *
+          doctest::test_suite("sweep")) {
     test::Random random(5);
     test::Moments all;
     for (const auto& [x, y] :

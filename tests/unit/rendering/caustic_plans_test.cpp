@@ -249,7 +249,7 @@ TEST_CASE("pilots: of a size, or none") {
 }
 
 // The smallest are sent whatever the picture is; else a tenth, and the look at the frame, which is a path a pixel.
-TEST_CASE("pilots: a tenth of the rays of a render at most, larger for larger ones") {
+TEST_CASE("pilots: a tenth of the rays of a render at most, larger for larger ones" * doctest::test_suite("sweep")) {
     const TestScene tiny = TestScene::parse(ballPictureText(24, 16));
     const std::uint64_t smallest = renderByPilot(tiny, 1).statistics.pilotRays;
     int before = 0;

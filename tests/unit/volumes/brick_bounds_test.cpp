@@ -85,7 +85,7 @@ TEST_CASE("a constant region is one node, however large") {
     CHECK(bounds.maximum() < 1.00001f);
 }
 
-TEST_CASE("empty, single and far-apart voxels") {
+TEST_CASE("empty, single and far-apart voxels" * doctest::test_suite("input")) {
     CHECK(BrickBounds::build(makeVoxelGrid({}, facts())).empty());
     CHECK(BrickBounds::build(makeVoxelGrid(block({0, 0, 0}, {9, 9, 9}, 0.f), facts())).empty());
     const std::vector<Voxel> corner{{{8, 8, 8}, 1}}; // reaches into eight bricks

@@ -128,7 +128,7 @@ TEST_CASE("in a full box segments follow without gaps and fill it") {
     CHECK(list.back().tFar == doctest::Approx(180));
 }
 
-TEST_CASE("rays that meet nothing, or are none, have no segments") {
+TEST_CASE("rays that meet nothing, or are none, have no segments" * doctest::test_suite("input")) {
     const Scene s(block({0, 0, 0}, {10, 10, 10}, 1));
     const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     CHECK(segments(s.bounds, {{-50, 40, 3}, {1, 0, 0}}).empty());
@@ -148,7 +148,7 @@ TEST_CASE("rays that meet nothing, or are none, have no segments") {
     CHECK(still[0].tFar == kInfinity);
 }
 
-TEST_CASE("single and far-apart voxels are found") {
+TEST_CASE("single and far-apart voxels are found" * doctest::test_suite("input")) {
     const Scene one(std::vector<Voxel>{{{3, 3, 3}, 1}});
     CHECK(segments(one.bounds, {{-1e5, 3, 3}, {1, 0, 0}}).size() == 1);
     const Scene apart(std::vector<Voxel>{{{0, 0, 0}, 1}, {{1'000'000, 0, 0}, 2}, {{-5, 1'000'000, -1'000'000}, 3}});

@@ -60,7 +60,7 @@ std::string shared(const char* name) {
 
 } // namespace
 
-TEST_CASE("what is written is read: scalar and vector grids, in the order asked for") {
+TEST_CASE("what is written is read: scalar and vector grids, in the order asked for" * doctest::test_suite("input")) {
     const Folder folder;
     const std::string path = made(folder, "smoke");
     const VdbRequest requests[] = {{"velocity", VdbUse::vector}, {"heat", VdbUse::amount, true}, {"density"}};
@@ -101,7 +101,7 @@ TEST_CASE("the same seed makes the same volume, another seed another") {
     }
 }
 
-TEST_CASE("missing grids, files and folders are named") {
+TEST_CASE("missing grids, files and folders are named" * doctest::test_suite("input")) {
     const Folder folder;
     const std::string path = made(folder, "fire");
     const VdbFault missing = faultOf(path, {"densiti"});
@@ -114,7 +114,7 @@ TEST_CASE("missing grids, files and folders are named") {
     CHECK(faultOf(made(folder, "smoke"), {"velocity"}).kind == VdbFault::Kind::wrongKind);
 }
 
-TEST_CASE("damaged files are faults, whatever they do to the reader") {
+TEST_CASE("damaged files are faults, whatever they do to the reader" * doctest::test_suite("input")) {
     const Folder folder;
     const std::string good = made(folder, "fire", "24");
     std::ifstream in(good, std::ios::binary);
@@ -151,7 +151,7 @@ TEST_CASE("damaged files are faults, whatever they do to the reader") {
     CHECK(faults > 0);
 }
 
-TEST_CASE("inspection tells what is there") {
+TEST_CASE("inspection tells what is there" * doctest::test_suite("input")) {
     const Folder folder;
     const auto result = inspectVdb(made(folder, "fire"));
     REQUIRE(std::holds_alternative<VdbFileInfo>(result));
@@ -184,7 +184,7 @@ TEST_CASE("conversion resamples and keeps the amount") {
     CHECK(total(out) == doctest::Approx(total(in)).epsilon(0.01));
 }
 
-TEST_CASE("awkward grids are put right or refused, with words") {
+TEST_CASE("awkward grids are put right or refused, with words" * doctest::test_suite("input")) {
     const Folder folder;
     const std::string path = folder.file("cases.vdb");
     REQUIRE(std::system((std::string(ABBE_VDB_CASES) + " " + path).c_str()) == 0);
@@ -235,7 +235,7 @@ TEST_CASE("awkward grids are put right or refused, with words") {
     }
 }
 
-TEST_CASE("NanoVDB files: every packing and every width of numbers") {
+TEST_CASE("NanoVDB files: every packing and every width of numbers" * doctest::test_suite("input")) {
     const Folder folder;
     const std::string path = folder.file("cases.nvdb");
     REQUIRE(std::system((std::string(ABBE_VDB_CASES) + " " + path).c_str()) == 0);
@@ -277,7 +277,7 @@ TEST_CASE("NanoVDB files: every packing and every width of numbers") {
     }
 }
 
-TEST_CASE("files of other programs") {
+TEST_CASE("files of other programs" * doctest::test_suite("input")) {
     if (shared("smoke.vdb").empty()) return;
     const VdbGrid smoke = readOne(shared("smoke.vdb"), {"density"});
     CHECK(smoke.scalar->activeVoxels() > 1000);

@@ -39,7 +39,8 @@ GridBytes copyOf(const VoxelGrid& grid) {
 
 } // namespace
 
-TEST_CASE("the sampler interpolates between voxel centres, across leaves and at negative places") {
+TEST_CASE("the sampler interpolates between voxel centres, across leaves and at negative places" *
+          doctest::test_suite("input")) {
     const auto voxels = randomVoxels(1, 40, 9000, {-19, -20, -21});
     std::map<Key, float> values;
     for (const Voxel& v : voxels) values[{v.place.x, v.place.y, v.place.z}] = v.value;
@@ -83,7 +84,7 @@ TEST_CASE("world bounds hold the support of a turned grid") {
     CHECK(box.upper.y == doctest::Approx(8));
 }
 
-TEST_CASE("empty grids are grids") {
+TEST_CASE("empty grids are grids" * doctest::test_suite("input")) {
     const VoxelGrid grid = makeVoxelGrid({}, facts());
     CHECK(grid.empty());
     CHECK(grid.support().empty());
@@ -91,7 +92,7 @@ TEST_CASE("empty grids are grids") {
     CHECK(grid.sampler().at({0, 0, 0}) == 0);
 }
 
-TEST_CASE("bytes that are no intact grid are not adopted") {
+TEST_CASE("bytes that are no intact grid are not adopted" * doctest::test_suite("input")) {
     const VoxelGrid grid = makeVoxelGrid(randomVoxels(3, 200, 2000), facts());
     CHECK(VoxelGrid::adopt(copyOf(grid), facts()));
     CHECK_FALSE(VectorGrid::adopt(copyOf(grid), facts()));
