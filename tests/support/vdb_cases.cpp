@@ -40,6 +40,24 @@ FloatGrid::Ptr spoilt() {
     return grid;
 }
 
+// Tiles of 8³, 128³ and 4096³ voxels, one of them sound.
+FloatGrid::Ptr spoiltTiles() {
+    auto grid = named<FloatGrid>("spoilt-tiles");
+    grid->tree().addTile(1, Coord(0, 0, 0), std::numeric_limits<float>::quiet_NaN(), true);
+    grid->tree().addTile(1, Coord(8, 0, 0), 2.f, true);
+    grid->tree().addTile(2, Coord(128, 0, 0), -2.f, true);
+    grid->tree().addTile(3, Coord(4096, 0, 0), std::numeric_limits<float>::infinity(), true);
+    return grid;
+}
+
+// A tile and a voxel of vectors.
+Vec3DGrid::Ptr gale() {
+    auto grid = named<Vec3DGrid>("gale");
+    grid->tree().addTile(1, Coord(0, 0, 0), Vec3d(1, 2, 3), true);
+    grid->getAccessor().setValue(Coord(20, 0, 0), Vec3d(4, 5, 6));
+    return grid;
+}
+
 FloatGrid::Ptr withBackground() {
     auto grid = FloatGrid::create(0.5f);
     grid->setName("background");
@@ -133,6 +151,8 @@ int main(int argc, char** argv) {
                      block<Int32Grid>("integer", 3),
                      block<BoolGrid>("mask", true),
                      block<Vec3DGrid>("wind", Vec3d(1, 2, 3)),
+                     spoiltTiles(),
+                     gale(),
                      placed("frustum", frustum),
                      placed("flat", std::make_shared<math::ScaleMap>(Vec3d(1e-14, 1e17, 1e17))),
                      turned()};

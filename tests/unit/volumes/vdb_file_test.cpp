@@ -199,6 +199,16 @@ TEST_CASE("awkward grids are put right or refused, with words" * doctest::test_s
     CHECK(spoilt.notes[1].find("1 values are negative") != std::string::npos);
     CHECK(spoilt.notes[2].find("1 inactive") != std::string::npos);
 
+    const VdbGrid tiles = readOne(path, {"spoilt-tiles"});
+    CHECK(tiles.scalar->activeVoxels() == 512);
+    CHECK(tiles.scalar->minimum() == 2);
+    CHECK(tiles.scalar->sampler().at({3, 3, 3}) == 0);
+    CHECK(tiles.scalar->sampler().at({11, 3, 3}) == 2);
+    CHECK(tiles.scalar->sampler().at({200, 50, 50}) == 0);
+    REQUIRE(tiles.notes.size() == 2);
+    CHECK(tiles.notes[0].find("2 values are not finite") != std::string::npos);
+    CHECK(tiles.notes[1].find("1 values are negative") != std::string::npos);
+
     const VdbGrid background = readOne(path, {"background"});
     CHECK(background.scalar->sampler().at({30, 0, 0}) == 0);
     CHECK(background.scalar->sampler().at({2, 2, 2}) == 1);
@@ -216,6 +226,10 @@ TEST_CASE("awkward grids are put right or refused, with words" * doctest::test_s
     CHECK(readOne(path, {"mask"}).scalar->sampler().at({1, 1, 2}) == 1);
     CHECK(readOne(path, {"wind", VdbUse::vector}).vector->sampler().at({1, 1, 2}) == Vec3(1, 2, 3));
 
+    const VdbGrid gale = readOne(path, {"gale", VdbUse::vector});
+    CHECK(gale.vector->sampler().at({3, 3, 3}) == Vec3(1, 2, 3));
+    CHECK(gale.vector->sampler().at({20, 0, 0}) == Vec3(4, 5, 6));
+
     CHECK(faultOf(path, {"wind"}).kind == VdbFault::Kind::wrongKind);
     CHECK(faultOf(path, {"frustum"}).kind == VdbFault::Kind::transform);
     CHECK(faultOf(path, {"flat"}).kind == VdbFault::Kind::transform);
@@ -230,6 +244,11 @@ TEST_CASE("awkward grids are put right or refused, with words" * doctest::test_s
     REQUIRE(std::holds_alternative<VdbFileInfo>(result));
     for (const VdbGridInfo& g : std::get<VdbFileInfo>(result).grids) {
         if (g.name == "spoilt") CHECK(g.notFinite + g.negative + g.inactiveValues == 4);
+        if (g.name == "spoilt-tiles") {
+            CHECK(g.notFinite == 2);
+            CHECK(g.negative == 1);
+            CHECK(g.maximum == 2);
+        }
         if (g.name == "frustum") CHECK_FALSE(g.affine);
         if (g.name == "flat") CHECK(g.singular);
     }
