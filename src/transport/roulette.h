@@ -62,7 +62,7 @@ class PilotFilm final : public Film {
 class RouletteReference {
   public:
     static constexpr float kFloor = 0.05f;
-    static constexpr float kThreshold = 0.3f; // t: the best of 0.15 to 0.5 in the Cornell box, and flat around it
+    static constexpr float kThreshold = 0.2f; // t: docs/decisions/011-roulette.md has the figures of other values
 
     // Every pixel counts as average.
     RouletteReference() = default;
