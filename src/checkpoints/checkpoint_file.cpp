@@ -7,6 +7,7 @@
 #include "io/file.h"
 
 #include <cstring>
+#include <future>
 #include <numeric>
 #include <utility>
 
@@ -129,9 +130,12 @@ void writeLight(AtomicFile& file, const FilmPlanes& planes, RenderState& state) 
     }
 }
 
-// Row by row of tiles, since the film has the layers of no more at a time; each row is packed by many threads.
+// Row by row of tiles, since the film has the layers of no more at a time; each row is packed by many threads, and
+// written while the next one is fetched.
 void writeRows(AtomicFile& file, const RenderState& state, const LayerFetch& fetch, bool ofLightPaths) {
     const auto columns = state.grid().columns();
+    const auto policy = threadCount() > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    std::future<void> written;
     for (std::size_t first = 0; first < state.pixelTileCount(); first += columns) {
         PixelBounds rows = state.bounds();
         rows.y0 = state.pixels(first).y0;
@@ -142,8 +146,12 @@ void writeRows(AtomicFile& file, const RenderState& state, const LayerFetch& fet
             tiles[i].copy(first + i);
             tiles[i].hash();
         });
-        for (const TileBlocks& tile : tiles) tile.write(file);
+        if (written.valid()) written.get();
+        written = std::async(policy, [&file, tiles = std::move(tiles)] {
+            for (const TileBlocks& tile : tiles) tile.write(file);
+        });
     }
+    if (written.valid()) written.get();
 }
 
 void begin(AtomicFile& file, const CheckpointHeader& header) {

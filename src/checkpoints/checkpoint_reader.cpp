@@ -14,6 +14,7 @@ namespace abbe {
 CheckpointReader::CheckpointReader(const std::string& path) : path_(path), file_(path) {
     if (!file_.good()) throw IoError(fmt::format("cannot read `{}`: {}", path, file_.why()));
     readHeader();
+    picture_ = position_;
 }
 
 void CheckpointReader::damaged(std::uint64_t at, const char* how) const {
@@ -206,6 +207,17 @@ RenderState CheckpointReader::addPicture(const FilmPlanes& planes) {
     state.work = header_.work;
     state.setPilot(header_.pilot);
     return state;
+}
+
+void CheckpointReader::expectPicture(const std::stop_token& stop) const {
+    BlockHead head;
+    for (std::uint64_t at = picture_; !stop.stop_requested() && at < file_.size();) {
+        if (file_.copyAt(at, {reinterpret_cast<char*>(&head), sizeof head}) != sizeof head) return;
+        if (head.size > file_.size() - at) return;
+        const std::uint64_t size = sizeof head + head.size + sizeof(Block::hash);
+        if (head.kind != layerBlock && head.kind != layerSplatBlock) file_.expect(at, size);
+        at += size;
+    }
 }
 
 void CheckpointReader::addLayers(const FilmPlanes& planes, PixelBounds within, bool ofLightPaths,

@@ -6,6 +6,7 @@
 #include "checkpoints/checkpoint_records.h"
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ class CheckpointReader {
 
     // The same in two steps: all but the layers, of which the film needs no pixel,
     RenderState addPicture(const FilmPlanes&);
+    // which may be said early by another thread. Of a damaged file as far as it can be followed.
+    void expectPicture(const std::stop_token&) const;
     // Memory that is used again by whoever adds layers, one thread at a time.
     struct Scratch {
         std::vector<std::byte> block, plane;
@@ -78,7 +81,7 @@ class CheckpointReader {
 
     std::string path_;
     RegularFile file_;
-    std::uint64_t position_ = 0;
+    std::uint64_t position_ = 0, picture_ = 0; // what is read next; where what follows the header begins
     Block block_;
     CheckpointHeader header_;
     Places layers_, layerSplats_;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <numeric>
+#include <system_error>
 
 namespace abbe {
 
@@ -141,6 +142,8 @@ void RenderParts::checkComplete() const {
 
 namespace {
 
+constexpr std::size_t kExpectedAtOnce = 16; // parts
+
 // Adds what another range of samples of the same tiles did.
 void addTiles(RenderState& total, const RenderState& state) {
     for (std::size_t i = 0; i < total.tileCount(); ++i) {
@@ -155,7 +158,21 @@ void addTiles(RenderState& total, const RenderState& state) {
 
 } // namespace
 
+// What is read first lies in small blocks between the large ones of layers. A disk that is asked for one after the
+// other is waited for most of the time, so it is asked for those of many parts at once; not of all, since there may be
+// more than the system has memory for.
+std::vector<std::jthread> RenderParts::expectPictures(std::size_t first) const {
+    std::vector<std::jthread> threads;
+    try {
+        for (std::size_t i = first; i < std::min(first + kExpectedAtOnce, readers_.size()); ++i)
+            threads.emplace_back([this, i](const std::stop_token& stop) { readers_[i].expectPicture(stop); });
+    } catch (const std::system_error&) { // no more threads: the rest is waited for
+    }
+    return threads;
+}
+
 RenderStatistics RenderParts::addTo(PixelFilm& film) {
+    std::vector<std::jthread> ahead;
     const FilmPlanes planes = film.planes();
     RenderStatistics statistics;
     PathTally sum;
@@ -164,7 +181,9 @@ RenderStatistics RenderParts::addTo(PixelFilm& film) {
         total_.emplace(first.bounds, first.first, first.lightBlocks);
         total_->setPilot(first.pilot);
     }
-    for (CheckpointReader& reader : readers_) {
+    for (std::size_t i = 0; i < readers_.size(); ++i) {
+        if (i % kExpectedAtOnce == 0) ahead = expectPictures(i);
+        CheckpointReader& reader = readers_[i];
         const CheckpointHeader& header = reader.header();
         const RenderState state = reader.addPicture(planes);
         const bool finished = state.even() && state.reached() == header.last;
@@ -190,13 +209,16 @@ RenderStatistics RenderParts::addTo(PixelFilm& film) {
 
 // Column by column of tiles and of each part by part: sums of a tile are in the cache of one core until all parts are
 // in them. Where parts begin at other pixels than the film does, as crops may, tiles are read for each column and row
-// that they reach into.
+// that they reach into. The row below is said to be wanted, so that the disk is at work while this one is added up.
 void RenderParts::addLayers(const FilmPlanes& planes, PixelBounds rows, bool ofLightPaths) const {
     const TileGrid grid(rows);
     parallelFor(grid.count(), [&](std::size_t i) {
         CheckpointReader::Scratch scratch;
-        for (const CheckpointReader& reader : readers_) reader.expectLayers(grid.pixels(i), ofLightPaths);
-        for (const CheckpointReader& reader : readers_) reader.addLayers(planes, grid.pixels(i), ofLightPaths, scratch);
+        const PixelBounds here = grid.pixels(i);
+        const PixelBounds below{here.x0, here.y1, here.x1, here.y1 + TileGrid::kSize};
+        for (const PixelBounds& wanted : {here, below})
+            for (const CheckpointReader& reader : readers_) reader.expectLayers(wanted, ofLightPaths);
+        for (const CheckpointReader& reader : readers_) reader.addLayers(planes, here, ofLightPaths, scratch);
     });
 }
 

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace abbe {
@@ -45,6 +46,7 @@ class RenderParts {
     void write(const std::string& path, PixelFilm&);
 
   private:
+    std::vector<std::jthread> expectPictures(std::size_t first) const;
     void addLayers(const FilmPlanes&, PixelBounds rows, bool ofLightPaths) const;
     void checkFacts(const std::vector<Fact>& identity) const;
     void checkDisjoint() const;

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
@@ -31,28 +32,39 @@ class PlaneMaker {
         work();
         if (plan_.spectral) spectrum();
         mattes();
+        fill();
+        roundParts();
         return std::move(result_);
     }
 
   private:
     using Values = std::function<void(std::size_t pixel, float* const* out)>;
+    // Planes that are filled together.
+    struct Filling {
+        std::size_t first, count;
+        Values values;
+    };
 
-    // Adds planes NAME.channel and fills them.
-    template <std::size_t N> void add(const std::string& name, const char* const (&channels)[N], const Values& values) {
-        const std::size_t first = result_.planes.size();
+    // Adds planes NAME.channel, which fill() fills.
+    template <std::size_t N> void add(const std::string& name, const char* const (&channels)[N], Values values) {
+        fillings_.push_back({result_.planes.size(), N, std::move(values)});
         for (const char* channel : channels)
             result_.planes.push_back(
                 {name.empty() ? channel : name + "." + channel, std::vector<float>(total_.size())});
-        fill(first, N, values);
     }
-    void fill(std::size_t first, std::size_t count, const Values& values) {
-        const auto width = static_cast<std::size_t>(picture_.bounds.width());
-        parallelFor(total_.size() / width, [&](std::size_t row) {
-            for (std::size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
-                float* out[9];
-                for (std::size_t c = 0; c < count; ++c) out[c] = &result_.planes[first + c].values[pixel];
-                values(pixel, out);
-            }
+    // All planes of a few pixels, then of the next ones: the sums of these pixels stay in the cache of a core until
+    // they have gone into each plane.
+    void fill() {
+        constexpr std::size_t kPixels = 64;
+        parallelFor((total_.size() + kPixels - 1) / kPixels, [&](std::size_t portion) {
+            const std::size_t begin = portion * kPixels, end = std::min(begin + kPixels, total_.size());
+            for (const Filling& filling : fillings_)
+                for (std::size_t pixel = begin; pixel < end; ++pixel) {
+                    float* out[9];
+                    for (std::size_t c = 0; c < filling.count; ++c)
+                        out[c] = &result_.planes[filling.first + c].values[pixel];
+                    filling.values(pixel, out);
+                }
         });
     }
 
@@ -94,25 +106,25 @@ class PlaneMaker {
         const auto& samples = prefix.empty() ? total_ : inHalf_;
         if (plan_.albedo) {
             const Matrix3 toSpace = view_.space->fromXyz(); // seen by its white: no balance, no exposure
-            add(prefix + "albedo", kRgb, [&, toSpace](std::size_t i, float* const* out) {
+            add(prefix + "albedo", kRgb, [this, toSpace, halves, &samples](std::size_t i, float* const* out) {
                 const Xyz mean = three(i, at_.albedo, halves) * inverse(samples[i]);
                 store(toSpace.apply<Vec3d>(mean), out);
             });
         }
         if (plan_.normal)
-            add(prefix + "normal", kXyz, [&](std::size_t i, float* const* out) {
+            add(prefix + "normal", kXyz, [this, halves, &samples](std::size_t i, float* const* out) {
                 const Xyz n = three(i, at_.normal, halves) * inverse(sum(i, at_.looks, halves));
                 store({n.x, n.y, n.z}, out);
             });
         if (plan_.depth) {
             constexpr const char* kZ[] = {"Z"};
-            add(prefix + "depth", kZ, [&](std::size_t i, float* const* out) {
+            add(prefix + "depth", kZ, [this, halves](std::size_t i, float* const* out) {
                 *out[0] = static_cast<float>(sum(i, at_.depth, halves) * inverse(sum(i, at_.surface, halves)));
             });
         }
         if (!prefix.empty()) return;
         if (plan_.position)
-            add("position", kXyz, [&](std::size_t i, float* const* out) {
+            add("position", kXyz, [this, halves](std::size_t i, float* const* out) {
                 const double met = sum(i, at_.surface, halves);
                 const Xyz p = three(i, at_.position, halves) * inverse(met);
                 store(met > 0 ? Vec3d{p.x, p.y, p.z} + view_.origin : Vec3d{}, out);
@@ -120,7 +132,7 @@ class PlaneMaker {
         // Right and up, as compositing programs count.
         if (plan_.motion) {
             constexpr const char* kMotion[] = {"u", "v"};
-            add("forward", kMotion, [&](std::size_t i, float* const* out) {
+            add("forward", kMotion, [this, halves](std::size_t i, float* const* out) {
                 const double followed = inverse(sum(i, at_.followed, halves));
                 *out[0] = static_cast<float>(sum(i, at_.motion, halves) * followed);
                 *out[1] = static_cast<float>(0 - sum(i, at_.motion + 1, halves) * followed);
@@ -128,7 +140,7 @@ class PlaneMaker {
         }
         if (plan_.uv) {
             constexpr const char* kUv[] = {"U", "V"};
-            add("uv", kUv, [&](std::size_t i, float* const* out) {
+            add("uv", kUv, [this, halves](std::size_t i, float* const* out) {
                 for (int c = 0; c < 2; ++c)
                     *out[c] = static_cast<float>(sum(i, at_.uv + c, halves) * inverse(sum(i, at_.surface, halves)));
             });
@@ -139,7 +151,7 @@ class PlaneMaker {
         const PixelBounds b = picture_.bounds;
         const int end = (film_.replicates() + 1) / 2;
         constexpr const char* kHalf[] = {"R", "G", "B"};
-        add("half", kHalf, [&](std::size_t i, float* const* out) {
+        add("half", kHalf, [this, b, end](std::size_t i, float* const* out) {
             const int x = b.x0 + static_cast<int>(i % static_cast<std::size_t>(b.width()));
             const int y = b.y0 + static_cast<int>(i / static_cast<std::size_t>(b.width()));
             store(view_.fromXyz.apply<Vec3d>(film_.mean(x, y, 0, end) * view_.scale), out);
@@ -148,7 +160,7 @@ class PlaneMaker {
     }
 
     void part(const std::string& name, int offset) {
-        add(name, kRgb, [&](std::size_t i, float* const* out) {
+        add(name, kRgb, [this, offset](std::size_t i, float* const* out) {
             const Xyz mean = three(i, offset, layers_.halves()) * (inverse(total_[i]) * view_.scale) +
                              Xyz{splats(i, offset), splats(i, offset + 1), splats(i, offset + 2)};
             store(view_.fromXyz.apply<Vec3d>(mean), out);
@@ -162,6 +174,11 @@ class PlaneMaker {
         const std::size_t components = result_.planes.size();
         if (plan_.components)
             for (int c = 0; c < 3; ++c) part(kComponents[c], at_.components + 3 * c);
+        partitions_ = {first, components, result_.planes.size()};
+    }
+
+    void roundParts() {
+        const auto [first, components, last] = partitions_;
         std::span<float> wholes[] = {picture_.r, picture_.g, picture_.b};
         for (std::size_t c = 0; c < 3; ++c) {
             const auto partition = [&](std::size_t start, std::size_t end) {
@@ -169,8 +186,7 @@ class PlaneMaker {
                 for (std::size_t p = start + c; p < end; p += 3) planes.emplace_back(result_.planes[p].values);
                 return planes;
             };
-            std::vector<Partition> partitions{partition(first, components),
-                                              partition(components, result_.planes.size())};
+            std::vector<Partition> partitions{partition(first, components), partition(components, last)};
             std::erase_if(partitions, [](const Partition& p) { return p.empty(); });
             if (!partitions.empty()) result_.unequalSums += roundToSum(wholes[c], partitions);
         }
@@ -178,13 +194,15 @@ class PlaneMaker {
 
     void work() {
         constexpr const char *kCount[] = {"N"}, *kSeconds[] = {"S"};
-        if (plan_.samples) add("samples", kCount, [&](std::size_t i, float* const* out) { *out[0] = total_[i]; });
+        if (plan_.samples) add("samples", kCount, [this](std::size_t i, float* const* out) { *out[0] = total_[i]; });
         if (plan_.seconds)
-            add("seconds", kSeconds,
-                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.seconds(first_ + i)); });
+            add("seconds", kSeconds, [this](std::size_t i, float* const* out) {
+                *out[0] = static_cast<float>(layers_.seconds(first_ + i));
+            });
         if (plan_.invalid)
-            add("invalid", kCount,
-                [&](std::size_t i, float* const* out) { *out[0] = static_cast<float>(layers_.invalid(first_ + i)); });
+            add("invalid", kCount, [this](std::size_t i, float* const* out) {
+                *out[0] = static_cast<float>(layers_.invalid(first_ + i));
+            });
     }
 
     // Names and attributes of [Fichet2021].
@@ -195,7 +213,7 @@ class PlaneMaker {
             std::ranges::replace(wavelength, '.', ',');
             const std::string channel = wavelength + "nm";
             const char* const channels[] = {channel.c_str()};
-            add("S0", channels, [&, b](std::size_t i, float* const* out) {
+            add("S0", channels, [this, b](std::size_t i, float* const* out) {
                 const int at = at_.spectral + b;
                 *out[0] =
                     static_cast<float>(sum(i, at, layers_.halves()) * inverse(total_[i]) * view_.scale + splats(i, at));
@@ -216,7 +234,7 @@ class PlaneMaker {
         if (plan_.materials) matte(Matte::materials, "CryptoMaterial");
         const auto ids = [&](Matte m, const std::string& name) {
             constexpr const char* kId[] = {"id"};
-            add(name, kId, [&](std::size_t i, float* const* out) {
+            add(name, kId, [this, m](std::size_t i, float* const* out) {
                 const auto seen = layers_.coverage(first_ + i, m);
                 const auto most = std::ranges::max_element(seen, {}, &Coverage::samples);
                 *out[0] = most == seen.end() ? 0.f : static_cast<float>(most->thing + 1);
@@ -239,6 +257,8 @@ class PlaneMaker {
     const std::array<double, kSplatKinds> splats_{
         static_cast<double>(film_.splatCount(SplatKind::lightPath, 0, film_.replicates())),
         static_cast<double>(film_.splatCount(SplatKind::merged, 0, film_.replicates()))};
+    std::vector<Filling> fillings_;
+    std::array<std::size_t, 3> partitions_{}; // planes where groups begin, components begin, and these end
     LayerPlanes result_;
 };
 
@@ -399,24 +419,32 @@ class Rounding {
     std::size_t i_;
 };
 
+// False, and nothing was changed, if a partition misses the whole by more than rounding can.
+bool roundOne(float& whole, std::span<Rounding> roundings) {
+    if (!std::ranges::all_of(roundings, [&](const Rounding& r) { return r.sound(whole); })) return false;
+    if (std::ranges::all_of(roundings, [&](Rounding& r) { return r.reach(whole); })) return true;
+    float largest = std::abs(whole);
+    for (const Rounding& r : roundings) largest = std::max(largest, r.magnitude());
+    const float step = std::ldexp(1.f, std::ilogb(largest) - 22);
+    whole = std::nearbyint(whole / step) * step;
+    for (Rounding& r : roundings) r.quantise(whole, step);
+    return true;
+}
+
 } // namespace
 
 std::size_t roundToSum(std::span<float> whole, std::span<const Partition> partitions) {
-    std::size_t missed = 0;
-    for (std::size_t i = 0; i < whole.size(); ++i) {
+    constexpr std::size_t kPortion = 1024;
+    std::atomic<std::size_t> missed = 0;
+    parallelFor((whole.size() + kPortion - 1) / kPortion, [&](std::size_t portion) {
         std::vector<Rounding> roundings;
-        for (const Partition& parts : partitions) roundings.emplace_back(parts, i);
-        if (!std::ranges::all_of(roundings, [&](const Rounding& r) { return r.sound(whole[i]); })) {
-            ++missed;
-            continue;
+        const std::size_t begin = portion * kPortion, end = std::min(begin + kPortion, whole.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            roundings.clear();
+            for (const Partition& parts : partitions) roundings.emplace_back(parts, i);
+            if (!roundOne(whole[i], roundings)) ++missed;
         }
-        if (std::ranges::all_of(roundings, [&](Rounding& r) { return r.reach(whole[i]); })) continue;
-        float largest = std::abs(whole[i]);
-        for (const Rounding& r : roundings) largest = std::max(largest, r.magnitude());
-        const float step = std::ldexp(1.f, std::ilogb(largest) - 22);
-        whole[i] = std::nearbyint(whole[i] / step) * step;
-        for (Rounding& r : roundings) r.quantise(whole[i], step);
-    }
+    });
     return missed;
 }
 

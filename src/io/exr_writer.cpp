@@ -27,6 +27,7 @@
 #include <cmath>
 #include <exception>
 #include <fmt/format.h>
+#include <future>
 #include <map>
 #include <string_view>
 
@@ -168,19 +169,26 @@ struct RowFault {
     std::exception_ptr why;
 };
 
-// Calls write(group, count) for as many rows at a time as all threads have lines to compress.
+// Calls write(group, count) for as many rows at a time as all threads have lines to compress. The next ones are made
+// meanwhile: each of the two has moments in which one thread alone is at work.
 template <typename Write>
 void forRowGroups(const ExrPicture& p, const ExrRows& rows, ExrReport& report, const Write& write) {
     const int step = kExrRows * threadCount();
-    for (int y = p.window.y0; y < p.window.y1; y += step) {
-        const int end = std::min(y + step, p.window.y1);
-        std::vector<std::span<const float>> more;
+    const auto endOf = [&](int y) { return std::min(y + step, p.window.y1); };
+    const auto make = [&](int y) {
+        flushDenormals();
         try {
-            more = rows ? rows(y, end) : rowsOf(p, y, end);
+            return rows ? rows(y, endOf(y)) : rowsOf(p, y, endOf(y));
         } catch (...) {
             throw RowFault{std::current_exception()};
         }
-        write(RowGroup(p, y, end, std::move(more), report), end - y);
+    };
+    const auto policy = threadCount() > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    auto next = std::async(std::launch::deferred, make, p.window.y0);
+    for (int y = p.window.y0; y < p.window.y1; y += step) {
+        std::vector<std::span<const float>> more = next.get();
+        if (endOf(y) < p.window.y1) next = std::async(policy, make, endOf(y));
+        write(RowGroup(p, y, endOf(y), std::move(more), report), endOf(y) - y);
     }
 }
 

@@ -52,8 +52,8 @@ struct ExrReport {
     std::vector<std::string> leftOut; // channels that an ACES container cannot hold
 };
 
-// Values of the channels `more` in the rows [y0, y1) of the data window, until the next call; whole rows of all
-// columns. What R G B have there counts as soon as it returns. From the top, each row once.
+// Values of the channels `more` in the rows [y0, y1) of the data window, until the next call but one; from the top,
+// whole rows, each once; one call at a time, from any thread. What R G B have there counts as soon as it returns.
 using ExrRows = std::function<std::vector<std::span<const float>>(int y0, int y1)>;
 
 // An ACES container holds R G B alone: other channels are left out and reported.

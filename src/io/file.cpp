@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -31,6 +32,8 @@ LargeFile::LargeFile(const std::string& path) {
 namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 16;
+// So much is sent to the disk while more is made, so that commit() waits for little.
+constexpr std::uint64_t kSentAtOnce = std::uint64_t{32} << 20;
 
 // In a folder where everybody may make files, a link may have been put in the way of what is written there. The rule is
 // that of Linux for opening files (protected_symlinks), which renaming does not have.
@@ -76,6 +79,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), temporary_(writab
 }
 
 void AtomicFile::put(std::span<const char> bytes) {
+    const std::uint64_t sent = begin_ / kSentAtOnce * kSentAtOnce;
     while (!bytes.empty()) {
         const ssize_t written =
             ::pwrite(temporary_.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(begin_));
@@ -84,6 +88,10 @@ void AtomicFile::put(std::span<const char> bytes) {
         begin_ += static_cast<std::uint64_t>(written);
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
+    if (begin_ < sent + kSentAtOnce) return;
+    // Starts it; its faults are those of commit().
+    ::sync_file_range(temporary_.descriptor(), static_cast<off_t>(sent), static_cast<off_t>(begin_ - sent),
+                      SYNC_FILE_RANGE_WRITE);
 }
 
 void AtomicFile::flush() {

@@ -2,6 +2,7 @@
 
 #include "app/identity.h"
 #include "io/exr_deep.h"
+#include "io/exr_reader.h"
 #include "io/file.h"
 #include "io/png_writer.h"
 #include "packs/unpacked.h"
@@ -82,6 +83,18 @@ std::string deepPath(const std::string& imagePath) {
     return std::filesystem::path(imagePath).replace_extension(".deep.exr").string();
 }
 
+bool isForeignDeep(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;
+    try {
+        const ExrInfo info = readExrInfo(path);
+        return !info.deep ||
+               std::ranges::find(info.attributes, "abbe.version", &ImageAttribute::name) == info.attributes.end();
+    } catch (const IoError&) {
+        return true;
+    }
+}
+
 namespace {
 
 PixelWindow windowOf(const PixelBounds& b) { return {b.x0, b.y0, b.x1, b.y1}; }
@@ -143,6 +156,7 @@ class RowSource {
     std::vector<std::span<const float>> operator()(int y0, int y1, const DeepRows& deep) {
         const ResolvedImage& image = shot_.image;
         const auto width = static_cast<std::size_t>(image.bounds.width());
+        std::swap(rows_, written_);
         rows_ = shot_.rows(y0, y1);
         unequalSums_ += rows_.layers.unequalSums;
         if (deep) deep(pictureOf(std::move(*rows_.deep)));
@@ -158,7 +172,7 @@ class RowSource {
 
   private:
     FilmPicture& shot_;
-    FilmPicture::Rows rows_;
+    FilmPicture::Rows rows_, written_; // the last ones, and those before them
     std::size_t unequalSums_ = 0;
 };
 

@@ -35,6 +35,8 @@ std::string writeFault(const std::string& path);
 
 // Where the deep samples of an image go: x.deep.exr beside x.exr.
 std::string deepPath(const std::string& imagePath);
+// Whether a file is there that is no deep image by this program, and must not be lost unasked.
+bool isForeignDeep(const std::string& path);
 
 // With the deep image, if there is one; both row by row. Throws IoError, and what the picture's source of layers
 // throws. Warnings (values that half floats cannot hold, channels left out) go to the list.

@@ -27,6 +27,24 @@ TEST_CASE("packed bytes are what they were, whatever they are") {
     }
 }
 
+// Whatever the processor has for it: parts are made on one machine and read on another.
+TEST_CASE("packed bytes are flags and then the bytes that are not zero") {
+    std::mt19937 random(3);
+    for (const std::size_t words : {1, 7, 8, 9, 24, 41}) {
+        std::vector<std::byte> bytes(8 * words), flags(words), kept, packed;
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            if (random() % 2 == 0) continue;
+            bytes[i] = static_cast<std::byte>(1 + random() % 255);
+            flags[i / 8] |= static_cast<std::byte>(1u << i % 8);
+            kept.push_back(bytes[i]);
+        }
+        appendPacked(bytes, packed);
+        std::vector<std::byte> expected = flags;
+        expected.insert(expected.end(), kept.begin(), kept.end());
+        CHECK(packed == expected);
+    }
+}
+
 TEST_CASE("nothing larger than eight times the packed bytes is made") {
     std::vector<std::byte> out;
     const std::vector<std::byte> packed(8);

@@ -486,3 +486,27 @@ TEST_CASE("of other programs' files, short names are those of their parts, and o
     CHECK(readExrChannel(path, "Y") == values);
     CHECK(readExrChannel(path, "right.Y") == others);
 }
+
+TEST_CASE("rows that are made while others are written are the picture's, and their faults come out") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "x.exr";
+    constexpr int kHeight = 40 * kExrRows + 3;
+    TestPicture test({0, 0, 5, kHeight}, {0, 0, 5, kHeight});
+    const std::vector<float> whole = test.variance;
+    test.picture.more = {{"depth.Z", {}}};
+    std::vector<float> held[2]; // as long as they are promised to be
+    int calls = 0, failing = -1;
+    const ExrRows rows = [&](int y0, int y1) {
+        if (calls == failing) throw std::out_of_range("no more rows");
+        std::vector<float>& here = held[calls++ % 2];
+        here.assign(whole.begin() + 5 * y0, whole.begin() + 5 * y1);
+        return std::vector<std::span<const float>>{here};
+    };
+    writeExr(path, test.picture, rows);
+    CHECK(readExrChannel(path, "depth.Z") == whole);
+    for (failing = 0; failing < 2; ++failing) {
+        calls = 0;
+        CHECK_THROWS_AS(writeExr(path, test.picture, rows), std::out_of_range);
+        CHECK(readExrChannel(path, "depth.Z") == whole); // the older file
+    }
+}
