@@ -115,7 +115,7 @@ constexpr CodeInfo kCodes[] = {
     {"E0416", "the scene cannot be packed", "A file that the scene reads could not be given a name in the pack."},
     {"E0403", "the environment cannot be used", "The image was read, but no environment can be made of it; the message says why."},
     {"E0404", "a file does not fit into memory", "What is in it would take more than `--memory` allows or, without it, than the machine, its control group or `ulimit` leave. The message has the amounts; nothing was read."},
-    {"E0430", "the image cannot be written", "Found out before rendering: the folder does not exist, or it cannot be written to, or the name belongs to a folder or a device. `-o FILE` writes the image elsewhere."},
+    {"E0430", "the image cannot be written", "Found out before rendering: the folder does not exist, or it cannot be written to, or the name belongs to a folder or a device. Or a file of another program has a name that follows from that of the image: that of the deep image `x.deep.exr`, or, with `--png` or a view on the command line, that of `x.png`. `-o FILE` writes the image elsewhere, `--png=FILE` the PNG."},
     {"E0431", "the image must be an EXR", "`-o` and the film's `output` name an OpenEXR file. A PNG through a display view is written beside it; `--png=FILE` names that one."},
     {"E0432", "the picture must be a PNG", "`abbe convert` and `--png=FILE` write PNG and nothing else, so the name has to end in `.png`. Other programs make JPEG, TIFF and so on of that, or of the EXR."},
     {"E0433", "the number of a frame in two places", "In the name of an animation's images one run of `#` stands for the number of the frame: `shot.####.exr`. Folders keep theirs."},

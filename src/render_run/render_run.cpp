@@ -106,6 +106,10 @@ ExitCode RenderRun::checkOutputs() {
         if (std::string fault = writeFault(path); !fault.empty())
             return refuse("E0430", std::move(fault), "`-o FILE` writes the image elsewhere", ExitCode::system);
     }
+    if (!summary_.deep.empty() && isForeignDeep(summary_.deep))
+        return refuse("E0430", fmt::format("`{}` is there already, and was not made by this program", summary_.deep),
+                      "move it, write the image elsewhere with `-o FILE`, or leave `deep` out of the layers",
+                      ExitCode::faulty);
     if (const std::string path = summary_.image + ".json"; !makesPart && isForeignCertificate(path)) {
         certificateAlso_ = false;
         warn("W0667",

@@ -54,6 +54,28 @@ says err W0646
 for name in o.exr.json o.exr.ckpt o.part1.abbe o.png; do
     [[ $(cat "mine/$name") == "my $name" ]] || fault "mine/$name was replaced"
 done
+# Asked for, but not by name: an error before rendering; and so is a deep image, which cannot be left out.
+expect 1 "${small[@]}" -o mine/o.exr --checkpoint off --exposure 1
+says err E0430
+says err "\`mine/o.png\` is there already"
+sed 's/^film *{/film { layers { deep }; /' "$scene" >deep.scene
+grep -q "layers { deep }" deep.scene || fault "no film in $scene"
+cp mine/o.exr mine/before.exr
+for other in "echo my deep" "cat mine/o.exr"; do
+    $other >mine/o.deep.exr
+    cp mine/o.deep.exr mine/kept
+    expect 1 deep.scene --size 16x16 --samples 4 -q -o mine/o.exr --checkpoint off --png off
+    says err E0430
+    says err "\`mine/o.deep.exr\` is there already"
+    cmp -s mine/o.deep.exr mine/kept || fault "mine/o.deep.exr was replaced"
+    cmp -s mine/o.exr mine/before.exr || fault "refused, and the image was replaced"
+done
+[[ $(cat mine/o.png) == "my o.png" ]] || fault "mine/o.png was replaced"
+rm mine/*
+for run in 1 2; do # its own is replaced
+    expect 0 deep.scene --size 16x16 --samples 4 --seed $run -q -o mine/o.exr
+    [[ -s mine/o.deep.exr ]] || fault "there is no deep image"
+done
 rm mine/*
 for run in 1 2; do # its own are
     expect 0 "$scene" --size 16x16 --samples 4 --seed $run -o mine/o.exr --checkpoint keep
@@ -82,6 +104,17 @@ for ((pair = 0; pair < pairs; ++pair)); do
     grep -q "\"seed\": $whose," both.exr.json || fault "the certificate beside the image of seed $whose is not of it"
     [[ ! -e both.exr.ckpt ]] || fault "a checkpoint of finished renders is left"
     rm -f both.*
+done
+[[ -z $(find . -name '*.abbe-*') ]] || fault "temporary files are left: $(find . -name '*.abbe-*')"
+
+# Two images with one PNG: it is that of one of them, whole.
+for ((pair = 0; pair < pairs / 3; ++pair)); do
+    for seed in 1 2; do
+        "$program" "${small[@]}" -o "own$seed.exr" --seed $seed --png=shared.png 2>"err$seed" &
+        jobs[seed]=$!
+    done
+    for seed in 1 2; do wait "${jobs[seed]}" || fault "seed $seed with the PNG of another ended with $?: $(cat "err$seed")"; done
+    cmp -s shared.png seed1.png || cmp -s shared.png seed2.png || fault "the PNG of two renders is of neither"
 done
 [[ -z $(find . -name '*.abbe-*') ]] || fault "temporary files are left: $(find . -name '*.abbe-*')"
 

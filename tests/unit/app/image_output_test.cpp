@@ -1,4 +1,5 @@
 // Spaces of images on their way to a view.
+#include "io/exr_deep.h"
 #include "io/file.h"
 #include "io/ocio_view.h"
 #include "io/png_writer.h"
@@ -79,4 +80,22 @@ TEST_CASE("image output: a PNG is known by its name, and ours by what it says") 
     CHECK(isForeignPng(folder / "other.png"));
     writePng(folder / "none.png", {.width = 1, .height = 1, .rgb = grey});
     CHECK(isForeignPng(folder / "none.png"));
+}
+
+TEST_CASE("image output: a deep image is ours by what its header says") {
+    const TemporaryFolder folder;
+    DeepPicture deep{{0, 0, 1, 1}, {0, 0, 1, 1}, {1}, {1}, {2}, {1}, {0}, {0}, {0}, {}, {}};
+    CHECK_FALSE(isForeignDeep(folder / "absent.exr"));
+    writeDeepExr(folder / "other.exr", deep);
+    CHECK(isForeignDeep(folder / "other.exr"));
+    deep.attributes.push_back({"abbe.version", "0"});
+    writeDeepExr(folder / "ours.exr", deep);
+    CHECK_FALSE(isForeignDeep(folder / "ours.exr"));
+    const std::vector<float> grey(1);
+    ExrPicture flat{{0, 0, 1, 1}, {0, 0, 1, 1}, grey, grey, grey};
+    flat.attributes = deep.attributes;
+    writeExr(folder / "flat.exr", flat);
+    CHECK(isForeignDeep(folder / "flat.exr"));
+    writeAtomically(folder / "text.exr", std::string_view("no picture"));
+    CHECK(isForeignDeep(folder / "text.exr"));
 }
