@@ -1,6 +1,7 @@
 #include "app/identity.h"
 #include "app/json.h"
 #include "app/load.h"
+#include "base/file.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
 #include "io/aces_container.h"
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
+#include <optional>
 #include <span>
 
 namespace abbe {
@@ -178,8 +180,16 @@ template <typename Number> void add(Hash128& hash, const std::vector<Number>& va
     hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)});
 }
 
+// How many bytes of values are decoded for a fingerprint, which is worth no more than seconds: a small file may promise
+// gigabytes. Of pictures less than fifty bytes come of each that is stored.
+double mostDecoded(const std::string& path) {
+    constexpr double kAlways = 256 << 20, kMostExpansion = 100;
+    return std::max(kAlways, kMostExpansion * static_cast<double>(RegularFile(path).size()));
+}
+
 std::string deepHash(const std::string& path) {
-    const DeepPicture deep = readDeepExr(path);
+    constexpr double kSampleBytes = 6 * sizeof(float);
+    const DeepPicture deep = readDeepExr(path, static_cast<std::size_t>(mostDecoded(path) / kSampleBytes));
     Hash128 hash;
     add(hash, deep.counts);
     for (const auto* plane : {&deep.z, &deep.zBack, &deep.a, &deep.r, &deep.g, &deep.b}) add(hash, *plane);
@@ -187,8 +197,10 @@ std::string deepHash(const std::string& path) {
 }
 
 // Fingerprint of the values of all channels but the time they took: equal for equal pictures, whatever the header says
-// and however the channels are spread over parts.
-std::string pixelHash(const std::string& path, const ExrInfo& info) {
+// and however the channels are spread over parts. None if there are too many for so small a file.
+std::optional<std::string> pixelHash(const std::string& path, const ExrInfo& info) {
+    const double values = static_cast<double>(info.window.area()) * static_cast<double>(info.channels.size());
+    if (values * sizeof(float) > mostDecoded(path)) return {};
     if (info.deep) return deepHash(path);
     Hash128 hash;
     std::vector<std::string> names;
@@ -209,6 +221,8 @@ std::string pixelHash(const std::string& path, const ExrInfo& info) {
     }
     return hash.digits();
 }
+
+constexpr const char* kNotRead = "not read: far more than the size of the file could be expected to hold";
 
 std::string layoutOf(const ExrInfo& info) {
     if (info.parts > 1) return fmt::format("parts        {}\n", info.parts);
@@ -235,7 +249,7 @@ std::string containerText(const AcesVerdict& aces) {
 
 ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     const ExrInfo info = readExrInfo(options.path);
-    const std::string hash = pixelHash(options.path, info);
+    const std::optional<std::string> hash = pixelHash(options.path, info);
     const auto certificate = readCertificate(info.attributes);
     const auto cost = readCost(info.attributes);
     const AcesVerdict aces = checkAcesContainer(readFileBytes(options.path));
@@ -256,7 +270,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
                                           {"space", spaceOf(info)},
                                           {"aces_container", aces.valid()},
                                           {"aces_faults", std::move(faults)},
-                                          {"pixels", hash},
+                                          {"pixels", hash ? Json(*hash) : Json()},
                                           {"error", certificate ? certificateJson(*certificate) : Json()},
                                           {"cost", cost ? costJson(*cost) : Json()},
                                           {"attributes", std::move(attributes)}});
@@ -266,7 +280,7 @@ ExitCode imageInfo(const InfoOptions& options, const CommonOptions& common) {
     std::string s = fmt::format("size         {}×{}\nspace        {}\ncompression  {}\nchannels    ",
                                 info.window.width(), info.window.height(), spaceOf(info), info.compression);
     for (const auto& c : info.channels) s += fmt::format(" {} ({})", c.name, c.type);
-    s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash);
+    s += fmt::format("\n{}{}pixels       {}\n", layoutOf(info), containerText(aces), hash.value_or(kNotRead));
     if (certificate) s += fmt::format("certificate  {}\n", certificateLine(*certificate));
     if (certificate && certificate->relative.untrustedTiles > 0)
         s += fmt::format("error bars   {}\n", tailLine(certificate->relative));

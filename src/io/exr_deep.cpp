@@ -113,7 +113,7 @@ void checkSamples(const std::string& path, const Imf::Header& header, std::size_
     requireMemory(static_cast<double>(samples * planes) * sizeof(float));
 }
 
-DeepPicture readSamples(const std::string& path) {
+DeepPicture readSamples(const std::string& path, std::size_t most) {
     checkExrBounds(path);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     const int number = deepPart(path, file);
@@ -140,6 +140,8 @@ DeepPicture readSamples(const std::string& path) {
     part.setFrameBuffer(pointers.buffer);
     part.readPixelSampleCounts(p.window.y0, p.window.y1 - 1);
     const auto total = std::accumulate(p.counts.begin(), p.counts.end(), std::size_t{0});
+    if (total > most)
+        throw IoError(fmt::format("cannot read `{}`: {} deep samples are too many for its size", path, total));
     checkSamples(path, header, total, planes.size());
     for (std::size_t c = 0; c < planes.size(); ++c) {
         planes[c]->resize(total);
@@ -180,8 +182,8 @@ void writeDeepExr(const std::string& path, const DeepPicture& picture) {
     writeDeepExr(path, picture, [&](const DeepRows& rows) { rows(picture); });
 }
 
-DeepPicture readDeepExr(const std::string& path) {
-    return readingExr(path, [&] { return readSamples(path); });
+DeepPicture readDeepExr(const std::string& path, std::size_t most) {
+    return readingExr(path, [&] { return readSamples(path, most); });
 }
 
 FlatPicture flatten(const DeepPicture& p) {

@@ -3,6 +3,7 @@
 
 #include "io/exr_writer.h"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,8 +30,8 @@ using DeepRows = std::function<void(const DeepPicture&)>;
 void writeDeepExr(const std::string& path, const DeepPicture& head, const std::function<void(const DeepRows&)>& write);
 
 // Of such a file, or of any with those channels (ZBack may be missing) in its first part of the type deepscanline.
-// Throws IoError.
-DeepPicture readDeepExr(const std::string& path);
+// Throws IoError, also if it has more samples than `most`.
+DeepPicture readDeepExr(const std::string& path, std::size_t most = SIZE_MAX);
 
 // The samples of each pixel put over each other: planes of the data window.
 struct FlatPicture {
