@@ -27,7 +27,7 @@ void addView(Arguments& a, ViewOptions& view) {
 void addPng(Arguments& a, PngOptions& png, const ViewOptions& view) {
     const auto read = [&png](const std::string& text) {
         png.off = text == "off";
-        png.asked = true;
+        png.asked = png.named = true;
         if (text != "." && text != "on" && !png.off) png.path = text;
         return std::string();
     };

@@ -16,6 +16,7 @@ namespace abbe {
 struct PngOptions {
     bool off = false;   // none
     bool asked = false; // by `--png` or for a view: what stands in its way is an error, and else a warning
+    bool named = false; // by `--png`: it replaces a file of another program
     std::string path;   // empty: named after the EXR
 };
 

@@ -40,9 +40,9 @@ ExitCode RenderRun::checkPng() {
                       "name it `….png`; other programs make other formats of it", ExitCode::usage);
     if (png.asked) {
         checkView(options_.view, true);
-        if (png.path.empty() && isForeignPng(summary_.png)) // its name was not chosen, so it was not meant
+        if (!png.named && isForeignPng(summary_.png)) // who asks for a view may not know of it
             return refuse("E0430", fmt::format("`{}` is there already, and was not made by this program", summary_.png),
-                          "`--png=FILE` writes it elsewhere", ExitCode::faulty);
+                          "`--png=FILE` writes it elsewhere, `--png` replaces it", ExitCode::faulty);
         if (std::string fault = writeFault(summary_.png); !fault.empty())
             return refuse("E0430", std::move(fault), "`--png=FILE` writes it elsewhere", ExitCode::system);
         return ExitCode::done;

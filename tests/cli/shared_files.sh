@@ -54,7 +54,7 @@ says err W0646
 for name in o.exr.json o.exr.ckpt o.part1.abbe o.png; do
     [[ $(cat "mine/$name") == "my $name" ]] || fault "mine/$name was replaced"
 done
-# Asked for, but not by name: an error before rendering; and so is a deep image, which cannot be left out.
+# Where a view is asked for: an error before rendering. So it is for a deep image, which cannot be left out.
 expect 1 "${small[@]}" -o mine/o.exr --checkpoint off --exposure 1
 says err E0430
 says err "\`mine/o.png\` is there already"
