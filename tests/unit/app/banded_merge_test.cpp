@@ -2,7 +2,10 @@
 #include "checkpoints/checkpoint_reader.h"
 #include "checkpoints/render_parts.h"
 #include "film/pixel_film.h"
+#include "io/exr_deep.h"
+#include "io/exr_reader.h"
 #include "pictures/film_picture.h"
+#include "pictures/image_output.h"
 
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -231,6 +234,31 @@ TEST_CASE("layers of parts brought in rows make the picture of a film that has a
             CHECK(crops.mostRows == 16);
         }
     }
+}
+
+TEST_CASE("an image that is written while its next rows are made has the channels of all of them") {
+    const BandFolder folder;
+    // Several groups of rows.
+    const PixelBounds bounds{0, 0, 320, 160};
+    PixelFilm film = makeBandFilm(bounds, false);
+    fillSamples(film, 0, 2);
+    FilmSettings settings;
+    settings.width = bounds.x1;
+    settings.height = bounds.y1;
+    FilmPicture written(film, settings, 2, {1, 2, 3}), other(film, settings, 2, {1, 2, 3});
+    Diagnostics diagnostics;
+    writeImage(folder / "x.exr", written, settings, {}, diagnostics);
+    CHECK(diagnostics.all().empty());
+    const Shown shown = show(other, 100);
+    const ExrPlanes planes = readExrChannels(folder / "x.exr");
+    REQUIRE(planes.find("R"));
+    CHECK(*planes.find("R") == shown.image.r);
+    for (const NamedPlane& plane : shown.layers.planes) {
+        CAPTURE(plane.name);
+        REQUIRE(planes.find(plane.name));
+        CHECK(*planes.find(plane.name) == plane.values);
+    }
+    CHECK(readDeepExr(folder / "x.deep.exr").r == shown.deep.r);
 }
 
 TEST_CASE("a part made of parts in rows holds what a render of all of their samples wrote") {
