@@ -92,7 +92,9 @@ std::unique_ptr<LoadedScene> loadScene(const SceneInput& input) {
     const auto scenePath = loaded->pack     ? loaded->pack->scenePath()
                            : loaded->import ? loaded->import->scenePath()
                                             : std::filesystem::path(input.path);
-    loaded->tree = schema::resolve(document, loaded->types, scenePath.parent_path(), loaded->diagnostics);
+    loaded->models = std::make_unique<PlacedModels>(loaded->sources, loaded->types, loaded->diagnostics);
+    loaded->tree = schema::resolve(document, loaded->types, scenePath.parent_path(), loaded->diagnostics,
+                                   [&](schema::SceneTree& tree) { loaded->models->place(tree); });
     loaded->tree.frame = input.frame;
     loaded->resolveSeconds = watch.lap();
     return loaded;

@@ -38,6 +38,7 @@ struct LoadedScene {
     Diagnostics diagnostics;
     std::unique_ptr<const UnpackedPack> pack;    // that the scene is in, if it is in one
     std::unique_ptr<const ImportedScene> import; // that the scene was made by, if it is another program's
+    std::unique_ptr<PlacedModels> models;        // that shapes of the scene take with their materials
     FileId text = FileId::none;                  // the scene's own, of `sources`
     bool readable = false;                       // the file itself could be read
     double parseSeconds = 0, resolveSeconds = 0; // wall clock

@@ -4,6 +4,8 @@
 #include "base/file.h"
 #include "command_line/shared_arguments.h"
 #include "commands/command_table.h"
+#include "exchange/gltf/gltf_import.h"
+#include "exchange/importer/importer.h"
 #include "io/aces_container.h"
 #include "io/exr_deep.h"
 #include "io/file.h"
@@ -105,10 +107,41 @@ Json shapesJson(const std::vector<SceneFacts::ShapeFact>& shapes) {
     return list;
 }
 
+// What a glTF file has that its scene here does not tell.
+std::string contentsText(const exchange::GltfContents& file) {
+    std::string s;
+    for (const auto& a : file.animations)
+        s += fmt::format("animation  {}  {:.6g} … {:.6g} s\n", a.name, a.first, a.last);
+    for (const std::string& variant : file.variants) s += fmt::format("variant    {}\n", variant);
+    for (const std::string& camera : file.cameras) s += fmt::format("camera     {}\n", camera);
+    for (const auto& skin : file.skins) s += fmt::format("skin       {}, {} joints\n", skin.name, skin.joints);
+    for (const auto& m : file.morphs) s += fmt::format("morph      {}, {} targets\n", m.mesh, m.targets);
+    return s;
+}
+
+Json contentsJson(const exchange::GltfContents& file) {
+    Json animations = Json::list(), variants = Json::list(), cameras = Json::list(), skins = Json::list(),
+         morphs = Json::list();
+    for (const auto& a : file.animations)
+        animations.push(Json::object({{"name", a.name}, {"first_s", a.first}, {"last_s", a.last}}));
+    for (const std::string& variant : file.variants) variants.push(variant);
+    for (const std::string& camera : file.cameras) cameras.push(camera);
+    for (const auto& skin : file.skins)
+        skins.push(Json::object({{"name", skin.name}, {"joints", std::uint64_t{skin.joints}}}));
+    for (const auto& m : file.morphs)
+        morphs.push(Json::object({{"mesh", m.mesh}, {"targets", std::uint64_t{m.targets}}}));
+    return Json::object({{"animations", std::move(animations)},
+                         {"variants", std::move(variants)},
+                         {"cameras", std::move(cameras)},
+                         {"skins", std::move(skins)},
+                         {"morphs", std::move(morphs)}});
+}
+
 struct SceneInfo {
     const LoadedScene& loaded;
     const BuiltScene& built;
     std::string hash;
+    std::optional<exchange::GltfContents> gltf; // of a scene that is a glTF file
 };
 
 std::string sceneJson(const SceneInfo& info) {
@@ -137,6 +170,7 @@ std::string sceneJson(const SceneInfo& info) {
                                 {"files", std::move(files)}});
     object.set("shape_list", shapesJson(f.shapeList));
     if (!f.bounds.empty()) object.set("bounds_m", boundsJson(f.bounds));
+    if (info.gltf) object.set("gltf", contentsJson(*info.gltf));
     return object.text(true) + "\n";
 }
 
@@ -156,6 +190,7 @@ std::string sceneText(const SceneInfo& info) {
     s += fmt::format("film       {}×{}, {} samples per pixel\n", static_cast<int>(info.built.film.size.x),
                      static_cast<int>(info.built.film.size.y), info.built.render.samples);
     s += fmt::format("effects    {}\n", effectNames(info.built.scene.effects));
+    if (info.gltf) s += contentsText(*info.gltf);
     for (const std::string& file : f.files) s += fmt::format("file       {}\n", file);
     return s + fmt::format("hash       {}\n", info.hash);
 }
@@ -169,7 +204,9 @@ ExitCode sceneInfo(const InfoOptions& options, const CommonOptions& common) {
     if (loaded->readable) built = buildScene(loaded->tree, loaded->types, build, loaded->diagnostics);
     common.console.report(loaded->diagnostics, loaded->sources);
     if (loaded->exitCode() != ExitCode::done) return loaded->exitCode();
-    const SceneInfo info{*loaded, built, sceneHash(*loaded, input)};
+    SceneInfo info{*loaded, built, sceneHash(*loaded, input), {}};
+    const auto* const format = loaded->import ? exchange::importFormat(options.path) : nullptr;
+    if (format && format->name == "gltf") info.gltf = exchange::gltfContents(options.path);
     common.console.data(common.json ? sceneJson(info) : sceneText(info));
     return ExitCode::done;
 }

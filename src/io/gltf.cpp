@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <tuple>
 
 namespace abbe {
 
@@ -49,10 +50,7 @@ int animationOf(const GltfDocument& document, const GltfSelection& selection) {
 
 GltfMeshReader::GltfMeshReader(const GltfDocument& document, const GltfSelection& selection) : document_(document) {
     file_.coordinates = MeshCoordinates::metresYUp;
-    const GltfAnimation animation(document, animationOf(document, selection));
-    const auto span = animation.span();
-    pose_ = animation.pose(selection.time.value_or(span ? span->first : 0), selection.node);
-    file_.leftOut = animation.leftOut();
+    std::tie(pose_, file_.leftOut) = selectedPose(document, selection);
     choose(selection.mesh);
 }
 
@@ -181,6 +179,13 @@ bool looksLikeGltf(std::string_view bytes) {
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     return first != std::string_view::npos && bytes[first] == '{';
+}
+
+std::pair<GltfPose, std::vector<std::string>> selectedPose(const GltfDocument& document,
+                                                           const GltfSelection& selection) {
+    const GltfAnimation animation(document, animationOf(document, selection));
+    const auto span = animation.span();
+    return {animation.pose(selection.time.value_or(span ? span->first : 0), selection.node), animation.leftOut()};
 }
 
 MeshFile parseGltf(std::string_view bytes, const std::string& name, const GltfSelection& selection) {

@@ -97,6 +97,11 @@ class GltfAnimation {
     double read_ = 0; // numbers so far
 };
 
+struct GltfSelection; // io/gltf.h
+// The nodes that are asked for, and what of their animation is not read (GltfAnimation::leftOut). Throws where the file
+// has no such node or animation.
+std::pair<GltfPose, std::vector<std::string>> selectedPose(const GltfDocument&, const GltfSelection&);
+
 // One primitive as it is at a time.
 struct GltfPrimitive {
     // Triangles, counter-clockwise seen from outside as long as the node's transform does not mirror. v runs upwards,

@@ -28,7 +28,7 @@ std::vector<SceneFile::Part> tilesOf(const fs::path& pattern, std::size_t at) {
     return tiles;
 }
 
-std::vector<SceneFile::Part> partsOf(const fs::path& path) {
+std::vector<SceneFile::Part> filePartsOf(const fs::path& path) {
     std::error_code error;
     if (!fs::exists(path, error))
         if (const std::size_t at = path.string().find(kTilePattern); at != std::string::npos) return tilesOf(path, at);
@@ -45,6 +45,19 @@ std::vector<SceneFile::Part> partsOf(const fs::path& path) {
     return parts;
 }
 
+// With the pictures and libraries that a model's materials are in.
+std::vector<SceneFile::Part> partsOf(const fs::path& path, const std::set<fs::path>& beside) {
+    std::vector<SceneFile::Part> parts = filePartsOf(path);
+    const auto folder = fs::absolute(path).parent_path();
+    for (const fs::path& file : beside) {
+        const auto real = fs::absolute(file).lexically_normal();
+        const bool known = std::ranges::any_of(
+            parts, [&](const SceneFile::Part& part) { return fs::absolute(part.path).lexically_normal() == real; });
+        if (!known) parts.push_back({real.lexically_relative(folder.lexically_normal()).generic_string(), file});
+    }
+    return parts;
+}
+
 } // namespace
 
 std::vector<SceneFile> filesOf(const schema::SceneTree& tree) {
@@ -52,10 +65,13 @@ std::vector<SceneFile> filesOf(const schema::SceneTree& tree) {
     if (!tree.namedFiles) return files;
     std::set<std::pair<FileId, std::uint32_t>> seen;
     std::map<fs::path, std::vector<SceneFile::Part>> known; // a thousand shapes may name one file
+    std::map<fs::path, std::set<fs::path>> beside;          // and some of them take its materials
+    for (const schema::NamedFile& named : *tree.namedFiles)
+        beside[named.path].insert(named.beside.begin(), named.beside.end());
     for (const schema::NamedFile& named : *tree.namedFiles)
         if (seen.emplace(named.span.file, named.span.begin).second) {
             const auto [parts, fresh] = known.try_emplace(named.path);
-            if (fresh) parts->second = partsOf(named.path);
+            if (fresh) parts->second = partsOf(named.path, beside[named.path]);
             if (!parts->second.empty()) files.push_back({named, parts->second});
         }
     return files;

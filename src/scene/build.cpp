@@ -217,6 +217,7 @@ void SceneBuilder::checkEnclosure() {
 }
 
 void SceneBuilder::build() {
+    context_.noteInserts();
     buildSettings();
     cameras_.build();
     placer_.embree.setShutter(context_.built.shutter.open, context_.built.shutter.duration);

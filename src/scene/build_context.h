@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/diagnostic.h"
+#include "base/enclosure.h"
 #include "scene/build.h"
 #include "schema/scene_tree.h"
 #include "spectrum/color_space.h"
@@ -80,7 +81,13 @@ class BuildContext {
     // The only definition of its kind, or the one of that name; null if there is none. A second one is an error.
     const Definition* only(schema::Kind, std::string_view name);
     // What reading a file is noted by, for who asks which files a scene consists of.
-    void noteFile(const std::string& path) { built.facts.files.push_back(path); }
+    // Those that were made for inserted texts do not count, what these were made of does (noteInserts).
+    void noteFile(const std::string& path) {
+        if (tree.made.empty() || !isBelow(path, tree.made)) built.facts.files.push_back(path);
+    }
+    void noteInserts() {
+        for (const auto& [file, insert] : tree.inserts) built.facts.files.push_back(insert.source);
+    }
 
     // What a scene needs simulated, and who asked for it.
     void noteEffect(Effect, Span where, std::string_view why);

@@ -118,8 +118,8 @@ std::vector<Placement> InstanceBuilder::placements(const Definition& d, const In
         return result;
     }
     ScatterSurface surface;
-    PlaceContext context{context_.tree.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0}, context_.tree.header.length,
-                         nullptr, d.span};
+    PlaceContext context{context_.tree.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0},
+                         context_.tree.headerOf(d.span).length, nullptr, d.span};
     if (!params->over.value.empty()) {
         if (!scatterSurface(params->over, siblings, surface)) return result;
         context.surface = &surface;

@@ -105,8 +105,8 @@ ShapeContext ShapeBuilder::contextOf(const Definition& d) {
     return {d.span,
             scene.diagnostics,
             scene.up(),
-            scene.tree.header.length,
-            scene.tree.header.zUp,
+            scene.tree.headerOf(d.span).length,
+            scene.tree.headerOf(d.span).zUp,
             scene.built.shutter,
             scene.built.facts.files};
 }

@@ -2,7 +2,6 @@
 
 #include "geometry/mesh.h"
 #include "geometry/shape_params.h"
-#include "io/gltf.h"
 #include "scene/file_faults.h"
 #include "scene/shape_builder.h"
 
@@ -42,22 +41,11 @@ FaceGroups groupsOf(MeshFile& file) {
     return result;
 }
 
-GltfSelection selectionOf(const schema::Text& file) {
-    GltfSelection selection;
-    for (const auto& [key, value] : file.keys) {
-        if (key == "node") selection.node = value;
-        if (key == "mesh") selection.mesh = value;
-        if (key == "animation") selection.animation = value;
-        if (key == "time") std::from_chars(value.data(), value.data() + value.size(), selection.time.emplace());
-    }
-    return selection;
-}
-
 std::optional<MeshData> fromFile(const schema::Text& file, double unit, bool zUp, FaceGroups* groups, Span span,
                                  Diagnostics& diagnostics) {
     std::optional<MeshData> mesh;
     readsFile(file.value, file.span.valid() ? file.span : span, diagnostics, [&] {
-        MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, selectionOf(file));
+        MeshFile read = file.keys.empty() ? readMesh(file.value) : readGltf(file.value, gltfSelection(file));
         if (!read.leftOut.empty())
             diagnostics.warning("W0604", file.span.valid() ? file.span : span, "parts of this file are left out",
                                 read.leftOut.front());
@@ -193,6 +181,17 @@ bool addPointData(const MeshParams& params, bool ofFile, MeshData& mesh, Span sp
     return addAttributes(params.attributes, ofFile, mesh.positions.size(), mesh.attributes, diagnostics);
 }
 
+GltfSelection gltfSelection(const schema::Text& file) {
+    GltfSelection selection;
+    for (const auto& [key, value] : file.keys) {
+        if (key == "node") selection.node = value;
+        if (key == "mesh") selection.mesh = value;
+        if (key == "animation") selection.animation = value;
+        if (key == "time") std::from_chars(value.data(), value.data() + value.size(), selection.time.emplace());
+    }
+    return selection;
+}
+
 schema::TypeInfo meshType() {
     using namespace schema;
     using P = MeshParams;
@@ -218,6 +217,11 @@ schema::TypeInfo meshType() {
             .doc("Texture coordinates, two numbers for each of `points`.")
             .example("uvs { - 0 0; - 1 0; - 0 1 }"),
         attributeField<P>(),
+        field<P, bool>(FieldType::toggle, "materials", &P::materials)
+            .byDefault("off")
+            .synonyms({"use-materials", "import-materials", "with-materials"})
+            .doc("Take the materials of the file, glTF or OBJ, with their textures and their emission.")
+            .example("materials on"),
     };
     fields.push_back(keysField<P>(meshKeyFields()));
     addGroupedShapeFields<P>(fields);
@@ -232,6 +236,11 @@ schema::TypeInfo meshType() {
 void loadMeshShape(const MeshParams& params, ShapeBuilder& builder, LoadedShape& shape) {
     if (!params.keys.empty()) return deformMesh(params, builder, shape);
     const ShapeContext context = builder.contextOf(*shape.definition);
+    if (params.materials) {
+        context.diagnostics.error("E0616", context.span, "the materials of the file have not been read",
+                                  "`materials on`");
+        return;
+    }
     FaceGroups groups;
     const bool grouped = !params.groupMaterials.empty();
     const Vec3d origin = farMiddle(params.points);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/shape_params.h"
+#include "io/gltf.h"
 #include "scene/shape_builder.h"
 
 #include <optional>
@@ -16,9 +17,14 @@ struct MeshParams : ShapeParams {
     std::vector<double> uvs; // pairs, one for each point
     std::vector<schema::NamedNumbers> attributes;
     std::vector<ShapeKey> keys; // instead of file and points: it deforms
+    bool materials =
+        false; // those of the file: such a shape is replaced before a scene is built (app/imported_scene.h)
 };
 
 schema::TypeInfo meshType();
+
+// What the keys behind the name of a glTF file ask for.
+GltfSelection gltfSelection(const schema::Text& file);
 
 // What to take off the points of a mesh that is small against its distance from the origin, before they are rounded to
 // single precision, and to put back in front of the map that places it (docs/hard_cases.md, case 7). 0 for others.

@@ -177,7 +177,8 @@ class Binding {
     void moment(const FieldInfo& field, const Node& node) {
         given_.emplace(&field, node.headSpan());
         if (node.damaged()) return;
-        const auto time = bindMoment(field, node, momentTimes_, context_.tree.header, context_.diagnostics);
+        const auto time =
+            bindMoment(field, node, momentTimes_, context_.tree.headerOf(node.headSpan()), context_.diagnostics);
         void* const owner = params_;
         params_ = owner && time ? field.append(owner, *time, node.headSpan()) : nullptr;
         const auto ownersFields = std::exchange(given_, {});

@@ -62,7 +62,7 @@ std::optional<BoundValue> bindTransformField(const FieldInfo& field, const Entry
         return std::nullopt;
     }
     const std::size_t before = context.diagnostics.errorCount();
-    const Header& header = context.tree.header;
+    const Header& header = context.tree.headerOf(entry.span());
     const KeyedTransform transform = field.canMove ? bindMotion(*entry.node(), header, context.diagnostics)
                                                    : bindTransform(*entry.node(), header, context.diagnostics);
     return context.diagnostics.errorCount() > before ? std::nullopt : std::optional<BoundValue>(transform);
@@ -123,9 +123,9 @@ std::vector<std::pair<std::string, std::string>> textKeys(const Entry& entry) {
 std::optional<BoundValue> bindNumeric(const FieldInfo& field, const Entry& entry, const BindContext& context) {
     if (!field.choices.empty() && startsWithWord(entry)) return bindWordForNumber(field, entry, context.diagnostics);
     Measure measure = measureOf(field);
-    const std::string unusual = unusualBareNumber(field, entry, context.tree.header);
+    const std::string unusual = unusualBareNumber(field, entry, context.tree.headerOf(entry.span()));
     if (!unusual.empty()) measure.remedy = fmt::format("write `{}`", unusual);
-    const MeasureReader reader(measure, context.tree.header, context.diagnostics);
+    const MeasureReader reader(measure, context.tree.headerOf(entry.span()), context.diagnostics);
     if (field.type == FieldType::integer) return bindInteger(reader, entry, context, field.name);
     const std::size_t count = field.type == FieldType::vector2 ? 2 : field.type == FieldType::vector3 ? 3 : 1;
     const auto row = reader.row(entry, 0, count);
@@ -201,8 +201,8 @@ constexpr double kLargestIndex = std::numeric_limits<std::uint32_t>::max() - 1.0
 class ListBinder {
   public:
     ListBinder(const FieldInfo& field, const Entry& entry, const BindContext& context)
-        : field_(field), entry_(entry), header_(context.tree.header), diagnostics_(context.diagnostics),
-          reader_(measureOf(field), context.tree.header, context.diagnostics) {}
+        : field_(field), entry_(entry), header_(context.tree.headerOf(entry.span())), diagnostics_(context.diagnostics),
+          reader_(measureOf(field), header_, context.diagnostics) {}
 
     std::optional<BoundValue> points() {
         std::vector<double> flat;

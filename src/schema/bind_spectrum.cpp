@@ -219,7 +219,8 @@ std::optional<BoundValue> bindStop(const FieldInfo& field, const Entry& entry, c
     }
     constexpr std::array plain = {Dimension::none};
     const Measure measure{field.name, plain, -HUGE_VAL, HUGE_VAL, {}, field.example};
-    const auto position = MeasureReader(measure, context.tree.header, context.diagnostics).number(entry.value(0));
+    const auto position =
+        MeasureReader(measure, context.tree.headerOf(entry.span()), context.diagnostics).number(entry.value(0));
     if (!position) return std::nullopt;
     FieldInfo value = field;
     value.type = FieldType::spectrum;

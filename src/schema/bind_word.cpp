@@ -44,7 +44,7 @@ class WordBinder {
         if (!known(word)) return std::nullopt;
         Choice result{std::string(word.text), std::nullopt};
         if (entry_.count() > 1) {
-            const MeasureReader reader(measureOf(field_), tree_.header, diagnostics_);
+            const MeasureReader reader(measureOf(field_), tree_.headerOf(entry_.span()), diagnostics_);
             const auto row = reader.row(entry_, 1, 1);
             if (!row) return std::nullopt;
             result.number = row->values[0];
@@ -172,7 +172,7 @@ class WordBinder {
 
     bool numberKey(const Key& key, const FieldKey& known, Text& result) {
         const Measure measure{known.name, field_.dimensions, known.lower, known.upper, {}, field_.example};
-        const MeasureReader reader(measure, tree_.header, diagnostics_);
+        const MeasureReader reader(measure, tree_.headerOf(entry_.span()), diagnostics_);
         const auto value = reader.number(key.value);
         if (!value || !reader.inRange(*value, {}, key.value)) return false;
         result.keys.emplace_back(key.name, fmt::format("{}", *value));

@@ -44,8 +44,9 @@ bool hasTile(const fs::path& path) {
 std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diagnostics& diagnostics, bool tiles) {
     const bool nameable = !value.text.empty() && value.text.find('\0') == std::string_view::npos;
     const fs::path written(nameable ? value.text : std::string_view());
-    const fs::path path = written.is_absolute() ? written : tree.directory / written;
-    if (nameable && !mayName(tree.directory, path)) {
+    const fs::path& directory = tree.directoryOf(value.span);
+    const fs::path path = written.is_absolute() ? written : directory / written;
+    if (nameable && !mayName(directory, path)) {
         reportAt(diagnostics, value, "E0415", fmt::format("`{}` is outside of the pack", value.text), "not in the pack")
             .help = "unpack it with `abbe pack PACK -o FOLDER/` to render it with files of your own";
         return std::nullopt;
@@ -62,10 +63,11 @@ std::optional<fs::path> findFile(const Value& value, const SceneTree& tree, Diag
         return std::nullopt;
     }
     if (nameable && (fs::exists(status) || (tiles && hasTile(path)))) {
-        if (tree.namedFiles) tree.namedFiles->push_back({value.span, std::string(value.text), path});
+        if (tree.namedFiles && !tree.inserts.contains(value.span.file))
+            tree.namedFiles->push_back({value.span, std::string(value.text), path});
         return path;
     }
-    const std::string folder = written.is_absolute() ? written.parent_path().string() : tree.directory.string();
+    const std::string folder = written.is_absolute() ? written.parent_path().string() : directory.string();
     auto& d = reportAt(diagnostics, value, "E0401", fmt::format("file not found: `{}`", value.text),
                        fmt::format("looked in {}", folder.empty() ? "the current folder" : folder));
     if (!nameable) return std::nullopt;

@@ -237,8 +237,27 @@ std::string_view SceneTree::nearestName(std::span<const Kind> kinds, std::string
     return nearest(word, names);
 }
 
+const Header& SceneTree::headerOf(Span span) const {
+    const auto found = inserts.find(span.file);
+    return found == inserts.end() ? header : found->second.header;
+}
+
+const std::filesystem::path& SceneTree::directoryOf(Span span) const {
+    const auto found = inserts.find(span.file);
+    return found == inserts.end() ? directory : found->second.directory;
+}
+
+std::vector<Definition> readInsert(SceneTree& tree, Insert insert, const TypeTable& table, Diagnostics& diagnostics) {
+    std::vector<Definition> definitions;
+    const DefinitionReader reader(table, diagnostics);
+    for (const Node node : insert.document->roots())
+        if (!isHeader(node)) reader.read(node, definitions, Place::top);
+    tree.inserts.insert_or_assign(insert.document->file, std::move(insert));
+    return definitions;
+}
+
 SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& table, std::filesystem::path directory,
-                  Diagnostics& diagnostics) {
+                  Diagnostics& diagnostics, const std::function<void(SceneTree&)>& complete) {
     SceneTree tree;
     tree.document = std::move(document);
     tree.namedFiles = std::make_shared<std::vector<NamedFile>>();
@@ -248,6 +267,7 @@ SceneTree resolve(std::shared_ptr<const Document> document, const TypeTable& tab
     const DefinitionReader reader(table, diagnostics);
     for (const Node node : tree.document->roots())
         if (!isHeader(node)) reader.read(node, tree.definitions, Place::top);
+    if (complete) complete(tree);
     collectNamed(tree.definitions, tree.index.sorted);
     std::ranges::stable_sort(tree.index.sorted, byName);
     tree.index.filled = true;

@@ -7,6 +7,8 @@
 #include "schema/type.h"
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,9 +66,18 @@ struct NameIndex {
 
 // A file that a definition names, as it was found.
 struct NamedFile {
-    Span span;                  // of the name; that of a parameter's value where `$name` stood
-    std::string written;        // as it stands there
-    std::filesystem::path path; // with `<UDIM>` for its tiles
+    Span span;                                      // of the name; that of a parameter's value where `$name` stood
+    std::string written;                            // as it stands there
+    std::filesystem::path path;                     // with `<UDIM>` for its tiles
+    std::vector<std::filesystem::path> beside = {}; // files that this one names and that are read with it
+};
+
+// A text that stands in a scene beside its own, with the meaning of bare numbers and the folder of files in it.
+struct Insert {
+    std::shared_ptr<const Document> document;
+    Header header;
+    std::filesystem::path directory;
+    std::string source; // the file that the text was made of
 };
 
 // Everything that one file defines. Holds views into `document`.
@@ -77,9 +88,16 @@ struct SceneTree {
     std::shared_ptr<const Document> document;
     std::optional<int> frame; // of an animation, whose moment is shown
     // Made by resolve(), filled by bind(): after a scene was built all that it names, some perhaps several times.
+    // Those in inserted texts are not among them: what made the text knows what that depends on.
     std::shared_ptr<std::vector<NamedFile>> namedFiles;
-    NameIndex index;      // filled by resolve()
-    bool damaged = false; // a syntax error took something out of a node
+    std::map<FileId, Insert> inserts; // by the file of their text
+    std::filesystem::path made;       // the folder that holds the files that were made for them, or empty
+    NameIndex index;                  // filled by resolve()
+    bool damaged = false;             // a syntax error took something out of a node
+
+    // What holds for the text at a place: that of an insert, or of the scene.
+    const Header& headerOf(Span) const;
+    const std::filesystem::path& directoryOf(Span) const;
 
     // The first definition of that name, nested ones included.
     const Definition* find(Kind, std::string_view name) const;
@@ -137,8 +155,13 @@ class Resolver {
 };
 
 // First pass over a document: header, kinds, names, types. Unknown words are errors with a suggestion, names are
-// unique per kind, missing types get the kind's default.
-SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesystem::path directory, Diagnostics&);
+// unique per kind, missing types get the kind's default. `complete` may change the definitions before names are
+// checked.
+SceneTree resolve(std::shared_ptr<const Document>, const TypeTable&, std::filesystem::path directory, Diagnostics&,
+                  const std::function<void(SceneTree&)>& complete = {});
+
+// The definitions of a text that becomes part of the tree; where they stand in it is up to the caller.
+std::vector<Definition> readInsert(SceneTree&, Insert, const TypeTable&, Diagnostics&);
 
 // Second pass: checks every property and argument of one definition against its type (names, units, ranges, arity,
 // groups, required ones, existing files) and stores what is given, and the defaults, into `params`. A definition whose

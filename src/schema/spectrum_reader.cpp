@@ -305,14 +305,14 @@ class SpectrumReader {
 
     // `count` numbers from value `first` on, with the unit of the use, checked against its role.
     bool numbers(std::size_t first, std::size_t count, std::span<const std::string_view> names) {
-        const MeasureReader reader({use_.name, use_.dimensions, -HUGE_VAL, HUGE_VAL, {}, {}}, tree_.header,
-                                   diagnostics_);
+        const MeasureReader reader({use_.name, use_.dimensions, -HUGE_VAL, HUGE_VAL, {}, {}},
+                                   tree_.headerOf(entry_.span()), diagnostics_);
         const auto row = reader.row(entry_, first, count);
         if (!row) return false;
         for (std::size_t i = 0; i < count; ++i) {
             Diagnostics found;
-            if (checkSpectrumValue(use_, row->values[i], row->scale, entry_.value(first + i), names[i], tree_.header,
-                                   found))
+            if (checkSpectrumValue(use_, row->values[i], row->scale, entry_.value(first + i), names[i],
+                                   tree_.headerOf(entry_.span()), found))
                 continue;
             const std::string divided = dividedColor(entry_, first);
             for (Diagnostic d : found.all()) {
@@ -326,7 +326,7 @@ class SpectrumReader {
     }
 
     bool rgb() {
-        result_.space = tree_.header.rgb;
+        result_.space = tree_.headerOf(entry_.span()).rgb;
         for (const Key& key : entry_.keys()) {
             constexpr auto known = std::to_array<std::string_view>({"space"});
             if (key.name != "space") return unknownKey(key, known);
@@ -362,7 +362,7 @@ class SpectrumReader {
                                         "encoded sRGB goes from 0 to 1; brighter colours are written with `rgb`",
                                         {},
                                         dividedColor(entry_, 1)},
-                                       tree_.header, diagnostics_);
+                                       tree_.headerOf(entry_.span()), diagnostics_);
             const auto row = reader.row(entry_, 1, 3);
             if (!row) return false;
             for (std::size_t i = 0; i < 3; ++i) encoded[i] = row->values[i];
@@ -373,8 +373,8 @@ class SpectrumReader {
 
     bool blackbody() {
         constexpr std::array dimensions = {Dimension::temperature};
-        const MeasureReader reader({"blackbody", dimensions, 100, 1e6, {}, "blackbody 3200 K"}, tree_.header,
-                                   diagnostics_);
+        const MeasureReader reader({"blackbody", dimensions, 100, 1e6, {}, "blackbody 3200 K"},
+                                   tree_.headerOf(entry_.span()), diagnostics_);
         const auto row = reader.row(entry_, 1, 1);
         if (row) result_.numbers = row->values;
         return row.has_value();
@@ -406,8 +406,8 @@ class SpectrumReader {
     }
 
     bool formula(const SpectrumForm& form, std::size_t least, std::size_t most) {
-        const MeasureReader reader({form.name, kNoUnit, -HUGE_VAL, HUGE_VAL, {}, form.example}, tree_.header,
-                                   diagnostics_);
+        const MeasureReader reader({form.name, kNoUnit, -HUGE_VAL, HUGE_VAL, {}, form.example},
+                                   tree_.headerOf(entry_.span()), diagnostics_);
         const std::size_t count = entry_.count() - 1;
         const std::size_t wanted = count < least ? least : count > most ? most : count;
         const auto row = reader.row(entry_, 1, wanted);

@@ -29,7 +29,7 @@ class TableReader {
   public:
     TableReader(const SpectrumUse& use, const Entry& entry, const SceneTree& tree, Diagnostics& diagnostics)
         : use_(use), entry_(entry), tree_(tree), diagnostics_(diagnostics),
-          measure_({use.name, use.dimensions, -HUGE_VAL, HUGE_VAL, {}, {}}, tree.header, diagnostics) {}
+          measure_({use.name, use.dimensions, -HUGE_VAL, HUGE_VAL, {}, {}}, tree.headerOf(entry.span()), diagnostics) {}
 
     bool read(std::vector<double>& out) {
         table_.scale = measure_.defaultScale();
@@ -165,7 +165,7 @@ class TableReader {
             Value at = table_.places[2 * i + 1];
             if (!table_.lines.empty()) at.text = {}; // the place is the file's name, not the number
             Diagnostics found;
-            if (checkSpectrumValue(use_, value, table_.scale, at, what, tree_.header, found)) continue;
+            if (checkSpectrumValue(use_, value, table_.scale, at, what, tree_.headerOf(entry_.span()), found)) continue;
             for (Diagnostic d : found.all()) {
                 addLine(d, i);
                 diagnostics_.add(std::move(d));

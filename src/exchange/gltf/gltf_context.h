@@ -32,19 +32,31 @@ class GltfPlaces {
 };
 
 struct GltfContext {
+    GltfContext(Import& of, const GltfDocument& file, const GltfPlaces& where, const GltfAnimation& shown,
+                GltfPose asTheyAre)
+        : import(of), document(file), places(where), animation(shown), pose(std::move(asTheyAre)) {}
+
     Import& import;
     const GltfDocument& document;
     const GltfPlaces& places;
     const GltfAnimation& animation; // the one that is shown
-    GltfPose pose;                  // at 0 s
+    GltfPose pose;                  // at 0 s, or as it was asked for
     bool hasLights = false;         // of its own
     bool measures = false;          // its cameras find their exposure
     double nit = 1;                 // nits that an emission of 1 has
     double keyWork = 0;             // transforms that were evaluated for keys in the scene
-    NameTable materialNames = {}, textureNames = {}, shapeNames = {}, objectNames = {}, lightNames = {},
-              cameraNames = {};
+    NameTable materialNames{import.prefix()}, textureNames{import.prefix()}, shapeNames{import.prefix()},
+        objectNames{import.prefix()}, lightNames, cameraNames;
 
     const tinygltf::Model& model() const { return document.model(); }
+    // The mesh of a node that is wanted, or -1.
+    int meshOf(const GltfNodePose& at) const {
+        const int mesh = model().nodes[static_cast<std::size_t>(at.node)].mesh;
+        const bool wanted = !import.model || import.model->part.mesh.empty() || mesh < 0 ||
+                            (static_cast<std::size_t>(mesh) < model().meshes.size() &&
+                             model().meshes[static_cast<std::size_t>(mesh)].name == import.model->part.mesh);
+        return wanted ? mesh : -1;
+    }
     SceneNode& define(std::string kind) { return import.nodes.emplace_back(std::move(kind)); }
 };
 

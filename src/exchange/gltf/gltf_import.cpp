@@ -43,14 +43,15 @@ bool gltfShines(const tinygltf::Material& m) {
 // What the file has beside the scene that is imported.
 void warnOfTheRest(const GltfContext& ctx) {
     const tinygltf::Model& model = ctx.model();
+    const bool whole = !ctx.import.model; // else nobody asked for more than one pose of the default scene
     const auto leftOut = [&](std::string_view list, int index, const std::string& what, std::string_view why) {
         ctx.import.leftOut(nullptr, ctx.places.of(list, index), what, why);
     };
-    for (int i = 1; i < static_cast<int>(model.animations.size()); ++i)
+    for (int i = 1; whole && i < static_cast<int>(model.animations.size()); ++i)
         leftOut("animations", i,
                 gltfName("animation", "animations", i, model.animations[static_cast<std::size_t>(i)].name),
                 "the first one is taken");
-    for (int i = 0; i < static_cast<int>(model.scenes.size()); ++i)
+    for (int i = 0; whole && i < static_cast<int>(model.scenes.size()); ++i)
         if (i != std::max(model.defaultScene, 0))
             leftOut("scenes", i, gltfName("scene", "scenes", i, model.scenes[static_cast<std::size_t>(i)].name),
                     "the file's default scene is taken");
@@ -69,6 +70,23 @@ void warnOfTheRest(const GltfContext& ctx) {
             leftOut("extensionsUsed", -1, used.substr(0, 60), "it is not known here");
 }
 
+// Cameras and, without lights, those of a preview.
+void writeGltfView(GltfContext& ctx, const Bounds3d& bounds) {
+    if (!writeGltfCameras(ctx)) {
+        ctx.import.nodes.push_back(previewFilm());
+        constexpr double kFarthest = 1e14; // m
+        const bool isNear = bounds.empty() || bounds.radius() + length(bounds.centre()) < kFarthest;
+        if (!isNear)
+            ctx.import.diagnostics.error("E0802", ctx.places.of("nodes", -1),
+                                         "the scene is too large, or too far from its origin, for a camera");
+        SceneNode camera = previewCamera(isNear ? bounds : Bounds3d());
+        if (ctx.measures) camera.child("exposure").word("auto");
+        ctx.import.nodes.push_back(std::move(camera));
+    }
+    if (!ctx.hasLights)
+        for (SceneNode& light : previewLights()) ctx.import.nodes.push_back(std::move(light));
+}
+
 void writeGltfScene(GltfContext& ctx) {
     ctx.hasLights = std::ranges::any_of(ctx.pose.nodes(),
                                         [&](const GltfNodePose& pose) { return gltfLightOf(ctx, pose.node) >= 0; });
@@ -82,20 +100,7 @@ void writeGltfScene(GltfContext& ctx) {
                                 "the file has no lights, so that an emission of 1 is the white of the picture");
     GltfNodes nodes(ctx);
     nodes.write();
-    if (!writeGltfCameras(ctx)) {
-        ctx.import.nodes.push_back(previewFilm());
-        constexpr double kFarthest = 1e14; // m
-        const Bounds3d& all = nodes.bounds();
-        const bool isNear = all.empty() || all.radius() + length(all.centre()) < kFarthest;
-        if (!isNear)
-            ctx.import.diagnostics.error("E0802", ctx.places.of("nodes", -1),
-                                         "the scene is too large, or too far from its origin, for a camera");
-        SceneNode camera = previewCamera(isNear ? all : Bounds3d());
-        if (ctx.measures) camera.child("exposure").word("auto");
-        ctx.import.nodes.push_back(std::move(camera));
-    }
-    if (!ctx.hasLights)
-        for (SceneNode& light : previewLights()) ctx.import.nodes.push_back(std::move(light));
+    if (!ctx.import.model) writeGltfView(ctx, nodes.bounds());
     warnOfTheRest(ctx);
     ctx.import.nodes.sort([](const SceneNode& a, const SceneNode& b) { return gltfRank(a) < gltfRank(b); });
 }
@@ -123,8 +128,10 @@ void importGltf(const std::filesystem::path& path, Import& import) {
         const FileId file = import.sources.add(name, std::string(gltfJson(bytes)));
         const GltfPlaces places(file, import.sources.text(file));
         try {
-            const GltfAnimation animation(*document, document->model().animations.empty() ? -1 : 0);
-            GltfContext ctx{import, *document, places, animation, animation.pose(0)};
+            const bool moves = !import.model && !document->model().animations.empty();
+            const GltfAnimation animation(*document, moves ? 0 : -1);
+            GltfPose pose = import.model ? selectedPose(*document, import.model->part).first : animation.pose(0);
+            GltfContext ctx(import, *document, places, animation, std::move(pose));
             NameTable media;
             reserveTypeNames(ctx.materialNames, ctx.textureNames, media);
             writeGltfScene(ctx);
@@ -134,6 +141,37 @@ void importGltf(const std::filesystem::path& path, Import& import) {
     } catch (const IoError& fault) {
         import.diagnostics.error("E0402", {}, fault.what());
     }
+}
+
+GltfContents gltfContents(const std::filesystem::path& path) {
+    const GltfDocument document(readFileBytes(path.string()), path.string());
+    const tinygltf::Model& model = document.model();
+    GltfContents found;
+    const auto nameOf = [](const std::string& name, std::string_view list, std::size_t i) {
+        return name.empty() ? fmt::format("{}[{}]", list, i) : name;
+    };
+    for (std::size_t i = 0; i < model.animations.size(); ++i) {
+        const auto span = GltfAnimation(document, static_cast<int>(i)).span().value_or(std::pair(0.0, 0.0));
+        found.animations.push_back({nameOf(model.animations[i].name, "animations", i), span.first, span.second});
+    }
+    for (std::size_t i = 0; i < model.cameras.size(); ++i)
+        found.cameras.push_back(nameOf(model.cameras[i].name, "cameras", i));
+    for (std::size_t i = 0; i < model.skins.size(); ++i)
+        found.skins.push_back({nameOf(model.skins[i].name, "skins", i), model.skins[i].joints.size()});
+    for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+        std::size_t targets = 0;
+        for (const tinygltf::Primitive& p : model.meshes[i].primitives) targets = std::max(targets, p.targets.size());
+        if (targets > 0) found.morphs.push_back({nameOf(model.meshes[i].name, "meshes", i), targets});
+    }
+    const auto extension = model.extensions.find("KHR_materials_variants");
+    if (extension == model.extensions.end() || !extension->second.Has("variants")) return found;
+    const tinygltf::Value& variants = extension->second.Get("variants");
+    for (std::size_t i = 0; variants.IsArray() && i < variants.ArrayLen(); ++i) {
+        const tinygltf::Value& variant = variants.Get(static_cast<int>(i));
+        const bool named = variant.IsObject() && variant.Get("name").IsString();
+        found.variants.push_back(nameOf(named ? variant.Get("name").Get<std::string>() : "", "variants", i));
+    }
+    return found;
 }
 
 } // namespace abbe::exchange

@@ -98,13 +98,15 @@ void GltfNodes::write() {
     checkWork();
     const auto& nodes = ctx_.pose.nodes();
     places_.resize(ctx_.model().nodes.size());
+    if (ctx_.import.model && uses_.empty() && !ctx_.import.model->part.mesh.empty())
+        ctx_.document.fail(fmt::format("no mesh of the scene is named `{}`", ctx_.import.model->part.mesh));
     for (const GltfNodePose& pose : nodes) {
         if (!holds_[static_cast<std::size_t>(pose.node)]) continue;
         place(pose);
         const Place at = places_[static_cast<std::size_t>(pose.node)];
         if (at.hidden) continue;
-        if (ctx_.model().nodes[static_cast<std::size_t>(pose.node)].mesh >= 0) writeMesh(pose, at);
-        if (gltfLightOf(ctx_, pose.node) >= 0) writeLight(pose, at);
+        if (ctx_.meshOf(pose) >= 0) writeMesh(pose, at);
+        if (!ctx_.import.model && gltfLightOf(ctx_, pose.node) >= 0) writeLight(pose, at);
     }
 }
 
@@ -113,7 +115,7 @@ void GltfNodes::countUses() {
     holds_.assign(ctx_.model().nodes.size(), false);
     for (auto pose = nodes.rbegin(); pose != nodes.rend(); ++pose) { // children first
         const auto at = static_cast<std::size_t>(pose->node);
-        const int mesh = ctx_.model().nodes[at].mesh;
+        const int mesh = ctx_.meshOf(*pose);
         if (mesh >= 0) ++uses_[mesh];
         holds_[at] = holds_[at] || mesh >= 0 || gltfLightOf(ctx_, pose->node) >= 0;
         if (pose->parent >= 0 && holds_[at]) holds_[static_cast<std::size_t>(pose->parent)] = true;
@@ -128,7 +130,7 @@ void GltfNodes::checkWork() const {
     std::set<int> seen; // meshes that are made once
     for (const GltfNodePose& pose : ctx_.pose.nodes()) {
         const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(pose.node)];
-        if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) continue;
+        if (ctx_.meshOf(pose) < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) continue;
         all += static_cast<double>(gltfInstanceCount(ctx_.document, pose.node));
         if (isShared(pose) && !seen.insert(node.mesh).second) continue;
         const bool skinned = node.skin >= 0 && static_cast<std::size_t>(node.skin) < model.skins.size();
@@ -152,6 +154,8 @@ void GltfNodes::checkWork() const {
 void GltfNodes::place(const GltfNodePose& pose) {
     Place at;
     if (pose.parent >= 0) at = places_[static_cast<std::size_t>(pose.parent)];
+    const bool chosen = pose.node == ctx_.pose.nodes().front().node; // what is above it is not in the pose
+    if (pose.parent >= 0 && chosen) at.map = ctx_.pose.find(pose.parent)->world;
     if (!ctx_.animation.moves(pose.node)) {
         at.map = pose.local.then(at.map);
         if (!at.hidden && at.map.isFinite() && !at.map.inverse()) {

@@ -56,4 +56,20 @@ std::optional<std::string> importScene(const ImportFormat& format, const std::fi
     return printScene(import.nodes);
 }
 
+bool isModel(const std::filesystem::path& path) {
+    const std::string head = headOf(path);
+    return isGltfScene(path, head) || isObjModel(path, head);
+}
+
+std::optional<ModelText> importModel(const std::filesystem::path& file, const std::filesystem::path& scene,
+                                     ModelUse use, SourceMap& sources, Diagnostics& diagnostics) {
+    SideFiles files(scene);
+    Import import{sources, diagnostics, files, {}, std::move(use)};
+    const std::size_t before = diagnostics.errorCount();
+    const bool gltf = isGltfScene(file, headOf(file));
+    (gltf ? importGltf : importObj)(file, import);
+    if (diagnostics.errorCount() > before) return std::nullopt;
+    return ModelText{printScene(import.nodes), files.read(), gltf};
+}
+
 } // namespace abbe::exchange

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,5 +33,18 @@ const ImportFormat* importFormat(const std::filesystem::path&);
 // which are in the diagnostics, with places in files of the map.
 std::optional<std::string> importScene(const ImportFormat&, const std::filesystem::path& foreign,
                                        const std::filesystem::path& scene, SourceMap&, Diagnostics&);
+
+// Nodes of a scene file that a shape stands for which takes the materials of its file, without a header: lengths are
+// those of the file.
+struct ModelText {
+    std::string text;
+    std::set<std::filesystem::path> read; // files that the model names: materials, pictures
+    bool metresYUp = false;               // else the file states neither
+};
+// Nothing after errors. Side files lie beside `scene`, which is not written.
+std::optional<ModelText> importModel(const std::filesystem::path& file, const std::filesystem::path& scene, ModelUse,
+                                     SourceMap&, Diagnostics&);
+// Whether a file may hold materials: a glTF file or an OBJ model.
+bool isModel(const std::filesystem::path&);
 
 } // namespace abbe::exchange

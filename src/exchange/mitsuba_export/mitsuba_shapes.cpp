@@ -196,7 +196,7 @@ Nodes writeStrands(const ShapeSite& site) {
         for (const auto& unused : thing.takeUnused()) thing.has(unused.property);
         return {};
     }
-    const StrandList list = strandsOf(thing, site.w.out.scene.unit());
+    const StrandList list = strandsOf(thing, site.w.out.scene.unit(thing.span));
     std::string text;
     std::size_t at = 0;
     for (const std::size_t count : list.counts) {
@@ -250,7 +250,7 @@ Nodes writeMeshNode(const ShapeSite& site) {
     xmlValue(node, "string", "filename", site.w.out.files.refer(mesh->file));
     if (mesh->mesh.normals.empty()) xmlFlag(node, "face_normals", true);
     if (!mesh->obj && !mesh->mesh.uvs.empty()) xmlFlag(node, "flip_tex_coords", true);
-    const double unit = site.w.out.scene.unit();
+    const double unit = site.w.out.scene.unit(site.thing.span);
     xmlTransform(node, unit == 1 ? map : Transform::scale({unit, unit, unit}).then(map));
     return {node};
 }

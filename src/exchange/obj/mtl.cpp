@@ -1,5 +1,6 @@
 #include "exchange/obj/mtl.h"
 
+#include "base/enclosure.h"
 #include "base/file.h"
 #include "io/number_scan.h"
 #include "schema/scene_tree.h"
@@ -275,11 +276,12 @@ std::size_t MtlReader::option(const MtlStatement& s, MtlMap& map, std::span<cons
 // Beside the library; of a path of another machine the name alone counts.
 void MtlReader::find(MtlMap& map) const {
     std::error_code error;
+    const std::filesystem::path home = folder_.empty() ? std::filesystem::path(".") : folder_;
     const bool drive = map.file.size() > 2 && map.file[1] == ':';
     const std::filesystem::path name(map.file);
     for (const auto& path : {name.is_absolute() ? name : folder_ / name,
                              drive || name.is_absolute() ? folder_ / name.filename() : std::filesystem::path()})
-        if (!path.empty() && std::filesystem::is_regular_file(path, error)) {
+        if (!path.empty() && mayName(home, path) && std::filesystem::is_regular_file(path, error)) {
             map.path = path;
             return;
         }
@@ -323,6 +325,7 @@ void readMtl(const std::filesystem::path& path, Span from, MtlLibrary& library, 
                         bytes.good() ? "it is too large for a library of materials" : bytes.why()));
         return;
     }
+    import.files.noteRead(path);
     const FileId file = import.sources.add(path.string(), bytes.readAll());
     MtlReader(file, import.sources.text(file), path.parent_path(), library, import).read();
 }

@@ -1,5 +1,6 @@
 #include "exchange/obj/obj_import.h"
 
+#include "base/enclosure.h"
 #include "exchange/obj/mtl.h"
 #include "exchange/shared/ply_writer.h"
 #include "exchange/shared/preview.h"
@@ -125,11 +126,12 @@ struct ObjModel {
 
 void readMtlLibraries(const ObjStatements& statements, ObjModel& model) {
     std::error_code error;
+    const fs::path home = model.folder.empty() ? fs::path(".") : model.folder;
     const auto find = [&](std::string_view name) -> std::optional<fs::path> {
         std::string forward(name);
         std::ranges::replace(forward, '\\', '/');
         for (const fs::path& path : {model.folder / forward, model.folder / fs::path(forward).filename()})
-            if (fs::is_regular_file(path, error)) return path;
+            if (mayName(home, path) && fs::is_regular_file(path, error)) return path;
         return std::nullopt;
     };
     const auto read = [&](std::string_view name) {
@@ -308,13 +310,16 @@ void importObj(const fs::path& path, Import& import) {
         ObjText text(path.string(), bytes.bytes(), import.sources);
         const ObjStatements statements = objStatements(bytes.bytes());
         const Bounds3d bounds = objBounds(file.mesh);
-        ObjModel model{text, path.parent_path(), path.stem().string(), import, {}, false, {}, {}, {}};
+        ObjModel model{text,  path.parent_path(),         path.stem().string(),       import, {},
+                       false, NameTable(import.prefix()), NameTable(import.prefix()), {}};
         model.surface = {!file.mesh.uvs.empty(), 2 * bounds.radius()};
         NameTable textures, media;
         reserveTypeNames(model.materials, textures, media);
-        import.nodes.push_back(previewFilm());
-        import.nodes.push_back(previewCamera(bounds));
-        for (SceneNode& light : previewLights()) import.nodes.push_back(std::move(light));
+        if (!import.model) {
+            import.nodes.push_back(previewFilm());
+            import.nodes.push_back(previewCamera(bounds));
+            for (SceneNode& light : previewLights()) import.nodes.push_back(std::move(light));
+        }
         readMtlLibraries(statements, model);
         noteWhatIsPassedOver(statements, model);
         noteUnknownMaterials(statements, model);

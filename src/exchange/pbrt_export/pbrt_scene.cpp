@@ -108,7 +108,7 @@ PbrtForms meshForms(const StatedThing& thing, const std::string& stem, PbrtWrite
         w.out.approximated(thing.span, "`subdivision`", "by its cage, neither smooth nor displaced");
         ignoreCage(thing);
     }
-    const bool asItIs = !mesh->file.empty() && !mesh->obj && w.out.scene.unit() == 1 && thing.type == "mesh";
+    const bool asItIs = !mesh->file.empty() && !mesh->obj && w.out.scene.unit(thing.span) == 1 && thing.type == "mesh";
     if (!asItIs) return {{meshLine(mesh->mesh, stem, w), {}}};
     PbrtList list;
     list.text("string", "filename", w.out.files.refer(mesh->file));

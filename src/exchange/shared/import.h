@@ -5,13 +5,22 @@
 #include "base/source.h"
 #include "exchange/shared/scene_node.h"
 #include "exchange/shared/side_files.h"
+#include "io/gltf.h"
 
 #include <filesystem>
 #include <list>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace abbe::exchange {
+
+// What a shape of a scene takes of a file: the geometry that a mesh of it would have, with materials; no cameras, no
+// lights, nothing that moves. Formats that are no models know nothing of it.
+struct ModelUse {
+    std::string prefix; // of all names
+    GltfSelection part;
+};
 
 // One import. Faults of the foreign text are located diagnostics in files of `sources`:
 //   E0801 its syntax is wrong          E0802 what it says makes no sense (no such reference, a missing value)
@@ -23,6 +32,9 @@ struct Import {
     Diagnostics& diagnostics;
     SideFiles& files;
     std::list<SceneNode> nodes; // of the scene file, in order, without `scene 1`
+    std::optional<ModelUse> model = {};
+
+    std::string prefix() const { return model ? model->prefix : std::string(); }
 
     void leftOut(SceneNode* at, Span span, std::string_view what, std::string_view why);
     void approximated(SceneNode* at, Span span, std::string_view what, std::string_view how);

@@ -43,7 +43,8 @@ std::string SideFiles::write(std::string_view stem, std::string_view extension, 
     return (folder_ / name).generic_string();
 }
 
-std::string SideFiles::refer(const std::filesystem::path& file) const {
+std::string SideFiles::refer(const std::filesystem::path& file) {
+    noteRead(file);
     std::error_code error;
     const auto target = std::filesystem::weakly_canonical(file, error);
     const auto parent = scene_.has_parent_path() ? scene_.parent_path() : std::filesystem::path(".");
@@ -56,12 +57,12 @@ std::string SideFiles::refer(const std::filesystem::path& file) const {
 
 std::string NameTable::take(std::string_view wish, std::string_view fallback) {
     const std::string base(wish.empty() ? fallback : wish);
-    if (!made(base) && taken_.insert(base).second) return base;
+    if (!made(base) && taken_.insert(base).second) return prefix_ + base;
     int& number = next_.try_emplace(base, 2).first->second;
     std::string name;
     do name = base + '-' + std::to_string(number++);
     while (taken_.contains(name));
-    return name;
+    return prefix_ + name;
 }
 
 // Whether a name with a number behind it was given to somebody.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace abbe::exchange {
 
@@ -27,7 +28,11 @@ class SideFiles {
     std::string write(std::string_view stem, std::string_view extension, std::span<const char> bytes);
     // A file that exists as the scene names it: relative to the scene's folder where it is in or beside that
     // folder ("../textures/a.png" goes up at most two folders), else absolute.
-    std::string refer(const std::filesystem::path& file) const;
+    std::string refer(const std::filesystem::path& file);
+    // Notes a file that exists and that the import read, or that the scene refers to.
+    void noteRead(const std::filesystem::path& file) { read_.insert(file); }
+
+    const std::set<std::filesystem::path>& read() const { return read_; }
 
     const std::filesystem::path& scene() const { return scene_; }
     std::size_t written() const { return names_.size(); }
@@ -35,6 +40,7 @@ class SideFiles {
   private:
     std::filesystem::path scene_, folder_;
     Target target_;
+    std::set<std::filesystem::path> read_;
     std::set<std::string, std::less<>> names_;     // of files written by this import
     std::map<std::string, int, std::less<>> next_; // number to try for a name
 };
@@ -42,12 +48,17 @@ class SideFiles {
 // Unique names for what a scene defines: materials, shapes, lights and others have one table each.
 class NameTable {
   public:
+    NameTable() = default;
+    // All names begin with it.
+    explicit NameTable(std::string prefix) : prefix_(std::move(prefix)) {}
+
     // The wish as it is if it is free and legal, else with a number behind it; `fallback` for an empty wish.
     std::string take(std::string_view wish, std::string_view fallback);
 
   private:
     bool made(const std::string& name) const;
 
+    std::string prefix_;
     std::unordered_set<std::string> taken_;     // those that were wished for
     std::unordered_map<std::string, int> next_; // number to try for a wish; those below it count as taken
 };

@@ -201,7 +201,8 @@ std::optional<StatedMesh> meshOf(const StatedThing& thing, const StatedScene& sc
     if (!gltf) {
         out.file = file->value;
         out.obj = !readFileBytes(file->value).starts_with("ply");
-        read.mesh = moved(std::move(read.mesh), Transform::scale({scene.unit(), scene.unit(), scene.unit()}));
+        const double unit = scene.unit(thing.span);
+        read.mesh = moved(std::move(read.mesh), Transform::scale({unit, unit, unit}));
     } else if (scene.zUp()) {
         read.mesh = moved(std::move(read.mesh), Transform::rotate({1, 0, 0}, kPiD / 2));
     }

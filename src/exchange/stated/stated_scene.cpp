@@ -219,7 +219,7 @@ Transform StatedScene::transformOf(const Definition& definition, bool& moves) co
     Diagnostics repeated;
     for (const schema::Node node : definition.properties)
         if (node.name() == "transform") {
-            const KeyedTransform keyed = schema::bindMotion(node, tree_.header, repeated);
+            const KeyedTransform keyed = schema::bindMotion(node, tree_.headerOf(node.headSpan()), repeated);
             moves = moves || keyed.moves();
             return keyed.at(time_);
         }

@@ -128,8 +128,9 @@ class StatedScene final : private schema::Resolver {
     const StatedThing* atmosphere() const { return atmosphere_; } // its medium, or null
     Vec3d up() const { return zUp_ ? Vec3d(0, 0, 1) : Vec3d(0, 1, 0); }
     bool zUp() const { return zUp_; }
-    Span span() const { return tree_.header.span; }            // of what the scene does not state
-    double unit() const { return tree_.header.length; }        // m, of files that state none
+    Span span() const { return tree_.header.span; } // of what the scene does not state
+    // m, of files that state none and that are named there
+    double unit(Span at) const { return tree_.headerOf(at).length; }
     const StatedCurve& daylight() const { return *daylight_; } // illuminant D65, Y = 1
 
   private:
