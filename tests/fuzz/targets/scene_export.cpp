@@ -7,6 +7,8 @@
 #include "scene/registry.h"
 
 #include <fstream>
+#include <set>
+#include <sstream>
 
 using namespace abbe;
 
@@ -33,31 +35,54 @@ void importAgain(const std::filesystem::path& file, const std::filesystem::path&
     requireNone(diagnostics, sources, "what was imported again is no scene");
 }
 
+// One try to make a scene of a text and to export it. False where it has errors: `text` has lost their lines then, so
+// that the next try may find a sound scene.
+bool exportText(std::string& text, const schema::TypeTable& types, const std::filesystem::path& folder) {
+    SourceMap sources;
+    Diagnostics diagnostics;
+    const FileId file = sources.add("fuzz.scene", text);
+    const auto tree = schema::resolve(parse(sources, file, {}, diagnostics), types, "/nowhere", diagnostics);
+    BuildOptions options;
+    options.geometry = false;
+    BuiltScene built;
+    if (!diagnostics.hasErrors()) built = buildScene(tree, types, options, diagnostics);
+    if (diagnostics.hasErrors()) {
+        std::set<std::uint32_t> faulty;
+        for (const Diagnostic& d : diagnostics.all())
+            if (d.severity == Severity::error && d.span.file == file)
+                faulty.insert(sources.lineColumn(file, d.span.begin).line);
+        std::string kept;
+        std::istringstream lines(text);
+        std::uint32_t number = 1;
+        for (std::string line; std::getline(lines, line); ++number)
+            if (!faulty.contains(number)) kept += line + "\n";
+        text = std::move(kept);
+        return false;
+    }
+    if (built.facts.instances > kMostInstances) return true;
+    CurveLibrary curves;
+    const exchange::StatedScene scene(tree, types,
+                                      [&](const schema::SpectrumValue& value, schema::SpectrumRole role,
+                                          Diagnostics& found) { return curves.curve(value, role, found); });
+    for (const exchange::ExportFormat& format : exchange::exportFormats()) {
+        const auto target = folder / ("fuzz" + std::string(format.extension));
+        std::ofstream(target, std::ios::binary) << exchange::exportScene(format, scene, target, diagnostics);
+        importAgain(target, folder / "again.scene", types);
+    }
+    formatHuman(diagnostics, sources);
+    return true;
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const schema::TypeTable types = makeTypeTable();
     static const fuzz::SideFolder folder;
     fuzz::reading([&] {
-        SourceMap sources;
-        Diagnostics diagnostics;
-        const FileId file = sources.add("fuzz.scene", fuzz::bytesOf(data, size));
-        const auto tree = schema::resolve(parse(sources, file, {}, diagnostics), types, "/nowhere", diagnostics);
-        BuildOptions options;
-        options.geometry = false;
-        if (diagnostics.hasErrors()) return;
-        const BuiltScene built = buildScene(tree, types, options, diagnostics);
-        if (diagnostics.hasErrors() || built.facts.instances > kMostInstances) return;
-        CurveLibrary curves;
-        const exchange::StatedScene scene(tree, types,
-                                          [&](const schema::SpectrumValue& value, schema::SpectrumRole role,
-                                              Diagnostics& found) { return curves.curve(value, role, found); });
-        for (const exchange::ExportFormat& format : exchange::exportFormats()) {
-            const auto target = std::filesystem::path(folder.path()) / ("fuzz" + std::string(format.extension));
-            std::ofstream(target, std::ios::binary) << exchange::exportScene(format, scene, target, diagnostics);
-            importAgain(target, std::filesystem::path(folder.path()) / "again.scene", types);
+        constexpr int kTries = 4; // few changed texts are sound at once
+        std::string text = fuzz::bytesOf(data, size);
+        for (int i = 0; i < kTries && !exportText(text, types, folder.path()); ++i) {
         }
-        formatHuman(diagnostics, sources);
     });
     return 0;
 }

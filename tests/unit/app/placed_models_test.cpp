@@ -19,7 +19,7 @@ struct ModelCase {
 
     explicit ModelCase(const std::string& header, const std::string& lines, const std::string& defined = "") {
         writeAll(folder / "case.bin", exchange::gltfBuffer());
-        writeAll(folder / "tex.png", std::string("\x89PNG", 4));
+        writeAll(folder / "tex.png", readAll(ABBE_SOURCE_DIR "/tests/snippets/any.png"));
         writeAll(folder / "wall.gltf",
                  exchange::gltfMaterial(
                      R"("emissiveFactor":[1,0,0],"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})",
@@ -68,6 +68,7 @@ TEST_CASE("a name of the scene that looks like one of a model stays its own") {
 TEST_CASE("a model is in metres with y up, whatever the scene's header says") {
     ModelCase c("scene 1 length=mm up=z", "shape ball mesh \"wall.gltf\" { materials on }\n");
     c.build();
+    INFO(c.report());
     const auto& shapes = c.built.facts.shapeList;
     REQUIRE(shapes.size() == 1);
     CHECK(shapes[0].name == "ball/wall");
