@@ -8,8 +8,8 @@ runs=${2:-1000000}
 shift $(($# < 2 ? $# : 2))
 targets=("$@")
 ((${#targets[@]})) || mapfile -t targets < <(ls "$corpus" | sed 's/^vdb$/vdb_fork/')
-# Each input of vdb starts a process: a million would take 36 and 7 hours.
-declare -A most=([vdb]=20000 [vdb_fork]=100000)
+# Each input of vdb starts a process, and scene_export makes three scenes: a million would take 36, 7 and 15 hours.
+declare -A most=([vdb]=20000 [vdb_fork]=100000 [scene_export]=20000)
 # What was freed and is kept to find its use counts as memory of the input: less of it.
 export ASAN_OPTIONS=new_delete_type_mismatch=0:quarantine_size_mb=64
 faults=0
