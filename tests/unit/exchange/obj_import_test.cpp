@@ -1,5 +1,6 @@
 // OBJ models with material libraries in, scene text and diagnostics out. Whatever comes out is a legal scene.
 #include "base/diagnostic_format.h"
+#include "base/enclosure.h"
 #include "exchange/importer/importer.h"
 #include "io/mesh_file.h"
 #include "parser/parse.h"
@@ -242,4 +243,26 @@ TEST_CASE("what a model says besides faces is not lost without a word") {
     broken.import();
     CHECK(broken.scene.empty());
     CHECK(broken.says("line 2"));
+}
+
+TEST_CASE("a model in an enclosed folder, as that of a pack, reads nothing outside of it") {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "pack");
+    writeAll(folder / "outside.mtl", "newmtl m\nKd 1 0 0\n");
+    writeAll(folder / "outside.png", "");
+    writeAll(folder / "pack/inside.mtl", "newmtl n\nmap_Kd ../outside.png\n");
+    writeAll(folder / "pack/model.obj",
+             fmt::format("mtllib ../outside.mtl inside.mtl\n{}usemtl m\n{}usemtl n\n{}", kSquare, kFace, kFace));
+    const auto import = [&] {
+        SourceMap sources;
+        Diagnostics diagnostics;
+        importScene(*importFormat(folder / "pack/model.obj"), folder / "pack/model.obj", folder / "made.scene", sources,
+                    diagnostics);
+        return formatShort(diagnostics, sources);
+    };
+    CHECK(import() == "");
+    encloseFolder(folder / "pack");
+    const std::string report = import();
+    CHECK(report.find("the materials of `../outside.mtl` are left out") != std::string::npos);
+    CHECK(report.find("the picture `../outside.png` is left out") != std::string::npos);
 }
