@@ -16,6 +16,15 @@ same_pixels scene.exr again.exr
 expect 0 render scene.gltf --size 24x16 --samples 4 --quiet --frames 0,24 -o moving.####.exr
 [[ $(pixels moving.0000.exr) != $(pixels moving.0024.exr) ]] || fault "nothing moves"
 
+# What the file has beside what is shown.
+expect 0 info scene.gltf
+says out "animation  animations[0]  0 … 1 s"
+says out "variant    red"
+says out "camera     cameras[0]"
+expect 0 info scene.gltf --json
+says out '"last_s": 1'
+says out '"morphs": []'
+
 # A model alone is framed and lit; whatever its name is.
 cat >square.json <<'JSON'
 {"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
