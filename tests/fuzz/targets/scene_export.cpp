@@ -6,9 +6,11 @@
 #include "scene/build_context.h"
 #include "scene/registry.h"
 
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <stdlib.h>
 
 using namespace abbe;
 
@@ -16,6 +18,22 @@ namespace {
 
 // What of a file could be no export: more things than a test waits for.
 constexpr std::size_t kMostInstances = 1000;
+
+// Where exports go; every input writes the same names again.
+class ExportFolder {
+  public:
+    ExportFolder() { fuzz::require(::mkdtemp(path_.data()), "no temporary folder"); }
+    ~ExportFolder() {
+        std::error_code error;
+        std::filesystem::remove_all(path_, error);
+    }
+    ExportFolder(const ExportFolder&) = delete;
+    ExportFolder& operator=(const ExportFolder&) = delete;
+    const std::string& path() const { return path_; }
+
+  private:
+    std::string path_ = (std::filesystem::temp_directory_path() / "abbe-fuzz-export-XXXXXX").string();
+};
 
 void requireNone(const Diagnostics& diagnostics, const SourceMap& sources, const char* what) {
     if (diagnostics.hasErrors()) std::fputs(formatHuman(diagnostics, sources).c_str(), stderr);
@@ -77,7 +95,7 @@ bool exportText(std::string& text, const schema::TypeTable& types, const std::fi
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const schema::TypeTable types = makeTypeTable();
-    static const fuzz::SideFolder folder;
+    static const ExportFolder folder;
     fuzz::reading([&] {
         constexpr int kTries = 4; // few changed texts are sound at once
         std::string text = fuzz::bytesOf(data, size);
