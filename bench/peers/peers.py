@@ -44,7 +44,8 @@ class Abbe:
         out = self.folder / f"abbe-{seed}.exr"
         command = [self.program, "render", str(self.path), "--samples", str(samples), "--seed", str(seed), "-t", "1", "--json",
                    "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{self.size}", "-o", str(out), *self.options]
-        done = subprocess.run(command, capture_output=True, text=True)
+        # By a shell, which forks: else the peak would begin with the memory of this program.
+        done = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], capture_output=True, text=True)
         if done.returncode != 0:
             raise RuntimeError(done.stderr[-1500:] or done.stdout[-1500:])
         end = json.loads(done.stdout.strip().splitlines()[-1])
@@ -83,9 +84,9 @@ class Mitsuba:
         return self
 
     def answer(self):
-        for line in self.process.stdout:
-            if line.startswith("{"):
-                return json.loads(line)
+        line = self.process.stdout.readline()
+        if line:
+            return json.loads(line)
         raise RuntimeError(f"{self.name} ended with {self.process.wait()}")
 
     def render(self, samples, seed):
