@@ -33,17 +33,18 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 class Abbe:
-    def __init__(self, program, label="Abbe", options=()):
-        self.program, self.name, self.options = program, label, list(options)
+    name = "Abbe"
 
-    def open(self, scene, path, size, folder):
-        self.path, self.size, self.folder, self.load = path, size, folder, None
-        return self
+    def __init__(self, program):
+        self.program = program
+
+    def open(self, path, size, folder):
+        self.path, self.size, self.folder = path, size, folder
 
     def render(self, samples, seed):
         out = self.folder / f"abbe-{seed}.exr"
         command = [self.program, "render", str(self.path), "--samples", str(samples), "--seed", str(seed), "-t", "1", "--json",
-                   "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{self.size}", "-o", str(out), *self.options]
+                   "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{self.size}", "-o", str(out)]
         # By a shell, which forks: else the peak would begin with the memory of this program.
         done = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], capture_output=True, text=True)
         if done.returncode != 0:
@@ -70,7 +71,7 @@ class Mitsuba:
         self.variant, self.integrator = variant, integrator
         self.name = f"Mitsuba {variant}" + (f", {integrator}" if integrator else "")
 
-    def open(self, scene, path, size, folder):
+    def open(self, path, _size, folder):
         environment = dict(os.environ)
         if self.variant.startswith("llvm") and "DRJIT_LIBLLVM_PATH" not in environment:
             for library in glob.glob("/usr/lib/*/libLLVM.so.19*"):
@@ -81,7 +82,6 @@ class Mitsuba:
         self.process = subprocess.Popen(words + ([self.integrator] if self.integrator else []), stdin=subprocess.PIPE,
                                         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
         self.load = self.answer()["load_seconds"]
-        return self
 
     def answer(self):
         line = self.process.stdout.readline()
@@ -157,7 +157,7 @@ def compare(scene, options, folder):
     running, missing = [], []
     for renderer, file in candidates:
         try:
-            renderer.open(scene, file, options.size, folder)
+            renderer.open(file, options.size, folder)
             running.append((renderer, samples_for(renderer, options.seconds), [], []))
         except (RuntimeError, OSError, BrokenPipeError) as error:
             missing.append(f"{renderer.name}, {scene.name}: {str(error).strip().splitlines()[-1] if str(error) else 'no answer'}")

@@ -18,10 +18,9 @@ class Scene:
     name: str
     about: str
     depth: int                      # scattering events of a path
-    write: object                   # (folder, size) -> path of an .xml or a .scene
-    integrator: str = "path"        # Mitsuba's
+    write: object                   # (folder, size, depth) -> path of an .xml or a .scene
     region: tuple = (0, 0, 1, 1)    # of the picture that is judged: x0, y0, x1, y1 as shares of its sides
-    also: tuple = ()                # other integrators of Mitsuba's
+    also: tuple = ()                # integrators of Mitsuba's beside that of the file
 
 
 def of_repository(relative):
@@ -177,6 +176,6 @@ SCENES = [
     Scene("ajar", "a room that is lit through a slit", 24, of_repository("bench/peers/ajar.scene")),
     Scene("lights", "a thousand lights", 16, lights),
     Scene("mesh", "2.1 million triangles, sky and sun", 8, mesh),
-    Scene("cloud", "albedo 0.999, forward scattering", 128, cloud, integrator="volpath", also=("volpathmis",)),
+    Scene("cloud", "albedo 0.999, forward scattering", 128, cloud, also=("volpathmis",)),
     Scene("caustic", "of a glass ball, on the floor", 16, caustic, region=(0.5, 0.42, 0.72, 0.62), also=("ptracer",)),
 ]
