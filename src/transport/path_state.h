@@ -30,6 +30,7 @@ struct SpectralDensities {
     Spectrum before{1.f};         // without the last scattering: what next-event estimation shares
     Spectrum direction{1.f};      // with the last scattering, but without the media on the way from it
     bool heroOnly = false;        // the secondary wavelengths have ended
+    bool parted = false;          // by a delta that disperses, whether they had ended before or not
 };
 
 // The curve of absorption of the medium around the present segment; null in air.

@@ -291,7 +291,10 @@ inline bool PathWalk<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
     path.etaScale *= next.eta * next.eta;
     if constexpr (kDispersion) {
         auto& d = path.densities;
-        if (path.delta && next.lobe.has(Lobe::dispersive)) endSecondaryWavelengths();
+        if (path.delta && next.lobe.has(Lobe::dispersive)) {
+            d.parted = true;
+            endSecondaryWavelengths();
+        }
         d.before = d.unidirectional;
         if (!path.delta) estimate.checkRatios(next.pdfRatio);
         if (!path.delta) d.unidirectional *= next.pdfRatio;

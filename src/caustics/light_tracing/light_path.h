@@ -29,12 +29,14 @@ template <EffectBits E> class LightPath {
     // Whose start is set from outside.
     Walk& walk() { return walk_; }
     // Of all, those after the path was spread for the first time.
-    std::uint64_t raysAfterSpread() const { return raysAtSpread_ ? rays() - *raysAtSpread_ : 0; }
-    // Vertex 0 of the sampler has started the path; vertex k + 1 is that of the path's vertex k.
+    std::uint64_t raysAfterSpread() const { return raysAfterSpread_ + (raysAtSpread_ ? rays() - *raysAtSpread_ : 0); }
+    // Vertex 0 of the sampler has started the path; vertex k + 1 is that of the path's vertex k. All wavelengths go
+    // through clear glass that disperses: each is a path of its own from there on.
     template <typename Tell> void trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell);
-    // Instead of what the lens sees: calls onSurface(hit, vertex, sample, depth) and onCollision(place, direction,
-    // sample, depth) at every vertex before the path goes on from there; but for collisions at the first.
-    // `mirroredFirst`: the path ends unless a mirror or clear glass is the first thing that it hits.
+    // Of the hero alone behind such glass. Instead of what the lens sees: calls onSurface(hit, vertex, sample, depth)
+    // and onCollision(place, direction, sample, depth) at every vertex before the path goes on from there; but for
+    // collisions at the first. `mirroredFirst`: the path ends unless a mirror or clear glass is the first thing that it
+    // hits.
     template <typename Surface, typename Collision>
     void follow(const EmittedRay&, const Wavelengths&, bool mirroredFirst, Surface onSurface, Collision onCollision);
 
@@ -48,8 +50,8 @@ template <EffectBits E> class LightPath {
     };
     // All so far; nothing where it has hit anything else, or more than a chain may have.
     std::optional<std::span<const Link>> links() const {
-        if (linkCount_ > kMostLinks) return std::nullopt;
-        return std::span(links_).first(linkCount_);
+        if (now_.linkCount > kMostLinks) return std::nullopt;
+        return std::span(now_.links).first(now_.linkCount);
     }
 
   private:
@@ -66,6 +68,33 @@ template <EffectBits E> class LightPath {
         }
     };
 
+    static constexpr std::size_t kMostLinks = kLongestManifoldChain;
+    // All that changes from vertex to vertex, beside the walk.
+    struct Progress {
+        Rivals rivals;
+        bool first = true;                    // at the first vertex
+        bool focused = false;                 // by the first vertex
+        std::uint32_t spread = 0;             // how often so far
+        std::array<Link, kMostLinks> links{}; // of the chain of deltas that the path has been so far,
+        std::size_t linkCount = 0;            // kMostLinks + 1 where it is none or too long
+    };
+    // Where wavelengths part.
+    struct Parting {
+        std::uint32_t depth;
+        SurfaceHit hit;
+        VertexSample sample;
+        bool raysCount; // as those of a path that was spread
+        Progress before;
+        PathState<E> path;
+    };
+    static constexpr std::uint32_t kLaneNumbers = 0x50000000; // beyond those of vertices
+
+    template <typename Surface, typename Collision>
+    void goOn(const EmittedRay&, Ray, std::uint32_t depth, bool mirroredFirst, Surface&, Collision&);
+    template <typename Surface, typename Collision> void followOtherLanes(const EmittedRay&, Surface&, Collision&);
+    void leadWith(int lane);
+    void part(const SurfaceHit&, const VertexSample&, std::uint32_t depth);
+    void keepLane();
     void arriveAt(const EmittedRay&, Vec3 p, double cosine);
     // Density with which next-event estimation of a camera path at the first vertex, coming from `away`, would draw
     // the place that the path started from, 1/sr.
@@ -78,36 +107,42 @@ template <EffectBits E> class LightPath {
     template <typename Tell>
     void addSplat(const LensConnection&, const Spectrum& value, double rivals, bool spreads, Tell&&);
     PathComponent component(bool spreads) const {
-        const std::uint32_t spread = spread_ + spreads;
-        if (focused_ && spread > 0) return PathComponent::caustic;
+        const std::uint32_t spread = now_.spread + spreads;
+        if (now_.focused && spread > 0) return PathComponent::caustic;
         return spread <= 1 ? PathComponent::direct : PathComponent::indirect;
     }
     std::optional<LensConnection> connect(Vec3 p, Vec2 lens) const;
     Spectrum passing(Vec3 origin, const LensConnection&, bool through, std::uint32_t depth);
     bool hiddenFromCamera(const SurfaceHit&, Vec3 towardsLens) const;
-    bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, Ray&);
+    bool scatter(const EmittedRay&, const SurfaceHit&, const LightVertex&, const VertexSample&, std::uint32_t depth,
+                 Ray&);
     bool scatterInMedium(const EmittedRay&, Ray&, const VertexSample&);
     bool survives(std::uint32_t depth);
+    void endSpread() {
+        raysAfterSpread_ = raysAfterSpread();
+        raysAtSpread_.reset();
+    }
     std::uint64_t rays() const { return walk_.counters.vertices + walk_.counters.shadowRays; }
 
     Walk walk_;
     VertexArenas& arenas_;
-    Rivals rivals_;
-    bool first_ = true;        // at the first vertex
-    bool focused_ = false;     // by the first vertex
-    std::uint32_t spread_ = 0; // how often so far
-    bool fewerSpread_ = false; // LightPathPlan::afterSpread
-    static constexpr std::size_t kMostLinks = kLongestManifoldChain;
-    std::array<Link, kMostLinks> links_{}; // of the chain of deltas that the path has been so far,
-    std::size_t linkCount_ = 0;            // kMostLinks + 1 where it is none or too long
+    Progress now_;
+    bool all_ = false; // every wavelength goes through glass that disperses, and LightPathPlan::afterSpread counts
+    // For how many lanes the one in hand stands. Roulette does not see it: its numbers are those of the hero's path,
+    // which this depends on.
+    int standsFor_ = 1;
+    int lane_ = 0; // of the film, that the hero's light belongs to
+    std::optional<Parting> parting_;
+    bool seen_ = false; // behind the parting
     std::optional<std::uint64_t> raysAtSpread_;
+    std::uint64_t raysAfterSpread_ = 0;
     float startThroughput_ = 1;
 };
 
 template <EffectBits E>
 template <typename Tell>
 void LightPath<E>::trace(const EmittedRay& start, const Wavelengths& lambda, Tell&& tell) {
-    fewerSpread_ = true;
+    all_ = true;
     follow(
         start, lambda, false,
         [&](const SurfaceHit& hit, const LightVertex& vertex, const VertexSample& sample, std::uint32_t depth) {
@@ -127,17 +162,26 @@ void LightPath<E>::follow(const EmittedRay& start, const Wavelengths& lambda, bo
     path.beta = start.beta;
     path.delta = false;
     startThroughput_ = std::max(mean(start.beta), std::numeric_limits<float>::min());
+    goOn(start, start.ray, 0, mirroredFirst, onSurface, onCollision);
+    if (parting_) followOtherLanes(start, onSurface, onCollision);
+}
+
+// With the ray that leaves vertex `depth` - 1.
+template <EffectBits E>
+template <typename Surface, typename Collision>
+void LightPath<E>::goOn(const EmittedRay& start, Ray ray, std::uint32_t depth, bool mirroredFirst, Surface& onSurface,
+                        Collision& onCollision) {
+    auto& path = walk_.path;
     const std::uint32_t most = walk_.maxDepth();
-    Ray ray = start.ray;
     SurfaceHit hit;
-    for (std::uint32_t depth = 0; depth < most; ++depth) {
+    for (; depth < most; ++depth) {
         const Vec3 direction = ray.direction;
         const auto arrival = walk_.arrive(ray, hit, depth + 1);
         if (arrival == Arrival::nowhere || !anyNonZero(path.beta)) return;
-        first_ = depth == 0;
+        now_.first = depth == 0;
         const VertexSample sample = walk_.sampler.vertex(depth + 1);
         if (arrival == Arrival::collision) {
-            if (first_) {
+            if (now_.first) {
                 if (mirroredFirst) return;
                 arriveAt(start, ray.origin, 1);
             } else {
@@ -153,28 +197,91 @@ void LightPath<E>::follow(const EmittedRay& start, const Wavelengths& lambda, bo
         walk_.arena.reset();
         const LightVertex vertex(hit, path.lambda, walk_.arena, arenas_.eye);
         onSurface(hit, vertex, sample, depth);
-        if (!scatter(start, hit, vertex, sample, ray) || !survives(depth)) return;
-        if (mirroredFirst && first_ && linkCount_ > kMostLinks) return;
+        if (!scatter(start, hit, vertex, sample, depth, ray) || !survives(depth)) return;
+        if (mirroredFirst && now_.first && now_.linkCount > kMostLinks) return;
     }
     walk_.endAtMaxDepth(&hit);
 }
 
+// The rest of all paths but the hero's. One that may go where the hero's was seen goes on; where that one was not, of
+// all others only one in so many does, for as many times its light: most such paths would be seen as little.
+template <EffectBits E>
+template <typename Surface, typename Collision>
+void LightPath<E>::followOtherLanes(const EmittedRay& start, Surface& onSurface, Collision& onCollision) {
+    const Parting from = *parting_;
+    const bool heroSeen = seen_;
+    standsFor_ = heroSeen ? 1 : kLanes - 1;
+    RandomStream random = walk_.sampler.stream(kLaneNumbers);
+    const int one = 1 + std::min(static_cast<int>(random.uniform() * (kLanes - 1)), kLanes - 2);
+    for (int lane = 1; lane < kLanes; ++lane) {
+        if (!heroSeen && lane != one) continue;
+        endSpread();
+        now_ = from.before;
+        walk_.path = from.path;
+        if (from.raysCount) raysAtSpread_ = rays();
+        leadWith(lane);
+        arenas_.own.reset();
+        walk_.arena.reset();
+        const LightVertex vertex(from.hit, walk_.path.lambda, walk_.arena, arenas_.eye);
+        Ray ray = start.ray;
+        if (scatter(start, from.hit, vertex, from.sample, from.depth, ray) && walk_.path.densities.heroOnly &&
+            survives(from.depth))
+            goOn(start, ray, from.depth + 1, false, onSurface, onCollision);
+    }
+}
+
+template <EffectBits E>
+void LightPath<E>::part(const SurfaceHit& hit, const VertexSample& sample, std::uint32_t depth) {
+    parting_.emplace(Parting{depth, hit, sample, raysAtSpread_.has_value(), now_, walk_.path});
+    seen_ = false;
+}
+
+// The lane changes places with the hero, and all that is stated over the hero's becomes stated over its own.
+template <EffectBits E> void LightPath<E>::leadWith(int lane) {
+    auto& path = walk_.path;
+    const auto swapped = [lane](Spectrum s) {
+        const float hero = s.v[0];
+        s.v[0] = s.v[lane];
+        s.v[lane] = hero;
+        return s;
+    };
+    const auto turned = [&](const Wavelengths& w) { return Wavelengths::at(swapped(w.nm), swapped(w.pdf)); };
+    Rivals& r = now_.rivals;
+    const double back = static_cast<double>(r.back[lane]);
+    r.bsdf *= static_cast<double>(r.ahead[lane]) / back;
+    r.nee *= static_cast<double>(r.neeAhead[lane]) / back;
+    path.lambda = turned(path.lambda);
+    path.densities.film = turned(path.densities.film);
+    path.beta = swapped(path.beta);
+    lane_ = lane;
+}
+
+// As PathWalk::endSecondaryWavelengths(), but that all lanes go on, each by itself: none counts for the others.
+template <EffectBits E> void LightPath<E>::keepLane() {
+    auto& path = walk_.path;
+    path.beta = Spectrum(Float8{path.beta[0] / mean(path.densities.unidirectional), 0, 0, 0, 0, 0, 0, 0});
+    path.densities.unidirectional = Spectrum(1.f);
+    path.densities.heroOnly = true;
+    path.lambda.keepHero();
+    addWorkFlag(WorkFlag::heroOnly);
+}
+
 template <EffectBits E> void LightPath<E>::arriveAt(const EmittedRay& start, Vec3 p, double cosine) {
-    if (first_) {
+    if (now_.first) {
         double ends = 1;
         if (start.deltaPosition)
             ends = static_cast<double>(lengthSquared(p - start.ray.origin));
         else if (!start.density.distant)
             ends = static_cast<double>(std::abs(dot(start.n, start.ray.direction)));
-        rivals_.nee = ends / start.density.total();
-        rivals_.bsdf = start.neverHit ? 0 : rivals_.nee;
+        now_.rivals.nee = ends / start.density.total();
+        now_.rivals.bsdf = start.neverHit ? 0 : now_.rivals.nee;
     }
-    rivals_.bsdf /= cosine;
-    rivals_.nee /= cosine;
+    now_.rivals.bsdf /= cosine;
+    now_.rivals.nee /= cosine;
 }
 
 template <EffectBits E> double LightPath<E>::cameraOdds() const {
-    Rivals meeting = rivals_;
+    Rivals meeting = now_.rivals;
     meeting.nee = 0;
     return meeting.of(1, Spectrum(1.f), walk_.path.densities.heroOnly);
 }
@@ -257,10 +364,10 @@ void LightPath<E>::show(const EmittedRay& start, const SurfaceHit& hit, const Li
     const LightScattering w = walk_.path.densities.heroOnly ? weighed(hit, c->wi, nullptr) : s;
     const bool hero = walk_.path.densities.heroOnly || c->heroOnly;
     const auto scattering = static_cast<double>(w.pdfReverse);
-    Rivals rivals = rivals_;
-    if (first_) rivals.nee = 0;
+    Rivals rivals = now_.rivals;
+    if (now_.first) rivals.nee = 0;
     double density = rivals.of(scattering, w.reverseRatio, hero);
-    if (first_) density += rivals_.nee * neeDensity(start, hit, vertex, c->wi);
+    if (now_.first) density += now_.rivals.nee * neeDensity(start, hit, vertex, c->wi);
     density *= static_cast<double>(std::abs(dot(c->wi, hit.ng)));
     addSplat(*c, walk_.path.beta * s.fcos * clear, density, vertex.bsdf().lobes().has(Lobe::diffuse), tell);
 }
@@ -278,7 +385,8 @@ void LightPath<E>::showMedium(Vec3 p, Vec3 direction, Vec2 lens, std::uint32_t d
         if (phase.spectral()) clear *= phase.ratio(cosine, walk_.path.lambda);
         if (!anyNonZero(clear)) return;
         const bool hero = walk_.path.densities.heroOnly || c->heroOnly;
-        addSplat(*c, walk_.path.beta * clear, rivals_.of(static_cast<double>(value), Spectrum(1.f), hero), true, tell);
+        addSplat(*c, walk_.path.beta * clear, now_.rivals.of(static_cast<double>(value), Spectrum(1.f), hero), true,
+                 tell);
     }
 }
 
@@ -287,47 +395,61 @@ template <EffectBits E>
 template <typename Tell>
 void LightPath<E>::addSplat(const LensConnection& c, const Spectrum& value, double rivals, bool spreads, Tell&& tell) {
     const LightPathPlan& plan = *walk_.context.lightPaths;
-    rivals *= plan.alone ? 0 : static_cast<double>(c.pdfFacingArea) / plan.paths;
+    const int lanes = walk_.path.densities.heroOnly ? kLanes : 1; // each a path of its own
+    rivals *= plan.alone ? 0 : static_cast<double>(c.pdfFacingArea) / (lanes * static_cast<double>(plan.paths));
     Spectrum seen = value * (c.importance * static_cast<float>(1 / (1 + rivals)));
     const Spectrum& densities = walk_.path.densities.unidirectional;
     if (c.heroOnly && !walk_.path.densities.heroOnly)
         seen = Spectrum(Float8{seen[0] * static_cast<float>(kLanes) / densities[0], 0, 0, 0, 0, 0, 0, 0});
     else
         seen *= 1 / mean(densities);
-    tell(LensSplat{c.film, seen, rivals, component(spreads), spread_ > 0});
+    if (lane_ > 0) {
+        Float8 moved{};
+        moved[lane_] = seen[0];
+        seen = Spectrum(moved);
+    }
+    seen_ = true;
+    tell(LensSplat{c.film, seen * static_cast<float>(standsFor_), rivals, component(spreads), now_.spread > 0});
 }
 
 template <EffectBits E>
 bool LightPath<E>::scatter(const EmittedRay& start, const SurfaceHit& hit, const LightVertex& vertex,
-                           const VertexSample& sample, Ray& ray) {
+                           const VertexSample& sample, std::uint32_t depth, Ray& ray) {
     auto& path = walk_.path;
     const auto next = vertex.sample(sample.lobe, sample.bsdf);
+    const bool parts = all_ && !path.densities.heroOnly &&
+                       (next ? next->lobe.has(Lobe::delta) && next->lobe.has(Lobe::dispersive)
+                             : vertex.bsdf().lobes().has(Lobe::delta) && vertex.bsdf().lobes().has(Lobe::dispersive));
+    if (parts && !parting_) part(hit, sample, depth);
     if (!next) return false;
     const LightScattering& s = next->scattering;
     const bool delta = next->lobe.has(Lobe::delta);
     const LightScattering w = path.densities.heroOnly ? weighed(hit, next->away, &*next) : s;
     path.beta *= s.fcos * (1 / s.pdfSolidAngle);
-    if (delta && next->lobe.has(Lobe::dispersive)) walk_.endSecondaryWavelengths();
+    if (parts)
+        keepLane();
+    else if (delta && next->lobe.has(Lobe::dispersive))
+        walk_.endSecondaryWavelengths();
     if (!delta) path.densities.unidirectional *= Spectrum(s.pdfRatio);
     if (!(w.pdfSolidAngle > 0)) return false;
     const double on = static_cast<double>(std::abs(dot(next->away, hit.ng))) / static_cast<double>(w.pdfSolidAngle);
     const double camera = on * static_cast<double>(w.pdfReverse);
     if (!delta) {
-        rivals_.ahead *= Spectrum(w.reverseRatio);
-        if (!first_) rivals_.neeAhead *= Spectrum(w.reverseRatio);
-        rivals_.back *= Spectrum(w.pdfRatio);
+        now_.rivals.ahead *= Spectrum(w.reverseRatio);
+        if (!now_.first) now_.rivals.neeAhead *= Spectrum(w.reverseRatio);
+        now_.rivals.back *= Spectrum(w.pdfRatio);
     }
-    rivals_.bsdf *= camera;
-    if (!first_)
-        rivals_.nee *= camera;
+    now_.rivals.bsdf *= camera;
+    if (!now_.first)
+        now_.rivals.nee *= camera;
     else // deltas have no next-event estimation
-        rivals_.nee *= delta ? 0 : on * neeDensity(start, hit, vertex, next->away);
-    focused_ = first_ ? !next->lobe.has(Lobe::diffuse) : focused_;
-    if (delta && linkCount_ < kMostLinks)
-        links_[linkCount_++] = {hit.shape, next->lobe};
+        now_.rivals.nee *= delta ? 0 : on * neeDensity(start, hit, vertex, next->away);
+    now_.focused = now_.first ? !next->lobe.has(Lobe::diffuse) : now_.focused;
+    if (delta && now_.linkCount < kMostLinks)
+        now_.links[now_.linkCount++] = {hit.shape, next->lobe};
     else
-        linkCount_ = kMostLinks + 1;
-    spread_ += next->lobe.has(Lobe::diffuse);
+        now_.linkCount = kMostLinks + 1;
+    now_.spread += next->lobe.has(Lobe::diffuse);
     if (next->lobe.has(Lobe::transmission)) path.nested.here = path.nested.beyond;
     ray = {spawnOrigin(hit, next->away), next->away, kInfinity, path.time};
     return anyNonZero(path.beta);
@@ -337,15 +459,15 @@ template <EffectBits E>
 bool LightPath<E>::scatterInMedium(const EmittedRay& start, Ray& ray, const VertexSample& sample) {
     const PhaseFunction& phase = walk_.collided->phase();
     const float cosine = phase.sampleCosine(sample.bsdf.x);
-    if (first_) {
+    if (now_.first) {
         const auto density = static_cast<double>(phase.value(cosine));
         if (!(density > 0)) return false;
-        rivals_.nee *= neeDensity(start, ray.origin, -start.ray.direction, {}) / density;
+        now_.rivals.nee *= neeDensity(start, ray.origin, -start.ray.direction, {}) / density;
     }
     if (phase.spectral()) walk_.path.beta *= phase.ratio(cosine, walk_.path.lambda);
     ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
-    ++spread_;
-    linkCount_ = kMostLinks + 1;
+    ++now_.spread;
+    now_.linkCount = kMostLinks + 1;
     return anyNonZero(walk_.path.beta);
 }
 
@@ -354,12 +476,13 @@ template <EffectBits E> bool LightPath<E>::survives(std::uint32_t depth) {
     if (depth >= 3) {
         float throughput = mean(abs(walk_.path.beta)) / startThroughput_;
         if constexpr (Walk::kMedia) throughput /= mean(walk_.path.densities.unidirectional);
+        if (all_ && walk_.path.densities.heroOnly) throughput *= static_cast<float>(kLanes); // of its own lane
         p = std::min(depth >= kLongPath ? walk_.longSurvival(depth) : 1.f,
                      std::clamp(throughput, RouletteReference::kFloor, 1.f));
     }
-    if (spread_ > 0 && !raysAtSpread_) {
+    if (now_.spread > 0 && !raysAtSpread_) {
         raysAtSpread_ = rays();
-        if (fewerSpread_) p *= walk_.context.lightPaths->afterSpread;
+        if (all_) p *= walk_.context.lightPaths->afterSpread;
     }
     return walk_.survives(depth, p);
 }

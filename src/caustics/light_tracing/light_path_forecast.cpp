@@ -93,6 +93,14 @@ CameraVariance varianceOf(const Samples& samples, double weight) {
     return result;
 }
 
+// Without fireflies: each counts as the brightest that is none.
+Samples quietOf(Samples samples, double weight) {
+    const double most = NoiseMeasure::kBright / std::sqrt(weight);
+    for (auto& replicate : samples)
+        for (double& v : replicate) v = std::min(v, most);
+    return samples;
+}
+
 void add(CameraVariance& to, const CameraVariance& v, double share) {
     to.secondMoment += v.secondMoment * share;
     to.variance += v.variance * share;
@@ -101,8 +109,21 @@ void add(CameraVariance& to, const CameraVariance& v, double share) {
 
 } // namespace
 
-CameraNoise cameraNoise(const PathContext& context, TileFunction render, const RouletteReference& roulette,
-                        const LightPathPlan& plan, const NoiseMeasure& measure) {
+CameraNoise CameraNoise::of(std::span<const CameraNoise> pixels) {
+    CameraNoise result;
+    const double share = 1 / static_cast<double>(pixels.size());
+    for (const CameraNoise& p : pixels) {
+        add(result.shared, p.shared, share);
+        add(result.quiet, p.quiet, share);
+        add(result.rest, p.rest, share);
+        result.rays += p.rays * share;
+        result.pilotRays += p.pilotRays;
+    }
+    return result;
+}
+
+std::vector<CameraNoise> cameraNoise(const PathContext& context, TileFunction render, const RouletteReference& roulette,
+                                     const LightPathPlan& plan, const NoiseMeasure& measure) {
     const PilotPixel::Grid grid(context.scene.frame, PilotSize(context.settings).side(kCells, kLeastCells));
     LightPathPlan all = plan; // leaves to light paths what they can bring
     all.alone = true;
@@ -119,18 +140,11 @@ CameraNoise cameraNoise(const PathContext& context, TileFunction render, const R
         for (std::size_t k = 0; k < found.y.size(); ++k)
             for (std::size_t s = 0; s < found.y[k].size(); ++s) found.y[k][s] -= rest.y[k][s];
         const double weight = measure.weight(pixel.x0, pixel.y0);
-        pixels[i] = {varianceOf(found.y, weight), varianceOf(rest.y, weight),
+        pixels[i] = {varianceOf(found.y, weight), varianceOf(quietOf(found.y, weight), weight),
+                     varianceOf(rest.y, weight),
                      static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany), found.rays + rest.rays};
     });
-    CameraNoise result;
-    const double share = 1 / static_cast<double>(pixels.size());
-    for (const CameraNoise& p : pixels) {
-        add(result.shared, p.shared, share);
-        add(result.rest, p.rest, share);
-        result.rays += p.rays * share;
-        result.pilotRays += p.pilotRays;
-    }
-    return result;
+    return pixels;
 }
 
 LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, PixelBounds frame,
@@ -143,7 +157,7 @@ LightPathForecast::LightPathForecast(std::span<const LightDeposit> deposits, Pix
         terms_.push_back({u * u * d.stands / pixels, rho, u / rho});
     }
     limitOutliers();
-    std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::firefly);
+    std::ranges::stable_sort(terms_, std::ranges::greater(), &Term::brightness);
 }
 
 // A few deposits that camera paths would hit once in millions would say all of a second moment, and next to nothing of
@@ -156,38 +170,41 @@ void LightPathForecast::limitOutliers() {
     std::ranges::nth_element(terms_, ninth, largest);
     const double most = ninth->ofCamera(0);
     for (auto t = terms_.begin(); t != ninth; ++t) {
-        t->firefly *= most * t->rho / t->u2;
+        t->brightness *= most * t->rho / t->u2;
         t->rho = t->u2 / most;
     }
 }
 
 double LightPathForecast::fireflies() const {
-    constexpr double kFirefly = 3; // light from next-event estimation varies by less
     double sum = 0;
     for (const Term& t : terms_)
-        if (t.firefly > kFirefly) sum += t.ofCamera(0);
+        if (t.isFirefly()) sum += t.ofCamera(0);
     return sum;
 }
 
-// The second moment that light paths tell and a look at some pixels has not seen is that of the brightest fireflies,
-// which are the rarest; a mean of samples has all of it, stratified or not. The rest is as noisy as it was seen to be,
-// which is less than its second moment: most of it may be light that camera paths find with next to no noise.
-double LightPathForecast::variance(double share, const CameraVariance& alone) const {
-    double predicted = 0;
-    for (const Term& t : terms_) predicted += t.ofCamera(0);
-    double missed = std::max(0.0, predicted - alone.secondMoment);
-    double variance = 0, seenAlone = 0, seen = 0;
+// The second moment of fireflies that light paths tell and a look at some pixels has not seen is that of the brightest,
+// which are the rarest; a mean of samples has all of it, stratified or not. Those that were seen are as noisy as they
+// were seen to be. So is the rest, which is far less than its second moment: most of it is light that camera paths find
+// with next to no noise. The two stay apart, or one firefly that a look happens to see would count as noise that no
+// light path takes away.
+double LightPathForecast::variance(double share, const CameraNoise& camera) const {
+    const double loud = std::max(0.0, camera.shared.planned() - camera.quiet.planned());
+    double missed = fireflies() - (camera.shared.secondMoment - camera.quiet.secondMoment);
+    double variance = 0;
+    Seen fireflies, quiet;
     for (const Term& t : terms_) {
+        variance += t.ofLight(share);
+        if (!t.isFirefly()) {
+            quiet.add(t, share);
+            continue;
+        }
         if (missed > 0)
             variance += t.ofCamera(share);
-        else {
-            seenAlone += t.ofCamera(0);
-            seen += t.ofCamera(share);
-        }
+        else
+            fireflies.add(t, share);
         missed -= t.ofCamera(0);
-        variance += t.ofLight(share);
     }
-    return variance + (seenAlone > 0 ? alone.planned() * seen / seenAlone : 0);
+    return variance + fireflies.left() * loud + quiet.left() * camera.quiet.planned();
 }
 
 } // namespace abbe

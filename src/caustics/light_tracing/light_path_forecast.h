@@ -31,15 +31,19 @@ struct CameraVariance {
 
 struct CameraNoise {
     CameraVariance shared; // the light that light paths could bring, as camera paths find it without them
+    CameraVariance quiet;  // the same without what is brighter than NoiseMeasure::kBright pixels
     CameraVariance rest;   // everything else
     double rays = 0;       // of a camera path, without the cost of weights
     std::uint64_t pilotRays = 0;
+
+    // The mean over pixels.
+    static CameraNoise of(std::span<const CameraNoise> pixels);
 };
 
-// A look at an even grid of pixels. `plan` says what light paths could bring; `context` has none. Depends on the frame
-// and the seed of the context alone.
-CameraNoise cameraNoise(const PathContext&, TileFunction traced, const RouletteReference&, const LightPathPlan&,
-                        const NoiseMeasure&);
+// A look at the pixels of an even grid. `plan` says what light paths could bring; `context` has none. Depends on the
+// frame and the seed of the context alone.
+std::vector<CameraNoise> cameraNoise(const PathContext&, TileFunction traced, const RouletteReference&,
+                                     const LightPathPlan&, const NoiseMeasure&);
 
 // By samples of light paths of density q ∫ f² / (p + s q) is predicted for any number s of them beside one camera path
 // of density p: weighed by the balance heuristic, that is the second moment of a sample of all pixels [Veach1997, sec.
@@ -50,23 +54,33 @@ class LightPathForecast {
 
     // Second moment of what camera paths find now and then, far brighter than its pixel: what light paths are for.
     double fireflies() const;
-    // Variance of what light paths can bring, with `share` of them for each camera path; camera paths were seen to have
-    // `alone` of it without them. Of light paths the second moment is the variance: they are many for a pixel and bring
-    // little each. They count as independent, although they are stratified over the picture as a whole: pixels have
-    // little of that unless lights are small.
-    double variance(double share, const CameraVariance& alone) const;
+    // Variance of what light paths can bring, with `share` of them for each camera path; `seen` is what camera paths
+    // were seen to have of it without them. Of light paths the second moment is the variance: they are many for a pixel
+    // and bring little each. They count as independent, although they are stratified over the picture as a whole:
+    // pixels have little of that unless lights are small.
+    double variance(double share, const CameraNoise& seen) const;
 
   private:
     struct Term {
         double u2 = 0;  // squared relative luminance that a light path brings to a pixel, times how many it stands for
         double rho = 0; // as LightDeposit
-        double firefly = 0; // relative luminance of a camera path that finds the same
+        double brightness = 0; // as NoiseMeasure::brightness
+        bool isFirefly() const { return NoiseMeasure::isFirefly(brightness, rho); }
         double ofCamera(double share) const { return u2 * rho / square(rho + share); }
         double ofLight(double share) const { return u2 * share / square(rho + share); }
     };
+    // Of terms that were seen.
+    struct Seen {
+        double alone = 0, beside = 0; // second moments without light paths and with them
+        void add(const Term& t, double share) {
+            alone += t.ofCamera(0);
+            beside += t.ofCamera(share);
+        }
+        double left() const { return alone > 0 ? beside / alone : 0; }
+    };
     void limitOutliers();
 
-    std::vector<Term> terms_; // the brightest fireflies first
+    std::vector<Term> terms_; // the brightest first
 };
 
 } // namespace abbe

@@ -71,9 +71,10 @@ template <EffectBits E> class LightPathWeights {
   private:
     LightVertex vertexLitFrom(Vec3 wi);
     double heroMean(const Spectrum& ratios) const;
+    double lightPathsOf(double ofOneWavelength) const;
     float emissionWeight(float lightPdf, double ends) const;
     double lightEnds(const LightSample&, const PickedLight&, Vec3 p) const;
-    float neeShare(double nee, double bsdf, double lightPaths) const;
+    float neeShare(double nee, double bsdf, double ofOneWavelength) const;
 
     const PathWalk<E>& walk_;
     const CameraRay& camera_;
@@ -145,6 +146,11 @@ template <EffectBits E> double LightPathWeights<E>::heroMean(const Spectrum& rat
     return walk_.path.densities.heroOnly ? 1 : static_cast<double>(mean(ratios));
 }
 
+// All wavelengths of a light path go through what disperses, where a camera path goes on with one.
+template <EffectBits E> double LightPathWeights<E>::lightPathsOf(double ofOneWavelength) const {
+    return walk_.path.densities.parted ? kLanes * ofOneWavelength : ofOneWavelength;
+}
+
 template <EffectBits E>
 float LightPathWeights<E>::emissionWeight(float lightPdf, const SurfaceHit& hit, Vec3 direction) const {
     const Light* const light = hit.light;
@@ -166,7 +172,7 @@ template <EffectBits E> float LightPathWeights<E>::emissionWeight(float lightPdf
     const double ahead = heroMean(ahead_);
     double nee = 0;
     if (!path.delta) nee = static_cast<double>(lightPdf) * heroMean(before_) / scattering_;
-    const double lightPaths = odds_ * ends * heroMean(back_);
+    const double lightPaths = lightPathsOf(odds_ * ends * heroMean(back_));
     if (walk_.context.lightPaths->alone && lightPaths > 0) return 0;
     return static_cast<float>(ahead / (ahead + nee + lightPaths)) / mean(path.densities.unidirectional);
 }
@@ -183,7 +189,8 @@ double LightPathWeights<E>::lightEnds(const LightSample& light, const PickedLigh
 }
 
 // Densities of next-event estimation, of hitting the same light by scattering, and of light paths.
-template <EffectBits E> float LightPathWeights<E>::neeShare(double nee, double bsdf, double lightPaths) const {
+template <EffectBits E> float LightPathWeights<E>::neeShare(double nee, double bsdf, double ofOneWavelength) const {
+    const double lightPaths = lightPathsOf(ofOneWavelength);
     if (walk_.context.lightPaths->alone && lightPaths > 0) return 0;
     return static_cast<float>(nee / (nee + bsdf + lightPaths)) / mean(walk_.path.densities.unidirectional);
 }

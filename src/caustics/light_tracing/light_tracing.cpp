@@ -31,7 +31,11 @@ constexpr double kLightCost = 2.5;
 // brighter for it.
 constexpr double kInsurance = 0.1;
 constexpr double kLeastFireflies = 0.02; // second moment of what light paths could bring better
-constexpr std::array kShares{0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+// Light paths for each camera path that are tried: √2 apart, since neighbours differ by a few percent in efficiency.
+constexpr std::size_t kShares = 15;
+double shareOf(std::size_t i) { return 0.0625 * std::exp2(0.5 * static_cast<double>(i)); }
+constexpr std::size_t kGroups = 8;   // of what pilots found, for error bars
+constexpr double kMostRegret = 0.25; // of forecast efficiency, what light paths may cost that no error bar rules out
 
 class LightPathPlanner {
   public:
@@ -171,10 +175,22 @@ class LightPathPlanner {
             const double luminance = y * (1 + splat.rivals) / planner_.pixels_;
             if (!(luminance > 0) || !std::isfinite(luminance)) return;
             const LightStart from = place(start);
-            to_.deposits.push_back({from, splat.spread, px, py, luminance, 1, splat.rivals});
+            const auto path = static_cast<std::uint32_t>(to_.starts.size());
+            add({from, splat.spread, px, py, luminance, 1, splat.rivals, path});
         }
 
       private:
+        // What the wavelengths of a path bring to one pixel is one deposit, but a camera path finds each of them by
+        // itself: their second moments add up.
+        void add(const LightDeposit& d) {
+            if (to_.deposits.empty() || to_.deposits.back().path != d.path || to_.deposits.back().x != d.x ||
+                to_.deposits.back().y != d.y || !(d.rho > 0) || !(to_.deposits.back().rho > 0))
+                return to_.deposits.push_back(d);
+            LightDeposit& all = to_.deposits.back();
+            const double ofCamera = square(all.luminance) / all.rho + square(d.luminance) / d.rho;
+            all.luminance += d.luminance;
+            all.rho = square(all.luminance) / ofCamera;
+        }
         LightStart place(const EmittedRay& start) const {
             if (start.target == EmittedRay::kNoTarget) return {planner_.numbers_.at(start.light), 0, 0};
             return {planner_.numbers_.at(start.light), start.target + 1,
@@ -209,7 +225,56 @@ class LightPathPlanner {
         return static_cast<float>(std::min(afterSpread + kInsurance * spent / each, 1.0));
     }
 
-    // Efficiencies of all shares; the best is that of the plan.
+    using Efficiencies = std::array<double, kShares>; // over that of camera paths alone
+
+    Efficiencies efficiencies(const LightPathForecast& forecast, const CameraNoise& camera) const {
+        const double rest = camera.rest.planned();
+        const double plain = (rest + forecast.variance(0, camera)) * camera.rays;
+        Efficiencies result{};
+        for (std::size_t i = 0; i < kShares; ++i) {
+            const double spent = kCostBesideLightPaths * camera.rays + shareOf(i) * costs_.light;
+            const double left = rest + forecast.variance(shareOf(i), camera);
+            result[i] = left > 0 ? plain / (left * spent) : 0; // nor where all is dark
+        }
+        return result;
+    }
+
+    // Those of the pilots without one group of their paths and pixels each.
+    std::vector<Efficiencies> withoutGroups(std::span<const LightDeposit> deposits,
+                                            std::span<const CameraNoise> pixels) const {
+        std::vector<Efficiencies> result;
+        for (std::size_t group = 0; group < kGroups && pixels.size() >= kGroups; ++group) {
+            std::vector<LightDeposit> others;
+            for (const LightDeposit& d : deposits) {
+                if (d.path % kGroups == group) continue;
+                others.push_back(d);
+                others.back().stands *= static_cast<double>(kGroups) / (kGroups - 1);
+            }
+            std::vector<CameraNoise> looks;
+            for (std::size_t i = 0; i < pixels.size(); ++i)
+                if (i % kGroups != group) looks.push_back(pixels[i]);
+            result.push_back(efficiencies(LightPathForecast(others, frame_, *measure_), CameraNoise::of(looks)));
+        }
+        return result;
+    }
+
+    // The largest share that may be the best: too few light paths leave any noise at all, too many cost what they cost.
+    // So a pilot that does not know better asks for more, and another seed for no fewer.
+    static std::size_t chosenShare(const Efficiencies& all, std::span<const Efficiencies> without) {
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        for (std::size_t i = kShares - 1; i > best; --i) {
+            if (!(all[i] >= (1 - kMostRegret) * all[best])) continue;
+            double mean = 0, spread = 0; // of log ratios, by the jackknife
+            for (const Efficiencies& e : without)
+                mean += std::log(e[i] / e[best]) / static_cast<double>(without.size());
+            for (const Efficiencies& e : without) spread += square(std::log(e[i] / e[best]) - mean);
+            const double error = std::sqrt(spread * (kGroups - 1) / kGroups);
+            if (std::log(all[i] / all[best]) + error >= 0) return i;
+        }
+        return best;
+    }
+
+    // Efficiencies of all shares; the chosen one is that of the plan.
     void judge(const LightPathPlan& plan) {
         const Listened heard = listen(plan, kJudgeLightPaths);
         const LightPathForecast forecast(heard.deposits, frame_, *measure_);
@@ -220,22 +285,20 @@ class LightPathPlanner {
         }
         PathContext seeded = context_;
         seeded.settings.seed = combine64(context_.settings.seed, kJudgeLightPaths);
-        const CameraNoise camera = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
+        const std::vector<CameraNoise> pixels = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
+        const CameraNoise camera = CameraNoise::of(pixels);
         const double each = kLightCost / static_cast<double>(heard.paths);
         costs_ = {kCostBesideLightPaths * camera.rays, each * static_cast<double>(heard.rays),
                   each * static_cast<double>(heard.raysAfterSpread)};
         findings_.rays += camera.pilotRays;
-        findings_.before = forecast.variance(0, camera.shared);
+        findings_.before = forecast.variance(0, camera);
         findings_.rest = camera.rest.planned();
-        const double plain = (findings_.rest + findings_.before) * camera.rays;
-        findings_.gain = 0;
-        for (const double share : kShares) {
-            const double after = forecast.variance(share, camera.shared);
-            const double gain = plain / ((findings_.rest + after) * (costs_.camera + share * costs_.light));
-            if (!(gain > findings_.gain)) continue; // nor where all is dark
-            findings_.gain = gain;
-            findings_.bestShare = share;
-            findings_.after = after;
+        const Efficiencies all = efficiencies(forecast, camera);
+        const std::size_t chosen = chosenShare(all, withoutGroups(heard.deposits, pixels));
+        findings_.gain = *std::ranges::max_element(all);
+        if (findings_.gain > 0) {
+            findings_.bestShare = shareOf(chosen);
+            findings_.after = forecast.variance(shareOf(chosen), camera);
         }
         describe(heard, findings_.bestShare);
     }

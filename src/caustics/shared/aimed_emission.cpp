@@ -23,13 +23,12 @@ bool behind(const AimTarget& target, const LightOrigin& origin) {
 
 // Nothing where the light's own directions are as dense, such as the narrow beam of a spot on a wide target.
 std::optional<AimCone> coneOf(const AimTarget& target, const LightOrigin& origin) {
-    if (behind(target, origin)) return std::nullopt;
     return AimCone::seen(target, origin.p, static_cast<double>(origin.largest));
 }
 
 // Whether there is such a cone that w surely misses.
 bool passes(const AimTarget& target, const LightOrigin& origin, Vec3 w) {
-    return AimCone::passes(target, origin.p, w, static_cast<double>(origin.largest)) && !behind(target, origin);
+    return AimCone::passes(target, origin.p, w, static_cast<double>(origin.largest));
 }
 
 // Whether the line through p meets the ball: its middle's distance from the line, in double.
@@ -146,6 +145,7 @@ std::optional<EmittedRay> AimedEmission::samplePlaced(const Source& source, std:
                                                       float time) const noexcept {
     const auto origin = source.placed->sampleOrigin(part, u.position, lambda, time);
     if (!origin) return std::nullopt;
+    if (target != kOwn && behind(plan_.targets[target], *origin)) return std::nullopt;
     const auto cone = target == kOwn ? std::nullopt : coneOf(plan_.targets[target], *origin);
     EmittedRay ray;
     if (cone) ray.target = target;
@@ -181,7 +181,8 @@ double AimedEmission::litDensity(std::size_t row, std::uint32_t target, Vec3 p, 
         diskToSquare({static_cast<float>(dot(d, Vec3d(frame.x))), static_cast<float>(dot(d, Vec3d(frame.y)))}));
 }
 
-// Targets that are not in sight of the origin leave their share to the light's own distribution.
+// Targets that are too wide leave their share to the light's own distribution. No path is aimed at one behind the
+// surface: such a path would only go where unaimed ones do, and be traced for it.
 double AimedEmission::pdfDirection(const Source& source, const LightOrigin& origin, Vec3 w,
                                    std::uint32_t chosen) const noexcept {
     const Distribution1D& aim = aim_[source.row];
@@ -190,7 +191,7 @@ double AimedEmission::pdfDirection(const Source& source, const LightOrigin& orig
         const double share = aim.probability(t + 1);
         if (!(share > 0)) continue;
         const AimTarget& target = plan_.targets[t];
-        if (t != chosen && passes(target, origin, w)) continue;
+        if (t != chosen && (passes(target, origin, w) || behind(target, origin))) continue;
         const auto cone = coneOf(target, origin);
         if (!cone)
             own += share;

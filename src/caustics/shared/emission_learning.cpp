@@ -89,8 +89,9 @@ EmissionPlan learnEmission(const EmissionPlan& even, std::size_t lights, std::sp
     std::unordered_map<std::size_t, Pair> heard;
     for (const LightStart& s : starts) ++heard[s.light * columns + s.target].starts[s.part];
     for (const LightDeposit& d : deposits)
-        heard[d.start.light * columns + d.start.target].moments[d.start.part] +=
-            square(d.luminance) * measure.weight(d.x, d.y) / (alone ? 1 : square(1 + d.rho));
+        if (alone || NoiseMeasure::isFirefly(measure.brightness(d), d.rho))
+            heard[d.start.light * columns + d.start.target].moments[d.start.part] +=
+                square(d.luminance) * measure.weight(d.x, d.y) / (alone ? 1 : square(1 + d.rho));
     const auto paths = static_cast<double>(starts.size());
     std::vector<double> ideal(lights * columns), share(ideal.size());
     std::vector<std::vector<double>> parts(lights * (columns - 1));

@@ -3,6 +3,7 @@
 
 #include "transport/roulette.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,7 @@ struct LightDeposit {
     double luminance = 0; // that one of as many light paths as the frame has pixels brings to the pixel, without weight
     double stands = 1;    // for how many such paths
     double rho = 0;       // how many times as likely one camera path a pixel is to find the same
+    std::uint32_t path = 0; // its number, of those that started in one part of a pilot
 };
 
 // As in the noise that a render shows and that its goal asks for (Film::relativeNoise): a variance counts over
@@ -41,6 +43,12 @@ class NoiseMeasure {
     std::size_t cell(int x, int y) const;
     // One over the square of luminance; 0 where nobody saw any light at all.
     double weight(int x, int y) const;
+    // How much brighter than its pixel a camera path is that finds the same; infinite if none can.
+    double brightness(const LightDeposit& d) const { return d.luminance * std::sqrt(weight(d.x, d.y)) / d.rho; }
+    // Far brighter than its pixel, and rarer for camera paths than for light paths. All else is no noise to speak of:
+    // light from next-event estimation varies by less, and most of its second moment is its mean.
+    static constexpr double kBright = 3, kRare = 2;
+    static bool isFirefly(double brightness, double rho) { return brightness > kBright && rho < kRare; }
     double mean() const { return mean_; } // L̄, luminance
 
   private:
