@@ -52,7 +52,7 @@ class Abbe:
         end = json.loads(done.stdout.strip().splitlines()[-1])
         self.load = end["seconds"] - end["render_seconds"]
         self.peak = end["memory_bytes"] / 2 ** 20
-        return read_exr(out), end["core_seconds"] + end["pilot_seconds"]
+        return read_exr(out), end["core_seconds"] # with those of pilots
 
     def close(self):
         pass

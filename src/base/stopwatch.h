@@ -1,7 +1,8 @@
-// Wall-clock time of the phases.
+// Wall-clock time of the phases, and what processors spent.
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace abbe {
 
@@ -21,5 +22,12 @@ class Stopwatch {
     using Clock = std::chrono::steady_clock;
     Clock::time_point start_ = Clock::now();
 };
+
+// Of all threads of this process so far.
+inline double processSeconds() {
+    timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
+}
 
 } // namespace abbe

@@ -129,6 +129,7 @@ struct RenderStatistics : PathTally {
     std::uint64_t manifoldEstimates = 0, manifoldTrials = 0, manifoldCapped = 0; // of this run alone
     std::uint64_t pilotRays = 0;                   // of looks ahead that are not in the image, of this run alone
     double pilotSeconds = 0;                       // wall clock of these
+    double pilotCoreSeconds = 0;                   // of all threads for these; not in coreSeconds, which samples took
     std::uint32_t samplesPerPixel = 0;             // finished in all pixels; adaptive: as if they were even
     std::vector<DroppedSample> examples;           // the first few
     std::map<const void*, std::uint64_t> cappedIn; // of this run alone: in which shapes or media, roughly how many

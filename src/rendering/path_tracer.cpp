@@ -100,6 +100,7 @@ class RenderJob {
         statistics_.caustics = plans_.findings;
         statistics_.pilotRays = plans_.rays;
         statistics_.pilotSeconds = plans_.seconds;
+        statistics_.pilotCoreSeconds = plans_.coreSeconds;
         plans_.caustics.giveTo(context_);
         if (plans_.caustics.any()) render_ = kernel_.lightPaths.render;
     }

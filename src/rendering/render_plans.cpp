@@ -9,8 +9,9 @@ namespace abbe {
 
 namespace {
 
-// What pilots may take, of the rays of the whole render and of its time limit.
-constexpr double kPilotShare = 0.1;
+// What pilots may take, of the rays of the whole render and of its time limit. Theirs are dearer than those of camera
+// paths: of the time it is a little more.
+constexpr double kPilotShare = 0.025, kPilotShareOfLimit = 0.1;
 // Of the time that is left, what the first pass of a plan may take as far as pilots tell: they may be wrong by half.
 constexpr double kFirstPassShare = 0.5;
 
@@ -21,6 +22,7 @@ class RenderPlanner {
 
     RenderPlans run() {
         const Stopwatch watch;
+        const double before = processSeconds();
         result_.ahead = lookAhead(in_.context, in_.render, in_.film, in_.state, in_.stop);
         result_.seconds = watch.seconds();
         if (in_.seen) in_.seen(result_.ahead.first);
@@ -31,6 +33,7 @@ class RenderPlanner {
             verdict() = lightPathVerdict(in_.context.scene, settings_.technique);
             in_.state.setPilot(0);
         }
+        result_.coreSeconds = processSeconds() - before;
         return std::move(result_);
     }
 
@@ -66,7 +69,7 @@ class RenderPlanner {
         const int replicates = in_.film.replicates();
         const double samples = static_cast<double>(settings_.samplesPerReplicate(replicates)) * replicates;
         PilotBudget budget{kPilotShare * samples * pixels_ * result_.ahead.raysOfPath, 0, !isShort()};
-        if (isShort()) budget.seconds = kPilotShare * settings_.timeLimit - result_.seconds;
+        if (isShort()) budget.seconds = kPilotShareOfLimit * settings_.timeLimit - result_.seconds;
         if (isShort() && !(budget.seconds > 0)) return {};
         return climb(pilots(), budget, in_.stop);
     }

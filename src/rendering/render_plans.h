@@ -25,6 +25,7 @@ struct RenderPlans {
     CausticFindings findings;
     std::uint64_t rays = 0; // that all of it took
     double seconds = 0;     // of the clock, likewise
+    double coreSeconds = 0; // of all threads, likewise
 };
 
 // The pilots are of the size that the state has, else of that of the settings. Depends on scene, frame and settings

@@ -81,7 +81,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.wavelengths", p.built->scene.wavelengths.followsLights() ? "lights" : "sech2");
     real("abbe.noise", p.noise);
     real("abbe.seconds", p.seconds);
-    real("abbe.coreSeconds", statistics.coreSeconds);
+    real("abbe.coreSeconds", statistics.coreSeconds + statistics.pilotCoreSeconds);
     whole("abbe.droppedNan", statistics.dropped[static_cast<std::size_t>(DropCause::nan)]);
     whole("abbe.droppedInfinite", statistics.dropped[static_cast<std::size_t>(DropCause::infinite)]);
     whole("abbe.droppedNegative", statistics.dropped[static_cast<std::size_t>(DropCause::negative)]);
@@ -311,7 +311,7 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
                               {"error", certificateJson(*s.certificate)},
                               {"samples", samplesJson(*s.certificate, s.statistics)},
                               {"seconds", seconds},
-                              {"core_seconds", s.statistics.coreSeconds},
+                              {"core_seconds", s.statistics.coreSeconds + s.statistics.pilotCoreSeconds},
                               {"scene_hash", facts.sceneHash},
                               {"seed", facts.seed},
                               {"program", versionNumber()}});

@@ -6,19 +6,12 @@
 #include "film/layer_planes.h"
 #include "rendering/path_tracer.h"
 
-#include <ctime>
 #include <numeric>
 #include <string>
 
 namespace abbe {
 
 namespace {
-
-double processSeconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
 
 PixelBounds frameOf(const FilmSettings& film) { return {0, 0, film.width, film.height}; }
 
@@ -106,7 +99,7 @@ void LadderRender::account(const RenderStatistics& s, double seconds) {
     const auto pilot = static_cast<double>(s.pilotRays);
     if (first) {
         firstPilot_ = s.pilotRays;
-        pilotCoreSeconds_ = s.coreSeconds * pilot / traced;
+        pilotCoreSeconds_ = s.pilotCoreSeconds;
     }
     cost_.seconds += first ? seconds : seconds * traced / (traced + pilot);
     cost_.coreSeconds = s.coreSeconds + pilotCoreSeconds_; // the render's sum knows nothing of looks ahead

@@ -248,18 +248,19 @@ TEST_CASE("pilots: of a size, or none") {
     CHECK(plansOf(pilots.run(10), 2, [] { return true; }).size == 0);
 }
 
-// The smallest are sent whatever the picture is; else a tenth, and the look at the frame, which is a path a pixel.
-TEST_CASE("pilots: a tenth of the rays of a render at most, larger for larger ones" * doctest::test_suite("sweep")) {
+// The smallest are sent whatever the picture is; else a fortieth, and the look at the frame, which is a path a pixel.
+TEST_CASE("pilots: a fortieth of the rays of a render at most, larger for larger ones" * doctest::test_suite("sweep")) {
     const TestScene tiny = TestScene::parse(ballPictureText(24, 16));
     const std::uint64_t smallest = renderByPilot(tiny, 1).statistics.pilotRays;
     int before = 0;
-    for (const int samples : {16, 256, 1024}) {
+    for (const int samples : {16, 1024, 4096}) {
         const TestScene scene = TestScene::parse(ballPictureText(24, samples));
         const TestImage image = renderByPilot(scene, RenderSettings::kPilotByWork);
         const RenderStatistics& s = image.statistics;
         CAPTURE(samples);
         CAPTURE(s.caustics.pilot);
-        CHECK(static_cast<double>(s.pilotRays) <= 0.1 * static_cast<double>(s.rays()) + static_cast<double>(smallest));
+        CHECK(static_cast<double>(s.pilotRays) <=
+              0.025 * static_cast<double>(s.rays()) + static_cast<double>(smallest));
         CHECK(s.caustics.pilot >= before);
         before = s.caustics.pilot;
         CHECK(s.pilotRays > 0);
