@@ -128,8 +128,8 @@ template <EffectBits E> class LightPath {
     VertexArenas& arenas_;
     Progress now_;
     bool all_ = false; // every wavelength goes through glass that disperses, and LightPathPlan::afterSpread counts
-    // For how many lanes the one in hand stands. Roulette does not see it: its numbers are those of the hero's path,
-    // which this depends on.
+    // For how many lanes the one in hand stands. Roulette must not see it: its numbers are those of the hero's path, on
+    // whose fate this depends.
     int standsFor_ = 1;
     int lane_ = 0; // of the film, that the hero's light belongs to
     std::optional<Parting> parting_;
@@ -203,8 +203,8 @@ void LightPath<E>::goOn(const EmittedRay& start, Ray ray, std::uint32_t depth, b
     walk_.endAtMaxDepth(&hit);
 }
 
-// The rest of all paths but the hero's. One that may go where the hero's was seen goes on; where that one was not, of
-// all others only one in so many does, for as many times its light: most such paths would be seen as little.
+// What the other wavelengths do from the parting on. Where the hero's path was seen all of them are followed. Where it
+// was not one is, and stands for all: most of them would be seen as little.
 template <EffectBits E>
 template <typename Surface, typename Collision>
 void LightPath<E>::followOtherLanes(const EmittedRay& start, Surface& onSurface, Collision& onCollision) {
@@ -215,6 +215,7 @@ void LightPath<E>::followOtherLanes(const EmittedRay& start, Surface& onSurface,
     const int one = 1 + std::min(static_cast<int>(random.uniform() * (kLanes - 1)), kLanes - 2);
     for (int lane = 1; lane < kLanes; ++lane) {
         if (!heroSeen && lane != one) continue;
+        if (!(from.before.rivals.back[lane] > 0)) continue; // no light path, had it been the hero: all of camera paths
         endSpread();
         now_ = from.before;
         walk_.path = from.path;

@@ -165,6 +165,49 @@ TEST_CASE("light paths: findings name lights and targets, are those of the rende
     CHECK(findingsOf(dark).verdict == noLights);
 }
 
+// A small light and a ball of glass: nothing but the seed of the pilots differs.
+TEST_CASE("light paths: the plan does not jump with the seed") {
+    const TestScene scene = TestScene::parse(
+        "scene 1\nfilm { size 96 96; filter box 0.5 }\ncamera { from 0.6 3 4; look-at 0.3 0.2 0; fov 34 deg }\n"
+        "shape quad { points -3 0 3  3 0 3  3 0 -3  -3 0 -3; material diffuse { reflectance 0.6 } }\n"
+        "shape sphere { center 0 0.6 0; radius 0.5; material dielectric { ior 1.5 } }\n"
+        "light sphere { center -1.6 2.6 0; radius 0.05; radiance 400 }\n");
+    double least = 100, most = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        RenderSettings settings = scene.settings();
+        settings.seed = seed;
+        const auto found = causticsOf(scene, settings).of<LightPathFindings>();
+        CAPTURE(seed);
+        CHECK(found.gain > 100);
+        least = std::min(least, found.share);
+        most = std::max(most, found.share);
+        double elsewhere = 0; // paths that are not aimed at the ball
+        for (const LightPathShare& s : found.shares)
+            if (s.target.empty()) elsewhere += s.share;
+        CHECK(elsewhere < 0.2);
+    }
+    MESSAGE("light paths for each camera path: " << least << " to " << most);
+    CHECK(most < 2.1 * least);
+}
+
+// All wavelengths of a light path go through glass that disperses, and each is seen by itself.
+TEST_CASE("light paths: dispersion costs no wavelengths") {
+    const auto picture = [](const std::string& index) {
+        return Picture("scene 1\nfilm { size 24 16; output \"x.exr\" space=acescg }\n"
+                       "render { samples 64; light-paths always; max-depth 4 }\n"
+                       "camera { from 0 2 4; look-at 0 0.3 0; fov 45 deg }\n"
+                       "shape quad { points -3 0 -3  -3 0 3  3 0 3  3 0 -3; material diffuse { reflectance 0.7 } }\n"
+                       "shape sphere { center 0 0.7 0; radius 0.6; material dielectric { " +
+                       index + " } }\nlight sphere { center 1 3 0.5; radius 3 cm; power 800 lm }\n");
+    };
+    const Picture plain = picture("ior 1.52"), disperses = picture("ior glass BK7");
+    const auto splats = [](const Picture& p) {
+        return static_cast<double>(p.statistics.splats) / static_cast<double>(p.statistics.lightPaths);
+    };
+    MESSAGE("splats of a light path: " << splats(plain) << ", " << splats(disperses));
+    CHECK(splats(disperses) > 3 * splats(plain));
+}
+
 // Hardly anything that has been spread comes back to what the camera sees: for the mean of all pixels it would be best
 // to end nine of ten of these paths. What ends them saves next to nothing, though.
 TEST_CASE("light paths: going on past a rough surface is left off only as far as it saves time") {

@@ -51,16 +51,18 @@ TEST_CASE("light path forecast: by the balance heuristic, seen by camera paths o
     const std::vector<LightDeposit> deposits = even(1, rho);
     const NoiseMeasure measure(kFrame, unknown, deposits);
     const LightPathForecast forecast(deposits, kFrame, measure);
-    const CameraVariance blind;
+    const CameraNoise blind;
     for (const double share : {0.0, 0.5, 4.0}) {
         CAPTURE(share);
         CHECK(forecast.variance(share, blind) == doctest::Approx(weight / (rho + share)));
     }
     // Seen in full, half as noisy in the mean of 64 samples: 512 have 1/2^1.5 of it.
-    const CameraVariance seen{weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
-    CHECK(seen.planned() == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
-    CHECK(forecast.variance(0, seen) == doctest::Approx(seen.planned()));
-    CHECK(forecast.variance(1, seen) == doctest::Approx(seen.planned() * 0.04 + weight / 1.5625));
+    CameraNoise seen;
+    seen.shared = {weight / rho, weight * (1 / rho - 1), weight * (1 / rho - 1) / 2};
+    const double planned = seen.shared.planned();
+    CHECK(planned == doctest::Approx(weight * (1 / rho - 1) / std::pow(2, 1.5)));
+    CHECK(forecast.variance(0, seen) == doctest::Approx(planned));
+    CHECK(forecast.variance(1, seen) == doctest::Approx(planned * 0.04 + weight / 1.5625));
     CHECK(forecast.fireflies() == doctest::Approx(weight / rho));
     CHECK(LightPathForecast(even(1, 1), kFrame, measure).fireflies() == 0); // all camera paths find it
 }
@@ -86,9 +88,48 @@ TEST_CASE("light path forecast: what a look has missed is the brightest") {
     const NoiseMeasure measure(kFrame, unknown, deposits);
     const LightPathForecast forecast(deposits, kFrame, measure);
     const double weight = 1 / (4 * 1.01);
-    const CameraVariance seen{weight, 0, 0}; // without noise
+    CameraNoise seen;
+    seen.shared = seen.quiet = {weight, 0, 0}; // without noise
     CHECK(forecast.variance(0, seen) == doctest::Approx(weight * 1000).epsilon(1e-3));
     CHECK(forecast.variance(1, seen) == doctest::Approx(weight * (1 / 1.001 + 1.0 / 4)).epsilon(1e-3));
+}
+
+// One firefly that a look happens to meet says nothing of how noisy common light is, and nothing of the rest.
+TEST_CASE("light path forecast: a firefly that a look has seen is no noise that light paths leave") {
+    const RouletteReference unknown;
+    std::vector<LightDeposit> deposits = even(1, 20); // what every camera path finds
+    for (const LightDeposit& d : even(1, 1e-3)) deposits.push_back(d);
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const LightPathForecast forecast(deposits, kFrame, measure);
+    const double weight = 1 / (4 * 1.01);
+    CameraNoise seen;
+    seen.quiet = {weight / 20, 0, 0};
+    for (const double met : {0.0, 10.0, 1e5}) { // its second moment and variance
+        CAPTURE(met);
+        seen.shared = {weight / 20 + met, met, met};
+        CHECK(forecast.variance(1, seen) < weight * (1.1 + met * 1e-5));
+    }
+}
+
+// Light that next-event estimation finds is most of what unaimed paths bring, and none of the noise.
+TEST_CASE("emission learning: what camera paths find without noise draws no light paths") {
+    EmissionPlan plan;
+    plan.targets = {{{0, 0, 5}, 1}};
+    const RouletteReference unknown;
+    std::vector<LightStart> starts;
+    std::vector<LightDeposit> deposits = even(1, 20, 8192);
+    for (std::size_t i = 0; i < deposits.size(); ++i) {
+        LightDeposit& d = deposits[i];
+        d.start = {0, i % 2 == 0 ? 1u : 0u, 0};
+        starts.push_back(d.start);
+        if (i % 2 == 0) d.rho = 1e-3, d.luminance = 0.01;
+    }
+    const NoiseMeasure measure(kFrame, unknown, deposits);
+    const auto unaimed = [&](bool alone) {
+        return static_cast<double>(learnEmission(plan, 1, starts, deposits, measure, alone).uniformShare);
+    };
+    CHECK(unaimed(false) < 0.1);
+    CHECK(unaimed(true) > 0.5); // nobody else has it
 }
 
 TEST_CASE("emission learning: paths go where light came from, and some everywhere") {

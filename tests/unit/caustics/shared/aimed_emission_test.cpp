@@ -101,6 +101,25 @@ TEST_CASE("aimed emission: a beam that is narrower than its target is not spread
     }
 }
 
+// Half of a ball of light looks away from what it is aimed at.
+TEST_CASE("aimed emission: no path is aimed at what is behind the surface that it starts from") {
+    const TestScene test = scene("light sphere { radius 0.1; power 10 W }");
+    EmissionPlan plan;
+    plan.targets = {{Vec3{0, 0, 1} - Vec3(test.scene().origin), 0.2f}};
+    const AimedEmission emission(test.scene().lights, test.scene().intersector->bounds(), plan);
+    Random random(5);
+    int aimed = 0, unaimed = 0;
+    constexpr int kPaths = 20000;
+    for (int i = 0; i < kPaths; ++i) {
+        const auto ray = emission.sample(emissionNumbers(random), Wavelengths::single(550), 0);
+        if (!ray) continue;
+        (ray->target == EmittedRay::kNoTarget ? unaimed : aimed)++;
+    }
+    CHECK(unaimed < 1.1 * static_cast<double>(plan.uniformShare) * kPaths);
+    CHECK(aimed > 0.3 * kPaths);
+    CHECK(aimed < 0.6 * kPaths);
+}
+
 TEST_CASE("aimed emission: light from far away is not counted before the place where its paths start") {
     const TestScene test = scene("light sun { toward 0 -1 0 }");
     const Light& sun = *test.scene().lights.at(0);
