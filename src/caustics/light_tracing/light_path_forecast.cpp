@@ -93,11 +93,12 @@ CameraVariance varianceOf(const Samples& samples, double weight) {
     return result;
 }
 
-// Without fireflies: each counts as the brightest that is none.
+// Without fireflies.
 Samples quietOf(Samples samples, double weight) {
     const double most = NoiseMeasure::kBright / std::sqrt(weight);
     for (auto& replicate : samples)
-        for (double& v : replicate) v = std::min(v, most);
+        for (double& v : replicate)
+            if (v > most) v = 0;
     return samples;
 }
 
@@ -188,7 +189,8 @@ double LightPathForecast::fireflies() const {
 // with next to no noise. The two stay apart, or one firefly that a look happens to see would count as noise that no
 // light path takes away.
 double LightPathForecast::variance(double share, const CameraNoise& camera) const {
-    const double loud = std::max(0.0, camera.shared.planned() - camera.quiet.planned());
+    const double seenLoud = std::max(0.0, camera.shared.planned() - camera.quiet.planned());
+    const double loud = std::min(seenLoud, fireflies()); // no variance is above the second moment
     double missed = fireflies() - (camera.shared.secondMoment - camera.quiet.secondMoment);
     double variance = 0;
     Seen fireflies, quiet;

@@ -91,7 +91,7 @@ class LightPathPlanner {
             first.paths, false, afterSpread(heard)};
         judge(learned);
         if (stop_()) return undecided;
-        if (!forced && findings_.gain < kLeastGain) return noGain;
+        if (!forced && (findings_.gain < kLeastGain || !sure_)) return noGain;
         findings_.share = findings_.bestShare;
         if (alone()) findings_.share = std::max(findings_.share, 1.0); // the gain is that of both together
         learned.paths = std::max(1u, static_cast<std::uint32_t>(std::lround(findings_.share * pixels_)));
@@ -258,17 +258,24 @@ class LightPathPlanner {
         return result;
     }
 
+    // Standard error of the log of a ratio, by the jackknife.
+    template <typename Ratio> static double errorOf(std::span<const Efficiencies> without, Ratio ratio) {
+        std::vector<double> logs;
+        for (const Efficiencies& e : without)
+            if (const double log = std::log(ratio(e)); std::isfinite(log)) logs.push_back(log); // others are all dark
+        const auto groups = static_cast<double>(std::max<std::size_t>(logs.size(), 1));
+        const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / groups;
+        double spread = 0;
+        for (const double log : logs) spread += square(log - mean);
+        return std::sqrt(spread * (groups - 1) / groups);
+    }
+
     // The largest share that may be the best: too few light paths leave any noise at all, too many cost what they cost.
     // So a pilot that does not know better asks for more, and another seed for no fewer.
-    static std::size_t chosenShare(const Efficiencies& all, std::span<const Efficiencies> without) {
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+    static std::size_t chosenShare(const Efficiencies& all, std::span<const Efficiencies> without, std::size_t best) {
         for (std::size_t i = kShares - 1; i > best; --i) {
-            if (!(all[i] >= (1 - kMostRegret) * all[best])) continue;
-            double mean = 0, spread = 0; // of log ratios, by the jackknife
-            for (const Efficiencies& e : without)
-                mean += std::log(e[i] / e[best]) / static_cast<double>(without.size());
-            for (const Efficiencies& e : without) spread += square(std::log(e[i] / e[best]) - mean);
-            const double error = std::sqrt(spread * (kGroups - 1) / kGroups);
+            if (!(all[i] >= std::max((1 - kMostRegret) * all[best], std::min(all[best], kLeastGain)))) continue;
+            const double error = errorOf(without, [&](const Efficiencies& e) { return e[i] / e[best]; });
             if (std::log(all[i] / all[best]) + error >= 0) return i;
         }
         return best;
@@ -294,9 +301,12 @@ class LightPathPlanner {
         findings_.before = forecast.variance(0, camera);
         findings_.rest = camera.rest.planned();
         const Efficiencies all = efficiencies(forecast, camera);
-        const std::size_t chosen = chosenShare(all, withoutGroups(heard.deposits, pixels));
-        findings_.gain = *std::ranges::max_element(all);
+        const std::vector<Efficiencies> without = withoutGroups(heard.deposits, pixels);
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(all) - all.begin());
+        findings_.gain = all[best];
         if (findings_.gain > 0) {
+            const std::size_t chosen = chosenShare(all, without, best);
+            sure_ = findings_.gain > std::exp(errorOf(without, [&](const Efficiencies& e) { return e[best]; }));
             findings_.bestShare = shareOf(chosen);
             findings_.after = forecast.variance(shareOf(chosen), camera);
         }
@@ -319,6 +329,7 @@ class LightPathPlanner {
     };
     Costs costs_;
     double raysBeside_ = 0;
+    bool sure_ = true; // that there is a gain, whatever it is
     LightPathFindings findings_;
 };
 
