@@ -34,8 +34,8 @@ constexpr double kLeastFireflies = 0.02; // second moment of what light paths co
 // Light paths for each camera path that are tried: √2 apart, since neighbours differ by a few percent in efficiency.
 constexpr std::size_t kShares = 15;
 double shareOf(std::size_t i) { return 0.0625 * std::exp2(0.5 * static_cast<double>(i)); }
-constexpr std::size_t kGroups = 8;   // of what pilots found, for error bars
-constexpr double kMostRegret = 0.25; // of forecast efficiency, what light paths may cost that no error bar rules out
+constexpr std::size_t kGroups = 8;  // of what pilots found, for error bars
+constexpr double kMostRegret = 0.1; // of forecast efficiency, what light paths may cost that no error bar rules out
 
 class LightPathPlanner {
   public:
