@@ -166,6 +166,7 @@ template <EffectBits E>
 inline void CameraPath<E>::standAt(const SurfaceHit& hit, const Bsdf& bsdf, const EyeDirection& eye) {
     const Vec3 n = hit.shading.z;
     last_.receiver = {hit.p, eye.wo.z < 0 ? -n : n, bsdf.lobes().has(Lobe::transmission)};
+    last_.lit = true;
     if (!walk_.context.lights.usesLobes()) return;
     last_.scatters.outline.count = 0;
     if (bsdf.lobes().has(Lobe::glossy)) last_.scatters = {eye.woRender, bsdf.outline(eye.wo)};
@@ -206,9 +207,12 @@ template <EffectBits E> bool CameraPath<E>::scatterInMedium(Ray& ray, std::uint3
     const VertexSample sample = walk_.sampler.vertex(depth);
     if (walk_.estimate.observer) [[unlikely]]
         walk_.estimate.observer->collides(ray.origin, path.beta);
-    setWork(Work::lights);
-    nee_.inMedium(ray.origin, ray.direction, sample, depth);
-    setWork(volumeWork(medium.number));
+    last_.lit = walk_.isLit(medium);
+    if (last_.lit) {
+        setWork(Work::lights);
+        nee_.inMedium(ray.origin, ray.direction, sample, depth);
+        setWork(volumeWork(medium.number));
+    }
     samplePhase(ray, sample, depth);
     if constexpr (kLightPaths) caustics_.scatterInMedium(depth);
     if constexpr (kTextures) walk_.widenCone();

@@ -17,6 +17,7 @@ struct CameraVertex {
     Receiver receiver{Vec3()};
     ScatterView scatters; // if any of its lobes is glossy and lights are chosen by it
     Vec3 origin;          // where its last ray started
+    bool lit = true;      // whether next-event estimation was made there: false in a medium that no light reaches
 };
 
 // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation would

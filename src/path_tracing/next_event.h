@@ -149,7 +149,7 @@ void NextEvent<E>::alongRay(const Ray& ray, float tMax, std::uint32_t depth, std
     RadianceEstimate& estimate = walk_.estimate;
     MediumTracker& tracker = walk_.media.tracker;
     leg_.media = {};
-    if (!context.lights.placed() || !path.delta || !context.how.nextEvent ||
+    if (!context.lights.placed() || !path.delta || !context.how.nextEvent || !walk_.isLitHere() ||
         (context.settings.maxDepth && depth >= context.settings.maxDepth))
         return;
     leg_.ray = ray;

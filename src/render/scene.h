@@ -29,6 +29,9 @@ struct MediumUse {
     };
     std::string name;
     Place place = Place::nowhere;
+    // False if no light outside reaches a place in it on a straight way, and none is inside: solids bound it whose
+    // surfaces scatter all that comes through.
+    bool lit = true;
 };
 
 // What a shape is made of. Infinite planes and what stands inside of objects are among them; of a shape with materials

@@ -187,7 +187,7 @@ void SceneBuilder::finish() {
     textures_.noteEffects();
     materials_.noteEffects();
     const Bounds3 extent{Vec3(bounds.lower), Vec3(bounds.upper)};
-    media_.finish(bounds.empty() ? nullptr : &extent);
+    media_.finish(bounds.empty() ? nullptr : &extent, lights_.all());
     scene.boundaries = scene.nested || materials_.boundaries();
     placer_.embree.setNested(scene.nested);
     context_.checkForbidden();

@@ -130,12 +130,32 @@ void MediumBuilder::noteUses() {
         if (shape.material->ior() || shape.material->interior()) scene.filled.push_back(shape.box);
 }
 
-void MediumBuilder::finish(const Bounds3* extent) {
+// Boxes may say too little of what is inside, never too much: next-event estimation in vain costs time alone.
+void MediumBuilder::noteUnlit(const std::vector<std::unique_ptr<Light>>& lights) {
+    const auto shines = [&](const Bounds3& box) {
+        return std::ranges::any_of(lights, [&](const auto& light) {
+            for (std::uint32_t part = 0; part < light->parts(); ++part)
+                if (const auto bounds = light->bounds(part); bounds && bounds->box.overlaps(box)) return true;
+            return false;
+        });
+    };
+    std::vector<MediumUse>& uses = context_.built.scene.mediumUses;
+    for (const auto& [medium, span] : interior_) uses[medium->number].lit = false;
+    for (const auto& [medium, span] : open_) uses[medium->number].lit = true;
+    for (const PlacedShape& shape : placed_) {
+        const Material& material = *shape.material;
+        if (!material.interior() || uses[material.interior()->number].lit) continue;
+        uses[material.interior()->number].lit = material.isBoundary() || material.mayBeOpen() || shines(shape.box);
+    }
+}
+
+void MediumBuilder::finish(const Bounds3* extent, const std::vector<std::unique_ptr<Light>>& lights) {
     Scene& scene = context_.built.scene;
     // What fills shapes may be made before it is known where render space has its origin.
     for (NoiseMedium* medium : noise_) medium->setOrigin(scene.origin);
     limitDense(extent);
     noteUses();
+    noteUnlit(lights);
     scene.nested = mayLieInDielectric(true);
     const bool immersed = mayLieInDielectric(false);
     if (scene.nested) context_.noteEffect(Effect::interfaces, {}, "dielectrics touch or may lie in one another");

@@ -90,8 +90,8 @@ class MediumBuilder {
     void notePlaced(const Material&, const Bounds3& box, bool repeated);
 
     // Once all is placed: tells the scene what its media and dielectrics ask of paths, and hands the media over.
-    // `extent`: bounds of the scene; null if it is empty.
-    void finish(const Bounds3* extent);
+    // `extent`: bounds of the scene; null if it is empty. `lights`: committed.
+    void finish(const Bounds3* extent, const std::vector<std::unique_ptr<Light>>& lights);
 
   private:
     struct PlacedShape {
@@ -102,6 +102,7 @@ class MediumBuilder {
 
     bool mayLieInDielectric(bool dielectrics) const;
     void noteUses();
+    void noteUnlit(const std::vector<std::unique_ptr<Light>>& lights);
     void noteEffects(const Medium&, Span, std::string_view what);
     void limitDense(const Bounds3* extent);
 

@@ -120,6 +120,16 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
     return {};
 }
 
+float MediumTracker::reach(const Ray& ray, const MediumStack& inside, const Wavelengths& lambda, RandomStream random) {
+    if (inside.size() != 1 || !open_.empty() || inside[0]->emission()) return kInfinity;
+    MediumWalk* const walk = inside[0]->walk(ray, kInfinity, spaces_[0]);
+    MediumSegment all;
+    if (!walk || !walk->next(all) || all.tNear > 0 || all.tFar < kInfinity || all.minimum < all.maximum)
+        return kInfinity;
+    const float rate = all.maximum * inside[0]->extinction().at(lambda)[0];
+    return rate > 0 ? random.exponential() / rate : kInfinity;
+}
+
 void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& inside, RandomStream& random) {
     forEach(inside, [&](const Medium& medium) {
         const MediumEmission* emission = medium.emission();

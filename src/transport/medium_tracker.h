@@ -73,6 +73,9 @@ class MediumTracker {
     // the way, at one place in every segment that emits.
     MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
                            TrackedWeights, EmissionListener* = nullptr);
+    // Where follow() with these random numbers will find the ray scattered if nothing is in its way, where that can be
+    // told without following it: in a single medium of constant density that does not emit. Elsewhere infinite.
+    float reach(const Ray&, const MediumStack& inside, const Wavelengths&, RandomStream);
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
     // [Novak2014] with the mean density of each segment as control.
     Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);

@@ -140,6 +140,16 @@ template <EffectBits E> class PathWalk {
         return light.distance < kInfinity ? world.occluded(origin, light.p, path.time, kind)
                                           : world.occluded({origin, light.wi, kInfinity, path.time, kind});
     }
+    // Whether next-event estimation from within the medium could find anything. Light paths are weighed against it as
+    // if it were made everywhere.
+    bool isLit(const Medium& medium) const { return context.lightPaths || context.scene.mediumUses[medium.number].lit; }
+    // The same of all media of the shapes around the path.
+    bool isLitHere() const {
+        const MediumStack& around = path.nested.here.media();
+        for (int i = 0; i < around.size(); ++i)
+            if (!isLit(*around[i])) return false;
+        return true;
+    }
     // Of a clear absorbing dielectric, over a distance.
     Spectrum clearness(const Surroundings&, float distance) const;
     // What a ray that crosses the surface towards `w` runs in; null in air.
@@ -189,6 +199,7 @@ template <EffectBits E> class PathWalk {
     template <typename OnTheWay> Arrival arriveThrough(Ray&, SurfaceHit&, std::uint32_t depth, OnTheWay&);
     template <typename OnTheWay>
     bool collides(Ray&, const SurfaceHit* ahead, RandomStream&, std::uint32_t crossings, OnTheWay&);
+    bool findAhead(const Ray&, SurfaceHit&, const RandomStream&);
     float straightOn(SurfaceHit&, const Ray&, NestedDielectrics&);
 };
 
@@ -230,6 +241,27 @@ template <EffectBits E> float PathWalk<E>::straightOn(SurfaceHit& hit, const Ray
     return open;
 }
 
+// The surface ahead, unless the path is certain to collide before it (`random`: what its tracking will use): in dense
+// media nearly all rays end long before. So near to the collision that placeOfCollision() may ask for it, a surface is
+// found all the same, but at a grazing angle at which no ray could reach it.
+template <EffectBits E>
+bool PathWalk<E>::findAhead(const Ray& ray, SurfaceHit& hit, [[maybe_unused]] const RandomStream& random) {
+    const Intersector& world = *context.scene.intersector;
+    if constexpr (kMedia) {
+        const Surroundings& here = path.nested.here;
+        if (!path.delta && !here.absorption()) { // what looks for lights along the ray must know its end
+            const float t = media.tracker.reach(ray, here.media(), path.lambda, random);
+            if (t < kInfinity) {
+                constexpr float kMargin = 0x1p-13f; // of the place's distance from the origin: 500 times its rounding
+                Ray piece = ray;
+                piece.tMax = t + kMargin * (t + length(ray.origin));
+                return world.intersect(piece, hit);
+            }
+        }
+    }
+    return world.intersect(ray, hit);
+}
+
 // Follows the ray up to the surface ahead, if any; true if the path collided on the way, where the ray then starts.
 template <EffectBits E>
 template <typename OnTheWay>
@@ -256,7 +288,7 @@ Arrival PathWalk<E>::arriveThrough(Ray& ray, SurfaceHit& hit, std::uint32_t dept
                                    [[maybe_unused]] OnTheWay& onTheWay) {
     RandomStream random = sampler.stream(2 * depth);
     for (std::uint32_t crossings = 0; crossings < kMaxVertices; ++crossings) {
-        const bool found = context.scene.intersector->intersect(ray, hit);
+        const bool found = findAhead(ray, hit, random);
         if constexpr (kMedia) {
             if (collides(ray, found ? &hit : nullptr, random, crossings, onTheWay)) return Arrival::collision;
         } else if constexpr (kAbsorption) {
