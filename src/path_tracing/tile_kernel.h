@@ -71,6 +71,7 @@ template <EffectBits E> class TileKernel {
         ExactXyz sum;
         std::uint32_t counted = 0;
         sampler_.startPixel(seed, context_.settings.technique.numbers, context_.choices, context_.strata);
+        sampler_.shareWavelengths(seedOfSquare(x, y, r), x, y);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
         if constexpr (Walk::kLightPaths)
@@ -95,6 +96,13 @@ template <EffectBits E> class TileKernel {
         film_.add(x, y, r, sum, counted);
         if (recorder_) recorder_->pixelDone(std::chrono::duration<double>(Clock::now() - started).count());
         result_.counters.paths += range.last - range.first;
+    }
+
+    // Of the square of 4 × 4 pixels whose wavelengths are stratified together.
+    std::uint64_t seedOfSquare(int x, int y, int replicate) const {
+        const std::uint64_t place =
+            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y >> 2)) << 32) | static_cast<std::uint32_t>(x >> 2);
+        return combine64(combine64(context_.settings.seed ^ 0x510e527fu, place), static_cast<std::uint64_t>(replicate));
     }
 
     Xyz sample(int x, int y, float rouletteScale) {

@@ -7,6 +7,9 @@
 #include "math/vec.h"
 #include "render/technique.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace abbe {
 
 // What one path vertex may draw.
@@ -19,10 +22,14 @@ struct VertexSample {
 
 // Sample `index` of an Owen-scrambled Sobol sequence of its own for every (pixel, replicate). The first 24 dimensions
 // are joint, in the order of what their quality is worth (docs/decisions/010-sampler-dimensions.md): BSDF of the first
-// vertex 0-1, light of the second 2-3, light of the first 4-5, wavelength 6, film 7-8, BSDF of the second 9-10, light
+// vertex 0-1, light of the second 2-3, light of the first 4-5, wavelengths 6, film 7-8, BSDF of the second 9-10, light
 // and BSDF of the third 11-14, time 15, lens 16-17, light and lobe choice of those vertices 18-19, 20-21 and 22-23.
 // Every later vertex has an independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose
 // cost is one register.
+//
+// Dimension 6 is where within an eighth the eight wavelengths of a path are; which of them is the hero follows from the
+// same point, as its place in the dimension that makes a (0, 2)-sequence of it. So both are stratified by themselves
+// and as one number, and so they are over squares of pixels (docs/decisions/035-paired-wavelengths.md).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
@@ -40,13 +47,28 @@ class Sampler final {
         strata_ = strata;
         groups_ = choices ? 3 : 2;
         for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
+        heroShift_ = static_cast<std::uint32_t>(pixelSeed >> 61);
+        firstWavelength_ = UInt8{};
+        firstWavelength_[kWavelength] = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
+        place_ = 0;
+    }
+    // After startPixel(), for the pixel at (x, y): the 4 × 4 pixels of its square, and the 2 × 2 within, share the
+    // strata of their wavelengths, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
+    void shareWavelengths(std::uint64_t squareSeed, int x, int y) {
+        place_ = static_cast<std::uint32_t>((x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2);
+        dimensionSeeds_[0][kWavelength] = static_cast<std::uint32_t>(squareSeed);
+        heroShift_ = static_cast<std::uint32_t>(squareSeed >> 61);
     }
     void start(std::uint32_t index) {
         index_ = index;
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
             return fillOther(0, true, joint_);
         const std::uint32_t shuffled = shuffleIndex(index, seed_);
-        for (int g = 0; g < groups_; ++g)
+        UInt8 first = sobolBits(shuffled, 0) ^ firstWavelength_;
+        hero_ = heroOf(first[kWavelength]) ^ kPlaces.hero[place_] ^ heroShift_;
+        first[kWavelength] ^= kPlaces.within[place_];
+        scrambleToFloats(first, dimensionSeeds_[0], joint_);
+        for (int g = 1; g < groups_; ++g)
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[7], joint_[8]}; }
@@ -54,7 +76,10 @@ class Sampler final {
     // (spectrum/wavelength_density.h).
     double wavelength() const {
         const auto finer = static_cast<double>(combine64(stream_ ^ 0x3c6ef372u, index_) >> 35);
-        return static_cast<double>(static_cast<std::int32_t>(joint_[6] * 0x1p24f)) * 0x1p-24 + finer * 0x1p-53;
+        const double number = static_cast<double>(joint_[kWavelength]) + finer * 0x1p-53;
+        if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
+            return number;
+        return std::min((static_cast<double>(hero_) + number) * 0.125, 1 - 0x1p-53); // 7.99… may round to 8
     }
     float time() const { return joint_[15]; }
     Vec2 lens() const { return {joint_[16], joint_[17]}; }
@@ -84,6 +109,34 @@ class Sampler final {
     }
 
   private:
+    static constexpr int kWavelength = 6; // its joint dimension
+
+    // What the places of a square add to the digits of the two numbers, as sobolBits() has them. The rows were found by
+    // search: with any number 1, 2, … 32 of samples of each pixel, 2 × 2 and 4 × 4 pixels have one in each of as many
+    // strata of either number, and of both as one.
+    struct Places {
+        std::uint32_t within[16], hero[16];
+    };
+    static constexpr Places places() {
+        constexpr std::uint32_t withinRows[] = {15, 6, 3, 13, 7, 1, 2, 14, 11, 15, 14, 10}, heroRows[] = {11, 13, 7};
+        Places all{};
+        for (std::uint32_t place = 0; place < 16; ++place) {
+            for (int digit = 0; digit < 12; ++digit)
+                all.within[place] |= static_cast<std::uint32_t>(std::popcount(place & withinRows[digit]) & 1) << digit;
+            for (int digit = 0; digit < 3; ++digit)
+                all.hero[place] |= static_cast<std::uint32_t>(std::popcount(place & heroRows[digit]) & 1)
+                                   << (2 - digit);
+        }
+        return all;
+    }
+    static const Places kPlaces;
+    // Which eighth the hero is in: three digits of the second dimension of the Faure sequence in base 2 [Faure1982],
+    // if the digits of the first are these, the highest in the lowest bit.
+    static std::uint32_t heroOf(std::uint32_t digits) {
+        const auto odd = [](std::uint32_t bits) { return static_cast<std::uint32_t>(std::popcount(bits) & 1); };
+        return odd(digits) << 2 | odd(digits & 0xaaaaaaaau) << 1 | odd(digits & 0xccccccccu);
+    }
+
     void fillSet(std::uint32_t set) {
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
             return fillOther(set, false, set_);
@@ -96,11 +149,17 @@ class Sampler final {
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
     UInt8 dimensionSeeds_[3] = {};
+    UInt8 firstWavelength_ = {};  // the digits of the first sample's, which all are counted from
+    std::uint32_t place_ = 0;     // in the square
+    std::uint32_t heroShift_ = 0; // of hero_
+    std::uint32_t hero_ = 0;      // the eighth in which it is
     int groups_ = 0;
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;
     std::uint32_t strata_ = 1;
     Technique::Numbers numbers_ = Technique::Numbers::sobol;
 };
+
+inline constexpr Sampler::Places Sampler::kPlaces = Sampler::places();
 
 } // namespace abbe
