@@ -1,9 +1,10 @@
 // Throughput and efficiency of the renderer on a scene: efficiency SCENE [--size N] [--depth N] [--replicates N]
 //   [--reference SAMPLES] [--samples 16|64|256]
-//   [--light-choice tree|power|uniform]
+//   [--light-choice tree|power|uniform] [--color]
 //   paths and rays per core-second, the share of time inside the intersector, relMSE × samples, efficiency
 //   1 / (relMSE × core-seconds), and the core-seconds that relMSE 0.01 and 0.001 take.
-// bench/render_error.h says what relMSE is; the last column leaves the worst 0.1 % of the pixels out.
+// bench/render_error.h says what relMSE is; the last column leaves the worst 0.1 % of the pixels out. With --color
+// instead the errors of luminance and chroma of the first samples, of pixels and of means over 2×2 and 4×4 of them.
 #include "app/load.h"
 #include "base/parallel.h"
 #include "render_error.h"
@@ -28,6 +29,7 @@ struct Options {
     std::uint32_t reference = 512;
     std::uint32_t most = 256; // samples of the largest of the measured renders
     std::optional<Technique::LightChoice> choice;
+    bool color = false;
 };
 
 // Counts the ticks of every 16th call; its own cost is one increment for the others.
@@ -89,10 +91,25 @@ bool parse(int argc, char** argv, Options& o) {
                 if (i + 1 < argc && word(choice) == argv[i + 1]) o.choice = choice;
             }
             ++i;
-        } else
+        } else if (!std::strcmp(argv[i], "--color"))
+            o.color = true;
+        else
             o.scene = argv[i];
     }
     return o.scene != nullptr;
+}
+
+void printColorErrors(const BuiltScene& built, const Options& options, const MeasuredRender& reference) {
+    std::printf("samples  core-s   luminance, chroma: pixels    2×2               4×4\n");
+    for (const std::uint32_t samples : {2u, 4u, 8u, 16u}) {
+        const MeasuredRender a = render(built, options, samples, 1), b = render(built, options, samples, 2);
+        std::printf("%7u  %6.3f         ", samples, 0.5 * (a.statistics.coreSeconds + b.statistics.coreSeconds));
+        for (const int side : {1, 2, 4}) {
+            const ColorError error = colorError(a, b, reference, side);
+            std::printf("  %.5f %.5f", error.luminance, error.chroma);
+        }
+        std::printf("\n");
+    }
 }
 
 // Core-seconds to an error, between the two measured renders around it on a log-log line (beyond them: continued).
@@ -130,7 +147,7 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) {
         std::fprintf(stderr, "usage: efficiency SCENE [--size N] [--depth N] [--replicates N] [--reference SAMPLES] "
                              "[--samples 16|64|256] "
-                             "[--light-choice tree|power|uniform]\n");
+                             "[--light-choice tree|power|uniform] [--color]\n");
         return 2;
     }
     setThreadCount(1);
@@ -145,6 +162,10 @@ int main(int argc, char** argv) {
     Options best = options;
     best.choice.reset(); // as the scene says
     const MeasuredRender reference = render(built, best, options.reference, 1000);
+    if (options.color) {
+        printColorErrors(built, options, reference);
+        return 0;
+    }
     std::printf("samples  M paths/core-s  M rays/core-s  vertices/path  relMSE×samples  efficiency  without worst\n");
     std::vector<std::pair<double, double>> errorAndTime;
     for (const std::uint32_t samples : {16u, 64u, 256u}) {

@@ -14,6 +14,7 @@ namespace abbe {
 
 struct MeasuredRender {
     std::vector<double> rgb; // linear Rec.709, pixel by pixel
+    int width = 0;           // pixels
     RenderStatistics statistics;
 };
 
@@ -25,12 +26,51 @@ inline MeasuredRender measuredRender(const BuiltScene& built, const RenderSettin
     film.keepSplatsOf(*integrator, built.scene, how);
     result.statistics = integrator->render(built.scene, film, how, {});
     const PixelBounds b = film.bounds();
+    result.width = b.x1 - b.x0;
     for (int y = b.y0; y < b.y1; ++y)
         for (int x = b.x0; x < b.x1; ++x) {
             const Vec3d c = toRgb(film.mean(x, y), rgb::rec709);
             result.rgb.insert(result.rgb.end(), {c.x, c.y, c.z});
         }
     return result;
+}
+
+// Of luminance, and of what is left of linear Rec.709 without it: the mean over pixels of half of (a - b)² over
+// Y² + 0.01 of the reference, on images scaled to a mean Y of 0.25. At most 10 for a pixel.
+struct ColorError {
+    double luminance = 0, chroma = 0;
+};
+
+// Of means over blocks of side × side pixels: what an eye sees from further away.
+inline ColorError colorError(const MeasuredRender& a, const MeasuredRender& b, const MeasuredRender& reference,
+                             int side) {
+    const auto blocks = [&](const MeasuredRender& image) {
+        const int height = static_cast<int>(image.rgb.size() / 3) / image.width;
+        std::vector<Vec3d> means;
+        for (int y = 0; y + side <= height; y += side)
+            for (int x = 0; x + side <= image.width; x += side) {
+                Vec3d sum;
+                for (int i = 0; i < side * side; ++i) {
+                    const auto at = static_cast<std::size_t>(3 * ((y + i / side) * image.width + x + i % side));
+                    sum += Vec3d{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+                }
+                means.push_back(sum / (side * side));
+            }
+        return means;
+    };
+    const auto luminance = [](const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; };
+    const std::vector<Vec3d> all[] = {blocks(a), blocks(b), blocks(reference)};
+    double mean = 0;
+    for (const Vec3d& c : all[2]) mean += luminance(c) / static_cast<double>(all[2].size());
+    ColorError error;
+    for (std::size_t i = 0; i < all[2].size(); ++i) {
+        const Vec3d difference = (all[0][i] - all[1][i]) * (0.25 / mean);
+        const double y = luminance(difference), least = square(luminance(all[2][i]) * 0.25 / mean) + 0.01;
+        const Vec3d chroma = difference - Vec3d{y, y, y};
+        error.luminance += std::min(10.0, 0.5 * y * y / least) / static_cast<double>(all[2].size());
+        error.chroma += std::min(10.0, 0.5 / 3 * dot(chroma, chroma) / least) / static_cast<double>(all[2].size());
+    }
+    return error;
 }
 
 // relMSE: the mean of (x - r)² / (r² + 0.01) over pixels and linear Rec.709 channels on images scaled to a mean of

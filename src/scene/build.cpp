@@ -187,7 +187,7 @@ void SceneBuilder::finish() {
     textures_.noteEffects();
     materials_.noteEffects();
     const Bounds3 extent{Vec3(bounds.lower), Vec3(bounds.upper)};
-    media_.finish(bounds.empty() ? nullptr : &extent, lights_.all());
+    media_.finish(bounds.empty() ? nullptr : &extent);
     scene.boundaries = scene.nested || materials_.boundaries();
     placer_.embree.setNested(scene.nested);
     context_.checkForbidden();
@@ -198,6 +198,7 @@ void SceneBuilder::finish() {
     scene.materials = materials_.release();
     scene.shapes = shapes_.release();
     for (auto& light : lights_.release()) scene.lights.push_back(std::move(light));
+    if (scene.intersector) noteLightsInside(scene);
     if (scene.intersector && scene.camera) checkEnclosure();
 }
 

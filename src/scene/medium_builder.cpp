@@ -8,6 +8,7 @@
 #include "media/phase_types.h"
 #include "scene/registry.h"
 #include "schema/files.h"
+#include "transport/surroundings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,7 @@ void MediumBuilder::noteEffects(const Medium& medium, Span span, std::string_vie
 void MediumBuilder::noteUses() {
     Scene& scene = context_.built.scene;
     for (const auto& [medium, span] : interior_) {
+        scene.mediumUses[medium->number].lit = false; // unless one of what follows lets light in
         noteEffects(*medium, span, "the shapes that this medium fills");
         context_.noteEffect(Effect::subsurface, span, "it fills shapes");
     }
@@ -121,46 +123,55 @@ void MediumBuilder::noteUses() {
         noteEffects(*medium, span, "this volume");
         scene.openMedia.push_back(medium);
         scene.mediumUses[medium->number].place = MediumUse::Place::space;
+        scene.mediumUses[medium->number].lit = true;
     }
     for (const PlacedShape& shape : placed_)
-        if (const Medium* medium = shape.material->interior())
-            scene.mediumUses[medium->number].place =
-                shape.material->isBoundary() ? MediumUse::Place::space : MediumUse::Place::solid;
+        if (const Medium* medium = shape.material->interior()) {
+            MediumUse& use = scene.mediumUses[medium->number];
+            use.place = shape.material->isBoundary() ? MediumUse::Place::space : MediumUse::Place::solid;
+            use.lit |= shape.material->isBoundary() || shape.material->mayBeOpen();
+        }
     for (const PlacedShape& shape : placed_)
         if (shape.material->ior() || shape.material->interior()) scene.filled.push_back(shape.box);
 }
 
-// Boxes may say too little of what is inside, never too much: next-event estimation in vain costs time alone.
-void MediumBuilder::noteUnlit(const std::vector<std::unique_ptr<Light>>& lights) {
-    const auto shines = [&](const Bounds3& box) {
-        return std::ranges::any_of(lights, [&](const auto& light) {
-            for (std::uint32_t part = 0; part < light->parts(); ++part)
-                if (const auto bounds = light->bounds(part); bounds && bounds->box.overlaps(box)) return true;
-            return false;
-        });
-    };
-    std::vector<MediumUse>& uses = context_.built.scene.mediumUses;
-    for (const auto& [medium, span] : interior_) uses[medium->number].lit = false;
-    for (const auto& [medium, span] : open_) uses[medium->number].lit = true;
-    for (const PlacedShape& shape : placed_) {
-        const Material& material = *shape.material;
-        if (!material.interior() || uses[material.interior()->number].lit) continue;
-        uses[material.interior()->number].lit = material.isBoundary() || material.mayBeOpen() || shines(shape.box);
-    }
-}
-
-void MediumBuilder::finish(const Bounds3* extent, const std::vector<std::unique_ptr<Light>>& lights) {
+void MediumBuilder::finish(const Bounds3* extent) {
     Scene& scene = context_.built.scene;
     // What fills shapes may be made before it is known where render space has its origin.
     for (NoiseMedium* medium : noise_) medium->setOrigin(scene.origin);
     limitDense(extent);
     noteUses();
-    noteUnlit(lights);
     scene.nested = mayLieInDielectric(true);
     const bool immersed = mayLieInDielectric(false);
     if (scene.nested) context_.noteEffect(Effect::interfaces, {}, "dielectrics touch or may lie in one another");
     if (immersed) context_.noteEffect(Effect::interfaces, {}, "what may lie in a dielectric looks otherwise there");
     scene.media = std::move(media_);
+}
+
+// Looks at the middles and corners of some of the parts of each. A light that is missed is found by scattering alone.
+void noteLightsInside(Scene& scene) {
+    constexpr std::uint32_t kMost = 16; // parts of a light
+    constexpr std::size_t kMany = 4096; // lights that are not worth the time: then any may be anywhere
+    const auto look = [&](Vec3 p) {
+        const MediumStack media = surroundingsAt(scene, p, 0).media();
+        for (int i = 0; i < media.size(); ++i) scene.mediumUses[media[i]->number].lit = true;
+    };
+    if (std::ranges::all_of(scene.mediumUses, &MediumUse::lit)) return;
+    if (scene.lights.size() > kMany) {
+        for (MediumUse& use : scene.mediumUses) use.lit = true;
+        return;
+    }
+    for (const auto& light : scene.lights) {
+        const std::uint32_t step = std::max(1u, light->parts() / kMost);
+        for (std::uint32_t part = 0; part < light->parts(); part += step) {
+            const auto bounds = light->bounds(part);
+            if (!bounds || bounds->box.empty()) continue;
+            const Vec3 a = bounds->box.lower, b = bounds->box.upper;
+            look((a + b) * 0.5f);
+            for (unsigned corner = 0; corner < 8; ++corner)
+                look({corner & 1 ? a.x : b.x, corner & 2 ? a.y : b.y, corner & 4 ? a.z : b.z});
+        }
+    }
 }
 
 // Media in which light goes less far between two collisions than positions can be told apart.

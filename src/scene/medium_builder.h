@@ -90,8 +90,8 @@ class MediumBuilder {
     void notePlaced(const Material&, const Bounds3& box, bool repeated);
 
     // Once all is placed: tells the scene what its media and dielectrics ask of paths, and hands the media over.
-    // `extent`: bounds of the scene; null if it is empty. `lights`: committed.
-    void finish(const Bounds3* extent, const std::vector<std::unique_ptr<Light>>& lights);
+    // `extent`: bounds of the scene; null if it is empty.
+    void finish(const Bounds3* extent);
 
   private:
     struct PlacedShape {
@@ -102,7 +102,6 @@ class MediumBuilder {
 
     bool mayLieInDielectric(bool dielectrics) const;
     void noteUses();
-    void noteUnlit(const std::vector<std::unique_ptr<Light>>& lights);
     void noteEffects(const Medium&, Span, std::string_view what);
     void limitDense(const Bounds3* extent);
 
@@ -115,6 +114,9 @@ class MediumBuilder {
     std::vector<std::pair<const Medium*, Span>> open_, interior_;
     std::vector<PlacedShape> placed_; // that a medium or a dielectric fills, or that look otherwise in one
 };
+
+// Of a scene that is built: light comes on straight ways to media that have lights inside.
+void noteLightsInside(Scene&);
 
 struct AtmosphereParams;
 struct HomogeneousParams;

@@ -7,7 +7,6 @@
 #include "math/vec.h"
 #include "render/technique.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace abbe {
@@ -72,14 +71,14 @@ class Sampler final {
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
     Vec2 film() const { return {joint_[7], joint_[8]}; }
-    // 53 bits, those beyond the sequence's 24 at random: a table of wavelengths has cells less likely than 2^-20
-    // (spectrum/wavelength_density.h).
+    // 53 bits, those beyond the sequence's 24 and the hero's 3 at random: a table of wavelengths has cells less likely
+    // than 2^-20 (spectrum/wavelength_density.h).
     double wavelength() const {
-        const auto finer = static_cast<double>(combine64(stream_ ^ 0x3c6ef372u, index_) >> 35);
-        const double number = static_cast<double>(joint_[kWavelength]) + finer * 0x1p-53;
+        const std::uint64_t finer = combine64(stream_ ^ 0x3c6ef372u, index_) >> 35;
+        const auto within = static_cast<double>(joint_[kWavelength]);
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
-            return number;
-        return std::min((static_cast<double>(hero_) + number) * 0.125, 1 - 0x1p-53); // 7.99… may round to 8
+            return within + static_cast<double>(finer) * 0x1p-53;
+        return (static_cast<double>(hero_) + (within + static_cast<double>(finer >> 3) * 0x1p-50)) * 0.125;
     }
     float time() const { return joint_[15]; }
     Vec2 lens() const { return {joint_[16], joint_[17]}; }
