@@ -46,27 +46,27 @@ class Sampler final {
         strata_ = strata;
         groups_ = choices ? 3 : 2;
         for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
-        heroShift_ = static_cast<std::uint32_t>(pixelSeed >> 61);
-        firstWavelength_ = UInt8{};
-        firstWavelength_[kWavelength] = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
-        place_ = 0;
+        const std::uint32_t first = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
+        shift_ = UInt8{};
+        shift_[kWavelength] = first;
+        heroShift_ = heroOf(first) ^ static_cast<std::uint32_t>(pixelSeed >> 61);
     }
     // After startPixel(), for the pixel at (x, y): the 4 × 4 pixels of its square, and the 2 × 2 within, share the
     // strata of their wavelengths, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
     void shareWavelengths(std::uint64_t squareSeed, int x, int y) {
-        place_ = static_cast<std::uint32_t>((x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2);
+        const int place = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
         dimensionSeeds_[0][kWavelength] = static_cast<std::uint32_t>(squareSeed);
-        heroShift_ = static_cast<std::uint32_t>(squareSeed >> 61);
+        heroShift_ = heroOf(shift_[kWavelength]) ^ kPlaces.hero[place] ^ static_cast<std::uint32_t>(squareSeed >> 61);
+        shift_[kWavelength] ^= kPlaces.within[place];
     }
     void start(std::uint32_t index) {
         index_ = index;
         if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
             return fillOther(0, true, joint_);
         const std::uint32_t shuffled = shuffleIndex(index, seed_);
-        UInt8 first = sobolBits(shuffled, 0) ^ firstWavelength_;
-        hero_ = heroOf(first[kWavelength]) ^ kPlaces.hero[place_] ^ heroShift_;
-        first[kWavelength] ^= kPlaces.within[place_];
-        scrambleToFloats(first, dimensionSeeds_[0], joint_);
+        const UInt8 first = sobolBits(shuffled, 0);
+        hero_ = heroOf(first[kWavelength]) ^ heroShift_;
+        scrambleToFloats(first ^ shift_, dimensionSeeds_[0], joint_);
         for (int g = 1; g < groups_; ++g)
             scrambleToFloats(sobolBits(shuffled, 8 * g), dimensionSeeds_[g], joint_ + 8 * g);
     }
@@ -148,9 +148,8 @@ class Sampler final {
     alignas(32) float joint_[24] = {};
     alignas(32) float set_[8] = {};
     UInt8 dimensionSeeds_[3] = {};
-    UInt8 firstWavelength_ = {};  // the digits of the first sample's, which all are counted from
-    std::uint32_t place_ = 0;     // in the square
-    std::uint32_t heroShift_ = 0; // of hero_
+    UInt8 shift_ = {};            // of the digits of the wavelengths: counted from the first sample's
+    std::uint32_t heroShift_ = 0; // of hero_, likewise
     std::uint32_t hero_ = 0;      // the eighth in which it is
     int groups_ = 0;
     std::uint64_t stream_ = 0;
