@@ -26,9 +26,10 @@ struct VertexSample {
 // Every later vertex has an independently shuffled set of its own (light 0-1, BSDF 2-3, choices 4-5): padding, whose
 // cost is one register.
 //
-// Dimension 6 is where within an eighth the eight wavelengths of a path are; which of them is the hero follows from the
-// same point, as its place in the dimension that makes a (0, 2)-sequence of it. So both are stratified by themselves
-// and as one number, and so they are over squares of pixels (docs/decisions/035-paired-wavelengths.md).
+// Dimension 6 is the hero wavelength or, where no density depends on it, the place of all eight within an eighth; which
+// of them is the hero then follows from the same point, as its place in the dimension that makes a (0, 2)-sequence of
+// it. So both are stratified by themselves and as one number, and so they are over squares of pixels
+// (docs/decisions/035-paired-wavelengths.md).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
@@ -46,18 +47,19 @@ class Sampler final {
         strata_ = strata;
         groups_ = choices ? 3 : 2;
         for (int g = 0; g < groups_; ++g) dimensionSeeds_[g] = dimensionSeeds(seed_, 8 * g);
-        const std::uint32_t first = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
         shift_ = UInt8{};
-        shift_[kWavelength] = first;
-        heroShift_ = heroOf(first) ^ static_cast<std::uint32_t>(pixelSeed >> 61);
+        paired_ = false;
     }
     // After startPixel(), for the pixel at (x, y): the 4 × 4 pixels of its square, and the 2 × 2 within, share the
     // strata of their wavelengths, each pixel one of every 16 or 4. `squareSeed`: the same for all pixels of it.
-    void shareWavelengths(std::uint64_t squareSeed, int x, int y) {
+    // `paired`: dimension 6 is the place within an eighth.
+    void shareWavelengths(std::uint64_t squareSeed, int x, int y, bool paired) {
         const int place = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
+        const std::uint32_t first = sobolBits(shuffleIndex(0, seed_), 0)[kWavelength];
         dimensionSeeds_[0][kWavelength] = static_cast<std::uint32_t>(squareSeed);
-        heroShift_ = heroOf(shift_[kWavelength]) ^ kPlaces.hero[place] ^ static_cast<std::uint32_t>(squareSeed >> 61);
-        shift_[kWavelength] ^= kPlaces.within[place];
+        shift_[kWavelength] = first ^ kPlaces.within[place];
+        heroShift_ = heroOf(first) ^ kPlaces.hero[place] ^ static_cast<std::uint32_t>(squareSeed >> 61);
+        paired_ = paired;
     }
     void start(std::uint32_t index) {
         index_ = index;
@@ -76,8 +78,7 @@ class Sampler final {
     double wavelength() const {
         const std::uint64_t finer = combine64(stream_ ^ 0x3c6ef372u, index_) >> 35;
         const auto within = static_cast<double>(joint_[kWavelength]);
-        if (numbers_ != Technique::Numbers::sobol) [[unlikely]]
-            return within + static_cast<double>(finer) * 0x1p-53;
+        if (!paired_ || numbers_ != Technique::Numbers::sobol) return within + static_cast<double>(finer) * 0x1p-53;
         return (static_cast<double>(hero_) + (within + static_cast<double>(finer >> 3) * 0x1p-50)) * 0.125;
     }
     float time() const { return joint_[15]; }
@@ -151,6 +152,7 @@ class Sampler final {
     UInt8 shift_ = {};            // of the digits of the wavelengths: counted from the first sample's
     std::uint32_t heroShift_ = 0; // of hero_, likewise
     std::uint32_t hero_ = 0;      // the eighth in which it is
+    bool paired_ = false;
     int groups_ = 0;
     std::uint64_t stream_ = 0;
     std::uint32_t seed_ = 0, index_ = 0;

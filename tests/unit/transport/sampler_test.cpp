@@ -17,26 +17,10 @@ constexpr double kLevel = 1e-4; // of each test below, before the correction for
 using Point = std::array<float, kSobolDimensions>;
 
 // A point by the plain route, without the work that SobolBlock shares.
-Point plainPoint(std::uint32_t index, std::uint64_t pixelSeed) {
+Point plainPoint(std::uint32_t index, std::uint32_t seed) {
     alignas(32) float out[kSobolDimensions];
-    const auto seed = static_cast<std::uint32_t>(pixelSeed);
     const std::uint32_t shuffled = shuffleIndex(index, seed);
     for (int first = 0; first < kSobolDimensions; first += 8) scrambledSobol8(shuffled, seed, first, out + first);
-    // The wavelengths: digits from the first sample's on, within an eighth, and the eighth digit by digit.
-    const std::uint32_t digits = sobolBits(shuffled, 0)[6] ^ sobolBits(shuffleIndex(0, seed), 0)[6];
-    std::uint32_t eighth = 0;
-    for (std::uint32_t digit = 0; digit < 32; ++digit)
-        for (std::uint32_t row = 0; row < 3;
-             ++row) // a binomial coefficient is odd where its lower bits are in the upper's
-            if ((digits >> digit & 1) && (digit & row) == row) eighth ^= 4u >> row;
-    eighth ^= static_cast<std::uint32_t>(pixelSeed >> 61);
-    UInt8 within{};
-    within[0] = digits;
-    UInt8 seeds{};
-    seeds[0] = dimensionSeeds(seed, 0)[6];
-    alignas(32) float number[8];
-    scrambleToFloats(within, seeds, number);
-    out[6] = static_cast<float>(eighth) * 0.125f + std::floor(number[0] * 0x1p21f) * 0x1p-24f;
     Point p;
     std::copy(std::begin(out), std::end(out), p.begin());
     return p;
@@ -148,7 +132,7 @@ TEST_CASE("sampler: work shared between the points of a block changes no bit") {
             for (std::uint32_t k = 0; k < 64; ++k) {
                 const std::uint32_t i = static_cast<std::uint32_t>(std::uint64_t{end - 1} * k / 63);
                 s.start(i);
-                CHECK(jointPoint(s) == plainPoint(i, seed));
+                CHECK(jointPoint(s) == plainPoint(i, static_cast<std::uint32_t>(seed)));
             }
         }
 }
@@ -338,6 +322,7 @@ TEST_CASE("sampler: hero and place within an eighth are a (0, m, 2)-net") {
         for (std::uint32_t m = 1; m <= 11; ++m)
             for (std::uint32_t k = 0; k <= std::min(m, 3u); ++k) { // intervals of 2^-k by 2^-(m-k)
                 Sampler s = pixelSampler(seed);
+                s.shareWavelengths(mix64(seed + 3), 2, 1, true);
                 std::set<std::uint32_t> met;
                 for (std::uint32_t i = 0; i < 1u << m; ++i) {
                     s.start(i);
@@ -351,25 +336,26 @@ TEST_CASE("sampler: hero and place within an eighth are a (0, m, 2)-net") {
 }
 
 TEST_CASE("sampler: squares of pixels share the strata of their wavelengths") {
-    for (const std::uint64_t square : {1ull, 0x123456789abcdef0ull})
-        for (const int side : {2, 4})
-            for (const std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u}) {
-                const auto strata = static_cast<std::uint32_t>(side * side) * n;
-                std::set<std::uint32_t> heroes, within;
-                for (int y = 0; y < side; ++y)
-                    for (int x = 0; x < side; ++x) {
-                        Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(8 * y + x)));
-                        s.shareWavelengths(mix64(square), x - 4, y + 4);
-                        for (std::uint32_t i = 0; i < n; ++i) {
-                            s.start(i);
-                            heroes.insert(static_cast<std::uint32_t>(s.wavelength() * strata));
-                            within.insert(static_cast<std::uint32_t>(wavelengthPair(s).within * strata));
+    for (const bool paired : {false, true})
+        for (const std::uint64_t square : {1ull, 0x123456789abcdef0ull})
+            for (const int side : {2, 4})
+                for (const std::uint32_t n : {1u, 2u, 4u, 8u, 16u, 32u}) {
+                    const auto strata = static_cast<std::uint32_t>(side * side) * n;
+                    std::set<std::uint32_t> heroes, within;
+                    for (int y = 0; y < side; ++y)
+                        for (int x = 0; x < side; ++x) {
+                            Sampler s = pixelSampler(mix64(static_cast<std::uint64_t>(8 * y + x)));
+                            s.shareWavelengths(mix64(square), x - 4, y + 4, paired);
+                            for (std::uint32_t i = 0; i < n; ++i) {
+                                s.start(i);
+                                heroes.insert(static_cast<std::uint32_t>(s.wavelength() * strata));
+                                within.insert(static_cast<std::uint32_t>(wavelengthPair(s).within * strata));
+                            }
                         }
-                    }
-                INFO("side " << side << ", samples " << n);
-                CHECK(heroes.size() == strata);
-                CHECK(within.size() == strata);
-            }
+                    INFO("side " << side << ", samples " << n);
+                    CHECK(heroes.size() == strata);
+                    if (paired) CHECK(within.size() == strata);
+                }
 }
 
 TEST_CASE("sampler: the wavelengths of each place in a square are uniform, and squares are independent") {
@@ -380,7 +366,7 @@ TEST_CASE("sampler: the wavelengths of each place in a square are uniform, and s
         constexpr int squares = 1 << 14;
         for (std::uint64_t square = 0; square < squares; ++square) {
             Sampler s = pixelSampler(combine64(5, square * 16 + static_cast<std::uint64_t>(place)));
-            s.shareWavelengths(combine64(77, square), place % 4, place / 4);
+            s.shareWavelengths(combine64(77, square), place % 4, place / 4, square % 2 == 0);
             s.start(static_cast<std::uint32_t>(square % 5));
             const double u = s.wavelength();
             ++one[static_cast<std::size_t>(u * 256)];
