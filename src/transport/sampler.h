@@ -29,7 +29,7 @@ struct VertexSample {
 // Dimension 6 is the hero wavelength or, where no density depends on it, the place of all eight within an eighth; which
 // of them is the hero then follows from the same point, as its place in the dimension that makes a (0, 2)-sequence of
 // it. So both are stratified by themselves and as one number, and so they are over squares of pixels
-// (docs/decisions/035-paired-wavelengths.md).
+// (docs/decisions/037-paired-wavelengths.md).
 //
 // Other numbers, for comparison: independent ones, or strata. Of N strata each block of N samples has one each, in
 // every pair of dimensions and every single one by itself and independently of the others (math/multi_jitter.h). With N
