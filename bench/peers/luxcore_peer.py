@@ -1,0 +1,150 @@
+"""Renders a scene with LuxCore for peers.py: luxcore_peer.py SCENE.xml DEPTH SIZE [bidir | photons] (protocol: peer_process.py).
+
+PATHCPU with the Sobol sampler, on one thread, and LuxCore's settings: no clamping, no denoiser; roulette as it is set. `bidir` is BIDIRCPU,
+`photons` the path tracer with LuxCore's cache of caustic photons. Its clouds are marched in steps of a cell: biased, as the cache is.
+"""
+import pathlib
+import sys
+import time
+
+import numpy as np
+
+import peer_process # before the renderer
+import pyluxcore
+import scene_reader
+
+
+def add_mesh(scene, name, points, faces, normals=None):
+    def rows(values):
+        return None if values is None else [tuple(row) for row in values.tolist()]
+
+    scene.DefineMesh(name, rows(points), rows(faces), rows(normals), None, None, None)
+
+
+def properties(values):
+    made = pyluxcore.Properties()
+    for name, value in values.items():
+        plain = np.asarray(value).tolist() if isinstance(value, (tuple, list, np.ndarray, np.generic)) else value
+        made.Set(pyluxcore.Property(name, plain))
+    return made
+
+
+def material(name, surface):
+    at = f"scene.materials.{name}"
+    made = {f"{at}.type": "matte", f"{at}.kd": surface.color}
+    if surface.kind == "dielectric":
+        made = {f"{at}.type": "glass", f"{at}.kr": [1, 1, 1], f"{at}.kt": [1, 1, 1], f"{at}.interiorior": surface.ior}
+    elif surface.kind == "conductor":
+        fresnel = f"scene.textures.{name}"
+        made = {f"{fresnel}.type": "fresnelconst", f"{fresnel}.n": surface.eta, f"{fresnel}.k": surface.k,
+                f"{at}.type": "metal2", f"{at}.fresnel": name, f"{at}.uroughness": surface.alpha, f"{at}.vroughness": surface.alpha}
+    if surface.emission:
+        made[f"{at}.emission"] = surface.emission
+    return made
+
+
+class Builder:
+    def __init__(self):
+        self.scene, self.count = pyluxcore.Scene(), 0
+
+    def add(self, surface, points, faces, normals=None, file=None):
+        self.count += 1
+        name = f"x{self.count}"
+        at = f"scene.objects.{name}"
+        values = {**material(name, surface), f"{at}.material": name}
+        if file:
+            values[f"{at}.ply"] = str(file)
+        else:
+            add_mesh(self.scene, name, points, faces, normals)
+            values[f"{at}.shape"] = name
+        self.scene.Parse(properties(values))
+
+    def add_ball(self, ball):
+        """Of triangles; one that shines has the area of the ball, and so its power, and few of them if it is small."""
+        shines = ball.surface.emission is not None
+        points, faces = scene_reader.icosphere((1 if ball.radius < 0.03 else 3) if shines else 6)
+        radius = ball.radius
+        if shines:
+            a, b, c = (points[faces[:, i]] for i in range(3))
+            radius *= (4 * np.pi / (np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)) ** 0.5
+        self.add(ball.surface, ball.center + radius * points, faces, None if shines else points)
+
+    def add_cloud(self, cloud):
+        depth, height, width = cloud.grid.shape
+        low, high = cloud.corners
+        size = high - low
+        # From the unit cube to the world; matrices go by columns.
+        matrix = np.array([[size[0], 0, 0, low[0]], [0, size[1], 0, low[1]], [0, 0, size[2], low[2]], [0, 0, 0, 1]])
+        grid, volume = "scene.textures.grid", "scene.volumes.cloud"
+        values = {f"{grid}.type": "densitygrid", f"{grid}.nx": width, f"{grid}.ny": height, f"{grid}.nz": depth,
+                  f"{grid}.wrap": "black", f"{grid}.data": cloud.grid.ravel().tolist(), f"{grid}.mapping.type": "globalmapping3d",
+                  f"{grid}.mapping.transformation": np.linalg.inv(matrix).T.ravel().tolist()}
+        for part, share in (("scattering", cloud.albedo), ("absorption", 1 - cloud.albedo)):
+            texture = f"scene.textures.{part}"
+            values |= {f"{texture}.type": "scale", f"{texture}.texture1": "grid", f"{texture}.texture2": share * cloud.scale,
+                       f"{volume}.{part}": part}
+        values |= {f"{volume}.type": "heterogeneous", f"{volume}.asymmetry": [cloud.g] * 3, f"{volume}.multiscattering": True,
+                   f"{volume}.steps.size": float(size[0] / width), f"{volume}.steps.maxcount": 4 * width,
+                   "scene.materials.inside.type": "null", "scene.materials.inside.volume.interior": "cloud"}
+        self.scene.Parse(properties(values))
+        points, faces = scene_reader.CUBE
+        add_mesh(self.scene, "box", low + size * (points + 1) / 2, faces)
+        self.scene.Parse(properties({"scene.objects.box.shape": "box", "scene.objects.box.material": "inside"}))
+
+    def add_lights(self, read):
+        values = {}
+        if read.sky:
+            values |= {"scene.lights.sky.type": "constantinfinite", "scene.lights.sky.color": read.sky}
+        for i, (direction, irradiance) in enumerate(read.suns):
+            at = f"scene.lights.sun{i}"
+            values |= {f"{at}.type": "sharpdistant", f"{at}.color": irradiance, f"{at}.direction": direction}
+        self.scene.Parse(properties(values))
+
+    def add_camera(self, read):
+        at, forward, up = read.camera[:3, 3], read.camera[:3, 2], read.camera[:3, 1]
+        self.scene.Parse(properties({
+            "scene.camera.type": "perspective", "scene.camera.lookat.orig": at, "scene.camera.lookat.target": at + forward,
+            "scene.camera.up": up, "scene.camera.fieldofview": read.fov, "scene.camera.cliphither": 1e-3}))
+
+
+class LuxCore:
+    version = pyluxcore.Version()
+
+    def __init__(self, path, depth, size, *also):
+        pyluxcore.Init(lambda _: None)
+        read = scene_reader.read(path, int(depth))
+        builder = Builder()
+        builder.add_camera(read)
+        for mesh in read.meshes:
+            builder.add(mesh.surface, mesh.points, mesh.faces, file=mesh.file)
+        for ball in read.balls:
+            builder.add_ball(ball)
+        if read.cloud:
+            builder.add_cloud(read.cloud)
+        builder.add_lights(read)
+        self.scene, self.size = builder.scene, int(size)
+        longest = read.depth + 1
+        self.settings = {
+            "renderengine.type": "BIDIRCPU" if "bidir" in also else "PATHCPU", "sampler.type": "SOBOL", "native.threads.count": 1,
+            "film.width": self.size, "film.height": self.size, "film.filter.type": "BOX", "film.filter.width": 0.5,
+            "film.imagepipelines.0.0.type": "NOP", "path.pathdepth.total": longest, "path.pathdepth.diffuse": longest,
+            "path.pathdepth.glossy": longest, "path.pathdepth.specular": longest, "light.maxdepth": longest, "path.maxdepth": longest,
+            "path.photongi.caustic.enabled": "photons" in also}
+
+    def render(self, samples, seed):
+        config = pyluxcore.RenderConfig(properties({**self.settings, "renderengine.seed": seed + 1, "batch.haltspp": samples}), self.scene)
+        session = pyluxcore.RenderSession(config)
+        before = peer_process.core_seconds()
+        session.Start()
+        while not session.HasDone():
+            time.sleep(0.005)
+            session.UpdateStats()
+        session.Stop()
+        spent = peer_process.core_seconds() - before
+        done = session.GetStats().Get("stats.renderengine.pass").GetInt()
+        image = np.zeros(3 * self.size ** 2, np.float32)
+        session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB_IMAGEPIPELINE, image)
+        return image.reshape(self.size, self.size, 3)[::-1], spent, done
+
+
+peer_process.serve(LuxCore, *sys.argv[1:])
