@@ -1,4 +1,4 @@
-"""Renders a scene with Blender's Cycles for peers.py: cycles_peer.py SCENE.xml DEPTH [guiding] (protocol: peer_process.py).
+"""Renders a scene with Blender's Cycles for peers.py: cycles_peer.py SCENE.xml DEPTH SIZE [guiding] (protocol: peer_process.py).
 
 Settings are Blender's but for what biases: no clamping, no glossy filter, no threshold for lights, no adaptive sampling, no denoiser, as
 many bounces of each kind as the scene has. Balls that shine are point lights of their radius, which Cycles samples best.

@@ -1,7 +1,8 @@
 """Renders a scene with LuxCore for peers.py: luxcore_peer.py SCENE.xml DEPTH SIZE [bidir | photons] (protocol: peer_process.py).
 
 PATHCPU with the Sobol sampler, on one thread, and LuxCore's settings: no clamping, no denoiser; roulette as it is set. `bidir` is BIDIRCPU,
-`photons` the path tracer with LuxCore's cache of caustic photons. Its clouds are marched in steps of a cell: biased, as the cache is.
+`photons` the path tracer with LuxCore's cache of caustic photons, which is biased and renewed with a smaller radius every 8 samples, as in
+progressive photon mapping.
 """
 import pathlib
 import sys
@@ -60,36 +61,14 @@ class Builder:
         self.scene.Parse(properties(values))
 
     def add_ball(self, ball):
-        """Of triangles; one that shines has the area of the ball, and so its power, and few of them if it is small."""
+        """Of triangles; one that shines has the area of the ball, and so its power, and few of them: more lose light in LuxCore."""
         shines = ball.surface.emission is not None
-        points, faces = scene_reader.icosphere((1 if ball.radius < 0.03 else 3) if shines else 6)
+        points, faces = scene_reader.icosphere(1 if shines else 6)
         radius = ball.radius
         if shines:
             a, b, c = (points[faces[:, i]] for i in range(3))
             radius *= (4 * np.pi / (np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)) ** 0.5
         self.add(ball.surface, ball.center + radius * points, faces, None if shines else points)
-
-    def add_cloud(self, cloud):
-        depth, height, width = cloud.grid.shape
-        low, high = cloud.corners
-        size = high - low
-        # From the unit cube to the world; matrices go by columns.
-        matrix = np.array([[size[0], 0, 0, low[0]], [0, size[1], 0, low[1]], [0, 0, size[2], low[2]], [0, 0, 0, 1]])
-        grid, volume = "scene.textures.grid", "scene.volumes.cloud"
-        values = {f"{grid}.type": "densitygrid", f"{grid}.nx": width, f"{grid}.ny": height, f"{grid}.nz": depth,
-                  f"{grid}.wrap": "black", f"{grid}.data": cloud.grid.ravel().tolist(), f"{grid}.mapping.type": "globalmapping3d",
-                  f"{grid}.mapping.transformation": np.linalg.inv(matrix).T.ravel().tolist()}
-        for part, share in (("scattering", cloud.albedo), ("absorption", 1 - cloud.albedo)):
-            texture = f"scene.textures.{part}"
-            values |= {f"{texture}.type": "scale", f"{texture}.texture1": "grid", f"{texture}.texture2": share * cloud.scale,
-                       f"{volume}.{part}": part}
-        values |= {f"{volume}.type": "heterogeneous", f"{volume}.asymmetry": [cloud.g] * 3, f"{volume}.multiscattering": True,
-                   f"{volume}.steps.size": float(size[0] / width), f"{volume}.steps.maxcount": 4 * width,
-                   "scene.materials.inside.type": "null", "scene.materials.inside.volume.interior": "cloud"}
-        self.scene.Parse(properties(values))
-        points, faces = scene_reader.CUBE
-        add_mesh(self.scene, "box", low + size * (points + 1) / 2, faces)
-        self.scene.Parse(properties({"scene.objects.box.shape": "box", "scene.objects.box.material": "inside"}))
 
     def add_lights(self, read):
         values = {}
@@ -113,29 +92,31 @@ class LuxCore:
     def __init__(self, path, depth, size, *also):
         pyluxcore.Init(lambda _: None)
         read = scene_reader.read(path, int(depth))
+        if read.cloud:
+            raise RuntimeError("marches through clouds of a grid, single pixels 100,000 times too bright, the more the finer its steps")
         builder = Builder()
         builder.add_camera(read)
         for mesh in read.meshes:
             builder.add(mesh.surface, mesh.points, mesh.faces, file=mesh.file)
         for ball in read.balls:
             builder.add_ball(ball)
-        if read.cloud:
-            builder.add_cloud(read.cloud)
         builder.add_lights(read)
         self.scene, self.size = builder.scene, int(size)
+        self.photons = "photons" in also
         longest = read.depth + 1
         self.settings = {
             "renderengine.type": "BIDIRCPU" if "bidir" in also else "PATHCPU", "sampler.type": "SOBOL", "native.threads.count": 1,
             "film.width": self.size, "film.height": self.size, "film.filter.type": "BOX", "film.filter.width": 0.5,
             "film.imagepipelines.0.0.type": "NOP", "path.pathdepth.total": longest, "path.pathdepth.diffuse": longest,
             "path.pathdepth.glossy": longest, "path.pathdepth.specular": longest, "light.maxdepth": longest, "path.maxdepth": longest,
-            "path.photongi.caustic.enabled": "photons" in also}
+            "path.photongi.caustic.enabled": self.photons}
 
     def render(self, samples, seed):
         config = pyluxcore.RenderConfig(properties({**self.settings, "renderengine.seed": seed + 1, "batch.haltspp": samples}), self.scene)
         session = pyluxcore.RenderSession(config)
-        before = peer_process.core_seconds()
-        session.Start()
+        started = peer_process.core_seconds()
+        session.Start() # builds trees and traces the first photons, and lets the rest begin
+        before = started if self.photons else peer_process.core_seconds()
         while not session.HasDone():
             time.sleep(0.005)
             session.UpdateStats()

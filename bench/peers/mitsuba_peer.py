@@ -1,4 +1,4 @@
-"""Renders a scene with Mitsuba for peers.py: mitsuba_peer.py SCENE.xml DEPTH VARIANT [INTEGRATOR] (protocol: peer_process.py)."""
+"""Renders a scene with Mitsuba for peers.py: mitsuba_peer.py SCENE.xml DEPTH SIZE VARIANT [INTEGRATOR] (protocol: peer_process.py)."""
 import pathlib
 import re
 import sys
@@ -12,7 +12,7 @@ import mitsuba as mi
 class Mitsuba:
     version = mi.__version__
 
-    def __init__(self, path, _depth, variant, integrator=None):
+    def __init__(self, path, _depth, _size, variant, integrator=None):
         mi.set_variant(variant)
         if integrator:
             text = re.sub(r'<integrator type="[a-z]+"', f'<integrator type="{integrator}"', pathlib.Path(path).read_text(), count=1)

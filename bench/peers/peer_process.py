@@ -46,3 +46,4 @@ def serve(renderer, *words):
             tell(core_seconds=spent, samples=done, peak_mib=peak_mib())
     except Exception as fault: # whatever it is, it is for whoever reads the table
         tell(error=f"{type(fault).__name__}: {fault}")
+    os._exit(0) # Blender waits for itself where it is to tidy up

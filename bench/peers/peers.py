@@ -1,105 +1,38 @@
 #!/usr/bin/env python3
 """Abbe beside other renderers, at equal time: how much error is left in the same scenes.
 
-  peers.py ABBE [--scene NAME]… [--size N] [--seconds S] [--seeds K] [--keep FOLDER] [--markdown FILE]
+  peers.py ABBE [--scene NAME]… [--size N] [--seconds S] [--seeds K] [--markdown docs/performance.md] [--readme README.md] [--html FILE]
 
 Renders every scene of scenes.py with every renderer that is here, in turn, K times with other seeds, each render with about S
 core-seconds, and prints a table. All run on one thread.
 
 * relMSE: mean of (x − r)² / (r² + 0.01) over pixels and channels, of images scaled to a mean of 0.25. Each renderer is judged
-  against its own renders: half of (a − b)² of two seeds is the error without that of a reference, which is the mean of all.
+  against its own renders (figures.py); one that is biased against the mean of Abbe's, so that its bias counts.
 * Efficiency: 1 / (relMSE × core-seconds), with the spread of leaving out one seed at a time (jackknife, two standard errors).
   "trimmed" leaves out the worst 0.1 % of the pixels.
-* Core-seconds are those of rendering, with all pilots and plans of Abbe's; loading and compiling kernels stand apart.
+* Core-seconds are those of rendering, with all pilots and plans; loading and compiling kernels stand apart.
+* "differs" is how far the means of 16 × 16 parts of the picture are from Abbe's, noise included: whether it is the same scene.
 
-Needs Python with mitsuba and numpy (`tests/exchange/requirements.txt`). `llvm_ad_spectral` needs an LLVM that can compile it: Debian's
-libllvm19, or $DRJIT_LIBLLVM_PATH. A renderer that cannot be had is named in the table's foot.
+Needs a Python with bench/peers/requirements.txt. `llvm_ad_spectral` needs an LLVM that can compile it: Debian's libllvm19, or
+$DRJIT_LIBLLVM_PATH. A renderer that cannot be had is named in the table's foot.
 """
 import argparse
-import glob
-import json
+import datetime
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 
 import numpy as np
 
+import figures
+import renderers
+import report
 import scenes as bench
 
-HERE = pathlib.Path(__file__).resolve().parent
-
-
-class Abbe:
-    name = "Abbe"
-
-    def __init__(self, program):
-        self.program = program
-
-    def open(self, path, size, folder):
-        self.path, self.size, self.folder = path, size, folder
-
-    def render(self, samples, seed):
-        out = self.folder / f"abbe-{seed}.exr"
-        command = [self.program, "render", str(self.path), "--samples", str(samples), "--seed", str(seed), "-t", "1", "--json",
-                   "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{self.size}", "-o", str(out)]
-        # By a shell, which forks: else the peak would begin with the memory of this program.
-        done = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError(done.stderr[-1500:] or done.stdout[-1500:])
-        end = json.loads(done.stdout.strip().splitlines()[-1])
-        self.load = end["seconds"] - end["render_seconds"]
-        self.peak = end["memory_bytes"] / 2 ** 20
-        return read_exr(out), end["core_seconds"] # with those of pilots
-
-    def close(self):
-        pass
-
-
-def read_exr(path):
-    import mitsuba as mi
-    mi.set_variant("scalar_rgb")
-    bitmap = mi.Bitmap(str(path))
-    names = [field.name for field in bitmap.struct_()]
-    return np.array(bitmap, dtype=np.float64)[:, :, [names.index(c) for c in "RGB"]]
-
-
-class Mitsuba:
-    def __init__(self, variant, integrator=None):
-        self.variant, self.integrator = variant, integrator
-        self.name = f"Mitsuba {variant}" + (f", {integrator}" if integrator else "")
-
-    def open(self, path, _size, folder):
-        environment = dict(os.environ)
-        if self.variant.startswith("llvm") and "DRJIT_LIBLLVM_PATH" not in environment:
-            for library in glob.glob("/usr/lib/*/libLLVM.so.19*"):
-                environment["DRJIT_LIBLLVM_PATH"] = library
-        environment["OMP_NUM_THREADS"] = environment["DRJIT_THREADS"] = "1"
-        words = [sys.executable, str(HERE / "mitsuba_peer.py"), self.variant, str(path)]
-        self.folder = folder
-        self.process = subprocess.Popen(words + ([self.integrator] if self.integrator else []), stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
-        self.load = self.answer()["load_seconds"]
-
-    def answer(self):
-        line = self.process.stdout.readline()
-        if line:
-            return json.loads(line)
-        raise RuntimeError(f"{self.name} ended with {self.process.wait()}")
-
-    def render(self, samples, seed):
-        out = self.folder / "mitsuba.npy"
-        self.process.stdin.write(f"{samples} {seed} {out}\n")
-        self.process.stdin.flush()
-        answer = self.answer()
-        self.peak = answer["peak_mib"]
-        return np.load(out).astype(np.float64), answer["core_seconds"]
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
+NOTES = ["Efficiency is 1 / (relMSE × core-seconds); intervals are two standard errors. The bold ratio is Abbe's efficiency over that of the "
+         "best unbiased peer. What is biased is judged against Abbe's mean."]
 
 
 def samples_for(renderer, seconds):
@@ -112,108 +45,107 @@ def samples_for(renderer, seconds):
         samples *= max(2, 2 ** int(np.log2(0.3 * seconds / max(spent, 1e-3))))
 
 
-def errors(images, region):
-    """relMSE of one render, of all pixels and without the worst 0.1 %, for each pair of seeds."""
-    height, width = images[0].shape[:2]
-    x0, y0, x1, y1 = (round(share * side) for share, side in zip(region, (width, height, width, height)))
-    cut = [image[y0:y1, x0:x1] for image in images]
-    reference = np.mean(cut, axis=0)
-    scale = 0.25 / reference.mean()
-    found = {}
-    for i in range(len(cut)):
-        for j in range(i):
-            pixels = (0.5 * (scale * (cut[i] - cut[j])) ** 2 / ((scale * reference) ** 2 + 0.01)).mean(axis=2).ravel()
-            pixels.sort()
-            found[i, j] = (pixels.mean(), pixels[: len(pixels) - len(pixels) // 1000].mean())
-    return found
+def measured(scene, renderer, images, seconds, samples, abbe):
+    """A row of the table. `abbe` are Abbe's renders, if there are any."""
+    errors = figures.errors_against(images, abbe, scene.region) if renderer.biased and len(abbe) > 1 else \
+        figures.errors_between(images, scene.region)
+    value, spread, trimmed = figures.efficiency(errors, seconds)
+    return {"scene": scene.name, "renderer": renderer.name, "family": renderer.family, "biased": renderer.biased, "samples": samples,
+            "core_seconds": float(np.mean(seconds)), "efficiency": value, "spread": spread, "trimmed": trimmed, "version": renderer.version,
+            "off": figures.coarse_difference(images, abbe) if abbe else 0, "load_seconds": renderer.load,
+            "first_seconds": renderer.first, "peak_mib": renderer.peak}
 
 
-def efficiency(images, seconds, region):
-    """Of all pixels and trimmed, with two standard errors of the first."""
-    pairs = errors(images, region)
-    k = len(images)
+def picture(images):
+    """PNG of the mean, as bright as all others."""
+    mean = np.mean(images, axis=0)
+    linear = np.clip(mean * 0.2 / mean.mean(), 0, 1)
+    encoded = np.where(linear < 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    height, width = mean.shape[:2]
+    return report.png(width, height, np.round(255 * encoded).astype(np.uint8).tobytes())
 
-    def of(seeds):
-        chosen = [e for (i, j), e in pairs.items() if i in seeds and j in seeds]
-        spent = np.mean([seconds[s] for s in seeds])
-        return 1 / (np.mean(chosen, axis=0) * spent)
 
-    whole = of(range(k))
-    left_out = np.array([of([s for s in range(k) if s != out])[0] for out in range(k)]) if k > 2 else np.array([whole[0]])
-    spread = 2 * np.sqrt((k - 1) / k * ((left_out - left_out.mean()) ** 2).sum())
-    return whole[0], spread, whole[1]
+def exported(abbe, path):
+    """What the other renderers read."""
+    if path.suffix != ".scene":
+        return path
+    made = path.with_suffix(".xml")
+    subprocess.run([abbe, "export", str(path), "--to", "mitsuba", "-o", str(made), "--force"], check=True, capture_output=True)
+    return made
 
 
 def compare(scene, options, folder):
+    """Rows, what could not be compared, and pictures by scene and renderer."""
     path = scene.write(folder, options.size, scene.depth)
-    exported = path
-    if path.suffix == ".scene":
-        exported = path.with_suffix(".xml")
-        subprocess.run([options.abbe, "export", str(path), "--to", "mitsuba", "-o", str(exported), "--force"], check=True,
-                       capture_output=True)
-    candidates = [(Abbe(options.abbe), path)]
-    for variant in options.variants:
-        candidates += [(Mitsuba(variant, integrator), exported) for integrator in (None, *scene.also)]
+    other = exported(options.abbe, path)
     running, missing = [], []
-    for renderer, file in candidates:
-        try:
-            renderer.open(file, options.size, folder)
-            running.append((renderer, samples_for(renderer, options.seconds), [], []))
-        except (RuntimeError, OSError, BrokenPipeError) as error:
-            missing.append(f"{renderer.name}, {scene.name}: {str(error).strip().splitlines()[-1] if str(error) else 'no answer'}")
-    for seed in range(1, options.seeds + 1):
-        for renderer, samples, images, seconds in running:
-            image, spent = renderer.render(samples, seed)
-            images.append(image)
-            seconds.append(spent)
-    rows = []
-    for renderer, samples, images, seconds in running:
+
+    def failed(renderer, error):
+        missing.append(f"{renderer.name}, {scene.name}: {(str(error).strip() or 'no answer').splitlines()[-1]}")
         renderer.close()
-        value, spread, trimmed = efficiency(images, seconds, scene.region)
-        rows.append({"scene": scene.name, "renderer": renderer.name, "samples": samples, "core_seconds": float(np.mean(seconds)),
-                     "efficiency": value, "spread": spread, "trimmed": trimmed, "load_seconds": renderer.load,
-                     "peak_mib": renderer.peak})
-        if options.keep:
-            np.save(pathlib.Path(options.keep) / f"{scene.name}-{renderer.name.replace(' ', '_').replace(',', '')}.npy", np.mean(images, axis=0))
-    return rows, missing
+
+    for renderer in renderers.all_of(scene, options):
+        try:
+            renderer.open(path if renderer.family == "Abbe" else other, scene.depth, options.size, folder)
+            running.append((renderer, samples_for(renderer, options.seconds), [], []))
+        except (RuntimeError, OSError) as error:
+            failed(renderer, error)
+    for seed in range(1, options.seeds + 1):
+        for entry in list(running):
+            renderer, samples, images, seconds = entry
+            try:
+                image, spent = renderer.render(samples, seed)
+                images.append(image)
+                seconds.append(spent)
+            except (RuntimeError, OSError) as error:
+                failed(renderer, error)
+                running.remove(entry)
+    abbe = next((images for renderer, _, images, _ in running if renderer.family == "Abbe"), [])
+    rows = [measured(scene, renderer, images, seconds, renderer.samples, abbe) for renderer, _, images, seconds in running]
+    for renderer, *_ in running:
+        renderer.close()
+    return rows, missing, {(scene.name, renderer.name): picture(images) for renderer, _, images, _ in running}
 
 
-def table(rows):
-    lines = ["| scene | renderer | samples | core-s | efficiency | trimmed | loading, s | peak MiB |", "|---|---|---|---|---|---|---|---|"]
-    for scene in dict.fromkeys(row["scene"] for row in rows):
-        here = sorted((row for row in rows if row["scene"] == scene), key=lambda row: -row["efficiency"])
-        for row in here:
-            lines.append(f"| {scene} | {row['renderer']} | {row['samples']} | {row['core_seconds']:.1f} | {row['efficiency']:.3g} "
-                         f"± {row['spread']:.2g} | {row['trimmed']:.3g} | {row['load_seconds']:.1f} | {row['peak_mib']:.0f} |")
-    return "\n".join(lines)
-
-
-def main():
+def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("abbe")
     parser.add_argument("--scene", action="append", choices=[s.name for s in bench.SCENES])
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--seconds", type=float, default=20, help="core-seconds of one render")
-    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--seeds", type=int, default=4, help="at least 2; intervals need 3")
     parser.add_argument("--variants", nargs="*", default=["llvm_ad_spectral", "scalar_spectral"], help="of Mitsuba")
-    parser.add_argument("--keep", help="folder for the mean picture of each renderer")
-    parser.add_argument("--markdown", help="file for the table")
+    parser.add_argument("--yardstick", nargs=2, metavar=("PROGRAM", "SPECTRA"), help="a bare path tracer of the Cornell box")
+    parser.add_argument("--markdown", help="file with a place for the table (docs/performance.md)")
+    parser.add_argument("--readme", help="file with a place for the short table (README.md)")
+    parser.add_argument("--html", help="page with the table and all pictures")
     options = parser.parse_args()
+    if options.seeds < 2:
+        parser.error("--seeds: error is told from the difference of two renders at least")
     options.abbe = os.path.abspath(options.abbe)
-    rows, missing = [], []
+    return options
+
+
+def main():
+    options = arguments()
+    rows, missing, pictures = [], [], {}
+    chosen = [scene for scene in bench.SCENES if not options.scene or scene.name in options.scene]
     with tempfile.TemporaryDirectory() as folder:
-        for scene in bench.SCENES:
-            if options.scene and scene.name not in options.scene:
-                continue
+        for scene in chosen:
             started = time.time()
-            found, failed = compare(scene, options, pathlib.Path(folder))
-            rows += found
-            missing += failed
-            print(table(found), f"\n({scene.about}; {time.time() - started:.0f} s)\n", flush=True)
-    text = table(rows) + "".join(f"\n\nnot compared: {m}" for m in missing) + "\n"
-    print(text)
+            found, failed, shown = compare(scene, options, pathlib.Path(folder))
+            rows, missing, pictures = rows + found, missing + failed, pictures | shown
+            print(report.table(found, failed), f"\n({scene.about}; {time.time() - started:.0f} s)\n", flush=True)
+    abouts = {scene.name: scene.about for scene in chosen}
+    run = {"size": options.size, "seconds": options.seconds, "seeds": options.seeds, "date": datetime.date.today().strftime("%d %B %Y"),
+           "versions": {row["family"]: row["version"] for row in rows}}
+    if options.html:
+        pathlib.Path(options.html).write_text(report.page(rows, missing, run, pictures, abouts, NOTES))
     if options.markdown:
-        pathlib.Path(options.markdown).write_text(text)
+        report.write_block(options.markdown, "six scenes", f"{report.about(run)}\n\n{report.table(rows, missing)}")
+    if options.readme:
+        report.write_block(options.readme, "short", f"{report.short_table(rows, abouts)}\n\n{report.about(run)}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -2,7 +2,7 @@
 
 Only what scenes.py writes and `abbe export --to mitsuba` makes of its scenes is understood; anything else is an error. World space is
 kept as it is (y up, right-handed). Spectra become linear Rec.709: emission as the standard observer sees it, what multiplies light as
-it is seen under an even spectrum, so that grey stays grey.
+it is seen under the first lamp, so that the first reflection has the right colour.
 """
 import dataclasses
 import pathlib
@@ -63,23 +63,30 @@ class Scene:
     cloud: Cloud = None
 
 
-def seen(values, wavelengths=None):
-    """Rec.709 of a spectrum of radiance in W/(m² sr nm): nothing outside its wavelengths."""
+def read_observer():
     rows = re.findall(r"^\{([^}]*)\}", OBSERVER.read_text(), re.MULTILINE)
-    observer = np.array([[float(x) for x in row.split(",")] for row in rows])
-    nm = np.arange(360, 360 + len(observer))
-    spectrum = np.full(len(nm), values) if wavelengths is None else np.interp(nm, wavelengths, values, 0, 0)
-    return REC709 @ (spectrum @ observer) / observer[:, 1].sum()
+    return np.array([[float(x) for x in row.split(",")] for row in rows])
 
 
-def color(node, emits=False):
+OBSERVER = read_observer()
+NM = np.arange(360, 360 + len(OBSERVER))
+
+
+def spectrum(node):
+    """At NM, nothing outside its wavelengths."""
     text = node.get("value")
-    if node.tag == "rgb":
-        return tuple(float(x) for x in text.replace(",", " ").split())
     if ":" not in text:
-        return tuple(seen(float(text)) if emits else [float(text)] * 3)
+        return np.full(len(NM), float(text))
     nm, values = np.array([[float(x) for x in pair.split(":")] for pair in text.split(",")]).T
-    return tuple(seen(values, nm) if emits else np.maximum(0, seen(values, nm) / seen(1.0)))
+    return np.interp(NM, nm, values, 0, 0)
+
+
+def color(node, lamp=None):
+    """Rec.709 of radiance in W/(m² sr nm), or of what multiplies the light of `lamp`, a spectrum."""
+    if node.tag == "rgb":
+        return tuple(float(x) for x in node.get("value").replace(",", " ").split())
+    seen = REC709 @ (spectrum(node) * (1 if lamp is None else lamp) @ OBSERVER)
+    return tuple(seen / OBSERVER[:, 1].sum() if lamp is None else np.maximum(0, seen / (REC709 @ (lamp @ OBSERVER))))
 
 
 def named(node, name, default=None):
@@ -137,16 +144,17 @@ def transform(node):
     return whole
 
 
-def surface(node):
+def surface(node, lamp):
     kind = node.get("type")
     if kind == "twosided":
-        return surface(next(child for child in node if child.tag == "bsdf"))
+        return surface(next(child for child in node if child.tag == "bsdf"), lamp)
     if kind == "diffuse":
-        return Surface(color=color(named(node, "reflectance")))
+        return Surface(color=color(named(node, "reflectance"), lamp))
     if kind == "dielectric":
         return Surface("dielectric", ior=number(node, "int_ior"))
     if kind == "roughconductor":
-        return Surface("conductor", eta=color(named(node, "eta")), k=color(named(node, "k")), alpha=number(node, "alpha"))
+        return Surface("conductor", eta=color(named(node, "eta"), lamp), k=color(named(node, "k"), lamp),
+                       alpha=number(node, "alpha"))
     raise RuntimeError(f"a bsdf `{kind}` is not known here")
 
 
@@ -200,15 +208,15 @@ def named_phase(medium):
     return next(child for child in medium if child.tag == "phase")
 
 
-def add_shape(scene, node, folder, surfaces):
+def add_shape(scene, node, folder, surfaces, lamp):
     found = Surface()
     for child in node:
         if child.tag == "bsdf" and child.get("type") != "null":
-            found = surface(child)
+            found = surface(child, lamp)
         elif child.tag == "ref":
             found = surfaces[child.get("id")]
         elif child.tag == "emitter":
-            found = dataclasses.replace(found, emission=color(named(child, "radiance"), emits=True))
+            found = dataclasses.replace(found, emission=color(named(child, "radiance")))
     matrix, kind, file = transform(node), node.get("type"), None
     if kind == "sphere":
         scene.balls.append(Ball(found, vector(named(node, "center")), number(node, "radius")))
@@ -232,17 +240,19 @@ def add_shape(scene, node, folder, surfaces):
 def read(path, depth):
     path = pathlib.Path(path)
     scene, surfaces = Scene(depth=depth), {}
-    for node in xml.parse(path).getroot():
+    document = xml.parse(path).getroot()
+    lamp = next((spectrum(part) for part in document.iter("spectrum") if part.get("name") in ("radiance", "irradiance")))
+    for node in document:
         if node.tag == "sensor":
             scene.camera, scene.fov = transform(node), number(node, "fov")
         elif node.tag == "bsdf":
-            surfaces[node.get("id")] = surface(node)
+            surfaces[node.get("id")] = surface(node, lamp)
         elif node.tag == "shape":
-            add_shape(scene, node, path.parent, surfaces)
+            add_shape(scene, node, path.parent, surfaces, lamp)
         elif node.tag == "emitter" and node.get("type") == "constant":
-            scene.sky = color(named(node, "radiance"), emits=True)
+            scene.sky = color(named(node, "radiance"), )
         elif node.tag == "emitter" and node.get("type") == "directional":
-            scene.suns.append((vector(named(node, "direction")), color(named(node, "irradiance"), emits=True)))
+            scene.suns.append((vector(named(node, "direction")), color(named(node, "irradiance"))))
         elif node.tag != "integrator":
             raise RuntimeError(f"<{node.tag} type=\"{node.get('type')}\"> is not known here")
     return scene

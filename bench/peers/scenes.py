@@ -20,7 +20,9 @@ class Scene:
     depth: int                      # scattering events of a path
     write: object                   # (folder, size, depth) -> path of an .xml or a .scene
     region: tuple = (0, 0, 1, 1)    # of the picture that is judged: x0, y0, x1, y1 as shares of its sides
-    also: tuple = ()                # integrators of Mitsuba's beside that of the file
+    mitsuba: tuple = ()             # integrators of Mitsuba's beside that of the file
+    cycles: tuple = ()              # what else of Cycles', cycles_peer.py
+    luxcore: tuple = ()             # what else of LuxCore's, luxcore_peer.py
 
 
 def of_repository(relative):
@@ -173,9 +175,10 @@ def caustic(folder, size, depth):
 
 SCENES = [
     Scene("cornell", "bounces between walls", 16, of_repository("scenes/cornell-box/cornell-box.scene")),
-    Scene("ajar", "a room that is lit through a slit", 24, of_repository("bench/peers/ajar.scene")),
+    Scene("ajar", "a room that is lit through a slit", 24, of_repository("bench/peers/ajar.scene"), cycles=("guiding",)),
     Scene("lights", "a thousand lights", 16, lights),
     Scene("mesh", "2.1 million triangles, sky and sun", 8, mesh),
-    Scene("cloud", "albedo 0.999, forward scattering", 128, cloud, also=("volpathmis",)),
-    Scene("caustic", "of a glass ball, on the floor", 16, caustic, region=(0.5, 0.42, 0.72, 0.62), also=("ptracer",)),
+    Scene("cloud", "albedo 0.999, forward scattering", 128, cloud, mitsuba=("volpathmis",)),
+    Scene("caustic", "of a glass ball, on the floor", 16, caustic, region=(0.5, 0.42, 0.72, 0.62), 
+          mitsuba=("ptracer",), luxcore=("bidir", "photons")),
 ]
