@@ -79,11 +79,14 @@ class Builder:
             values |= {f"{at}.type": "sharpdistant", f"{at}.color": irradiance, f"{at}.direction": direction}
         self.scene.Parse(properties(values))
 
-    def add_camera(self, read):
+    def add_camera(self, read, size):
+        """LuxCore's picture lies a row lower than those of others, so its window does, too."""
+        row = 2 / size
         at, forward, up = read.camera[:3, 3], read.camera[:3, 2], read.camera[:3, 1]
         self.scene.Parse(properties({
             "scene.camera.type": "perspective", "scene.camera.lookat.orig": at, "scene.camera.lookat.target": at + forward,
-            "scene.camera.up": up, "scene.camera.fieldofview": read.fov, "scene.camera.cliphither": 1e-3}))
+            "scene.camera.up": up, "scene.camera.fieldofview": read.fov, "scene.camera.cliphither": 1e-3,
+            "scene.camera.screenwindow": [-1, 1, -1 - row, 1 - row]}))
 
 
 class LuxCore:
@@ -95,7 +98,7 @@ class LuxCore:
         if read.cloud:
             raise RuntimeError("marches through clouds of a grid, single pixels 100,000 times too bright, the more the finer its steps")
         builder = Builder()
-        builder.add_camera(read)
+        builder.add_camera(read, int(size))
         for mesh in read.meshes:
             builder.add(mesh.surface, mesh.points, mesh.faces, file=mesh.file)
         for ball in read.balls:

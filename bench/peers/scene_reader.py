@@ -178,6 +178,8 @@ CUBE = (np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)])
         np.array([[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4], [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2],
                   [1, 3, 7], [1, 7, 5]]))
 
+SHAPES = {"rectangle": SQUARE, "cube": CUBE}
+
 
 def icosphere(times):
     """Points of the unit sphere and triangles: an icosahedron, each triangle cut into four so often."""
@@ -201,11 +203,7 @@ def read_cloud(medium, folder, corners):
     data = (folder / named(volume, "filename").get("value")).read_bytes()
     x, y, z = struct.unpack("<3i", data[8:20])
     grid = np.frombuffer(data, "<f4", x * y * z, 48).reshape(z, y, x)
-    return Cloud(grid, corners, number(medium, "scale"), number(medium, "albedo"), number(named_phase(medium), "g"))
-
-
-def named_phase(medium):
-    return next(child for child in medium if child.tag == "phase")
+    return Cloud(grid, corners, number(medium, "scale"), number(medium, "albedo"), number(next(child for child in medium if child.tag == "phase"), "g"))
 
 
 def add_shape(scene, node, folder, surfaces, lamp):
@@ -225,8 +223,10 @@ def add_shape(scene, node, folder, surfaces, lamp):
         file = folder / named(node, "filename").get("value")
         points, faces = read_ply(file)
         file = file if np.allclose(matrix, np.eye(4)) else None
+    elif kind in SHAPES:
+        points, faces = SHAPES[kind]
     else:
-        points, faces = {"rectangle": SQUARE, "cube": CUBE}[kind]
+        raise RuntimeError(f"a shape `{kind}` is not known here")
     points = points @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
