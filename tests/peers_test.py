@@ -158,12 +158,16 @@ class Reader(unittest.TestCase):
 <transform name="to_world"><lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
 <shape type="rectangle"><transform name="to_world"><scale value="2"/><rotate x="1" angle="-90"/><translate y="3"/></transform>
 <bsdf type="twosided"><bsdf type="diffuse"><spectrum name="reflectance" value="0.3"/></bsdf></bsdf>
-<emitter type="area"><spectrum name="radiance" value="10"/></emitter></shape></scene>""")
+<emitter type="area"><spectrum name="radiance" value="10"/></emitter></shape>
+<shape type="rectangle"><transform name="to_world"><matrix value="-1 0 0 0 0 1 0 0 0 0 1 5 0 0 0 1"/></transform></shape></scene>""")
             read = scene_reader.read(path, 5)
             np.testing.assert_allclose(read.camera[:3], [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 4]], atol=1e-12)
             mesh = read.meshes[0]
             a, b, c = mesh.points[mesh.faces[0]]
             np.testing.assert_allclose(np.cross(b - a, c - a), [0, 16, 0], atol=1e-9) # up, where its normal was turned
+            np.testing.assert_allclose(mesh.points.mean(0), [0, 3, 0], atol=1e-9)
+            a, b, c = read.meshes[1].points[read.meshes[1].faces[0]]
+            np.testing.assert_allclose(np.cross(b - a, c - a), [0, 0, 4], atol=1e-9) # mirrored, its normal is where it was
             np.testing.assert_allclose(mesh.surface.color, [0.3] * 3, atol=1e-9)
             np.testing.assert_allclose(mesh.surface.emission, [12.05, 9.48, 9.09], atol=0.05) # an even spectrum is a little red
             path.write_text('<scene><shape type="torus"><spectrum name="radiance" value="1"/></shape></scene>')
