@@ -136,6 +136,7 @@ class Report(unittest.TestCase):
         self.assertNotIn("<R>", text)
         self.assertNotIn("<fog>", text)
         self.assertNotIn("**", text)
+        self.assertIn("<b>2.5</b>", text)
 
     def test_png(self):
         data = report.png(2, 1, b"abcdef")

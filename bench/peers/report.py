@@ -12,8 +12,8 @@ import zlib
 
 
 def figures_of(value):
-    """Three digits that count, without an exponent."""
-    return f"{value:.3g}" if 0.001 <= abs(value) < 999.5 or value == 0 else f"{value:.0f}" if abs(value) >= 999.5 else f"{value:.1e}"
+    """Three digits that count, and an exponent for what is very small alone."""
+    return f"{value:.0f}" if abs(value) >= 99.95 else f"{value:.3g}"
 
 
 def by_scene(rows):
@@ -33,14 +33,14 @@ def abbe_of(rows):
 
 def cells(row, abbe, best):
     ratio = figures_of(abbe["efficiency"] / row["efficiency"]) if abbe and row is not abbe else ""
-    spread = "?" if math.isnan(row["spread"]) else f"{row['spread']:.2g}"
+    spread = "?" if math.isnan(row["spread"]) else f"{row['spread']:.2g}" if row["spread"] < 99.5 else f"{row['spread']:.0f}"
     return [row["scene"], row["renderer"] + (", biased" if row["biased"] else ""), str(row["samples"]), f"{row['core_seconds']:.1f}",
             f"{figures_of(row['efficiency'])} ± {spread}", figures_of(row["trimmed"]), f"**{ratio}**" if row is best else ratio,
             f"{100 * row['off']:.1f} %" if row is not abbe else "", f"{row['load_seconds']:.1f}", f"{row['first_seconds']:.1f}",
             f"{row['peak_mib']:.0f}" if row["peak_mib"] else "–"]
 
 
-HEAD = ["scene", "renderer", "samples", "core-s", "efficiency", "trimmed", "Abbe's is × this", "differs", "loading, s", "first picture, s",
+HEAD = ["scene", "renderer", "samples", "core-s", "efficiency", "trimmed", "Abbe ÷ this", "differs", "loading, s", "first picture, s",
         "peak MiB"]
 
 
@@ -102,7 +102,7 @@ def png(width, height, rgb):
 
 
 STYLE = """:root { color-scheme: light dark; }
-body { font: 15px/1.5 system-ui, sans-serif; background: Canvas; color: CanvasText; margin: 2em auto; max-width: 78em; padding: 0 1em; }
+body { font: 15px/1.5 system-ui, sans-serif; background: Canvas; color: CanvasText; margin: 2em auto; max-width: 84em; padding: 0 1em; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2em .7em; border-bottom: 1px solid color-mix(in srgb, CanvasText 25%, Canvas); text-align: right; white-space: nowrap; }
@@ -115,7 +115,8 @@ img { width: 256px; image-rendering: pixelated; display: block; }"""
 def page(rows, missing, run, pictures, abouts, notes):
     """Self-contained HTML; `pictures` are PNGs by scene and renderer."""
     def line(values, tag):
-        return "<tr>" + "".join(f"<{tag}>{html.escape(value).strip('*')}</{tag}>" for value in values) + "</tr>"
+        plain = (re.sub(r"\*\*(.*)\*\*", r"<b>\1</b>", html.escape(value)) for value in values)
+        return "<tr>" + "".join(f"<{tag}>{value}</{tag}>" for value in plain) + "</tr>"
     parts = ["<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">",
              f"<title>Abbe beside other renderers</title><style>{STYLE}</style></head><body><h1>Abbe beside other renderers</h1>",
              f"<p>{html.escape(about(run))}</p><div class=\"wide\"><table>", line(HEAD, "th"), *(line(row, "td") for row in table_rows(rows)),
