@@ -34,6 +34,8 @@ import scenes as bench
 NOTES = ["Efficiency is 1 / (relMSE × core-seconds); intervals are two standard errors. The bold ratio is Abbe's efficiency over that of the "
          "best unbiased peer. What is biased is judged against Abbe's mean."]
 
+MARKDOWN, README = "six scenes", "short" # blocks
+
 
 def samples_for(renderer, seconds):
     """A power of two, which Sobol points like best, so that one render takes about as long as that: at most 1.4 times."""
@@ -122,6 +124,13 @@ def arguments():
     options = parser.parse_args()
     if options.seeds < 2:
         parser.error("--seeds: error is told from the difference of two renders at least")
+    try:
+        import mitsuba as _ # reads Abbe's pictures
+        for file, name in ((options.markdown, MARKDOWN), (options.readme, README)):
+            if file:
+                report.block(file, name)
+    except (ImportError, RuntimeError) as error: # now, not after half an hour
+        parser.error(f"{error}; Python packages are those of bench/peers/requirements.txt" if isinstance(error, ImportError) else str(error))
     options.abbe = os.path.abspath(options.abbe)
     return options
 
@@ -142,9 +151,9 @@ def main():
     if options.html:
         pathlib.Path(options.html).write_text(report.page(rows, missing, run, pictures, abouts, NOTES))
     if options.markdown:
-        report.write_block(options.markdown, "six scenes", f"{report.about(run)}\n\n{report.table(rows, missing)}")
+        report.write_block(options.markdown, MARKDOWN, f"{report.about(run)}\n\n{report.table(rows, missing)}")
     if options.readme:
-        report.write_block(options.readme, "short", f"{report.short_table(rows, abouts)}\n\n{report.about(run)}")
+        report.write_block(options.readme, README, f"{report.short_table(rows, abouts)}\n\n{report.about(run)}")
 
 
 if __name__ == "__main__":

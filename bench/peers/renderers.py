@@ -74,9 +74,10 @@ class Peer:
             environment.setdefault("DRJIT_LIBLLVM_PATH", library)
         self.folder = folder
         words = [sys.executable, str(HERE / self.program), str(path), str(depth), str(size), *self.words]
+        self.said = folder / "peer.log"
         started = time.perf_counter()
-        self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                                        env=environment)
+        with open(self.said, "w") as said:
+            self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True, env=environment)
         answer = self.answer()
         self.first = time.perf_counter() - started
         self.load, self.version = answer["load_seconds"], answer["version"]
@@ -86,7 +87,9 @@ class Peer:
         line = self.process.stdout.readline() if ready else ""
         if not line:
             self.process.kill()
-            raise RuntimeError(f"ended with {self.process.wait()}" if ready else f"no answer for {PATIENCE} s")
+            self.process.wait()
+            said = self.said.read_text(errors="replace").strip().splitlines()
+            raise RuntimeError(f"no answer for {PATIENCE} s" if not ready else said[-1] if said else "ended without a word")
         answer = json.loads(line)
         if "error" in answer:
             raise RuntimeError(answer["error"])

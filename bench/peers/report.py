@@ -80,16 +80,21 @@ def short_table(rows, abouts):
     return markdown_table(["efficiency", *families], made)
 
 
-def write_block(path, name, text):
-    """Writing the same twice changes nothing. RuntimeError where the file has no place for it."""
+def block(path, name):
+    """The text of a file before, in and after its block. RuntimeError where the file has no place for it, or several."""
     path = pathlib.Path(path)
-    before = path.read_text() if path.exists() else ""
-    place = re.compile(rf"(<!-- peers: {re.escape(name)} -->\n).*?(<!-- peers end -->)", re.DOTALL)
-    after, found = place.subn(lambda match: f"{match.group(1)}\n{text.strip()}\n\n{match.group(2)}", before)
-    if found != 1:
-        raise RuntimeError(f"{path} has {found} places `<!-- peers: {name} -->` … `<!-- peers end -->`; it needs one")
-    if after != before:
-        path.write_text(after)
+    parts = re.split(rf"(?<=<!-- peers: {re.escape(name)} -->\n)(.*?)(?=<!-- peers end -->)", path.read_text() if path.exists() else "",
+                     flags=re.DOTALL)
+    if len(parts) != 3:
+        raise RuntimeError(f"{path} has {len(parts) // 2} places `<!-- peers: {name} -->` … `<!-- peers end -->`; it needs one")
+    return parts
+
+
+def write_block(path, name, text):
+    """Writing the same twice changes nothing."""
+    before, inside, after = block(path, name)
+    if inside != f"\n{text.strip()}\n\n":
+        pathlib.Path(path).write_text(f"{before}\n{text.strip()}\n\n{after}")
 
 
 def png(width, height, rgb):
