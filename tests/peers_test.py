@@ -150,6 +150,9 @@ class Reader(unittest.TestCase):
         self.assertEqual((len(points), len(faces)), (162, 320))
         a, b, c = (points[faces[:, i]] for i in range(3))
         self.assertTrue((np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) > 0).all())
+        points, faces = scene_reader.shining(scene_reader.Ball(None, np.array([1, 2, 3]), 0.5))
+        a, b, c = (points[faces[:, i]] for i in range(3))
+        self.assertAlmostEqual(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, np.pi, places=9)
 
     def test_scene(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,7 +1,8 @@
 """Renders a scene with Blender's Cycles for peers.py: cycles_peer.py SCENE.xml DEPTH SIZE [guiding] (protocol: peer_process.py).
 
 Settings are Blender's but for what biases: no clamping, no glossy filter, no threshold for lights, no adaptive sampling, no denoiser, as
-many bounces of each kind as the scene has. Balls that shine are point lights of their radius, which Cycles samples best.
+many bounces of each kind as the scene has. A ball that shines is a point light of its radius, which Cycles samples best; many are meshes, as
+rays are tested against all point lights.
 """
 import pathlib
 import sys
@@ -92,10 +93,13 @@ def add_mesh(points, faces, surface, smooth):
     place("mesh", mesh)
 
 
-def add_ball(ball):
+def add_ball(ball, many):
     if not ball.surface.emission:
         points, faces = scene_reader.icosphere(6)
         add_mesh(ball.center + ball.radius * points, faces, ball.surface, True)
+        return
+    if many:
+        add_mesh(*scene_reader.shining(ball), ball.surface, False)
         return
     light = bpy.data.lights.new("ball", "POINT")
     strength = max(ball.surface.emission)
@@ -162,7 +166,7 @@ class Cycles:
         for mesh in read.meshes:
             add_mesh(mesh.points, mesh.faces, mesh.surface, False)
         for ball in read.balls:
-            add_ball(ball)
+            add_ball(ball, len(read.balls) > 16)
         for sun in read.suns:
             add_sun(*sun)
         if read.cloud:

@@ -61,14 +61,11 @@ class Builder:
         self.scene.Parse(properties(values))
 
     def add_ball(self, ball):
-        """Of triangles; one that shines has the area of the ball, and so its power, and few of them: more lose light in LuxCore."""
-        shines = ball.surface.emission is not None
-        points, faces = scene_reader.icosphere(1 if shines else 6)
-        radius = ball.radius
-        if shines:
-            a, b, c = (points[faces[:, i]] for i in range(3))
-            radius *= (4 * np.pi / (np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)) ** 0.5
-        self.add(ball.surface, ball.center + radius * points, faces, None if shines else points)
+        if ball.surface.emission: # of more triangles the path tracer loses light
+            self.add(ball.surface, *scene_reader.shining(ball))
+            return
+        points, faces = scene_reader.icosphere(6)
+        self.add(ball.surface, ball.center + ball.radius * points, faces, points)
 
     def add_lights(self, read):
         values = {}
