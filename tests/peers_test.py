@@ -80,6 +80,13 @@ class Figures(unittest.TestCase):
         self.assertAlmostEqual(outlier[0] * 64 * 128, 2, delta=0.05) # half of 100² by the square of their mean
         self.assertLess(outlier[1], 1e-9)
 
+    def test_outliers_do_not_hide_themselves(self):
+        pictures, others = renders(2, 0, 6), [2 * image for image in renders(2, 0, 8)]
+        pictures[0][10, 100] = 100
+        scale = 0.25 / np.mean(pictures)
+        expected = 0.5 * (scale * 100) ** 2 / (0.25 ** 2 + 0.01) / 128 ** 2
+        self.assertAlmostEqual(figures.errors_between(pictures, WHOLE, others)[1, 0][0] / expected, 1, delta=0.01)
+
     def test_same_scene(self):
         picture = np.random.default_rng(7).uniform(0.1, 1, (64, 64, 3))
         self.assertLess(figures.coarse_difference([3 * picture], [picture]), 1e-9)

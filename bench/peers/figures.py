@@ -1,7 +1,8 @@
 """How much error is left in renders: figures of arrays, without files or programs.
 
 A render is an array of rows, columns and three channels. relMSE is the mean of (x − r)² / (r² + 0.01) over pixels and channels of pictures
-scaled to a mean of 0.25, where r is the mean of all. Half of (a − b)² of two seeds is the error without that of a reference.
+scaled to a mean of 0.25. Half of (a − b)² of two seeds stands for (x − r)²: it has no error of a reference. The r below is that of another
+renderer, as a renderer's own has its outliers, which would make light of themselves.
 """
 import numpy as np
 
@@ -20,12 +21,11 @@ def whole_and_trimmed(pixels):
     return pixels.mean(), pixels[: len(pixels) - len(pixels) // TRIMMED].mean()
 
 
-def errors_between(images, region):
-    """relMSE of one render, and trimmed, by pairs of seeds."""
+def errors_between(images, region, others=None):
+    """relMSE of one render, and trimmed, by pairs of seeds. `others` are renders of another renderer, for r."""
     cuts = [cut(image, region) for image in images]
-    reference = np.mean(cuts, axis=0)
-    scale = 0.25 / reference.mean()
-    weight = 0.5 * scale ** 2 / ((scale * reference) ** 2 + 0.01)
+    reference = np.mean([cut(image, region) for image in others or images], axis=0)
+    weight = 0.5 * (0.25 / np.mean(cuts)) ** 2 / ((0.25 / reference.mean() * reference) ** 2 + 0.01)
     return {(i, j): whole_and_trimmed(weight * (cuts[i] - cuts[j]) ** 2) for i in range(len(cuts)) for j in range(i)}
 
 

@@ -7,7 +7,8 @@ Renders every scene of scenes.py with every renderer that is here, in turn, K ti
 core-seconds, and prints a table. All run on one thread.
 
 * relMSE: mean of (x − r)² / (r² + 0.01) over pixels and channels, of images scaled to a mean of 0.25. Each renderer is judged
-  against its own renders (figures.py); one that is biased against the mean of Abbe's, so that its bias counts.
+  against its own renders (figures.py), the r of the divisor being that of the renderer with the least error of all others; one
+  that is biased against the mean of Abbe's, so that its bias counts.
 * Efficiency: 1 / (relMSE × core-seconds), with the spread of leaving out one seed at a time (jackknife, two standard errors).
   "trimmed" leaves out the worst 0.1 % of the pixels.
 * Core-seconds are those of rendering, with all pilots and plans; loading and compiling kernels stand apart.
@@ -47,12 +48,21 @@ def samples_for(renderer, seconds):
         samples *= max(2, 2 ** int(np.log2(0.3 * seconds / max(spent, 1e-3))))
 
 
-def measured(scene, renderer, images, seconds, samples, abbe):
-    """A row of the table. `abbe` are Abbe's renders, if there are any."""
+def cleanest(scene, running, but):
+    """Renders of the unbiased renderer with the least error, but not of that one; None if there is no other."""
+    found = [(np.mean(list(figures.errors_between(images, scene.region).values())), images) for renderer, _, images, _ in running
+             if renderer is not but and not renderer.biased and renderer.family != "yardstick"]
+    return min(found, key=lambda pair: pair[0], default=(0, None))[1]
+
+
+def measured(scene, renderer, images, seconds, others, abbe):
+    """A row of the table. `others` are what the error is divided by, `abbe` Abbe's renders, if there are any."""
+    if others and others[0].shape != images[0].shape:
+        others = None # the yardstick has a size of its own
     errors = figures.errors_against(images, abbe, scene.region) if renderer.biased and len(abbe) > 1 else \
-        figures.errors_between(images, scene.region)
+        figures.errors_between(images, scene.region, others)
     value, spread, trimmed = figures.efficiency(errors, seconds)
-    return {"scene": scene.name, "renderer": renderer.name, "family": renderer.family, "biased": renderer.biased, "samples": samples,
+    return {"scene": scene.name, "renderer": renderer.name, "family": renderer.family, "biased": renderer.biased, "samples": renderer.samples,
             "core_seconds": float(np.mean(seconds)), "efficiency": value, "spread": spread, "trimmed": trimmed, "version": renderer.version,
             "off": figures.coarse_difference(images, abbe) if abbe else 0, "load_seconds": renderer.load,
             "first_seconds": renderer.first, "peak_mib": renderer.peak}
@@ -103,7 +113,7 @@ def compare(scene, options, folder):
                 failed(renderer, error)
                 running.remove(entry)
     abbe = next((images for renderer, _, images, _ in running if renderer.family == "Abbe"), [])
-    rows = [measured(scene, renderer, images, seconds, renderer.samples, abbe) for renderer, _, images, seconds in running]
+    rows = [measured(scene, renderer, images, seconds, cleanest(scene, running, renderer), abbe) for renderer, _, images, seconds in running]
     for renderer, *_ in running:
         renderer.close()
     return rows, missing, {(scene.name, renderer.name): picture(images) for renderer, _, images, _ in running}
