@@ -24,6 +24,11 @@ import scene_reader
 WHOLE = (0, 0, 1, 1)
 
 
+def even(side=128):
+    """The renders of another renderer, without noise."""
+    return [np.full((side, side, 3), 7.0)]
+
+
 def renders(count, deviation, seed, truth=0.25, side=128):
     """An even picture with noise of that standard deviation, of a share of it."""
     random = np.random.default_rng(seed)
@@ -36,7 +41,7 @@ def relative_error(deviation):
 
 class Figures(unittest.TestCase):
     def test_efficiency_is_that_of_the_noise(self):
-        value, spread, trimmed = figures.efficiency(figures.errors_between(renders(4, 0.05, 1), WHOLE), [3.0, 5.0, 4.0, 4.0])
+        value, spread, trimmed = figures.efficiency(figures.errors_between(renders(4, 0.05, 1), WHOLE, even()), [3.0, 5.0, 4.0, 4.0])
         expected = 1 / (relative_error(0.05) * 4)
         self.assertAlmostEqual(value / expected, 1, delta=0.01)
         self.assertGreater(trimmed, value)
@@ -51,7 +56,7 @@ class Figures(unittest.TestCase):
         # Renders of 8 × 8 pixels, so that their errors scatter: about 19 of 20 intervals hold the truth.
         expected, held, widths, values = 1 / relative_error(0.2), 0, [], []
         for seed in range(200):
-            value, spread, _ = figures.efficiency(figures.errors_between(renders(6, 0.2, seed, side=8), WHOLE), [1.0] * 6)
+            value, spread, _ = figures.efficiency(figures.errors_between(renders(6, 0.2, seed, side=8), WHOLE, even(8)), [1.0] * 6)
             held += abs(value - expected) < spread
             widths.append(spread / 2)
             values.append(value)
@@ -86,6 +91,17 @@ class Figures(unittest.TestCase):
         scale = 0.25 / np.mean(pictures)
         expected = 0.5 * (scale * 100) ** 2 / (0.25 ** 2 + 0.01) / 128 ** 2
         self.assertAlmostEqual(figures.errors_between(pictures, WHOLE, others)[1, 0][0] / expected, 1, delta=0.01)
+
+    def test_dark_noise_of_the_other_does_not_count(self):
+        noisy = [np.maximum(0, image) for image in renders(1, 1, 9)]
+        clean = figures.errors_between(renders(2, 0.05, 10), WHOLE, even())[1, 0][0]
+        self.assertLess(figures.errors_between(renders(2, 0.05, 10), WHOLE, noisy)[1, 0][0], 1.1 * clean)
+
+    def test_about(self):
+        image = np.random.default_rng(11).uniform(0, 1, (9, 7, 3))
+        found = figures.about(image)
+        np.testing.assert_allclose(found[4, 3], image[2:7, 1:6].mean(axis=(0, 1)))
+        np.testing.assert_allclose(found[0, 6], image[0:3, 4:7].mean(axis=(0, 1)))
 
     def test_same_scene(self):
         picture = np.random.default_rng(7).uniform(0.1, 1, (64, 64, 3))

@@ -1,8 +1,9 @@
 """How much error is left in renders: figures of arrays, without files or programs.
 
 A render is an array of rows, columns and three channels. relMSE is the mean of (x − r)² / (r² + 0.01) over pixels and channels of pictures
-scaled to a mean of 0.25. Half of (a − b)² of two seeds stands for (x − r)²: it has no error of a reference. The r below is that of another
-renderer, as a renderer's own has its outliers, which would make light of themselves.
+scaled to a mean of 0.25. Half of (a − b)² of two seeds stands for (x − r)²: it has no error of a reference. The r² below is of another
+renderer, as a renderer's own has its outliers, which would make light of themselves; and at least of the 5 × 5 pixels about, as dark noise
+would count many times.
 """
 import numpy as np
 
@@ -21,11 +22,20 @@ def whole_and_trimmed(pixels):
     return pixels.mean(), pixels[: len(pixels) - len(pixels) // TRIMMED].mean()
 
 
+def about(image, reach=2):
+    """Means of (2 reach + 1)² pixels, fewer at the edge."""
+    padded = np.pad(image, ((reach, reach), (reach, reach), (0, 0)), constant_values=np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (2 * reach + 1, 2 * reach + 1), axis=(0, 1))
+    return np.nanmean(windows, axis=(-2, -1))
+
+
 def errors_between(images, region, others=None):
     """relMSE of one render, and trimmed, by pairs of seeds. `others` are renders of another renderer, for r."""
     cuts = [cut(image, region) for image in images]
     reference = np.mean([cut(image, region) for image in others or images], axis=0)
-    weight = 0.5 * (0.25 / np.mean(cuts)) ** 2 / ((0.25 / reference.mean() * reference) ** 2 + 0.01)
+    mean = reference.mean()
+    reference = np.maximum(reference, about(reference))
+    weight = 0.5 * (0.25 / np.mean(cuts)) ** 2 / ((0.25 / mean * reference) ** 2 + 0.01)
     return {(i, j): whole_and_trimmed(weight * (cuts[i] - cuts[j]) ** 2) for i in range(len(cuts)) for j in range(i)}
 
 
