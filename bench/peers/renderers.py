@@ -46,7 +46,7 @@ class Abbe:
         self.samples = samples
         self.load = end["seconds"] - end["render_seconds"]
         self.peak = end["memory_bytes"] / 2 ** 20
-        return read_exr(out), end["core_seconds"] + end["pilot_seconds"]
+        return read_exr(out), end["core_seconds"]
 
     def close(self):
         pass
