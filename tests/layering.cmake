@@ -16,6 +16,7 @@ set(allowed_io base math spectrum)
 set(allowed_volumes base math)
 set(allowed_vdb base math volumes)
 set(allowed_render base math spectrum schema)
+set(allowed_guiding base math)
 foreach(sibling geometry lights cameras film media materials textures transport light_sampling)
     set(allowed_${sibling} ${below_render})
 endforeach()
@@ -31,7 +32,7 @@ set(allowed_caustics/manifold ${allowed_caustics/light_tracing} caustics/light_t
 set(allowed_caustics/merging ${allowed_caustics/manifold} caustics/manifold)
 set(allowed_caustics/glints ${allowed_caustics/merging} caustics/merging)
 set(techniques caustics/shared caustics/light_tracing caustics/manifold caustics/merging caustics/glints)
-set(allowed_path_tracing ${below_techniques} ${techniques})
+set(allowed_path_tracing ${below_techniques} guiding ${techniques})
 set(allowed_rendering ${allowed_path_tracing} path_tracing)
 set(allowed_scene ${allowed_rendering} rendering volumes geometry lights cameras film media materials textures io)
 set(allowed_study ${allowed_scene} scene denoise)
@@ -61,7 +62,7 @@ set(allowed_render_run ${allowed_reports} reports checkpoints)
 set(allowed_farm ${allowed_app} app checkpoints study)
 set(allowed_commands ${allowed_render_run} render_run farm command_line denoise doctor)
 set(folders base math spectrum denoise schema parser io volumes vdb render geometry lights cameras film media materials textures
-            modules transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
+            modules guiding transport light_sampling ${techniques} path_tracing rendering scene study verify doctor
             packs ${exchange} app pictures pages checkpoints reports command_line render_run farm commands)
 
 # Libraries that only one folder may know, or two.

@@ -2,8 +2,8 @@
 // and [Wilkie2014] for the wavelengths; notation of docs/conventions.md.
 #pragma once
 
-#include "path_tracing/defensive_bsdf.h"
 #include "path_tracing/emission.h"
+#include "path_tracing/mixed_bsdf.h"
 #include "path_tracing/next_event.h"
 #include "transport/roulette.h"
 #include "transport/walk.h"
@@ -45,7 +45,8 @@ template <EffectBits E> class CameraPath {
     MediumCollision passMedia(const Ray&, float tMax, std::uint32_t depth, std::uint32_t crossings, Follow);
     void meetSurface(SurfaceHit&, Vec3 direction, std::uint32_t depth);
     const Bsdf& bsdfAt(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
-    [[gnu::cold]] const Bsdf* evenly(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
+    const Bsdf& mixedAt(const Bsdf& own, const SurfaceHit&, Vec3 direction, std::uint32_t depth);
+    float indexBeyond(const SurfaceHit&, Vec3 direction) const;
     void standAt(const SurfaceHit&, const Bsdf&, const EyeDirection&);
     std::optional<BsdfSample> sampleBsdf(const Bsdf&, const EyeDirection&, const VertexSample&);
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const EyeDirection&, Ray&);
@@ -55,6 +56,9 @@ template <EffectBits E> class CameraPath {
 
     Walk walk_;
     CameraVertex last_;
+    const PathGuide::Region* region_ = nullptr; // that guides the path at the present vertex, if any
+    float seen_ = 1;                            // radiance where the guide was looked up last
+    float expected_ = 1;                        // radiance where it goes on to, over that of the frame in the mean
     [[no_unique_address]] CameraCaustics<E> caustics_;
     Emission<E> emission_{walk_, last_, caustics_};
     NextEvent<E> nee_{walk_, last_, caustics_};
@@ -144,21 +148,36 @@ void CameraPath<E>::meetSurface(SurfaceHit& hit, Vec3 direction, [[maybe_unused]
 template <EffectBits E>
 inline const Bsdf& CameraPath<E>::bsdfAt(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     walk_.arena.reset();
-    return walk_.context.how.evenly ? *evenly(hit, direction, depth)
-                                    : *hit.material->bsdf(hit, walk_.path.lambda, walk_.arena);
+    const Bsdf& own = *hit.material->bsdf(hit, walk_.path.lambda, walk_.arena);
+    expected_ = 1;
+    region_ = nullptr;
+    return walk_.context.mixes() ? mixedAt(own, hit, direction, depth) : own;
 }
 
-// What stands for the scattering at a surface some of whose directions are drawn evenly (LoopTechnique::evenly).
-template <EffectBits E> const Bsdf* CameraPath<E>::evenly(const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
+// What stands for the scattering at a surface some of whose directions are drawn evenly (LoopTechnique::evenly), or by
+// the guide, if it knows the place and the surface is not so glossy that it knows better where to go.
+template <EffectBits E>
+const Bsdf& CameraPath<E>::mixedAt(const Bsdf& own, const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
+    const PathContext& context = walk_.context;
+    if (context.how.evenly) [[unlikely]]
+        return *walk_.arena.template make<DefensiveBsdf>(own, indexBeyond(hit, direction),
+                                                         context.how.evenShare(depth));
+    if (!own.lobes().has(Lobe::diffuse) || own.lobes().has(Lobe::dispersive)) return own;
+    region_ = context.guide->at(hit.p, faceAgainst(direction, hit.shading.z));
+    if (!region_ || !(region_->guided > 0)) return own;
+    return *walk_.arena.template make<GuidedBsdf>(
+        own, indexBeyond(hit, direction), region_->guided,
+        GuidedDirections{*context.guide, *region_, hit.p, hit.shading, &seen_});
+}
+
+// Index of the side away from where the path comes from over that of its own side.
+template <EffectBits E> float CameraPath<E>::indexBeyond(const SurfaceHit& hit, Vec3 direction) const {
+    const Curve* inside = hit.material->ior();
+    if (!inside) return 1;
     const Wavelengths& lambda = walk_.path.lambda;
-    const Bsdf& own = *hit.material->bsdf(hit, lambda, walk_.arena);
-    float eta = 1;
-    if (const Curve* inside = hit.material->ior()) {
-        eta = inside->at(lambda)[0];
-        if (hit.outside) eta /= hit.outside->at(lambda)[0];
-        if (dot(hit.shading.z, direction) > 0) eta = 1 / eta; // on the way out
-    }
-    return walk_.arena.template make<DefensiveBsdf>(own, eta, walk_.context.how.evenShare(depth));
+    float eta = inside->at(lambda)[0];
+    if (hit.outside) eta /= hit.outside->at(lambda)[0];
+    return dot(hit.shading.z, direction) > 0 ? 1 / eta : eta; // on the way out
 }
 
 // The vertex as lights see it. What does not let light through is lit from the side of the eye alone.
@@ -176,9 +195,14 @@ template <EffectBits E>
 inline std::optional<BsdfSample> CameraPath<E>::sampleBsdf(const Bsdf& bsdf, const EyeDirection& eye,
                                                            const VertexSample& sample) {
     auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
+    expected_ = seen_; // lights look it up, too, after that
     if constexpr (kTextures)
-        if (walk_.context.how.evenly && next) [[unlikely]]
-            walk_.path.ownPdf = static_cast<const DefensiveBsdf&>(bsdf).ownDensity(eye.wo, next->wi);
+        if (walk_.context.mixes() && next) [[unlikely]] {
+            const auto density = [&](const auto& mixed) { return mixed.ownDensity(eye.wo, next->wi); };
+            walk_.path.ownPdf = walk_.context.how.evenly         ? density(static_cast<const DefensiveBsdf&>(bsdf))
+                                : region_ && region_->guided > 0 ? density(static_cast<const GuidedBsdf&>(bsdf))
+                                                                 : 0;
+        }
     return next;
 }
 
@@ -186,6 +210,10 @@ template <EffectBits E>
 inline bool CameraPath<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const EyeDirection& eye, Ray& ray) {
     if (!walk_.scatter(hit, next, eye, ray)) return false;
     last_.origin = ray.origin;
+    if (!region_ || walk_.path.delta)
+        expected_ = 1;
+    else if (!(region_->guided > 0))
+        expected_ = walk_.context.guide->look(*region_, hit.p, ray.direction).radiance;
     if constexpr (kLightPaths) caustics_.scatter(hit, next, eye, ray.direction);
     return true;
 }
@@ -257,7 +285,8 @@ template <EffectBits E> void CameraPath<E>::samplePhase(Ray& ray, const VertexSa
 template <EffectBits E> bool CameraPath<E>::survives(std::uint32_t depth, float rouletteScale) {
     if (depth == 0) return true; // the first bounce carries most of the image
     const float scale = walk_.path.delta ? std::max(rouletteScale, walk_.context.how.leastAfterDelta) : rouletteScale;
-    float p = RouletteReference::survival(walk_.throughput(), scale);
+    // A guide knows what is to be expected where the path goes [Vorba2016].
+    float p = RouletteReference::survival(walk_.throughput(), scale * expected_);
     // Total reflection in a clear solid can trap a path that loses nothing. Close to 1, because roulette against an
     // albedo ρ has finite variance only for p > ρ².
     if (depth >= kLongPath) [[unlikely]]

@@ -36,6 +36,10 @@ struct Technique {
     // plan finds it worth its time, never, or always. The only choice here that is biased; none without light paths.
     enum class Merging : std::uint8_t { automatic, off, always } merging = Merging::automatic;
 
+    // Directions of camera paths drawn by where pilots found light, beside those of surfaces: where that is forecast to
+    // pay, never, or always.
+    enum class Guiding : std::uint8_t { automatic, off, always } guiding = Guiding::automatic;
+
     friend bool operator==(const Technique&, const Technique&) = default;
 };
 

@@ -102,6 +102,8 @@ class RenderJob {
         statistics_.pilotSeconds = plans_.seconds;
         statistics_.pilotCoreSeconds = plans_.coreSeconds;
         plans_.caustics.giveTo(context_);
+        context_.guide = plans_.guide.get();
+        context_.choices |= plans_.guide != nullptr;
         if (plans_.caustics.any()) render_ = kernel_.lightPaths.render;
     }
 

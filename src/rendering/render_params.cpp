@@ -12,6 +12,7 @@ constexpr std::string_view kLightChoiceWords[] = {"tree", "power", "uniform"};
 constexpr std::string_view kRouletteWords[] = {"pilot", "throughput", "off"};
 constexpr std::string_view kLightPathWords[] = {"automatic", "off", "always", "alone"};
 constexpr std::string_view kMergingWords[] = {"automatic", "off", "always"};
+constexpr std::string_view kGuidingWords[] = {"automatic", "off", "always"};
 
 } // namespace
 
@@ -23,6 +24,7 @@ template <> std::span<const std::string_view> words<Technique::LightChoice>() { 
 template <> std::span<const std::string_view> words<Technique::Roulette>() { return kRouletteWords; }
 template <> std::span<const std::string_view> words<Technique::LightPaths>() { return kLightPathWords; }
 template <> std::span<const std::string_view> words<Technique::Merging>() { return kMergingWords; }
+template <> std::span<const std::string_view> words<Technique::Guiding>() { return kGuidingWords; }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
@@ -34,6 +36,7 @@ std::vector<std::pair<std::string, std::string>> properties(const Technique& t) 
             {"roulette", text(t.roulette)},
             {"light-paths", text(t.lightPaths)},
             {"merging", text(t.merging)},
+            {"guiding", text(t.guiding)},
             {"wavelengths", std::to_string(t.wavelengths)}};
 }
 
@@ -144,6 +147,11 @@ std::vector<FieldInfo> techniqueFields() {
                 .synonyms({"photon-map", "sppm", "vertex-merging"})
                 .doc("Photon merging, for caustics behind glass and in mirrors that nothing else finds: biased.")
                 .example("merging off"),
+            field(FieldType::choice, "guiding", &P::guiding)
+                .words(words<Technique::Guiding>())
+                .synonyms({"path-guiding", "use_guiding"})
+                .doc("Paths guided to where pilots found indirect light: where it pays; never or always, to compare.")
+                .example("guiding off"),
             field(FieldType::integer, "wavelengths", &P::wavelengths)
                 .range(1, 8)
                 .byDefault("8")
@@ -182,6 +190,7 @@ Technique technique(const RenderParams& p) {
     t.roulette = p.roulette;
     t.lightPaths = p.lightPaths;
     t.merging = p.merging;
+    t.guiding = p.guiding;
     t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
     return t;
 }

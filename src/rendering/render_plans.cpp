@@ -29,9 +29,13 @@ class RenderPlanner {
         result_.rays = result_.ahead.rays;
         if (in_.film.takesSplats() && in_.state.lightBlockCount() > 0) {
             planForCaustics();
+            planForGuiding(in_.state.pilot());
         } else {
             verdict() = lightPathVerdict(in_.context.scene, settings_.technique);
-            in_.state.setPilot(0);
+            const int size = knownPilot() >= 0 ? knownPilot() : largestGuide();
+            planForGuiding(size);
+            in_.state.setPilot(size);
+            result_.findings.pilot = size;
         }
         result_.coreSeconds = processSeconds() - before;
         return std::move(result_);
@@ -40,8 +44,48 @@ class RenderPlanner {
   private:
     LightPathVerdict& verdict() { return result_.findings.of<LightPathFindings>().verdict; }
 
+    int knownPilot() const { return in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; } // as it goes on
+
+    // Pilots of the guide are smaller by one, since those for caustics are never less than the smallest.
+    void planForGuiding(int pilot) {
+        GuideFindings& findings = result_.findings.of<GuideFindings>();
+        findings.verdict = obstacle(pilot);
+        if (findings.verdict != GuideFindings::Verdict::undecided || in_.stop()) return;
+        const Stopwatch watch;
+        GuidePlan plan = planGuide(in_.context, in_.render, in_.film, result_.ahead.roulette,
+                                   std::min(pilot - 1, GuideSize::kMost), in_.stop);
+        result_.rays += plan.rays;
+        result_.seconds += watch.seconds();
+        findings = plan.findings;
+        result_.guide = std::move(plan.guide);
+    }
+
+    // Why there is nothing to plan for guiding; undecided: nothing hinders.
+    GuideFindings::Verdict obstacle(int pilot) const {
+        using Verdict = GuideFindings::Verdict;
+        const Technique& technique = settings_.technique;
+        if (technique.guiding == Technique::Guiding::off) return Verdict::off;
+        if (technique.directions != Technique::Directions::importance || result_.caustics.any())
+            return Verdict::otherTechnique;
+        if (in_.context.scene.effects.has(Effect::media)) return Verdict::media;
+        return pilot < 2 ? Verdict::noPilot : Verdict::undecided;
+    }
+
+    // The number of the largest pilots within their share of the render, where there are none for caustics.
+    int largestGuide() const {
+        const PixelBounds frame = in_.context.scene.frame.area() > 0 ? in_.context.scene.frame : in_.film.bounds();
+        const int replicates = in_.film.replicates();
+        double paths = kPilotShare * settings_.samplesPerReplicate(replicates) * replicates * pixels_;
+        if (settings_.timeLimit > 0) {
+            const double each = result_.ahead.first.secondsForSample / static_cast<double>(frame.area());
+            paths = std::min(paths, (kPilotShare * settings_.timeLimit - result_.seconds) / std::max(each, 1e-9));
+        }
+        const int size = GuideSize::within(frame, paths);
+        return size > 0 ? size + 1 : 0;
+    }
+
     void planForCaustics() {
-        const int known = in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; // of a render that goes on
+        const int known = knownPilot();
         LadderedPlans found = known >= 0 ? plansOf(pilots(), known, in_.stop) : largestThatPays();
         result_.rays += found.rays;
         result_.seconds += found.seconds;

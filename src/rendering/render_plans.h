@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rendering/caustic_plans.h"
+#include "rendering/guide_plan.h"
 #include "rendering/look_ahead.h"
 
 #include <functional>
@@ -22,7 +23,8 @@ struct PlanInput {
 struct RenderPlans {
     LookAhead ahead;
     CausticPlans caustics;
-    CausticFindings findings;
+    CausticFindings findings; // with those of the guide
+    std::unique_ptr<const PathGuide> guide;
     std::uint64_t rays = 0; // that all of it took
     double seconds = 0;     // of the clock, likewise
     double coreSeconds = 0; // of all threads, likewise

@@ -127,6 +127,7 @@ void HumanReport::done(const RenderSummary& s) {
         console_.line("  " + lightPathLine(lightPaths));
     if (const std::string line = manifoldLine(r.caustics); !line.empty()) console_.line("  " + line);
     if (const std::string line = mergeLine(r.caustics.of<MergeFindings>()); !line.empty()) console_.line("  " + line);
+    if (const std::string line = guideLine(r.caustics.of<GuideFindings>()); !line.empty()) console_.line("  " + line);
     if (const std::string line = glintLine(r.caustics.of<GlintFindings>()); !line.empty()) console_.line("  " + line);
     if (r.manifoldCapped > 0)
         console_.line(fmt::format("  {} of {} estimates by manifold sampling were capped, and too low",

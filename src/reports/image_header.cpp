@@ -68,12 +68,15 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     text("abbe.mergingTechnique", std::string(word(technique.merging)));
     const auto& found = statistics.caustics.of<LightPathFindings>();
     if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
-    if (found.measured || found.verdict == LightPathVerdict::noPilot)
+    const auto& guide = statistics.caustics.of<GuideFindings>();
+    if (found.measured || found.verdict == LightPathVerdict::noPilot || guide.verdict >= GuideFindings::Verdict::noGain)
         whole("abbe.pilot", static_cast<std::uint64_t>(statistics.caustics.pilot));
     if (found.measured) {
         real("abbe.lightPathShare", found.share);
         real("abbe.lightPathGain", found.gain);
     }
+    text("abbe.guidingTechnique", std::string(word(technique.guiding)));
+    if (const std::string line = guideLine(guide); !line.empty()) text("abbe.guide", line);
     whole("abbe.wavelengthsPerPath", technique.wavelengths);
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch
     text("abbe.effects", effectNames(p.built->scene.effects));
@@ -317,6 +320,8 @@ void writeCertificateFile(const std::string& path, const CertificateFacts& facts
                               {"program", versionNumber()}});
     if (s.statistics.caustics.of<LightPathFindings>().verdict != LightPathVerdict::undecided)
         file.set("light_path_plan", lightPathJson(s.statistics.caustics));
+    if (s.statistics.caustics.of<GuideFindings>().verdict != GuideFindings::Verdict::undecided)
+        file.set("guiding", guideJson(s.statistics.caustics.of<GuideFindings>()));
     writeAtomically(path, file.text(true) + "\n");
 }
 

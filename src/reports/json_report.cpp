@@ -99,6 +99,8 @@ class JsonReport final : public RenderReport {
             if (c.reported != Reported::always && isReported(c, r)) event.set(c.name, *c.place);
         if (r.caustics.of<LightPathFindings>().verdict != LightPathVerdict::undecided)
             event.set("light_path_plan", lightPathJson(r.caustics));
+        if (r.caustics.of<GuideFindings>().verdict != GuideFindings::Verdict::undecided)
+            event.set("guiding", guideJson(r.caustics.of<GuideFindings>()));
         if (s.spread)
             event.set("spp_least", s.spread->least).set("spp_most", s.spread->most).set("spp_mean", s.spread->mean);
         emit(std::move(event));

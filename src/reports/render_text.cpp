@@ -335,6 +335,21 @@ std::string glintLine(const GlintFindings& f) {
                        f.found, f.found == 1 ? "" : "s", f.found == 1 ? "is" : "are", f.rays);
 }
 
+std::string guideLine(const GuideFindings& f) {
+    if (f.verdict != GuideFindings::Verdict::used) return {};
+    return fmt::format("paths guided to where pilots found light: in {} of {} regions ({:.2g} MB)", f.guided, f.regions,
+                       static_cast<double>(f.bytes) / 1e6);
+}
+
+Json guideJson(const GuideFindings& f) {
+    constexpr std::array kWords = {"undecided", "off", "other-technique", "media", "no-pilot", "no-gain", "used"};
+    return Json::object({{"verdict", std::string(kWords[static_cast<std::size_t>(f.verdict)])},
+                         {"variance_taken", f.gain},
+                         {"regions", static_cast<std::uint64_t>(f.regions)},
+                         {"guided", static_cast<std::uint64_t>(f.guided)},
+                         {"bytes", static_cast<std::uint64_t>(f.bytes)}});
+}
+
 std::string lightPathText(const CausticFindings& all) {
     const auto& f = all.of<LightPathFindings>();
     if (f.verdict == undecided) return {};

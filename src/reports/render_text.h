@@ -11,6 +11,7 @@
 #include "io/exr_writer.h"
 #include "pictures/picture_figures.h"
 #include "render/integrator.h"
+#include "rendering/guide_plan.h"
 #include "study/cost.h"
 
 #include <optional>
@@ -48,6 +49,9 @@ std::string manifoldLine(const CausticFindings&);
 std::string mergeLine(const MergeFindings&);
 // Empty where no glints are probed.
 std::string glintLine(const GlintFindings&);
+// Empty where paths are not guided.
+std::string guideLine(const GuideFindings&);
+Json guideJson(const GuideFindings&);
 // docs/output.md lists the members.
 Json lightPathJson(const CausticFindings&);
 

@@ -16,6 +16,7 @@ class LightSampler;
 class ManifoldListener;
 class ManifoldSampler;
 struct MergePlan;
+class PathGuide;
 struct Scene;
 
 // Vertices from which on no path is certain to go on.
@@ -36,9 +37,12 @@ struct PathContext {
     ManifoldListener* manifoldListener = nullptr;
     const MergePlan* merging = nullptr; // light that is found by merging, and left out of paths
     const GlintPlan* glints = nullptr;  // likewise by probes
+    const PathGuide* guide = nullptr;   // where camera paths find light; null: as surfaces scatter
     // Set: what is in hand is left where it is, and does not count (PathCounters::left).
     const StopFlag* stop = &kNeverStop;
 
+    // Whether directions are not those of surfaces alone.
+    bool mixes() const { return how.evenly || guide; }
     bool toldToStop() const { return stop->load(std::memory_order_relaxed); }
 };
 

@@ -28,6 +28,23 @@ same_pixels off.exr room.one.exr
 expect 2 "$scenes/room.scene" --adaptive maybe
 says err "on or off"
 
+# with paths that are guided, in parts and after an interruption, too
+guided=$(cd "$scenes/../../../scenes/door-ajar" && pwd)/door-ajar.scene
+small=(--quiet --size 48x48 --samples 64 --pilot 2)
+for threads in 1 2 8; do expect 0 "$guided" "${small[@]}" -o guide$threads.exr -t $threads; done
+same_pixels guide1.exr guide2.exr
+same_pixels guide1.exr guide8.exr
+expect 0 info guide1.exr
+says out "abbe.guide = paths guided"
+expect 0 "$guided" "${small[@]}" -o guide_all.exr --kernel all
+same_pixels guide1.exr guide_all.exr
+for part in 2 1; do expect 0 "$guided" "${small[@]}" -o part.exr --part $part/2; done
+expect 0 merge part.part{1,2}.abbe -o merged.exr
+same_pixels guide1.exr merged.exr
+expect 0 "$guided" --quiet --size 48x48 --samples 32 --pilot 2 -o resumed.exr --checkpoint on
+expect 0 "$guided" "${small[@]}" -o resumed.exr --resume
+same_pixels guide1.exr resumed.exr
+
 # superset
 expect 0 "$scenes/room.scene" --quiet -o least.exr
 expect 0 "$scenes/room.scene" --quiet -o all.exr --kernel all

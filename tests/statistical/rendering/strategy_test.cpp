@@ -1,5 +1,6 @@
 // Next-event estimation alone, BSDF sampling alone and both together must make the same picture: three estimators that
 // share neither densities nor weights.
+#include "rendering/guide_plan.h"
 #include "support/environment_file.h"
 #include "support/open_box.h"
 #include "support/scene_test.h"
@@ -58,6 +59,34 @@ const std::string kLight = "light quad { points -0.8 0.9 0.7  -0.8 0.9 -0.8  0.8
 TEST_CASE("strategies: matte box, quad light") {
     checkStrategies(
         {"box", kOpenBox + kLight + "shape sphere { center 0.3 -0.6 0; radius 0.4; material white }\n", 512});
+}
+
+// Behind a shelf, so that next to nothing is lit directly: a box whose light shines into its upper part.
+const std::string kShelf = "shape quad { material white; points -1 0.4 1  -1 0.4 -1  0.7 0.4 -1  0.7 0.4 1 }\n";
+
+TEST_CASE("guided paths show what paths show that are not") {
+    for (const char* ball : {"material white", "material openpbr { color rgb 0.8 0.3 0.2; roughness 0.3 }",
+                             "material dielectric { ior 1.5 }"}) {
+        INFO(std::string(ball));
+        const auto scene =
+            TestScene::parse(kStrategyHeader + kOpenBox + kLight + kShelf +
+                             fmt::format("shape sphere {{ center 0.3 -0.6 0; radius 0.4; {} }}\n", std::string(ball)));
+        RenderSettings settings = scene.settings();
+        settings.samples = nightly() ? 4096 : 512;
+        settings.technique.lightPaths = Technique::LightPaths::off;
+        settings.technique.guiding = Technique::Guiding::off;
+        const TestImage plain = render(scene, settings);
+        settings.technique.guiding = Technique::Guiding::always;
+        settings.pilot = 3;
+        settings.seed = 2;
+        const TestImage guided = render(scene, settings);
+        const auto& findings = guided.statistics.caustics.of<GuideFindings>();
+        CHECK(findings.verdict == GuideFindings::Verdict::used);
+        CHECK(findings.guided > 0);
+        for (const Channel channel : {Channel::y, Channel::x, Channel::z})
+            checkSame(compareImages(guided.film, plain.film, channel), nightly() ? 0.003 : 0.006);
+        CHECK(guided.statistics.dropped == std::array<std::uint64_t, 3>{});
+    }
 }
 
 TEST_CASE("strategies: lights with textures") {

@@ -1,0 +1,321 @@
+#include "guiding/guide_training.h"
+
+#include "base/parallel.h"
+#include "guiding/given_off.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::size_t kRegionVertices = 4000; // at least, of a region with a density of its own
+constexpr int kMostHalvings = 9;              // of a hemisphere's side
+constexpr double kSquareBright = 12;          // squares with fewer that brought most of their light are not divided,
+constexpr double kSquareShare = 0.01;         // nor those that have less of a region's light
+constexpr float kSmooth = 0.03f; // of what a square has, evenly to its quarters: chance left some of them dark
+constexpr std::array kGuidedShares = {0.f, 0.25f, 0.5f, 0.75f, 0.87f, 0.95f};
+constexpr std::array kDistances = {0.7f, 1.f, 1.4f, 2.f}; // nearness over that of what is seen, in the mean
+constexpr float kSamePlace = 0.05f;                       // sizes of regions over distances: less is no parallax
+constexpr double kWorthwhile = 0.9;                       // of the second moment without guiding
+
+// A direction and what it brought.
+struct GuideRecord {
+    Vec3 p, w;
+    float nearness = 0; // 1 over the distance of what is seen there
+    float radiance = 0, scatter = 0;
+    float pdf = 0; // with which it was drawn and followed
+    float ownPdf = 0;
+
+    float brought() const { return radiance * scatter; }
+};
+using GuideRecords = std::span<const GuideRecord>;
+
+// On the squares of its hemisphere; all but `u` are sums where several are meant.
+struct Brought {
+    Vec2 u;
+    double first = 0, squared = 0;    // what it brought / pdf, and the square of that
+    double second = 0;                // what it brought, squared and integrated over the square
+    double radiance = 0, inverse = 0; // radiance / pdf, and 1 / pdf
+
+    void operator+=(const Brought& b) {
+        first += b.first;
+        squared += b.squared;
+        second += b.second;
+        radiance += b.radiance;
+        inverse += b.inverse;
+    }
+};
+
+// A region with trees of its own, whose squares are numbered from 0.
+struct Learnt {
+    PathGuide::Region region;
+    std::vector<PathGuide::Square> squares;
+    std::vector<PathGuide::Sums> sums;
+};
+
+class RegionLearner {
+  public:
+    explicit RegionLearner(float frameRadiance) : perFrame_(1 / frameRadiance) {}
+
+    // A region from every so many-th of the records, seen from `frame`.
+    Learnt learn(GuideRecords records, const PathGuide::Region& frame, std::size_t first, std::size_t step) {
+        std::array<std::vector<Brought>, 2> found;
+        Brought all;
+        for (std::size_t i = first; i < records.size(); i += step) {
+            const GuideRecord& r = records[i];
+            const PathGuide::Seen seen = frame.seen(r.p, r.w);
+            const SphereSquare at = SphereSquare::of(seen.w);
+            const double area = static_cast<double>(seen.stretch * SphereSquare::areaPerSolidAngle(seen.w));
+            const auto brought = static_cast<double>(r.brought()), pdf = static_cast<double>(r.pdf);
+            const double value = brought / pdf;
+            found[at.upper].push_back(
+                {at.u, value, value * value, value * brought / area, static_cast<double>(r.radiance) / pdf, 1 / pdf});
+            all += found[at.upper].back();
+        }
+        learnt_ = {};
+        learnt_.region = frame;
+        if (!(all.first > 0)) return std::move(learnt_);
+        least_ = kSquareShare * all.first;
+        mean_ = all.radiance / all.inverse;
+        std::array<double, 2> weights{};
+        for (std::size_t side = 0; side < 2; ++side) {
+            quads_.clear();
+            weights[side] = divide(found[side], 1, 1).weight;
+            learnt_.region.upperRoot = flatten(0, 1);
+        }
+        learnt_.region.known = true;
+        learnt_.region.upper = static_cast<float>(weights[1] / (weights[0] + weights[1]));
+        return std::move(learnt_);
+    }
+
+  private:
+    // A square in four quarters.
+    struct Quad {
+        std::array<float, 4> share{}, radiance{};
+        std::array<std::uint32_t, 4> child{}; // 0: not divided
+    };
+    struct Divided {
+        double weight; // ∫ √(mean square)
+        std::uint32_t number;
+    };
+
+    using Found = std::span<Brought>;
+    template <typename Below> static std::pair<Found, Found> halves(Found found, Below below) {
+        const auto rest = std::ranges::stable_partition(found, below);
+        return {found.first(found.size() - rest.size()), found.last(rest.size())};
+    }
+
+    Divided divide(Found found, double area, int halvings) {
+        const auto number = static_cast<std::uint32_t>(quads_.size());
+        quads_.emplace_back();
+        const auto left = [](const Brought& f) { return f.u.x < 0.5f; };
+        const auto [lower, upper] = halves(found, [](const Brought& f) { return f.u.y < 0.5f; });
+        const auto [q0, q1] = halves(lower, left);
+        const auto [q2, q3] = halves(upper, left);
+        const std::array quarters = {q0, q1, q2, q3};
+        std::array<double, 4> weights{};
+        Quad made;
+        for (std::size_t q = 0; q < 4; ++q) {
+            for (Brought& f : quarters[q])
+                f.u = {2 * f.u.x - static_cast<float>(q % 2), 2 * f.u.y - static_cast<float>(q / 2)};
+            weights[q] = quarter(quarters[q], 0.25 * area, halvings, q, made);
+        }
+        const double sum = weights[0] + weights[1] + weights[2] + weights[3];
+        for (std::size_t q = 0; q < 4; ++q)
+            made.share[q] = sum > 0 ? (1 - kSmooth) * static_cast<float>(weights[q] / sum) + 0.25f * kSmooth : 0.25f;
+        quads_[number] = made;
+        return {sum, number};
+    }
+
+    double quarter(Found found, double area, int halvings, std::size_t q, Quad& parent) {
+        Brought all;
+        for (const Brought& f : found) all += f;
+        // The effective number of records [Kish1965].
+        const bool enough = all.first * all.first >= kSquareBright * all.squared;
+        if (enough && all.first > least_ && halvings < kMostHalvings) {
+            const Divided divided = divide(found, area, halvings + 1);
+            parent.child[q] = divided.number;
+            return divided.weight;
+        }
+        parent.radiance[q] = perFrame_ * static_cast<float>(all.inverse > 0 ? all.radiance / all.inverse : mean_);
+        return std::sqrt(area * all.second);
+    }
+
+    // Two levels at a time. `density` of the whole square.
+    std::uint16_t flatten(std::uint32_t quad, float density) {
+        const auto number = static_cast<std::uint16_t>(learnt_.squares.size());
+        learnt_.squares.emplace_back();
+        learnt_.sums.emplace_back();
+        PathGuide::Square made;
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const std::uint32_t column = i % 4, row = i / 4;
+            const std::uint32_t q = column / 2 + row / 2 * 2, sub = column % 2 + row % 2 * 2;
+            const Quad& outer = quads_[quad];
+            PathGuide::Square::Part& part = made.parts[i];
+            part.density = 4 * density * outer.share[q];
+            part.radiance = narrowed(outer.radiance[q]);
+            if (const std::uint32_t c = outer.child[q]) {
+                part.density *= 4 * quads_[c].share[sub];
+                part.radiance = narrowed(quads_[c].radiance[sub]);
+                if (quads_[c].child[sub]) part.child = flatten(quads_[c].child[sub], part.density);
+            }
+        }
+        learnt_.sums[number] = sumsOf(made);
+        learnt_.squares[number] = made;
+        return number;
+    }
+    static std::uint16_t narrowed(float v) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(v) >> 16); }
+    static PathGuide::Sums sumsOf(const PathGuide::Square& square) {
+        const auto mass = [&](std::size_t row, std::size_t column) { return square.parts[4 * row + column].density; };
+        std::array<float, 4> columns{};
+        float all = 0;
+        for (std::size_t c = 0; c < 4; ++c) all += columns[c] = mass(0, c) + mass(1, c) + mass(2, c) + mass(3, c);
+        PathGuide::Sums sums;
+        float before = 0;
+        for (std::size_t c = 0; c < 4; ++c) {
+            if (c < 3) sums.columns[c] = (before += columns[c]) / all;
+            float below = 0;
+            for (std::size_t r = 0; r < 3; ++r) sums.rows[c][r] = (below += mass(r, c)) / columns[c];
+        }
+        return sums;
+    }
+
+    float perFrame_;
+    double least_ = 0, mean_ = 0;
+    std::vector<Quad> quads_;
+    Learnt learnt_;
+};
+
+// Second moments of what directions bring, for each share of guided ones.
+using ShareMoments = std::array<double, kGuidedShares.size()>;
+
+void judge(const Learnt& learnt, GuideRecords records, std::size_t first, ShareMoments& moments) {
+    const PathGuide guide = PathGuide::ofOneRegion(learnt.region, learnt.squares, learnt.sums);
+    for (std::size_t i = first; i < records.size(); i += 2) {
+        const GuideRecord& r = records[i];
+        const auto brought = static_cast<double>(r.brought());
+        if (!(brought > 0)) continue;
+        const float guided = learnt.region.known ? guide.look(learnt.region, r.p, r.w).pdf : 0;
+        const double square = brought * brought / static_cast<double>(r.pdf);
+        for (std::size_t s = 0; s < kGuidedShares.size(); ++s) {
+            const float pdf = kGuidedShares[s] * guided + (1 - kGuidedShares[s]) * r.ownPdf;
+            moments[s] += pdf > 0 ? square / static_cast<double>(pdf) : 0;
+        }
+    }
+}
+
+struct Judged {
+    PathGuide::Region frame;
+    ShareMoments moments{};
+
+    double least() const { return std::ranges::min(moments); }
+};
+
+// The best distance at which to look, judged by one half of the records; then what both say of it.
+Judged bestFrame(RegionLearner& learner, GuideRecords records) {
+    Vec3 lower = records[0].p, upper = lower;
+    double sum = 0, nearness = 0;
+    for (const GuideRecord& r : records) {
+        lower = min(lower, r.p);
+        upper = max(upper, r.p);
+        const auto value = static_cast<double>(r.brought() / r.pdf);
+        sum += value;
+        nearness += value * static_cast<double>(r.nearness);
+    }
+    Judged best;
+    best.frame.centre = (lower + upper) * 0.5f;
+    judge(learner.learn(records, best.frame, 0, 2), records, 1, best.moments);
+    const float mean = sum > 0 ? static_cast<float>(nearness / sum) : 0;
+    for (const float factor : kDistances) {
+        if (!(length(upper - lower) * mean * factor > kSamePlace)) continue;
+        Judged other;
+        other.frame = best.frame;
+        other.frame.nearness = factor * mean;
+        judge(learner.learn(records, other.frame, 0, 2), records, 1, other.moments);
+        if (other.least() < best.least()) best = other;
+    }
+    judge(learner.learn(records, best.frame, 1, 2), records, 0, best.moments);
+    return best;
+}
+
+struct JudgedRegion {
+    Learnt learnt;
+    double gain = 0; // of the second moment of what a direction brings, which is a mean over the region
+};
+
+JudgedRegion learnRegion(GuideRecords records, float frameRadiance) {
+    if (records.empty()) return {};
+    RegionLearner learner(frameRadiance);
+    const Judged judged = bestFrame(learner, records);
+    JudgedRegion result{learner.learn(records, judged.frame, 0, 1)};
+    const auto share = static_cast<std::size_t>(std::ranges::min_element(judged.moments) - judged.moments.begin());
+    if (!(judged.least() < kWorthwhile * judged.moments[0])) return result;
+    result.learnt.region.guided = kGuidedShares[share];
+    result.gain = (judged.moments[0] - judged.least()) / static_cast<double>(records.size());
+    return result;
+}
+
+class GuideTrainer {
+  public:
+    explicit GuideTrainer(std::span<const PilotVertex> vertices) : vertices_(vertices), givenOff_(vertices) {}
+
+    TrainedGuide run(double frameRadiance) {
+        std::vector<SpaceTree::Place> places;
+        for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
+            const PilotVertex& v = vertices_[i];
+            if (v.pdf > 0 && v.survival > 0 && (v.goesOn || v.beyond > 0)) places.push_back({v.p, v.face, i});
+        }
+        SpaceTree space(places, kRegionVertices);
+        std::vector<JudgedRegion> learnt(space.leaves());
+        parallelFor(learnt.size(), [&](std::size_t i) {
+            learnt[i] = learnRegion(recordsOf(space.members(places, i)), static_cast<float>(frameRadiance));
+        });
+        double gain = 0;
+        for (std::size_t i = 0; i < learnt.size(); ++i)
+            for (const SpaceTree::Place& member : space.members(places, i)) {
+                const auto weight = static_cast<double>(vertices_[member.number].weight) / frameRadiance;
+                gain += weight * weight * learnt[i].gain;
+            }
+        return {together(std::move(space), learnt), gain};
+    }
+
+  private:
+    std::vector<GuideRecord> recordsOf(std::span<const SpaceTree::Place> members) const {
+        std::vector<GuideRecord> records;
+        records.reserve(members.size());
+        for (const SpaceTree::Place& member : members) {
+            const PilotVertex& v = vertices_[member.number];
+            const float distance = v.goesOn ? length(vertices_[member.number + 1].p - v.p) : kInfinity;
+            records.push_back({v.p, v.w, distance > 0 ? 1 / distance : 0,
+                               std::max(0.f, givenOff_.arriving(member.number)), v.scatter, v.pdf * v.survival,
+                               v.ownPdf});
+        }
+        return records;
+    }
+    static PathGuide together(SpaceTree space, std::span<JudgedRegion> learnt) {
+        std::vector<PathGuide::Region> regions;
+        std::vector<PathGuide::Square> squares;
+        std::vector<PathGuide::Sums> sums;
+        for (JudgedRegion& j : learnt) {
+            j.learnt.region.first = static_cast<std::uint32_t>(squares.size());
+            squares.insert(squares.end(), j.learnt.squares.begin(), j.learnt.squares.end());
+            sums.insert(sums.end(), j.learnt.sums.begin(), j.learnt.sums.end());
+            regions.push_back(j.learnt.region);
+        }
+        return {std::move(space), std::move(regions), std::move(squares), std::move(sums)};
+    }
+
+    std::span<const PilotVertex> vertices_;
+    GivenOff givenOff_;
+};
+
+} // namespace
+
+TrainedGuide trainGuide(std::span<const PilotVertex> vertices, double frameRadiance) {
+    return GuideTrainer(vertices).run(frameRadiance);
+}
+
+} // namespace abbe

@@ -1,0 +1,44 @@
+// Learning a PathGuide from paths.
+#pragma once
+
+#include "guiding/path_guide.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+// A vertex of a path from the camera; those of a path follow each other. Light means the mean over a path's
+// wavelengths, each over its density.
+struct PilotVertex {
+    Vec3 p, w;             // where it is, and where the path goes on to
+    std::uint8_t face = 0; // faceOf() the normal on the side of the eye
+    bool spreads = false;  // whether its surface scatters light from everywhere: then what is found here is kept
+    bool goesOn = false;   // to the vertex that follows
+    float scatter = 0;     // f |cos θ| towards w, 1/sr
+    float pdf = 0;         // with which w was drawn, 1/sr; 0: it is nothing to learn from, as of delta lobes
+    float ownPdf = 0;      // with which the surface alone would have drawn it
+    float survival = 1;    // with which the path went on after that
+    float weight = 0;      // of its light in the pixel, over what the pixel shows against the frame's mean
+    float carried = 0;     // what becomes of light from w on its way back along the path, survival counted
+    float emission = 0;    // that the vertex gives off towards the one before
+    float lit = 0;         // that it scatters there, as found by next-event estimation
+    float beyond = 0;      // that arrives from w and belongs to no vertex: of what is around the scene
+};
+
+struct TrainedGuide {
+    PathGuide guide;
+    // What of the relative variance of all samples together the guide takes away, as far as the vertices tell.
+    double gain = 0;
+};
+
+// Each vertex tells of the light from its direction what all paths have found where it leads to (given_off.h). In every
+// region of space directions get the density that is best for a mean over all that was recorded there: in proportion to
+// the root of the mean square of what a direction brings [Rath2020, eq. 9]; that distance of the sphere on which they
+// are looked at [Ruppert2020, of parallax]; and that share of guided ones whose second moment, foreseen from the same
+// vertices, is the least. One half of them judges what was learnt from the other, so that chance does not count as
+// knowledge. `frameRadiance`: of the paths of the frame in the mean, above 0. The same for the same vertices.
+TrainedGuide trainGuide(std::span<const PilotVertex>, double frameRadiance);
+
+} // namespace abbe

@@ -1,0 +1,66 @@
+#include "guiding/space_tree.h"
+
+#include <algorithm>
+#include <array>
+
+namespace abbe {
+
+namespace {
+
+struct Cut {
+    int axis = 3; // 3: none
+    float at = 0;
+};
+
+// Through the median along the longest side of what holds the places, or along the next one if all are in one plane.
+Cut cutThrough(std::span<const SpaceTree::Place> places) {
+    Vec3 lower = places[0].p, upper = lower;
+    for (const SpaceTree::Place& place : places) {
+        lower = min(lower, place.p);
+        upper = max(upper, place.p);
+    }
+    const Vec3 size = upper - lower;
+    std::array axes = {0, 1, 2};
+    std::ranges::stable_sort(axes, [&](int a, int b) { return size[a] > size[b]; });
+    std::vector<float> along(places.size());
+    for (const int axis : axes) {
+        std::ranges::transform(places, along.begin(), [&](const SpaceTree::Place& place) { return place.p[axis]; });
+        const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+        std::ranges::nth_element(along, middle);
+        const float at = *middle;
+        const auto below = static_cast<std::size_t>(std::ranges::count_if(along, [at](float v) { return v < at; }));
+        if (4 * below >= along.size()) return {axis, at};
+    }
+    return {};
+}
+
+} // namespace
+
+SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(6) {
+    std::ranges::stable_sort(places, {}, &Place::face);
+    for (std::size_t face = 0, first = 0; face < 6; ++face) {
+        std::size_t last = first;
+        while (last < places.size() && places[last].face == face) ++last;
+        divide(face, {places.data() + first, last - first}, first, least);
+        first = last;
+    }
+}
+
+void SpaceTree::divide(std::size_t node, std::span<Place> places, std::size_t before, std::size_t least) {
+    const Cut cut = places.size() >= 2 * least ? cutThrough(places) : Cut();
+    if (cut.axis == 3) {
+        nodes_[node].next = static_cast<std::uint32_t>(ends_.size()) & 0x3fffffff;
+        ends_.push_back(before + places.size());
+        return;
+    }
+    const auto above = std::ranges::stable_partition(places, [&](const Place& p) { return p.p[cut.axis] < cut.at; });
+    const std::size_t below = places.size() - above.size(), children = nodes_.size();
+    nodes_.resize(children + 2);
+    nodes_[node].split = cut.at;
+    nodes_[node].axis = static_cast<std::uint32_t>(cut.axis) & 3;
+    nodes_[node].next = static_cast<std::uint32_t>(children) & 0x3fffffff;
+    divide(children, places.first(below), before, least);
+    divide(children + 1, places.subspan(below), before + below, least);
+}
+
+} // namespace abbe

@@ -1,0 +1,257 @@
+#include "rendering/guide_plan.h"
+
+#include "base/parallel.h"
+#include "base/work.h"
+#include "guiding/guide_training.h"
+#include "math/hash.h"
+#include "render/scene.h"
+#include "transport/roulette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace abbe {
+
+namespace {
+
+constexpr std::uint64_t kGuide = 0x6775696465; // "guide"
+constexpr std::uint32_t kFirstRound = 2;       // samples of each pixel
+constexpr std::size_t kRecordedVertices = 12;  // of a path: later ones matter little
+// Pilots' paths go on while they carry this part of the light: what roulette multiplies is hard to learn from.
+constexpr float kPatience = 10;
+// Of the variance of samples, what has to go for guiding to be worth what it takes, and for more pilots to be worth it.
+constexpr double kWorthGuiding = 0.5, kWorthPilots = 0.15;
+
+// What a row of pilots has found.
+struct RowFound {
+    std::vector<PilotVertex> vertices;
+    std::vector<double> variances; // of pixels, over the square of what they show
+    double radiance = 0;           // of all its paths, as PilotVertex has it
+    std::uint64_t paths = 0, rays = 0;
+};
+
+// Hears where paths are scattered and what they find there.
+class GuideRecorder final : public SampleRecorder {
+  public:
+    GuideRecorder(RowFound& found, const PathGuide* guide, const RouletteReference& shown)
+        : found_(found), guide_(guide), shown_(shown) {}
+
+    void pixel(int x, int y, int) noexcept override {
+        over_ = RouletteReference::kThreshold * shown_.scale(x, y);
+        sum_ = squares_ = 0;
+        samples_ = 0;
+    }
+    void start(const Ray& fromEye, const Wavelengths& lambda) noexcept override {
+        eye_ = fromEye.origin;
+        lambda_ = lambda;
+        steps_.clear();
+        sampled_ = false;
+    }
+    void arrives(const SurfaceHit& hit, const Spectrum& beta) noexcept override { step(hit.p, beta); }
+    void collides(Vec3 p, const Spectrum& beta) noexcept override {
+        step(p, beta);
+        steps_.back().scattered = true;
+    }
+    void scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum& beta, const BsdfSample* next) noexcept override {
+        if (steps_.empty()) return;
+        Step& at = steps_.back();
+        PilotVertex& v = at.vertex;
+        at.scattered = true;
+        v.spreads = lobes.has(Lobe::diffuse) && !lobes.has(Lobe::dispersive);
+        v.face = faceAgainst(at.from, hit.shading.z);
+        if (!next) return;
+        at.left = mean(beta * next->weight);
+        v.w = hit.shading.toWorld(next->wi);
+        if (!v.spreads || next->lobe.has(Lobe::delta)) return;
+        v.pdf = v.ownPdf = next->pdfSolidAngle;
+        v.scatter = mean(next->weight) * next->pdfSolidAngle;
+        if (guide_)
+            if (const PathGuide::Region* region = guide_->at(v.p, v.face); region && region->guided > 0)
+                v.ownPdf =
+                    std::max(0.f, v.pdf - region->guided * guide_->look(*region, v.p, v.w).pdf) / (1 - region->guided);
+    }
+    void samples(const void*, const LightSample&, const BsdfEval&, float) noexcept override { sampled_ = true; }
+    void hits(const void*, const Spectrum&, float) noexcept override { sampled_ = false; }
+    void gathers(const Spectrum& light, const void*, bool passing) noexcept override {
+        if (steps_.empty()) return;
+        const float found = mean(light);
+        Step& at = steps_.back();
+        (!at.scattered ? at.vertex.emission : sampled_ && !passing ? at.vertex.lit : at.vertex.beyond) += found;
+    }
+    void keep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept override {
+        // Where nothing was seen so far nothing is known of the noise: any gain counts.
+        const float scale = shown_.average() > 0 ? over_ / shown_.average() : 0;
+        const double value = static_cast<double>(scale) * sensor(radiance, lambda_).y * factor;
+        sum_ += value;
+        squares_ += value * value;
+        ++samples_;
+        found_.radiance += static_cast<double>(mean(radiance));
+        ++found_.paths;
+        const std::size_t count = std::min(steps_.size(), kRecordedVertices);
+        const bool sound =
+            std::ranges::all_of(steps_, [](const Step& s) { return s.arrived > 0 && std::isfinite(s.arrived); });
+        for (std::size_t i = 0; sound && i < count; ++i) finish(i, i + 1 < count);
+    }
+    void drop() noexcept override {}
+    void pixelDone(double) noexcept override {
+        if (samples_ > 1) found_.variances.push_back(std::max(0.0, squares_ - sum_ * sum_ / samples_) / (samples_ - 1));
+    }
+
+  private:
+    struct Step {
+        PilotVertex vertex; // with light as the path carries it
+        Vec3 from;          // direction of arrival
+        float arrived = 0, left = 0;
+        bool scattered = false;
+    };
+
+    void step(Vec3 p, const Spectrum& beta) {
+        Step s;
+        s.vertex.p = p;
+        s.arrived = mean(beta);
+        s.from = p - (steps_.empty() ? eye_ : steps_.back().vertex.p);
+        steps_.push_back(s);
+    }
+    void finish(std::size_t i, bool goesOn) {
+        const Step& s = steps_[i];
+        PilotVertex v = s.vertex;
+        const float onward = goesOn ? steps_[i + 1].arrived : s.left;
+        v.emission /= s.arrived;
+        v.lit /= s.arrived;
+        v.goesOn = goesOn;
+        v.weight = over_ * s.arrived;
+        v.carried = onward / s.arrived;
+        v.beyond = onward > 0 ? v.beyond / onward : 0;
+        v.survival = goesOn ? std::min(1.f, s.left / onward) : 1;
+        found_.vertices.push_back(v);
+    }
+
+    RowFound& found_;
+    const PathGuide* guide_;
+    const RouletteReference& shown_;
+    Vec3 eye_;
+    Wavelengths lambda_;
+    float over_ = 0; // the frame's mean over what the pixel shows
+    double sum_ = 0, squares_ = 0;
+    int samples_ = 0; // of the pixel
+    std::vector<Step> steps_;
+    bool sampled_ = false; // what is gathered next was found by next-event estimation
+};
+
+class RecordingFilm final : public FilmDecorator {
+  public:
+    RecordingFilm(const Film& like, RowFound& found, const PathGuide* guide, const RouletteReference& shown)
+        : FilmDecorator(like), found_(found), guide_(guide), shown_(shown) {}
+    int replicates() const override { return 1; }
+    void add(int, int, int, const ExactXyz&, std::uint32_t) noexcept override {}
+    std::unique_ptr<SampleRecorder> makeRecorder() override {
+        return std::make_unique<GuideRecorder>(found_, guide_, shown_);
+    }
+
+  private:
+    RowFound& found_;
+    const PathGuide* guide_;
+    const RouletteReference& shown_;
+};
+
+class GuidePilots {
+  public:
+    GuidePilots(const PathContext& context, TileFunction render, const Film& film, const RouletteReference& shown,
+                const std::function<bool()>& stop)
+        : context_(context), render_(render), film_(film), shown_(shown), stop_(stop) {}
+
+    GuidePlan run(int size) {
+        const bool always = context_.settings.technique.guiding == Technique::Guiding::always;
+        std::uint32_t samples = 0;
+        for (std::uint32_t next = kFirstRound; samples < GuideSize::samples(size); next = 3 * samples) {
+            round(next);
+            samples += next;
+            if (stop_()) return {nullptr, {}, plan_.rays};
+            if (!(radiance_ > 0)) break; // all is dark
+            TrainedGuide trained = trainGuide(vertices_, radiance_ / static_cast<double>(paths_));
+            if (!guide_) variance_ = takeVariance();
+            plan_.findings.gain = trained.gain / static_cast<double>(paths_) / variance_;
+            guide_ = std::make_unique<const PathGuide>(std::move(trained.guide));
+            if (!always && plan_.findings.gain < kWorthPilots) break;
+        }
+        const bool pays = guide_ && (always || plan_.findings.gain >= kWorthGuiding);
+        plan_.findings.verdict = pays ? GuideFindings::Verdict::used : GuideFindings::Verdict::noGain;
+        if (pays) {
+            plan_.findings.regions = guide_->regions().size();
+            plan_.findings.guided = static_cast<std::size_t>(
+                std::ranges::count_if(guide_->regions(), [](const PathGuide::Region& r) { return r.guided > 0; }));
+            plan_.findings.bytes = guide_->bytes();
+            plan_.guide = std::move(guide_);
+        }
+        return std::move(plan_);
+    }
+
+  private:
+    // Of one sample, in the mean over the pixels without the hundredth of them that has the most: few samples say
+    // little about rare bright ones.
+    double takeVariance() {
+        const auto end = variances_.begin() + static_cast<std::ptrdiff_t>(variances_.size() - variances_.size() / 100);
+        std::nth_element(variances_.begin(), end - 1, variances_.end());
+        return std::accumulate(variances_.begin(), end, 1e-12) / static_cast<double>(variances_.size());
+    }
+
+    // Of so many samples of each pixel, guided by what is known.
+    void round(std::uint32_t samples) {
+        PathContext context = context_;
+        context.settings.seed = combine64(combine64(context_.settings.seed, kGuide), samples);
+        context.guide = guide_.get();
+        context.choices |= guide_ != nullptr;
+        const PixelBounds frame = context.scene.frame.area() > 0 ? context.scene.frame : film_.bounds();
+        const PilotFilm pixels(frame, context.settings.seed);
+        const RouletteReference patient = RouletteReference::constant(kPatience);
+        std::vector<RowFound> rows(static_cast<std::size_t>(pixels.rows()));
+        parallelFor(rows.size(), [&](std::size_t row) {
+            RecordingFilm film(film_, rows[row], guide_.get(), shown_);
+            addWorkFlag(WorkFlag::pilot);
+            for (int column = 0; column < pixels.columns() && !stop_(); ++column) {
+                const TileJob job{pixels.pixelOf(column, static_cast<int>(row)), 0, samples, &patient};
+                const PathCounters c = render_(context, film, job).counters;
+                rows[row].rays += c.vertices + c.shadowRays;
+            }
+            removeWorkFlag(WorkFlag::pilot);
+        });
+        for (RowFound& row : rows) {
+            vertices_.insert(vertices_.end(), row.vertices.begin(), row.vertices.end());
+            variances_.insert(variances_.end(), row.variances.begin(), row.variances.end());
+            radiance_ += row.radiance;
+            paths_ += row.paths;
+            plan_.rays += row.rays;
+            row = {};
+        }
+    }
+
+    const PathContext& context_;
+    TileFunction render_;
+    const Film& film_;
+    const RouletteReference& shown_;
+    const std::function<bool()>& stop_;
+    std::vector<PilotVertex> vertices_; // of all rounds
+    std::vector<double> variances_;     // of all pixels and rounds
+    double variance_ = 0;               // without a guide
+    double radiance_ = 0;               // of all their paths
+    std::uint64_t paths_ = 0;
+    std::unique_ptr<const PathGuide> guide_;
+    GuidePlan plan_;
+};
+
+} // namespace
+
+int GuideSize::within(PixelBounds frame, double most) {
+    const PilotFilm pixels(frame, 0);
+    int size = kMost;
+    while (size > 0 && static_cast<double>(pixels.columns()) * pixels.rows() * samples(size) > most) --size;
+    return size;
+}
+
+GuidePlan planGuide(const PathContext& context, TileFunction render, const Film& film, const RouletteReference& shown,
+                    int size, const std::function<bool()>& stop) {
+    return GuidePilots(context, render, film, shown, stop).run(size);
+}
+
+} // namespace abbe

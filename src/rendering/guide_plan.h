@@ -1,0 +1,54 @@
+// Pilots by which camera paths are guided.
+#pragma once
+
+#include "caustics/shared/kernel_jobs.h"
+#include "guiding/path_guide.h"
+#include "transport/roulette.h"
+
+#include <functional>
+#include <memory>
+
+namespace abbe {
+
+// Of a plan, for people.
+struct GuideFindings {
+    enum class Verdict : std::uint8_t {
+        undecided,      // nothing was looked at yet, or the render was stopped before
+        off,            // `guiding off`
+        otherTechnique, // another choice of `render` is at odds with it, or light paths serve the scene
+        media,          // there are any
+        noPilot,        // the render is too short for one
+        noGain,         // surfaces know well enough where to go
+        used
+    };
+    Verdict verdict = Verdict::undecided;
+    double gain = 0; // what of the variance of samples it takes away, as far as pilots tell; 0: unknown
+    std::size_t regions = 0, guided = 0, bytes = 0;
+};
+
+struct GuidePlan {
+    std::unique_ptr<const PathGuide> guide; // null: paths go as surfaces scatter
+    GuideFindings findings;
+    std::uint64_t rays = 0; // that the pilots took
+};
+
+// Sizes of pilots. A frame is seen through at most 128 × 128 of its pixels, as PilotFilm chooses them; of the largest
+// some 150 MiB of vertices are kept while it is learnt from them.
+class GuideSize {
+  public:
+    static constexpr int kMost = 2;
+    // Of each pixel that is looked at.
+    static std::uint32_t samples(int size) { return 2u << (2 * size); }
+    // The largest whose pilots take no more than so many paths; 0: none.
+    static int within(PixelBounds frame, double paths);
+};
+
+// Rounds of pilots, each guided by what those before have found and with three times as many samples as all of them
+// [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know well
+// enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for nothing.
+// Requires 0 < size <= GuideSize::kMost, a context without plans, and a scene without media.
+// `shown`: what pixels show.
+GuidePlan planGuide(const PathContext&, TileFunction, const Film&, const RouletteReference& shown, int size,
+                    const std::function<bool()>& stop);
+
+} // namespace abbe
