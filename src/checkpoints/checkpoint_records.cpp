@@ -119,7 +119,7 @@ bool readHeaderBytes(std::span<const std::byte> bytes, CheckpointHeader& h) {
     };
     return in.sound() && in.atEnd() && sideOk(h.bounds.x0, h.bounds.x1) && sideOk(h.bounds.y0, h.bounds.y1) &&
            h.replicates >= 1 && h.first <= h.last && h.last <= h.whole && h.pilot >= -1 &&
-           h.pilot <= RenderSettings::kFullPilot;
+           h.pilot <= RenderSettings::kMostPilot && h.pilot % RenderSettings::kGuidePilot <= RenderSettings::kFullPilot;
 }
 
 void writeTile(const TileState& tile, ByteWriter& out) {

@@ -43,7 +43,7 @@ void addFrame(Arguments& a, BuildOptions& b) {
     a.read("--size", "WxH", b.size, "a size such as 640x480", readSize, "Size of the image in pixels");
     a.value("--seed", "N", &b.seed, "Choose other random numbers").between(0, kLargestSeed);
     a.value("--pilot", "N", &b.pilot, "Size of the pilots that plan for caustics, 0 (none) to 4; else by the work")
-        .between(0, RenderSettings::kFullPilot);
+        .between(0, RenderSettings::kMostPilot);
 }
 
 namespace {

@@ -155,7 +155,7 @@ std::optional<FarmPlan> planOf(const FarmSubmitOptions& options, const CommonOpt
                         "leave one of them out: `--adaptive off`, or --samples without --noise");
     // Pilots of rounds have to be alike, whatever the number of samples of a round is.
     if (plan.noise > 0 && !options.render.build.pilot)
-        plan.renderWords.push_back(fmt::format("--pilot={}", RenderSettings::kFullPilot));
+        plan.renderWords.push_back(fmt::format("--pilot={}", RenderSettings::kMostPilot));
     plan.engine = options.engine;
     plan.atOnce = options.atOnce;
     plan.mostTries = options.tries;

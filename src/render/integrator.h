@@ -82,7 +82,7 @@ struct SampleRange {
 
 // The numbers a render is asked for. Defaults are documented in the schema of `render`.
 struct RenderSettings {
-    static constexpr int kFullPilot = 4, kPilotByWork = -1;
+    static constexpr int kFullPilot = 4, kGuidePilot = 10, kMostPilot = 34, kPilotByWork = -1;
 
     std::uint32_t samples = 64; // per pixel, all replicates together; rounded up to a multiple of the replicates
     std::uint64_t seed = 0;
@@ -94,7 +94,8 @@ struct RenderSettings {
     bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
     // How large the pilots are by which light paths, merging and what else serves caustics are planned: 0 (none, and no
     // such plan) to kFullPilot, each four times the work of the one before. kPilotByWork: the largest that take no more
-    // than a tenth of the rays of the whole render, and of the time limit; but for that size 1 at least.
+    // than a tenth of the rays of the whole render, and of the time limit; but for that size 1 at least. And
+    // kGuidePilot times the size of those by which paths are guided, 0 to 3: kMostPilot is the largest of both.
     int pilot = kFullPilot;
     Technique technique = {};
 

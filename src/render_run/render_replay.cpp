@@ -20,7 +20,8 @@ std::string RenderRun::replayCommand() const {
     if (!b.camera.empty()) add("--camera", b.camera);
     if (b.size) add("--size", fmt::format("{}x{}", b.size->x, b.size->y));
     if (b.seed) add("--seed", std::to_string(*b.seed));
-    if (settings_.pilot >= 0 && integrator_->lightBlocks(built_.scene, settings_) > 0)
+    if (settings_.pilot >= RenderSettings::kGuidePilot ||
+        (settings_.pilot >= 0 && integrator_->lightBlocks(built_.scene, settings_) > 0))
         add("--pilot", std::to_string(settings_.pilot));
     if (b.strategy) add("--strategy", word(*b.strategy));
     if (b.sampler) add("--sampler", word(*b.sampler));

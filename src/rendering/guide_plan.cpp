@@ -163,8 +163,9 @@ class GuidePilots {
 
     GuidePlan run(int size) {
         const bool always = context_.settings.technique.guiding == Technique::Guiding::always;
+        const std::uint32_t all = GuideSize::samples(size);
         std::uint32_t samples = 0;
-        for (std::uint32_t next = kFirstRound; samples < GuideSize::samples(size); next = 3 * samples) {
+        for (std::uint32_t next = kFirstRound; samples < all; next = std::min(3 * samples, all - samples)) {
             round(next);
             samples += next;
             if (stop_()) return {nullptr, {}, plan_.rays};
@@ -199,7 +200,7 @@ class GuidePilots {
     // Of so many samples of each pixel, guided by what is known.
     void round(std::uint32_t samples) {
         PathContext context = context_;
-        context.settings.seed = combine64(combine64(context_.settings.seed, kGuide), samples);
+        context.settings.seed = combine64(combine64(context_.settings.seed, kGuide), paths_);
         context.guide = guide_.get();
         context.choices |= guide_ != nullptr;
         const PixelBounds frame = context.scene.frame.area() > 0 ? context.scene.frame : film_.bounds();

@@ -36,15 +36,15 @@ struct GuidePlan {
 // some 150 MiB of vertices are kept while it is learnt from them.
 class GuideSize {
   public:
-    static constexpr int kMost = 2;
+    static constexpr int kMost = 3;
     // Of each pixel that is looked at.
-    static std::uint32_t samples(int size) { return 2u << (2 * size); }
+    static std::uint32_t samples(int size) { return 4u << size; }
     // The largest whose pilots take no more than so many paths; 0: none.
     static int within(PixelBounds frame, double paths);
 };
 
-// Rounds of pilots, each guided by what those before have found and with three times as many samples as all of them
-// [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know well
+// Rounds of pilots, each guided by what those before have found and with up to three times as many samples as all of
+// them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know well
 // enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for nothing.
 // Requires 0 < size <= GuideSize::kMost, a context without plans, and a scene without media.
 // `shown`: what pixels show.

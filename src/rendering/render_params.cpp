@@ -28,16 +28,11 @@ template <> std::span<const std::string_view> words<Technique::Guiding>() { retu
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
-    return {{"sampler", text(t.numbers)},
-            {"strategy", text(t.strategy)},
-            {"mis-weights", text(t.weights)},
-            {"directions", text(t.directions)},
-            {"light-choice", text(t.lightChoice)},
-            {"roulette", text(t.roulette)},
-            {"light-paths", text(t.lightPaths)},
-            {"merging", text(t.merging)},
-            {"guiding", text(t.guiding)},
-            {"wavelengths", std::to_string(t.wavelengths)}};
+    return {{"sampler", text(t.numbers)},          {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},      {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)}, {"roulette", text(t.roulette)},
+            {"light-paths", text(t.lightPaths)},   {"merging", text(t.merging)},
+            {"guiding", text(t.guiding)},          {"wavelengths", std::to_string(t.wavelengths)}};
 }
 
 using namespace schema;

@@ -12,6 +12,8 @@ namespace {
 // What pilots may take, of the rays of the whole render and of its time limit. Theirs are dearer than those of camera
 // paths: of the time it is a little more.
 constexpr double kPilotShare = 0.025, kPilotShareOfLimit = 0.1;
+// Of the paths of the render: most of it only where the first of them say that guiding is worth it.
+constexpr double kGuideShare = 0.2;
 // Of the time that is left, what the first pass of a plan may take as far as pilots tell: they may be wrong by half.
 constexpr double kFirstPassShare = 0.5;
 
@@ -29,14 +31,13 @@ class RenderPlanner {
         result_.rays = result_.ahead.rays;
         if (in_.film.takesSplats() && in_.state.lightBlockCount() > 0) {
             planForCaustics();
-            planForGuiding(in_.state.pilot());
         } else {
             verdict() = lightPathVerdict(in_.context.scene, settings_.technique);
-            const int size = knownPilot() >= 0 ? knownPilot() : largestGuide();
-            planForGuiding(size);
-            in_.state.setPilot(size);
-            result_.findings.pilot = size;
         }
+        const int guide = knownPilot() >= 0 ? knownPilot() / RenderSettings::kGuidePilot : largestGuide();
+        planForGuiding(guide);
+        result_.findings.pilot += RenderSettings::kGuidePilot * guide;
+        if (!in_.stop()) in_.state.setPilot(result_.findings.pilot); // else whoever goes on looks again
         result_.coreSeconds = processSeconds() - before;
         return std::move(result_);
     }
@@ -46,14 +47,12 @@ class RenderPlanner {
 
     int knownPilot() const { return in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; } // as it goes on
 
-    // Pilots of the guide are smaller by one, since those for caustics are never less than the smallest.
-    void planForGuiding(int pilot) {
+    void planForGuiding(int size) {
         GuideFindings& findings = result_.findings.of<GuideFindings>();
-        findings.verdict = obstacle(pilot);
+        findings.verdict = obstacle(size);
         if (findings.verdict != GuideFindings::Verdict::undecided || in_.stop()) return;
         const Stopwatch watch;
-        GuidePlan plan = planGuide(in_.context, in_.render, in_.film, result_.ahead.roulette,
-                                   std::min(pilot - 1, GuideSize::kMost), in_.stop);
+        GuidePlan plan = planGuide(in_.context, in_.render, in_.film, result_.ahead.roulette, size, in_.stop);
         result_.rays += plan.rays;
         result_.seconds += watch.seconds();
         findings = plan.findings;
@@ -61,32 +60,32 @@ class RenderPlanner {
     }
 
     // Why there is nothing to plan for guiding; undecided: nothing hinders.
-    GuideFindings::Verdict obstacle(int pilot) const {
+    GuideFindings::Verdict obstacle(int size) const {
         using Verdict = GuideFindings::Verdict;
         const Technique& technique = settings_.technique;
         if (technique.guiding == Technique::Guiding::off) return Verdict::off;
         if (technique.directions != Technique::Directions::importance || result_.caustics.any())
             return Verdict::otherTechnique;
         if (in_.context.scene.effects.has(Effect::media)) return Verdict::media;
-        return pilot < 2 ? Verdict::noPilot : Verdict::undecided;
+        return size == 0 ? Verdict::noPilot : Verdict::undecided;
     }
 
-    // The number of the largest pilots within their share of the render, where there are none for caustics.
+    // The largest pilots within their share of the render.
     int largestGuide() const {
         const PixelBounds frame = in_.context.scene.frame.area() > 0 ? in_.context.scene.frame : in_.film.bounds();
         const int replicates = in_.film.replicates();
-        double paths = kPilotShare * settings_.samplesPerReplicate(replicates) * replicates * pixels_;
+        double paths = kGuideShare * settings_.samplesPerReplicate(replicates) * replicates * pixels_;
         if (settings_.timeLimit > 0) {
             const double each = result_.ahead.first.secondsForSample / static_cast<double>(frame.area());
-            paths = std::min(paths, (kPilotShare * settings_.timeLimit - result_.seconds) / std::max(each, 1e-9));
+            paths = std::min(paths, (kGuideShare * settings_.timeLimit - result_.seconds) / std::max(each, 1e-9));
         }
-        const int size = GuideSize::within(frame, paths);
-        return size > 0 ? size + 1 : 0;
+        return GuideSize::within(frame, paths);
     }
 
     void planForCaustics() {
         const int known = knownPilot();
-        LadderedPlans found = known >= 0 ? plansOf(pilots(), known, in_.stop) : largestThatPays();
+        LadderedPlans found =
+            known >= 0 ? plansOf(pilots(), known % RenderSettings::kGuidePilot, in_.stop) : largestThatPays();
         result_.rays += found.rays;
         result_.seconds += found.seconds;
         if (known < 0 && isShort() && found.plans.any() && !hasTimeFor(found)) {
@@ -96,9 +95,7 @@ class RenderPlanner {
         result_.caustics = std::move(found.plans);
         result_.findings = result_.caustics.findings();
         result_.findings.pilot = found.size;
-        if (in_.stop()) return; // whoever goes on looks again
-        if (found.size == 0) verdict() = LightPathVerdict::noPilot;
-        in_.state.setPilot(found.size);
+        if (!in_.stop() && found.size == 0) verdict() = LightPathVerdict::noPilot;
     }
 
     PilotRun pilots() const {
