@@ -33,7 +33,7 @@ struct GuidePlan {
 };
 
 // Sizes of pilots. A frame is seen through at most 128 × 128 of its pixels, as PilotFilm chooses them; of the largest
-// some 150 MiB of vertices are kept while it is learnt from them.
+// half a GiB is in use while it is learnt from them.
 class GuideSize {
   public:
     static constexpr int kMost = 3;

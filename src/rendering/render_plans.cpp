@@ -34,9 +34,7 @@ class RenderPlanner {
         } else {
             verdict() = lightPathVerdict(in_.context.scene, settings_.technique);
         }
-        const int guide = knownPilot() >= 0 ? knownPilot() / RenderSettings::kGuidePilot : largestGuide();
-        planForGuiding(guide);
-        result_.findings.pilot += RenderSettings::kGuidePilot * guide;
+        result_.findings.pilot += RenderSettings::kGuidePilot * planForGuiding();
         if (!in_.stop()) in_.state.setPilot(result_.findings.pilot); // else whoever goes on looks again
         result_.coreSeconds = processSeconds() - before;
         return std::move(result_);
@@ -47,27 +45,33 @@ class RenderPlanner {
 
     int knownPilot() const { return in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; } // as it goes on
 
-    void planForGuiding(int size) {
+    // The size of its pilots.
+    int planForGuiding() {
         GuideFindings& findings = result_.findings.of<GuideFindings>();
-        findings.verdict = obstacle(size);
-        if (findings.verdict != GuideFindings::Verdict::undecided || in_.stop()) return;
+        findings.verdict = obstacle();
+        if (findings.verdict != GuideFindings::Verdict::undecided || in_.stop()) return 0;
+        const int size = knownPilot() >= 0 ? knownPilot() / RenderSettings::kGuidePilot : largestGuide();
+        if (size == 0) {
+            findings.verdict = GuideFindings::Verdict::noPilot;
+            return 0;
+        }
         const Stopwatch watch;
         GuidePlan plan = planGuide(in_.context, in_.render, in_.film, result_.ahead.roulette, size, in_.stop);
         result_.rays += plan.rays;
         result_.seconds += watch.seconds();
         findings = plan.findings;
         result_.guide = std::move(plan.guide);
+        return size;
     }
 
     // Why there is nothing to plan for guiding; undecided: nothing hinders.
-    GuideFindings::Verdict obstacle(int size) const {
+    GuideFindings::Verdict obstacle() const {
         using Verdict = GuideFindings::Verdict;
         const Technique& technique = settings_.technique;
         if (technique.guiding == Technique::Guiding::off) return Verdict::off;
         if (technique.directions != Technique::Directions::importance || result_.caustics.any())
             return Verdict::otherTechnique;
-        if (in_.context.scene.effects.has(Effect::media)) return Verdict::media;
-        return size == 0 ? Verdict::noPilot : Verdict::undecided;
+        return in_.context.scene.effects.has(Effect::media) ? Verdict::media : Verdict::undecided;
     }
 
     // The largest pilots within their share of the render.
