@@ -276,7 +276,7 @@ function cloth() {
             const u = i * step, v = j * step, k = at(i, j);
             const crest = 1.1 * noise(u * 0.16 + 0.4 * v * 0.16, v * 0.07 + 3) + 0.8 * noise(u * 0.33 - v * 0.1 + 9, v * 0.14) +
                 0.35 * noise(u * 0.6 + v * 0.4, v * 0.5 - u * 0.2 + 20);
-            p[k] = u * (0.8 + 0.02 * sin(v * 0.3)), p[k + 1] = 1.6 + 1.7 * crest, p[k + 2] = v * 0.88 + 0.8 * noise(u * 0.1, v * 0.1 + 7);
+            p[k] = u * (0.89 + 0.015 * sin(v * 0.3)), p[k + 1] = 0.75 + 0.8 * crest, p[k + 2] = v * 0.93 + 0.8 * noise(u * 0.1, v * 0.1 + 7);
         }
     q.set(p);
     const springs = [];
@@ -285,15 +285,15 @@ function cloth() {
     };
     for (let j = 0; j < nv; ++j)
         for (let i = 0; i < nu; ++i)
-            for (const [di, dj, stiff] of [[1, 0, 1], [0, 1, 1], [1, 1, 0.35], [-1, 1, 0.35], [3, 0, 0.1], [0, 3, 0.1], [5, 0, 0.04], [0, 5, 0.04]])
+            for (const [di, dj, stiff] of [[1, 0, 1], [0, 1, 1], [1, 1, 0.35], [-1, 1, 0.35], [3, 0, 0.12], [0, 3, 0.12], [6, 0, 0.1], [0, 6, 0.1]])
                 join(i, j, di, dj, stiff);
     const ground = 0.12;
-    for (let time = 0; time < 260; ++time) {
+    for (let time = 0; time < 70; ++time) {
         for (let k = 0; k < 3 * count; k += 3) {
             const touching = p[k + 1] <= ground + 1e-3;
             for (let c = 0; c < 3; ++c) {
                 const old = p[k + c];
-                p[k + c] += (p[k + c] - q[k + c]) * (touching && c !== 1 ? 0.1 : 0.93) - (c === 1 ? 0.006 : 0);
+                p[k + c] += (p[k + c] - q[k + c]) * (touching && c !== 1 ? 0.1 : 0.93) - (c === 1 ? 0.003 : 0);
                 q[k + c] = old;
             }
         }
