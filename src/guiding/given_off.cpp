@@ -1,4 +1,4 @@
-#include "guiding/given_off.h"
+#include "guiding/guide_training.h"
 
 namespace abbe {
 

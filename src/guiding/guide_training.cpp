@@ -1,7 +1,6 @@
 #include "guiding/guide_training.h"
 
 #include "base/parallel.h"
-#include "guiding/given_off.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-// Learning a PathGuide from paths.
+// Learning a PathGuide from paths: what surfaces give off first, and then where light comes from.
 #pragma once
 
 #include "guiding/path_guide.h"
@@ -27,13 +27,33 @@ struct PilotVertex {
     float beyond = 0;      // that arrives from w and belongs to no vertex: of what is around the scene
 };
 
+// Means over small cells of surfaces that scatter light from everywhere: light that was found at any vertex spreads
+// from cell to cell along all paths. So one path tells as much of the light from a direction as all that came by where
+// it leads to [Dahm2017, of the same idea]. Cells see no direction: what glossy coats do is a mean.
+class GivenOff {
+  public:
+    // `vertices` outlives it.
+    explicit GivenOff(std::span<const PilotVertex> vertices);
+    // From the direction in which the path goes on at a vertex; light as PilotVertex has it.
+    float arriving(std::size_t vertex) const;
+
+  private:
+    static constexpr std::uint32_t kNone = 0xffffffff;
+    float byItself(std::size_t vertex) const;
+    void spread(std::size_t cells);
+
+    std::span<const PilotVertex> vertices_;
+    std::vector<std::uint32_t> cells_; // of vertices
+    std::vector<float> radiance_;      // of cells
+};
+
 struct TrainedGuide {
     PathGuide guide;
     // What of the relative variance of all samples together the guide takes away, as far as the vertices tell.
     double gain = 0;
 };
 
-// Each vertex tells of the light from its direction what all paths have found where it leads to (given_off.h). In every
+// Each vertex tells of the light from its direction what all paths have found where it leads to (GivenOff). In every
 // region of space directions get the density that is best for a mean over all that was recorded there: in proportion to
 // the root of the mean square of what a direction brings [Rath2020, eq. 9]; that distance of the sphere on which they
 // are looked at [Ruppert2020, of parallax]; and that share of guided ones whose second moment, foreseen from the same

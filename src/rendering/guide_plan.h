@@ -44,10 +44,10 @@ class GuideSize {
 };
 
 // Rounds of pilots, each guided by what those before have found and with up to three times as many samples as all of
-// them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know well
-// enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for nothing.
-// Requires 0 < size <= GuideSize::kMost, a context without plans, and a scene without media.
-// `shown`: what pixels show.
+// them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know
+// well enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for
+// nothing. Requires 0 < size <= GuideSize::kMost, a context without plans, and a scene without media. `shown`: what
+// pixels show.
 GuidePlan planGuide(const PathContext&, TileFunction, const Film&, const RouletteReference& shown, int size,
                     const std::function<bool()>& stop);
 

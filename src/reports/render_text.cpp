@@ -360,8 +360,9 @@ std::string lightPathText(const CausticFindings& all) {
     if (f.used())
         text += fmt::format("  {:.3g} % of them go on past what first spreads them, a rough surface or a medium\n",
                             100 * f.afterSpread);
-    text += fmt::format("  {} light{}, {} target{}; a pilot of size {} took {} rays\n", f.lights,
-                        f.lights == 1 ? "" : "s", f.targets, f.targets == 1 ? "" : "s", all.pilot % RenderSettings::kGuidePilot, f.rays);
+    text +=
+        fmt::format("  {} light{}, {} target{}; a pilot of size {} took {} rays\n", f.lights, f.lights == 1 ? "" : "s",
+                    f.targets, f.targets == 1 ? "" : "s", all.pilot % RenderSettings::kGuidePilot, f.rays);
     if (f.bestShare > 0)
         text += fmt::format("  {} as camera paths alone with {:.3g} light paths for each of them\n", forecast(f),
                             f.bestShare);

@@ -1,5 +1,4 @@
 // What a guide has learnt, against the light that it learnt from.
-#include "guiding/given_off.h"
 #include "guiding/guide_training.h"
 #include "math/warp.h"
 
