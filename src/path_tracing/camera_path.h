@@ -2,8 +2,8 @@
 // and [Wilkie2014] for the wavelengths; notation of docs/conventions.md.
 #pragma once
 
+#include "path_tracing/directed_bsdf.h"
 #include "path_tracing/emission.h"
-#include "path_tracing/mixed_bsdf.h"
 #include "path_tracing/next_event.h"
 #include "transport/roulette.h"
 #include "transport/walk.h"

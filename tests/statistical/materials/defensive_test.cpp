@@ -1,7 +1,7 @@
 // Mixtures of a surface's own directions with even ones: samples follow the density of the mixture, and what they add
 // up to is the surface's own.
 #include "openpbr_suite.h"
-#include "path_tracing/mixed_bsdf.h"
+#include "path_tracing/directed_bsdf.h"
 #include "sphere_checks.h"
 #include "suite.h"
 

@@ -8,7 +8,7 @@
 #include "materials/thin_dielectric.h"
 #include "materials/two_sided.h"
 #include "math/frame.h"
-#include "path_tracing/mixed_bsdf.h"
+#include "path_tracing/directed_bsdf.h"
 #include "render/light_vertex.h"
 #include "statistical/materials/openpbr_suite.h"
 

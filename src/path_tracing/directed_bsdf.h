@@ -54,13 +54,13 @@ struct GuidedDirections {
 // The same values as another Bsdf, found by a mixture of its own directions and of others: defensive importance
 // sampling [Hesterberg1995]. Weights are eval() over the density of the mixture; those that the Bsdf itself puts on its
 // samples count for delta lobes alone, which no other density finds.
-template <typename Directions> class MixedBsdf final : public Bsdf {
+template <typename Directions> class DirectedBsdf final : public Bsdf {
   public:
     // `own` outlives it. `eta`: index of the side away from the eye over that of the eye's side. `share`: of the other
     // directions, in (0, 1]. With 1 half of the samples are still the Bsdf's own where it has delta lobes beside
     // others, and those of them that are not delta count as nothing. Below 1 a dispersive Bsdf stands as it is: where
     // the hero's density is 0, that of the other wavelengths in the mixture is not known.
-    MixedBsdf(const Bsdf& own, float eta, float share, const Directions& others = {})
+    DirectedBsdf(const Bsdf& own, float eta, float share, const Directions& others = {})
         : own_(own), others_(others), eta_(eta), lobes_(own.lobes()) {
         if (!lobes_.any(Lobes(Lobe::diffuse) | Lobe::glossy) || (share < 1 && lobes_.has(Lobe::dispersive))) return;
         mixed_ = share < 1 ? share : lobes_.has(Lobe::delta) ? 0.5f : 1;
@@ -125,7 +125,7 @@ template <typename Directions> class MixedBsdf final : public Bsdf {
     float mixed_ = 0, followed_ = 0; // shares of other directions, 0: none, and of own ones that count
 };
 
-using DefensiveBsdf = MixedBsdf<EvenDirections>;
-using GuidedBsdf = MixedBsdf<GuidedDirections>;
+using DefensiveBsdf = DirectedBsdf<EvenDirections>;
+using GuidedBsdf = DirectedBsdf<GuidedDirections>;
 
 } // namespace abbe
