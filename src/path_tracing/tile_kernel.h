@@ -71,7 +71,8 @@ template <EffectBits E> class TileKernel {
         ExactXyz sum;
         std::uint32_t counted = 0;
         sampler_.startPixel(seed, context_.settings.technique.numbers, context_.choices, context_.strata);
-        sampler_.shareWavelengths(seedOfSquare(x, y, r), x, y, !context_.scene.effects.has(Effect::dispersion));
+        const bool disperses = context_.scene.effects.has(Effect::dispersion) || context_.settings.asIfDispersive;
+        sampler_.shareWavelengths(seedOfSquare(x, y, r), x, y, !disperses);
         const auto started = recorder_ ? Clock::now() : Clock::time_point();
         if (recorder_) recorder_->pixel(x, y, r);
         if constexpr (Walk::kLightPaths)

@@ -91,7 +91,9 @@ struct RenderSettings {
     double timeLimit = 0;              // s; 0: none
     std::uint32_t part = 1, parts = 1; // which of so many equal ranges of the samples is taken,
     std::uint32_t skip = 0;            // behind the first so many per pixel, a multiple of the replicates
-    bool adaptive = false;             // more samples where a pilot of the frame finds more noise, fewer elsewhere
+    // Wavelengths as in a scene with dispersion, whether or not this one has it: for comparing the two.
+    bool asIfDispersive = false;
+    bool adaptive = false; // more samples where a pilot of the frame finds more noise, fewer elsewhere
     // How large the pilots are by which light paths, merging and what else serves caustics are planned: 0 (none, and no
     // such plan) to kFullPilot, each four times the work of the one before. kPilotByWork: the largest that take no more
     // than a tenth of the rays of the whole render, and of the time limit; but for that size 1 at least. And

@@ -152,6 +152,7 @@ class Study {
         RenderSettings settings = renderSettings(built.render);
         settings.seed = combine64(combine64(settings.seed, kSeedOfPairs), static_cast<std::uint64_t>(pair));
         settings.noiseTarget = settings.timeLimit = 0;
+        settings.asIfDispersive = with_.scene.effects.has(Effect::dispersion); // the same wavelengths in both
         return settings;
     }
 
