@@ -3,6 +3,7 @@
 #include "command_line/arguments.h"
 #include "render/integrator.h"
 
+#include <charconv>
 #include <limits>
 
 namespace abbe {
@@ -42,8 +43,10 @@ void addFrame(Arguments& a, BuildOptions& b) {
     a.value("--camera", "NAME", &b.camera, "Camera to render; without it the first one");
     a.read("--size", "WxH", b.size, "a size such as 640x480", readSize, "Size of the image in pixels");
     a.value("--seed", "N", &b.seed, "Choose other random numbers").between(0, kLargestSeed);
-    a.value("--pilot", "N", &b.pilot, "Size of the pilots that plan for caustics, 0 (none) to 4; else by the work")
-        .between(0, RenderSettings::kMostPilot);
+    a.read("--pilot", "N", b.pilot, "0 to 4, or with guiding up to 34", readPilot,
+           "Size of the pilots that plan for caustics, 0 (none) to 4, and ten times that of those for guiding, 0 to 3; "
+           "else "
+           "by the work");
 }
 
 namespace {
@@ -78,6 +81,16 @@ void addOwnSeed(Arguments& a, std::optional<std::int64_t>& seed) {
 std::optional<double> readTime(std::string_view text) {
     const auto value = readQuantity(text, schema::Dimension::time);
     return value && *value > 0 && *value <= 1e9 ? value : std::nullopt;
+}
+
+std::optional<int> readPilot(std::string_view text) {
+    int value = 0;
+    const auto end = text.data() + text.size();
+    if (const auto read = std::from_chars(text.data(), end, value); read.ec != std::errc() || read.ptr != end)
+        return std::nullopt;
+    const bool known = value >= 0 && value <= RenderSettings::kMostPilot &&
+                       value % RenderSettings::kGuidePilot <= RenderSettings::kFullPilot;
+    return known ? std::optional(value) : std::nullopt;
 }
 
 std::optional<bool> readSwitch(std::string_view text) {

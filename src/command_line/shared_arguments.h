@@ -36,5 +36,7 @@ void addOwnSeed(Arguments&, std::optional<std::int64_t>& seed);
 // Values, read as readQuantity() reads them. A time in seconds, above 0.
 std::optional<double> readTime(std::string_view text);
 std::optional<bool> readSwitch(std::string_view text);
+// RenderSettings::pilot, one that can be asked for.
+std::optional<int> readPilot(std::string_view text);
 
 } // namespace abbe

@@ -29,8 +29,8 @@ void addArguments(Arguments& a, ReplayOptions& o) {
     a.value("--camera", "NAME", &b.camera, "Camera of the render");
     a.read("--size", "WxH", b.size, "a size such as 640x480", readSize, "Size of the whole image in pixels");
     a.value("--seed", "N", &b.seed, "Seed of the render").between(0, kLargestSeed);
-    a.value("--pilot", "N", &b.pilot, "Size of its pilots, `abbe.pilot` of the image's header; else by the work")
-        .between(0, RenderSettings::kMostPilot);
+    a.read("--pilot", "N", b.pilot, "0 to 4, or with guiding up to 34", readPilot,
+           "Size of its pilots, `abbe.pilot` of the image's header; else by the work");
     addDefines(a, o.render.input.defines, "A parameter of the scene; may be repeated");
     addMoment(a, o.render.input.frame);
     addTechniques(a, b, "How light was found", "Where random numbers came from", "");

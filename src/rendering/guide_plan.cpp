@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 
 namespace abbe {
@@ -29,6 +30,7 @@ struct RowFound {
     std::vector<double> variances; // of pixels, over the square of what they show
     double radiance = 0;           // of all its paths, as PilotVertex has it
     std::uint64_t paths = 0, rays = 0;
+    bool full = false; // there was no memory for more
 };
 
 // Hears where paths are scattered and what they find there.
@@ -51,7 +53,7 @@ class GuideRecorder final : public SampleRecorder {
     void arrives(const SurfaceHit& hit, const Spectrum& beta) noexcept override { step(hit.p, beta); }
     void collides(Vec3 p, const Spectrum& beta) noexcept override {
         step(p, beta);
-        steps_.back().scattered = true;
+        if (!steps_.empty()) steps_.back().scattered = true;
     }
     void scatters(const SurfaceHit& hit, Lobes lobes, const Spectrum& beta, const BsdfSample* next) noexcept override {
         if (steps_.empty()) return;
@@ -79,7 +81,7 @@ class GuideRecorder final : public SampleRecorder {
         Step& at = steps_.back();
         (!at.scattered ? at.vertex.emission : sampled_ && !passing ? at.vertex.lit : at.vertex.beyond) += found;
     }
-    void keep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept override {
+    void keep(const Spectrum& radiance, const Sensor& sensor, double factor) noexcept override try {
         // Where nothing was seen so far nothing is known of the noise: any gain counts.
         const float scale = shown_.average() > 0 ? over_ / shown_.average() : 0;
         const double value = static_cast<double>(scale) * sensor(radiance, lambda_).y * factor;
@@ -92,10 +94,14 @@ class GuideRecorder final : public SampleRecorder {
         const bool sound =
             std::ranges::all_of(steps_, [](const Step& s) { return s.arrived > 0 && std::isfinite(s.arrived); });
         for (std::size_t i = 0; sound && i < count; ++i) finish(i, i + 1 < count);
+    } catch (const std::bad_alloc&) {
+        found_.full = true;
     }
     void drop() noexcept override {}
-    void pixelDone(double) noexcept override {
+    void pixelDone(double) noexcept override try {
         if (samples_ > 1) found_.variances.push_back(std::max(0.0, squares_ - sum_ * sum_ / samples_) / (samples_ - 1));
+    } catch (const std::bad_alloc&) {
+        found_.full = true;
     }
 
   private:
@@ -106,12 +112,15 @@ class GuideRecorder final : public SampleRecorder {
         bool scattered = false;
     };
 
-    void step(Vec3 p, const Spectrum& beta) {
+    // Without memory for it nothing is recorded of the path from here on.
+    void step(Vec3 p, const Spectrum& beta) try {
         Step s;
         s.vertex.p = p;
         s.arrived = mean(beta);
         s.from = p - (steps_.empty() ? eye_ : steps_.back().vertex.p);
         steps_.push_back(s);
+    } catch (const std::bad_alloc&) {
+        found_.full = true;
     }
     void finish(std::size_t i, bool goesOn) {
         const Step& s = steps_[i];
@@ -217,6 +226,7 @@ class GuidePilots {
             }
             removeWorkFlag(WorkFlag::pilot);
         });
+        if (std::ranges::any_of(rows, &RowFound::full)) throw std::bad_alloc();
         for (RowFound& row : rows) {
             vertices_.insert(vertices_.end(), row.vertices.begin(), row.vertices.end());
             variances_.insert(variances_.end(), row.variances.begin(), row.variances.end());

@@ -45,7 +45,7 @@ class RenderPlanner {
 
     int knownPilot() const { return in_.state.pilot() >= 0 ? in_.state.pilot() : settings_.pilot; } // as it goes on
 
-    // The size of its pilots.
+    // The size of its pilots where these are to be sent again: what was asked for, or what is used.
     int planForGuiding() {
         GuideFindings& findings = result_.findings.of<GuideFindings>();
         findings.verdict = obstacle();
@@ -61,7 +61,8 @@ class RenderPlanner {
         result_.seconds += watch.seconds();
         findings = plan.findings;
         result_.guide = std::move(plan.guide);
-        return size;
+        const bool again = findings.verdict == GuideFindings::Verdict::used || knownPilot() >= 0;
+        return again ? size : 0;
     }
 
     // Why there is nothing to plan for guiding; undecided: nothing hinders.

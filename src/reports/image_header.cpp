@@ -69,7 +69,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
     const auto& found = statistics.caustics.of<LightPathFindings>();
     if (found.verdict != LightPathVerdict::undecided) text("abbe.lightPathPlan", lightPathLine(found));
     const auto& guide = statistics.caustics.of<GuideFindings>();
-    if (found.measured || found.verdict == LightPathVerdict::noPilot || guide.verdict >= GuideFindings::Verdict::noGain)
+    if (found.measured || found.verdict == LightPathVerdict::noPilot || guide.verdict == GuideFindings::Verdict::used)
         whole("abbe.pilot", static_cast<std::uint64_t>(statistics.caustics.pilot));
     if (found.measured) {
         real("abbe.lightPathShare", found.share);
