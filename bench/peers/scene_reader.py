@@ -258,7 +258,7 @@ def read(path, depth):
         elif node.tag == "shape":
             add_shape(scene, node, path.parent, surfaces, lamp)
         elif node.tag == "emitter" and node.get("type") == "constant":
-            scene.sky = color(named(node, "radiance"), )
+            scene.sky = color(named(node, "radiance"))
         elif node.tag == "emitter" and node.get("type") == "directional":
             scene.suns.append((vector(named(node, "direction")), color(named(node, "irradiance"))))
         elif node.tag != "integrator":

@@ -192,12 +192,12 @@ class RegionLearner {
 using ShareMoments = std::array<double, kGuidedShares.size()>;
 
 void judge(const Learnt& learnt, GuideRecords records, std::size_t first, ShareMoments& moments) {
-    const PathGuide guide = PathGuide::ofOneRegion(learnt.region, learnt.squares, learnt.sums);
     for (std::size_t i = first; i < records.size(); i += 2) {
         const GuideRecord& r = records[i];
         const auto brought = static_cast<double>(r.brought());
         if (!(brought > 0)) continue;
-        const float guided = learnt.region.known ? guide.look(learnt.region, r.p, r.w).pdf : 0;
+        const float guided =
+            learnt.region.known ? PathGuide::look(learnt.region, learnt.squares.data(), r.p, r.w).pdf : 0;
         const double square = brought * brought / static_cast<double>(r.pdf);
         for (std::size_t s = 0; s < kGuidedShares.size(); ++s) {
             const float pdf = kGuidedShares[s] * guided + (1 - kGuidedShares[s]) * r.ownPdf;

@@ -47,26 +47,18 @@ float widened(std::uint16_t upperHalf) { return std::bit_cast<float>(static_cast
 
 } // namespace
 
-PathGuide PathGuide::ofOneRegion(const Region& region, std::vector<Square> squares, std::vector<Sums> sums) {
-    std::vector<SpaceTree::Place> places;
-    return {SpaceTree(places, 1), std::vector<Region>(6, region), std::move(squares), std::move(sums)};
-}
-
-PathGuide::Direction PathGuide::look(const Region& region, Vec3 p, Vec3 direction) const {
+PathGuide::Direction PathGuide::look(const Region& region, const Square* first, Vec3 p, Vec3 direction) {
     const auto [w, stretch] = region.seen(p, direction);
-    const float s = std::abs(w.x) + std::abs(w.y) + std::abs(w.z), scale = 2 / s;
-    const bool upper = w.z >= 0;
-    // In parts of the square; what lies on its far edges belongs to the last of them.
-    float x = std::clamp(2 + (w.x + w.y) * scale, 0.f, 3.9999998f),
-          y = std::clamp(2 + (w.y - w.x) * scale, 0.f, 3.9999998f);
-    const Square* first = &squares_[region.first];
-    const Square* square = first + (upper ? region.upperRoot : 0);
+    const SphereSquare at = SphereSquare::of(w);
+    const Square* square = first + (at.upper ? region.upperRoot : 0);
+    float x = 4 * at.u.x, y = 4 * at.u.y; // in parts of the square
     for (;;) {
         const int column = static_cast<int>(x), row = static_cast<int>(y);
         const Square::Part& part = square->parts[static_cast<std::size_t>(4 * row + column)];
-        if (part.child == 0)
-            return {direction, stretch * (upper ? region.upper : 1 - region.upper) * part.density * 0.5f / (s * s * s),
-                    widened(part.radiance)};
+        if (part.child == 0) {
+            const float density = (at.upper ? region.upper : 1 - region.upper) * part.density;
+            return {direction, stretch * density * SphereSquare::areaPerSolidAngle(w), widened(part.radiance)};
+        }
         x = 4 * (x - static_cast<float>(column));
         y = 4 * (y - static_cast<float>(row));
         square = first + part.child;

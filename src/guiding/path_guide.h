@@ -71,15 +71,14 @@ class PathGuide {
         : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)), sums_(std::move(sums)) {
     }
 
-    // For judging what was learnt in one region.
-    static PathGuide ofOneRegion(const Region&, std::vector<Square>, std::vector<Sums>);
-
     // Null where nothing is known. `face`: faceOf() the normal of the surface, on the side of the eye.
     const Region* at(Vec3 p, std::uint8_t face) const {
         const Region& region = regions_[space_.leaf(p, face)];
         return region.known ? &region : nullptr;
     }
-    Direction look(const Region&, Vec3 p, Vec3 w) const;
+    Direction look(const Region& region, Vec3 p, Vec3 w) const { return look(region, &squares_[region.first], p, w); }
+    // The same with squares that are not in a guide yet: from the first of the region on.
+    static Direction look(const Region&, const Square* first, Vec3 p, Vec3 w);
     // u in [0, 1)²; distributed with the pdf.
     Direction sample(const Region&, Vec3 p, Vec2 u) const;
 

@@ -41,7 +41,7 @@ template <EffectBits E> void Emission<E>::addSurface(const SurfaceHit& hit, Vec3
         return;
     const Spectrum emitted = hit.light->emitted(hit, -direction, path.lambda);
     float lightPdf = 0;
-    if (!path.delta && context.how.nextEvent && last_.lit)
+    if (rivalled(walk_, last_))
         lightPdf = context.lights.probability(hit.light, hit.light->partOf(hit), last_.receiver, last_.scatters) *
                    hit.light->pdfSolidAngle(last_.receiver, hit, path.time);
     estimate.checkDensities(lightPdf, path.bsdfPdf);
@@ -66,7 +66,7 @@ template <EffectBits E> void Emission<E>::leaveScene(const Ray& ray) {
     for (const DistantLight* light : context.lights.infinite()) {
         if (!light->visible().has(ray.kind)) continue;
         float lightPdf = 0;
-        if (!path.delta && context.how.nextEvent && last_.lit)
+        if (rivalled(walk_, last_))
             lightPdf = context.lights.probability(light, 0, last_.receiver, last_.scatters) *
                        light->pdfEscaped(last_.receiver, direction, path.time);
         estimate.checkDensities(lightPdf, path.bsdfPdf);
@@ -96,7 +96,7 @@ template <EffectBits E> class Emission<E>::OfMedia final : public EmissionListen
         if (context.scene.hidden.splits && !reachedByShadowRays(walk_, last_.origin, ray_, t)) [[unlikely]]
             return;
         float lightPdf = 0;
-        if (!walk_.path.delta && context.how.nextEvent && last_.lit)
+        if (rivalled(walk_, last_))
             lightPdf = context.lights.probability(&emission, last_.receiver, last_.scatters) *
                        emission.pdfSolidAngle(last_.receiver.p, ray_.origin + ray_.direction * t);
         estimate.checkDensity(lightPdf);

@@ -20,6 +20,11 @@ struct CameraVertex {
     bool lit = true;      // whether next-event estimation was made there: false in a medium that no light reaches
 };
 
+// Whether next-event estimation at the last vertex could have found what the path meets now.
+template <EffectBits E> bool rivalled(const PathWalk<E>& walk, const CameraVertex& last) {
+    return !walk.path.delta && walk.context.how.nextEvent && last.lit;
+}
+
 // 1 / mean of the spectral balance heuristic for a contribution found by scattering, when next-event estimation would
 // have found it with density `lightPdf` (0: could not), where the path's densities have come to be `unidirectional`.
 //
