@@ -39,7 +39,22 @@ def relative_error(deviation):
     return (0.25 * deviation) ** 2 / (0.25 ** 2 + 0.01)
 
 
+class Priced:
+    """Renders nothing, and says what it would have taken."""
+    def __init__(self, besides, each):
+        self.besides, self.each = besides, each
+
+    def render(self, samples, _seed):
+        return None, self.besides + self.each * samples
+
+
 class Figures(unittest.TestCase):
+    def test_samples_fill_the_time_with_what_each_render_costs_besides(self):
+        for besides, each in ((0, 0.001), (0.5, 0.001), (1.5, 0.05), (0.9, 1e-5), (0, 0.9)):
+            samples = figures.samples_for(Priced(besides, each), 4)
+            self.assertTrue(1 / 1.42 < (besides + samples * each) / 4 < 1.42, (besides, each, samples))
+        self.assertEqual(figures.samples_for(Priced(5, 1), 4), 1)
+
     def test_efficiency_is_that_of_the_noise(self):
         value, spread, trimmed = figures.efficiency(figures.errors_between(renders(4, 0.05, 1), WHOLE, even()), [3.0, 5.0, 4.0, 4.0])
         expected = 1 / (relative_error(0.05) * 4)

@@ -77,3 +77,16 @@ def coarse_difference(images, others, blocks=16):
         return parts.mean(axis=2) * 0.25 / parts.mean() # without colour, in which spectra and RGB differ
     a, b = coarse(images), coarse(others)
     return float(np.sqrt(((a - b) ** 2 / (b ** 2 + 0.01)).mean()))
+
+
+def samples_for(renderer, seconds):
+    """A power of two, which Sobol points like best, so that one render takes about as long as that: at most 1.4 times. Two
+    renders tell what a sample costs and what each render costs besides, as pilots do, whose share falls with the samples."""
+    before, spent, samples = (0, 0.0), 0.0, 1
+    while spent < 0.45 * seconds and samples < 1 << 22:
+        before = (samples, spent)
+        samples *= 4
+        _, spent = renderer.render(samples, 1000 + samples)
+    each = max((spent - before[1]) / (samples - before[0]), 0.25 * spent / samples) # the difference of two renders is noisy
+    besides = max(spent - each * samples, 0)
+    return max(1, 2 ** round(np.log2(max((seconds - besides) / each, 1))))

@@ -38,16 +38,6 @@ NOTES = ["Efficiency is 1 / (relMSE × core-seconds); intervals are two standard
 MARKDOWN, README = "six scenes", "short" # blocks
 
 
-def samples_for(renderer, seconds):
-    """A power of two, which Sobol points like best, so that one render takes about as long as that: at most 1.4 times."""
-    samples = 4
-    while True:
-        _, spent = renderer.render(samples, 1000 + samples)
-        if spent > 0.2 * seconds or samples >= 1 << 20:
-            return max(1, 2 ** round(np.log2(samples * seconds / spent)))
-        samples *= max(2, 2 ** int(np.log2(0.3 * seconds / max(spent, 1e-3))))
-
-
 def cleanest(scene, running, but):
     """Renders of the unbiased renderer with the least error, but not of that one; None if there is no other."""
     found = [(np.mean(list(figures.errors_between(images, scene.region).values())), images) for renderer, _, images, _ in running
@@ -99,7 +89,7 @@ def compare(scene, options, folder):
     for renderer in renderers.all_of(scene, options):
         try:
             renderer.open(path if renderer.family == "Abbe" else other, scene.depth, options.size, folder)
-            running.append((renderer, samples_for(renderer, options.seconds), [], []))
+            running.append((renderer, figures.samples_for(renderer, options.seconds), [], []))
         except (RuntimeError, OSError) as error:
             failed(renderer, error)
     for seed in range(1, options.seeds + 1):
