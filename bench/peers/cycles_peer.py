@@ -1,4 +1,4 @@
-"""Renders a scene with Blender's Cycles for peers.py: cycles_peer.py SCENE.xml DEPTH SIZE [guiding] (protocol: peer_process.py).
+"""Renders a scene with Blender's Cycles for peers.py: cycles_peer.py SCENE.xml|SCENE.glb DEPTH SIZE [guiding] (protocol: peer_process.py).
 
 Settings are Blender's but for what biases: no clamping, no glossy filter, no threshold for lights, no adaptive sampling, no denoiser, as
 many bounces of each kind as the scene has. A ball that shines is a point light of its radius, which Cycles samples best; many are meshes, as
@@ -155,10 +155,21 @@ class Cycles:
 
     def __init__(self, path, depth, size, *also):
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=pathlib.Path(path).parent))
-        read = scene_reader.read(path, int(depth))
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.scene = bpy.context.scene
-        settings(self.scene, int(size), read.depth, "guiding" in also)
+        settings(self.scene, int(size), int(depth), "guiding" in also)
+        self.open_gltf(path) if path.endswith(".glb") else self.open_xml(path, int(depth))
+        bpy.app.handlers.render_stats.append(self.told)
+
+    def open_gltf(self, path):
+        """What Blender makes of it; the picture is as high as the file's camera has it, and no light comes from elsewhere."""
+        bpy.ops.import_scene.gltf(filepath=path)
+        self.scene.camera = next(thing for thing in bpy.data.objects if thing.type == "CAMERA")
+        self.scene.render.resolution_y = round(self.scene.render.resolution_x * 9 / 16)
+        set_sky(None)
+
+    def open_xml(self, path, depth):
+        read = scene_reader.read(path, depth)
         camera = bpy.data.cameras.new("camera")
         camera.angle, camera.clip_start, camera.clip_end = np.radians(read.fov), 1e-3, 1e3
         self.scene.camera = place("camera", camera, read.camera @ np.diag([-1, 1, -1, 1]))
@@ -171,7 +182,6 @@ class Cycles:
             add_sun(*sun)
         if read.cloud:
             add_cloud(read.cloud, self.folder)
-        bpy.app.handlers.render_stats.append(self.told)
 
     def told(self, text, *_):
         """Copying the scene and building trees, anew for each render, comes before the first sample."""

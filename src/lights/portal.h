@@ -39,7 +39,14 @@ class Portal {
 
   private:
     static constexpr int kSize = 512; // cells along each angle
-    double sum(double a, double b) const noexcept;
+    struct Place {
+        std::size_t cell;
+        double part; // of its width, 0 … 1
+    };
+    static Place place(double); // of an angle, 0 … 1
+    // Of the table: of all cells before an edge of cells, or a place, along the first angle and before b.
+    double sum(std::size_t column, Place b) const noexcept;
+    double sum(Place a, Place b) const noexcept;
     double weight(double a0, double a1, double b0, double b1) const noexcept;
     double density(const View&, double a, double b) const noexcept; // over the two angles
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
     return x ^ (x >> 31);
 }
-constexpr std::uint32_t mix32(std::uint32_t x) {
+template <typename Bits> constexpr Bits mix32(Bits x) { // of 32 bits, or a vector of such
     x = (x ^ (x >> 16)) * 0x7feb352du;
     x = (x ^ (x >> 15)) * 0x846ca68bu;
     return x ^ (x >> 16);

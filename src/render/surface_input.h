@@ -68,7 +68,7 @@ class NumberInput {
     float at(const SurfaceHit& hit) const {
         if (!texture_) return value_;
         const TextureWork work;
-        return std::clamp(texture_->value(TextureQuery(hit)).x, lower_, upper_);
+        return std::clamp(texture_->number(TextureQuery(hit)), lower_, upper_);
     }
     bool textured() const { return texture_ != nullptr; }
     // Whether it is this number everywhere.

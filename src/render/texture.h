@@ -67,14 +67,16 @@ class Texture {
         const TextureJet j = jet({Vec3d(query.position), query.uv, query.uv}, channels());
         return channels() == 1 ? Vec3(j.value.x, j.value.x, j.value.x) : j.value;
     }
+    // Its first channel: patterns of three independent channels need not make the others.
+    virtual float number(const TextureQuery& query) const noexcept { return value(query).x; }
     // The same as a reflectance, 0 … 1 at every wavelength. By default the first channel, flat.
     virtual Spectrum spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
-        return Spectrum(std::clamp(value(query).x, 0.f, 1.f));
+        return Spectrum(std::clamp(number(query), 0.f, 1.f));
     }
     // The same as a factor of light, >= 0 and without an upper bound: white, 1, leaves it as it is. By default the
     // first channel, flat.
     virtual Spectrum lightFactor(const TextureQuery& query, const Wavelengths&) const noexcept {
-        return Spectrum(std::max(value(query).x, 0.f));
+        return Spectrum(std::max(number(query), 0.f));
     }
     // What went wrong in lookups since it was made, as warnings; called after rendering.
     virtual void reportLookups(Diagnostics&) const {}

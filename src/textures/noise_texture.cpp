@@ -3,6 +3,7 @@
 #include "math/hash.h"
 
 #include <cmath>
+#include <immintrin.h>
 
 namespace abbe {
 
@@ -13,48 +14,74 @@ struct NoiseJet {
     Vec3 gradient;
 };
 
-// Unit vectors towards the edges of a cube, four of them twice.
-constexpr float kEdge = 0.70710678f;
-constexpr float kGradients[16][3] = {
-    {kEdge, kEdge, 0}, {-kEdge, kEdge, 0}, {kEdge, -kEdge, 0}, {-kEdge, -kEdge, 0},
-    {kEdge, 0, kEdge}, {-kEdge, 0, kEdge}, {kEdge, 0, -kEdge}, {-kEdge, 0, -kEdge},
-    {0, kEdge, kEdge}, {0, -kEdge, kEdge}, {0, kEdge, -kEdge}, {0, -kEdge, -kEdge},
-    {kEdge, kEdge, 0}, {0, -kEdge, kEdge}, {-kEdge, kEdge, 0}, {0, -kEdge, -kEdge},
+// The eight corners of a cell at once: bits 0, 1 and 2 of a corner's number say whether it lies at the far side of x,
+// y, z.
+using Corners = float __attribute__((vector_size(32)));
+using CornerBits = std::uint32_t __attribute__((vector_size(32)));
+
+constexpr Corners kX = {0, 1, 0, 1, 0, 1, 0, 1}, kY = {0, 0, 1, 1, 0, 0, 1, 1}, kZ = {0, 0, 0, 0, 1, 1, 1, 1};
+
+// Unit vectors towards the edges of a cube, four of them twice: numbers 0 to 7 and 8 to 15, by axis.
+constexpr float e = 0.70710678f;
+constexpr Corners kGradients[3][2] = {
+    {{e, -e, e, -e, e, -e, e, -e}, {0, 0, 0, 0, e, 0, -e, 0}},
+    {{e, e, -e, -e, 0, 0, 0, 0}, {e, -e, e, -e, e, -e, e, -e}},
+    {{0, 0, 0, 0, e, e, -e, -e}, {e, e, -e, -e, 0, e, 0, -e}},
 };
 
-std::uint32_t lattice(std::uint32_t h, std::int64_t i) {
-    return mix32(h ^ (static_cast<std::uint32_t>(i) * 0x9e3779b1u + static_cast<std::uint32_t>(i >> 32)));
+Corners gradients(int axis, CornerBits which) { // 0 to 15
+    const auto index = reinterpret_cast<__m256i>(which);
+    const auto of = [&](int half) { return _mm256_permutevar8x32_ps(kGradients[axis][half], index); };
+    return _mm256_blendv_ps(of(0), of(1), _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
+}
+
+std::uint32_t step(std::int64_t i) {
+    return static_cast<std::uint32_t>(i) * 0x9e3779b1u + static_cast<std::uint32_t>(i >> 32);
+}
+
+// A hash of each corner of the cell, from its coordinates one after the other.
+CornerBits hashes(std::uint32_t seed, std::int64_t ix, std::int64_t iy, std::int64_t iz) {
+    const auto lanes = [](std::uint32_t near, std::uint32_t far, const Corners& side) {
+        return side != 0 ? CornerBits{} + far : CornerBits{} + near;
+    };
+    const CornerBits x = lanes(mix32(seed ^ step(ix)), mix32(seed ^ step(ix + 1)), kX);
+    const CornerBits y = mix32(x ^ lanes(step(iy), step(iy + 1), kY));
+    return mix32(y ^ lanes(step(iz), step(iz + 1), kZ));
+}
+
+float sum(Corners v) {
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 
 // [Perlin2002, eq. for s(t)] and its derivative.
 float blend(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 float blendSlope(float t) { return 30 * t * t * (t * (t - 2) + 1); }
 
-// Within -1 … 1: unit gradients reach √3/2, in the middle of a cell.
-NoiseJet gradientNoise(Vec3d p, std::uint32_t seed) {
+// Within -1 … 1: unit gradients reach √3/2, in the middle of a cell. The gradient is left 0 where nobody asks for it.
+template <bool withGradient> NoiseJet gradientNoise(Vec3d p, std::uint32_t seed) {
     constexpr float kScale = 1.15470054f; // 2/√3
     const Vec3d whole{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
     const Vec3 f(p - whole);
-    const float wx = blend(f.x), wy = blend(f.y), wz = blend(f.z);
-    const std::int64_t ix = static_cast<std::int64_t>(whole.x), iy = static_cast<std::int64_t>(whole.y),
-                       iz = static_cast<std::int64_t>(whole.z);
+    const CornerBits which = hashes(seed, static_cast<std::int64_t>(whole.x), static_cast<std::int64_t>(whole.y),
+                                    static_cast<std::int64_t>(whole.z)) >>
+                             28;
+    const Corners gx = gradients(0, which), gy = gradients(1, which), gz = gradients(2, which);
+    const Corners ramp = gx * (f.x - kX) + gy * (f.y - kY) + gz * (f.z - kZ);
+    const auto along = [](float t, const Corners& side) {
+        const float w = blend(t);
+        return side != 0 ? Corners{} + w : Corners{} + (1 - w);
+    };
+    const Corners ax = along(f.x, kX), ay = along(f.y, kY), az = along(f.z, kZ), w = ax * ay * az;
     NoiseJet n;
-    Vec3 byWeight;
-    for (int c = 0; c < 8; ++c) {
-        const int x = c & 1, y = c >> 1 & 1, z = c >> 2;
-        const std::uint32_t h = lattice(lattice(lattice(seed, ix + x), iy + y), iz + z);
-        const float* const g = kGradients[h >> 28];
-        const float ax = x ? wx : 1 - wx, ay = y ? wy : 1 - wy, az = z ? wz : 1 - wz;
-        const float ramp = g[0] * (f.x - static_cast<float>(x)) + g[1] * (f.y - static_cast<float>(y)) +
-                           g[2] * (f.z - static_cast<float>(z));
-        const float w = ax * ay * az;
-        n.value += w * ramp;
-        n.gradient += Vec3{g[0], g[1], g[2]} * w;
-        byWeight += Vec3{x ? ay * az : -ay * az, y ? ax * az : -ax * az, z ? ax * ay : -ax * ay} * ramp;
+    n.value = sum(w * ramp) * kScale;
+    if constexpr (withGradient) {
+        const Vec3 byWeight{sum((2 * kX - 1) * (ay * az) * ramp), sum((2 * kY - 1) * (ax * az) * ramp),
+                            sum((2 * kZ - 1) * (ax * ay) * ramp)};
+        const Vec3 byPlace{sum(gx * w), sum(gy * w), sum(gz * w)};
+        n.gradient = (byPlace + multiply(byWeight, Vec3{blendSlope(f.x), blendSlope(f.y), blendSlope(f.z)})) * kScale;
     }
-    n.gradient += multiply(byWeight, Vec3{blendSlope(f.x), blendSlope(f.y), blendSlope(f.z)});
-    n.value *= kScale;
-    n.gradient = n.gradient * kScale;
     return n;
 }
 
@@ -68,9 +95,20 @@ constexpr double kFarthestCell = 1e15; // in cells: the lattice is counted in 64
 
 } // namespace
 
-NoiseTexture::NoiseTexture(const NoiseTextureParams& params) : params_(params) {
-    double weight = 1;
-    for (std::int64_t k = 0; k < params.octaves; ++k, weight *= params.gain) total_ += weight;
+NoiseTexture::NoiseTexture(const NoiseTextureParams& params) {
+    double weight = 1, total = 0;
+    for (std::int64_t k = 0; k < params.octaves; ++k, weight *= params.gain) total += weight;
+    double frequency = 1 / params.scale;
+    weight = 0.5 / total;
+    for (std::int64_t k = 0; k < params.octaves; ++k, frequency *= params.lacunarity, weight *= params.gain) {
+        Octave octave{frequency, weight, {}};
+        for (int c = 0; c < 3; ++c) {
+            const auto seed = static_cast<std::uint32_t>(
+                combine64(static_cast<std::uint64_t>(params.seed), static_cast<std::uint64_t>(k * 3 + c)));
+            octave.channels[c] = {seed, shiftOf(seed)};
+        }
+        octaves_.push_back(octave);
+    }
 }
 
 namespace {
@@ -87,32 +125,15 @@ constexpr double kUnseen = 1e-3; // less is left out
 } // namespace
 
 TextureJet NoiseTexture::jet(const TexturePoint& point, int channels) const noexcept {
-    return sum(point.position, channels, 0);
-}
-
-Vec3 NoiseTexture::value(const TextureQuery& query) const noexcept {
-    return sum(Vec3d(query.position), 3, static_cast<double>(query.radius)).value;
-}
-
-Spectrum NoiseTexture::spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
-    return Spectrum(sum(Vec3d(query.position), 1, static_cast<double>(query.radius)).value.x);
-}
-
-TextureJet NoiseTexture::sum(Vec3d position, int channels, double radius) const {
     TextureJet result;
     float value[3] = {0.5f, channels > 1 ? 0.5f : 0, channels > 2 ? 0.5f : 0}, slope[3][3] = {};
-    double frequency = 1 / params_.scale, weight = 0.5 / total_;
-    for (std::int64_t k = 0; k < params_.octaves; ++k, frequency *= params_.lacunarity, weight *= params_.gain) {
-        const Vec3d cell = position * frequency;
-        const double fading = radius > 0 ? kept(radius * frequency) : 1;
-        if (!(maxComponent(abs(cell)) < kFarthestCell) || !(fading > kUnseen)) break;
-        const double strength = weight * fading;
+    for (const Octave& octave : octaves_) {
+        const Vec3d cell = point.position * octave.frequency;
+        if (!(maxComponent(abs(cell)) < kFarthestCell)) break;
         for (int c = 0; c < channels; ++c) {
-            const auto seed = static_cast<std::uint32_t>(
-                combine64(static_cast<std::uint64_t>(params_.seed), static_cast<std::uint64_t>(k * 3 + c)));
-            const NoiseJet n = gradientNoise(cell + shiftOf(seed), seed);
-            value[c] += static_cast<float>(strength) * n.value;
-            const Vec3 g = n.gradient * static_cast<float>(strength * frequency);
+            const NoiseJet n = gradientNoise<true>(cell + octave.channels[c].shift, octave.channels[c].seed);
+            value[c] += static_cast<float>(octave.weight) * n.value;
+            const Vec3 g = n.gradient * static_cast<float>(octave.weight * octave.frequency);
             slope[0][c] += g.x;
             slope[1][c] += g.y;
             slope[2][c] += g.z;
@@ -121,6 +142,28 @@ TextureJet NoiseTexture::sum(Vec3d position, int channels, double radius) const 
     result.value = {value[0], value[1], value[2]};
     for (std::size_t a = 0; a < 3; ++a) result.byPosition[a] = {slope[a][0], slope[a][1], slope[a][2]};
     return result;
+}
+
+Vec3 NoiseTexture::value(const TextureQuery& query) const noexcept {
+    return {channel(query, 0), channel(query, 1), channel(query, 2)};
+}
+
+Spectrum NoiseTexture::spectrum(const TextureQuery& query, const Wavelengths&) const noexcept {
+    return Spectrum(channel(query, 0));
+}
+
+float NoiseTexture::channel(const TextureQuery& query, int c) const noexcept {
+    const Vec3d position(query.position);
+    const auto radius = static_cast<double>(query.radius);
+    float value = 0.5f;
+    for (const Octave& octave : octaves_) {
+        const Vec3d cell = position * octave.frequency;
+        const double fading = radius > 0 ? kept(radius * octave.frequency) : 1;
+        if (!(maxComponent(abs(cell)) < kFarthestCell) || !(fading > kUnseen)) break;
+        const auto [seed, shift] = octave.channels[c];
+        value += static_cast<float>(octave.weight * fading) * gradientNoise<false>(cell + shift, seed).value;
+    }
+    return value;
 }
 
 schema::TypeInfo noiseTextureType() {

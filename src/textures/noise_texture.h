@@ -4,7 +4,7 @@
 #include "render/texture.h"
 #include "schema/type.h"
 
-#include <memory>
+#include <vector>
 
 namespace abbe {
 
@@ -29,13 +29,20 @@ class NoiseTexture final : public Texture {
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
     // Octaves fade out as the footprint grows across their bumps, as averaging over it makes them.
     Vec3 value(const TextureQuery&) const noexcept override;
+    float number(const TextureQuery& query) const noexcept override { return channel(query, 0); }
     Spectrum spectrum(const TextureQuery&, const Wavelengths&) const noexcept override;
 
   private:
-    TextureJet sum(Vec3d position, int channels, double radius) const;
+    float channel(const TextureQuery&, int) const noexcept;
 
-    NoiseTextureParams params_;
-    double total_ = 0; // Σ gain^k
+    struct Octave {
+        double frequency, weight;
+        struct {
+            std::uint32_t seed;
+            Vec3d shift;
+        } channels[3];
+    };
+    std::vector<Octave> octaves_;
 };
 
 schema::TypeInfo noiseTextureType();

@@ -24,6 +24,7 @@ class PlacedTexture final : public Texture {
     bool prepare(TextureUse, Span user, Diagnostics&) override;
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
     Vec3 value(const TextureQuery& q) const noexcept override { return map_.value(placed(q)); }
+    float number(const TextureQuery& q) const noexcept override { return map_.number(placed(q)); }
     Spectrum spectrum(const TextureQuery& q, const Wavelengths& lambda) const noexcept override {
         return map_.spectrum(placed(q), lambda);
     }

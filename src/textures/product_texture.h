@@ -20,6 +20,7 @@ class ProductTexture final : public Texture {
     bool prepare(TextureUse, Span user, Diagnostics&) override;
     TextureJet jet(const TexturePoint&, int channels) const noexcept override;
     Vec3 value(const TextureQuery& q) const noexcept override { return multiply(first_.value(q), second_.value(q)); }
+    float number(const TextureQuery& q) const noexcept override { return first_.number(q) * second_.number(q); }
     Spectrum spectrum(const TextureQuery& q, const Wavelengths& lambda) const noexcept override {
         return first_.spectrum(q, lambda) * second_.spectrum(q, lambda);
     }

@@ -55,7 +55,7 @@ template <typename Add> void RampTexture::mean(const TextureQuery& q, Add add) c
         half = boxHalfWidth(q.du.y, q.dv.y);
         break;
     case Over::input:
-        t = static_cast<double>(input_->value(q).x);
+        t = static_cast<double>(input_->number(q));
         break;
     case Over::x:
         t = static_cast<double>(q.position.x);

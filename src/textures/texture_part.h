@@ -25,6 +25,7 @@ class TexturePart {
     Vec3 value(const TextureQuery& query) const noexcept {
         return texture_ ? texture_->value(query) : Vec3(number_, number_, number_);
     }
+    float number(const TextureQuery& query) const noexcept { return texture_ ? texture_->number(query) : number_; }
     TextureJet jet(const TexturePoint& point, int channels) const noexcept;
     bool needsUv() const { return texture_ && texture_->needsUv(); }
     bool covers(Vec2 uv) const noexcept { return !texture_ || texture_->covers(uv); }
