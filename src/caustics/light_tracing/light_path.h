@@ -191,7 +191,10 @@ void LightPath<E>::goOn(const EmittedRay& start, Ray ray, std::uint32_t depth, b
             continue;
         }
         if (!hit.material->reversible()) return;
-        arriveAt(start, hit.p, static_cast<double>(std::abs(dot(direction, hit.ng))));
+        // Along a surface no flux arrives, and what is stated per area has no density there.
+        const auto cosine = static_cast<double>(std::abs(dot(direction, hit.ng)));
+        if (!(cosine > 0)) return;
+        arriveAt(start, hit.p, cosine);
         hit.arrival = direction;
         hit.footprint = 0;
         walk_.arena.reset();

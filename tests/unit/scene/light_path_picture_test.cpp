@@ -4,8 +4,12 @@
 #include "support/caustics_of.h"
 #include "support/scene_test.h"
 
+#include <atomic>
 #include <doctest/doctest.h>
 #include <initializer_list>
+#include <memory>
+#include <numeric>
+#include <utility>
 
 namespace abbe::test {
 namespace {
@@ -59,6 +63,33 @@ struct Picture {
     }
 };
 
+// Every fourth hit is made one of a silhouette, where the cosine of the arriving ray is 0 and not nearly so.
+class SilhouetteIntersector final : public Intersector {
+  public:
+    explicit SilhouetteIntersector(std::unique_ptr<const Intersector> sound) : sound_(std::move(sound)) {}
+    bool intersect(const Ray& ray, SurfaceHit& hit) const noexcept override {
+        if (!sound_->intersect(ray, hit)) return false;
+        const Vec3 d = ray.direction, n = normalize(Vec3{d.y, -d.x, 0});
+        if (++hits_ % 4 != 0 || dot(d, n) != 0) return true;
+        hit.ng = n;
+        hit.shading = Frame::fromNormal(n);
+        ++silhouettes;
+        return true;
+    }
+    bool occluded(const Ray& ray) const noexcept override { return sound_->occluded(ray); }
+    bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
+        return sound_->occluded(from, to, time, kind);
+    }
+    Bounds3 bounds() const override { return sound_->bounds(); }
+    std::uint64_t rejectedRays() const override { return sound_->rejectedRays(); }
+
+    mutable std::atomic<std::uint64_t> silhouettes{0};
+
+  private:
+    std::unique_ptr<const Intersector> sound_;
+    mutable std::atomic<std::uint64_t> hits_{0};
+};
+
 LightPathFindings findingsOf(const TestScene& scene) {
     return causticsOf(scene, scene.settings()).of<LightPathFindings>();
 }
@@ -66,6 +97,18 @@ LightPathFindings findingsOf(const TestScene& scene) {
 LightPathFindings findingsOf(const std::string& text) { return findingsOf(TestScene::parse(text)); }
 
 } // namespace
+
+TEST_CASE("light paths: what is met along its surface brings nothing, and no sample is lost for it") {
+    TestScene scene =
+        TestScene::parse(lightPathScene("light-paths alone", "shape pole cylinder { radius 0.1; height 2 }\n"));
+    auto owned = std::make_unique<SilhouetteIntersector>(std::move(scene.changeable().intersector));
+    const SilhouetteIntersector& world = *owned;
+    scene.changeable().intersector = std::move(owned);
+    const TestImage image = renderAsProgram(scene, scene.settings(), 2);
+    CHECK(world.silhouettes > 1000);
+    CHECK(image.statistics.splats > 1000);
+    CHECK(std::accumulate(image.statistics.dropped.begin(), image.statistics.dropped.end(), std::uint64_t{0}) == 0);
+}
 
 TEST_CASE("light paths: components and light groups add up to the picture with all light of the splats") {
     for (const char* choice : {"always", "alone"}) {
