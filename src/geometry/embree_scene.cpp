@@ -337,16 +337,33 @@ void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw,
     hit.instance = static_cast<std::uint32_t>(path[0].table->firstInstance() + path[0].index);
 }
 
+// Fills the hit and its distance.
+[[gnu::always_inline]] inline bool EmbreeScene::nearest(const Ray& ray, RayContext& context, RTCRayHit& rayHit) const {
+    if (!few) {
+        fill(rayHit.ray, ray, kNearestHit);
+        cast(scene.get(), context, rayHit);
+        return rayHit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+    const WorkScope work(Work::tracing);
+    const auto found = few->intersect(ray);
+    if (!found) return false;
+    rayHit.ray.tfar = found->t;
+    rayHit.hit.u = found->u;
+    rayHit.hit.v = found->v;
+    rayHit.hit.geomID = found->record;
+    rayHit.hit.primID = found->primitive;
+    rayHit.hit.instID[0] = 0;
+    return true;
+}
+
 bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
     if (!isTraceable(ray)) [[unlikely]] {
         rejected_.fetch_add(1, std::memory_order_relaxed);
         return false;
     }
     RTCRayHit rayHit;
-    fill(rayHit.ray, ray, kNearestHit);
     RayContext context(rejected_);
-    cast(scene.get(), context, rayHit);
-    if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    if (!nearest(ray, context, rayHit)) return false;
     surface(rayHit.hit, context.path(rayHit.hit), rayHit.ray.tfar, ray, hit);
     // On triangles met edge-on Embree reports hits that are not there, and misplaces others; the point from the
     // barycentrics then lies off the ray (docs/hard_cases.md, case 4).
@@ -492,10 +509,11 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
         rejected_.fetch_add(1, std::memory_order_relaxed);
         return false;
     }
+    const WorkScope work(Work::tracing);
+    if (few) return few->occluded(ray);
     RayContext context(rejected_);
     RTCRay r;
     fill(r, ray, kNearestHit);
-    const WorkScope work(Work::tracing);
     rtcOccluded1(scene.get(), &context.rtc, &r);
     return r.tfar < 0;
 }

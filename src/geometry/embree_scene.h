@@ -2,6 +2,7 @@
 // as exceptions, shapes as its geometries, and rays. EmbreeSceneBuilder fills it.
 #pragma once
 
+#include "geometry/few_triangles.h"
 #include "geometry/instance_table.h"
 #include "render/intersector.h"
 #include "render/shape.h"
@@ -124,12 +125,14 @@ class EmbreeScene final : public Intersector {
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
     std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
     std::vector<std::unique_ptr<const InstanceTable>> tables;
+    std::unique_ptr<const FewTriangles> few; // all there is to be hit, if it is little; else null
     Bounds3 bounds_;
     bool moving = false; // anything
 
   private:
     using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
 
+    bool nearest(const Ray&, RayContext&, RTCRayHit&) const;
     const GeometryRecord& recordOf(const RTCHit&, Path) const;
     void surface(const RTCHit&, Path, float distance, const Ray&, SurfaceHit&) const;
     void surfaceInside(const GeometryRecord&, const RawHit&, Path, const Ray&, SurfaceHit&) const;

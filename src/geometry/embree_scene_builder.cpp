@@ -48,6 +48,18 @@ struct EmbreeSceneBuilder::Impl {
                                          std::unique_ptr<const InstanceTable>);
 };
 
+namespace {
+
+std::unique_ptr<const FewTriangles>
+fewTriangles(const std::vector<std::pair<const Shape*, EmbreeSceneBuilder::Binding>>& shapes) {
+    FewTrianglesSink sink;
+    for (const auto& [shape, binding] : shapes)
+        if (!sink.add(*shape, binding.visible)) return nullptr;
+    return sink.make();
+}
+
+} // namespace
+
 EmbreeHandle<RTCScene, rtcReleaseScene> EmbreeSceneBuilder::Impl::newScene(const EmbreeScene& target) {
     EmbreeHandle<RTCScene, rtcReleaseScene> scene(rtcNewScene(target.device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -164,6 +176,7 @@ void EmbreeSceneBuilder::Impl::fill(EmbreeScene& s) {
     }
     addTables(s, kScene, firstTable, top);
     s.bounds_ = top.bounds;
+    if (s.tables.empty()) s.few = fewTriangles(shapes);
     s.moving = std::ranges::any_of(s.records, [](const GeometryRecord& r) { return r.steps > 1; }) ||
                std::ranges::any_of(s.tables, [](const auto& table) { return table->moves(); });
     rtcCommitScene(s.scene.get());

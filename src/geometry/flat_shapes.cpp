@@ -7,6 +7,7 @@
 #include "geometry/surface_math.h"
 #include "math/warp.h"
 
+#include <immintrin.h>
 #include <tuple>
 
 namespace abbe {
@@ -116,16 +117,18 @@ template <typename Rectangle> std::optional<SphericalRectangle> sphericalView(co
 template <typename Rectangle> std::optional<BilinearDensity> cosineDensity(const Rectangle& r, const Receiver& from) {
     constexpr float kLeastCorner = 0.01f;
     const Vec3 d = r.centre - from.p, x = r.x * (0.5f * r.width), y = r.y * (0.5f * r.height);
-    BilinearDensity density{};
-    float most = 0;
-    for (int i = 0; i < 4; ++i) {
-        const Vec3 corner = d + (i & 1 ? x : -x) + (i & 2 ? y : -y);
-        const float height = dot(corner, from.n);
-        density.corner[i] = height > 0 ? height / length(corner) : 0;
-        most = std::max(most, density.corner[i]);
-    }
+    const auto corners = [](float middle, float alongX, float alongY) {
+        return _mm_set1_ps(middle) + _mm_setr_ps(-alongX, alongX, -alongX, alongX) +
+               _mm_setr_ps(-alongY, -alongY, alongY, alongY);
+    };
+    const __m128 cx = corners(d.x, x.x, y.x), cy = corners(d.y, x.y, y.y), cz = corners(d.z, x.z, y.z);
+    const __m128 height = cx * _mm_set1_ps(from.n.x) + cy * _mm_set1_ps(from.n.y) + cz * _mm_set1_ps(from.n.z);
+    const __m128 cosine = height / _mm_sqrt_ps(cx * cx + cy * cy + cz * cz);
+    const __m128 above = _mm_and_ps(cosine, _mm_cmpgt_ps(height, _mm_setzero_ps()));
+    const float most = std::max(std::max(above[0], above[1]), std::max(above[2], above[3]));
     if (!(most > 0)) return std::nullopt;
-    for (float& c : density.corner) c = std::max(c, kLeastCorner * most);
+    BilinearDensity density{};
+    _mm_storeu_ps(density.corner.data(), _mm_max_ps(above, _mm_set1_ps(kLeastCorner * most)));
     return density;
 }
 

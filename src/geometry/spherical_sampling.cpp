@@ -7,31 +7,29 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <immintrin.h>
 
 namespace abbe {
 
 namespace {
 
 // atan on [0, 1], absolute error below 2e-7: minimax polynomial in x², degree 17 in x.
-inline float atanUnit(float x) {
-    const float z = x * x;
-    float r = 0.0028662257f;
-    r = std::fma(r, z, -0.0161657367f);
-    r = std::fma(r, z, 0.0429096138f);
-    r = std::fma(r, z, -0.0752896400f);
-    r = std::fma(r, z, 0.1065626393f);
-    r = std::fma(r, z, -0.1420889944f);
-    r = std::fma(r, z, 0.1999355085f);
-    r = std::fma(r, z, -0.3333314528f);
-    return std::fma(r * z, x, x);
+inline __m128 atanUnit(__m128 x) {
+    const __m128 z = _mm_mul_ps(x, x);
+    __m128 r = _mm_set1_ps(0.0028662257f);
+#pragma GCC unroll 8
+    for (const float c :
+         {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f, -0.1420889944f, 0.1999355085f, -0.3333314528f})
+        r = _mm_fmadd_ps(r, z, _mm_set1_ps(c));
+    return _mm_fmadd_ps(_mm_mul_ps(r, z), x, x);
 }
 
-// The angle in [0, π] of (cosine, sine), sine >= 0, not both 0.
-inline float angle(float cosine, float sine) {
-    const float c = std::abs(cosine);
-    const float a = atanUnit(std::min(c, sine) / std::max(c, sine));
-    const float first = sine > c ? kPi / 2 - a : a;
-    return cosine < 0 ? kPi - first : first;
+// The angles in [0, π] of (cosine, sine), sine >= 0, not both 0.
+inline __m128 angles(__m128 cosine, __m128 sine) {
+    const __m128 c = _mm_andnot_ps(_mm_set1_ps(-0.f), cosine);
+    const __m128 a = atanUnit(_mm_div_ps(_mm_min_ps(c, sine), _mm_max_ps(c, sine)));
+    const __m128 first = _mm_blendv_ps(a, _mm_sub_ps(_mm_set1_ps(kPi / 2), a), _mm_cmpgt_ps(sine, c));
+    return _mm_blendv_ps(first, _mm_sub_ps(_mm_set1_ps(kPi), first), _mm_cmplt_ps(cosine, _mm_setzero_ps()));
 }
 
 // Sine and cosine of x in [-2π, 2π]: quarter turns are taken off in two steps, the second for the digits that π/2 as
@@ -53,24 +51,20 @@ inline SinCos sinCosTurn(float x) {
 
 SphericalRectangle::SphericalRectangle(float x0, float y0, float x1, float y1, float z)
     : x0_(x0), y0_(y0), x1_(x1), y1_(y1), z_(-std::abs(z)), k_(0), solidAngle_(0) {
-    // Planes through the sides in turn: y = y0, x = x1, y = y1, x = x0. cosine[i] is the z component of the unit
-    // normal, sine[i] = sqrt(1 - cosine²).
-    const std::array<float, 4> offset{-y0, x1, y1, -x0};
-    std::array<float, 4> cosine, sine, gamma;
-    for (int i = 0; i < 4; ++i) {
-        const float inverse = 1 / std::sqrt(std::fma(z, z, offset[i] * offset[i]));
-        cosine[i] = offset[i] * inverse;
-        sine[i] = -z_ * inverse;
-    }
+    // Planes through the sides in turn: y = y0, x = x1, y = y1, x = x0. `cosine` has the z components of their unit
+    // normals, `sine` is sqrt(1 - cosine²).
+    const __m128 offset = _mm_setr_ps(-y0, x1, y1, -x0), height = _mm_set1_ps(z_), one = _mm_set1_ps(1);
+    const __m128 inverse = _mm_div_ps(one, _mm_sqrt_ps(_mm_fmadd_ps(height, height, _mm_mul_ps(offset, offset))));
+    const __m128 cosine = _mm_mul_ps(offset, inverse), sine = _mm_mul_ps(_mm_set1_ps(-z_), inverse);
     b0_ = cosine[0];
     b1_ = cosine[2];
     sine0_ = sine[0];
     if (!(z_ < 0)) return;
-    for (int i = 0; i < 4; ++i) {
-        const int j = (i + 1) % 4;
-        const float a2 = sine[i] * sine[i], b2 = sine[j] * sine[j];
-        gamma[i] = angle(-cosine[i] * cosine[j], std::sqrt(std::max(0.f, a2 + b2 - a2 * b2)));
-    }
+    const auto following = [](__m128 v) { return _mm_permute_ps(v, 0b00111001); };
+    const __m128 a2 = _mm_mul_ps(sine, sine), b2 = following(a2);
+    const __m128 both = _mm_sub_ps(_mm_add_ps(a2, b2), _mm_mul_ps(a2, b2));
+    const __m128 gamma =
+        angles(-_mm_mul_ps(cosine, following(cosine)), _mm_sqrt_ps(_mm_max_ps(both, _mm_setzero_ps())));
     k_ = 2 * kPi - gamma[2] - gamma[3];
     solidAngle_ = std::max(0.f, gamma[0] + gamma[1] - k_);
 }

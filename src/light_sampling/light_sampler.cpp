@@ -29,16 +29,24 @@ double shareOf(const Light& light, const std::optional<LightBounds>& part) {
     return 1.0 / light.parts();
 }
 
+// Or dark.
+bool isLeftToScattering(const std::unique_ptr<const Light>& light) {
+    const LightOutput output = light->output();
+    return !(output.power > 0) || (output.even && !light->neverHit());
+}
+
 } // namespace
 
 LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& lights, Technique::LightChoice choice,
-                           const StopFlag& stop) {
+                           const StopFlag& stop, bool leavesEven) {
     using enum Technique::LightChoice;
     std::vector<LightBounds> near;
     std::vector<Source> far;
     std::vector<double> farAmounts;
+    leavesEven = leavesEven && choice == tree && !std::ranges::all_of(lights, isLeftToScattering);
     for (const auto& light : lights) {
         if (light->infinite()) infinite_.push_back(light->asDistant());
+        if (leavesEven && isLeftToScattering(light)) continue;
         for (std::uint32_t part = 0; part < light->parts(); ++part) {
             const std::optional<LightBounds> bounds = light->bounds(part);
             const bool isNear = bounds && hasPlace(*bounds);

@@ -23,13 +23,19 @@ struct PickedLight {
 // give and half evenly. Between the two an estimate of the irradiance by each decides, but neither gets less than
 // kLeastShare of the picks: a tree's estimate knows nothing of walls, and inside its bounds next to nothing at all.
 // Dark lights are never picked. Refers to the scene's lights, which must outlive it.
+//
+// Where scattering finds all light beside it, even skies are left to it as long as there is anything else to pick: a
+// matte surface scatters just as its cosine would choose among their directions, so that samples of them would bring
+// next to nothing, and picks that miss the sun much noise (docs/decisions/038-even-skies.md).
 // Once `stop` is set while it is made it is good for nothing.
 class LightSampler {
   public:
     static constexpr float kLeastShare = 0.1f;
 
+    // `leavesEven`: scattering finds all light that it can hit, with the weight 1 where nothing is picked.
     explicit LightSampler(const std::vector<std::unique_ptr<const Light>>&,
-                          Technique::LightChoice = Technique::LightChoice::tree, const StopFlag& stop = kNeverStop);
+                          Technique::LightChoice = Technique::LightChoice::tree, const StopFlag& stop = kNeverStop,
+                          bool leavesEven = false);
 
     bool empty() const { return lights_.empty(); }
     bool needsChoice() const { return lights_.size() > 1; }

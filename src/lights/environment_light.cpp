@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace abbe {
 
@@ -145,15 +146,12 @@ Distribution2D EnvironmentLight::density(bool compensated) {
     };
     // BSDF sampling already covers the mean well, so that only what exceeds it is worth aiming at [Karlik2019, eq. 14].
     // An even image has no excess but rounding: it keeps its plain density.
-    const double mean = total / (4 * kPiD), kEven = 1e-6 * total;
-    if (compensated) {
-        const std::vector<double> excess = weights(mean);
-        double sum = 0;
-        for (double w : excess) sum += w;
-        if (sum > kEven) {
-            dimShare_ = 1 - sum / total;
-            return {excess, static_cast<std::size_t>(image_.width)};
-        }
+    const std::vector<double> excess = weights(total / (4 * kPiD));
+    const double sum = std::accumulate(excess.begin(), excess.end(), 0.0);
+    even_ = sum <= 1e-6 * total;
+    if (compensated && !even_) {
+        dimShare_ = 1 - sum / total;
+        return {excess, static_cast<std::size_t>(image_.width)};
     }
     return {weights(0), static_cast<std::size_t>(image_.width)};
 }

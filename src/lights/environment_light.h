@@ -61,7 +61,7 @@ class EnvironmentLight final : public DistantLight {
     // quarter, and that of a sun, all of it; daylight's share of visible light.
     LightOutput output() const override {
         constexpr double share = LightOutput::kDaylightShare;
-        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get()};
+        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get(), even_ && portals_.empty()};
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
@@ -82,7 +82,7 @@ class EnvironmentLight final : public DistantLight {
     Vec2 imagePoint(Vec3 local) const noexcept;
     Vec3 texel(int column, int row) const noexcept;
     Vec3 lookup(Vec2 point) const noexcept;
-    Distribution2D density(bool compensated); // sets dimShare_
+    Distribution2D density(bool compensated); // sets dimShare_ and even_
     double cellSolidAngle(int row) const noexcept;
     Vec3d cellMean(int column, int row) const noexcept;
     Vec3d integratedRadiance() const; // ∫ rgb dω for a scale of 1
@@ -94,6 +94,7 @@ class EnvironmentLight final : public DistantLight {
     std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
     Vec3d channelWeights_;          // of luminance()
     double dimShare_ = 0;           // of all light: what compensation took off
+    bool even_ = false;             // nothing stands out from the mean
     Distribution2D distribution_;
     std::vector<Portal> portals_;
     std::unique_ptr<const Curve> powerShape_; // null where all is black

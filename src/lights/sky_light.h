@@ -24,7 +24,7 @@ class SkyLight final : public DistantLight {
 
     void commit(const Bounds3&) override;
     LightOutput output() const override {
-        return {power_, LightOutput::kDaylightShare * power_, irradiance_, radiance_.curve};
+        return {power_, LightOutput::kDaylightShare * power_, irradiance_, radiance_.curve, true};
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;

@@ -7,16 +7,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
+#include <immintrin.h>
 
 namespace abbe {
-
-// condition ? yes : no without a branch.
-inline float blend(bool condition, float yes, float no) {
-    const std::uint32_t mask = 0u - static_cast<std::uint32_t>(condition);
-    return std::bit_cast<float>((std::bit_cast<std::uint32_t>(yes) & mask) |
-                                (std::bit_cast<std::uint32_t>(no) & ~mask));
-}
 
 // Sine and cosine of x in [-π/4, π/4] by Taylor polynomials; absolute error below 1e-7.
 struct SinCos {
@@ -29,14 +22,19 @@ inline SinCos sinCosEighth(float x) {
 }
 
 // Unit square to unit disk, area preserving up to the factor π, with little distortion [Shirley1997]. Which of the two
-// coordinates is the larger is a coin toss that no branch predictor wins, so both cases share their arithmetic.
+// coordinates is the larger is a coin toss that no branch predictor wins, so both cases share their arithmetic, and
+// swaps stay in vector registers.
 inline Vec2 squareToDisk(Vec2 u) {
-    const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-    const bool aLarger = std::abs(a) > std::abs(b);
-    const float radius = blend(aLarger, a, b), other = blend(aLarger, b, a);
+    const auto swapped = [](__m128 v) { return _mm_permute_ps(v, 0b11100001); };
+    const __m128 p = _mm_setr_ps(2 * u.x - 1, 2 * u.y - 1, 0, 0), size = _mm_andnot_ps(_mm_set1_ps(-0.f), p);
+    const __m128 firstLarger = _mm_permute_ps(_mm_cmpgt_ps(size, swapped(size)), 0);
+    const auto sorted = [&](__m128 v) { return _mm_blendv_ps(swapped(v), v, firstLarger); };
+    const __m128 larger = sorted(p);
+    const float radius = larger[0], other = larger[1];
     if (radius == 0) return {};
     const SinCos sc = sinCosEighth(kPi / 4 * (other / radius));
-    return {radius * blend(aLarger, sc.cos, sc.sin), radius * blend(aLarger, sc.sin, sc.cos)};
+    const __m128 direction = sorted(_mm_setr_ps(sc.cos, sc.sin, 0, 0));
+    return {radius * direction[0], radius * direction[1]};
 }
 inline Vec2 diskToSquare(Vec2 p) {
     const float r = std::sqrt(p.x * p.x + p.y * p.y);

@@ -104,13 +104,7 @@ Spectrum MiePhase::ratio(float cosine, const Wavelengths& lambda) const noexcept
     cell = cell > n - 2 ? Int8{} + (n - 2) : cell;
     const Spectrum fraction(position - __builtin_convertvector(cell, Float8));
     const float* const row = densities_.data() + static_cast<std::size_t>(place.cell) * kWavelengths;
-    const auto at = [&cell](const float* from) {
-        const Spectrum a(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(cell), 4));
-        return std::pair{a, Spectrum(_mm256_i32gather_ps(from + 1, reinterpret_cast<__m256i>(cell), 4))};
-    };
-    const auto before = at(row), after = at(row + kWavelengths);
-    const Spectrum low = fma(before.second - before.first, fraction, before.first);
-    const Spectrum high = fma(after.second - after.first, fraction, after.first);
+    const Spectrum low = interpolate(row, cell, fraction), high = interpolate(row + kWavelengths, cell, fraction);
     return fma(high - low, Spectrum(place.fraction), low) / whole;
 }
 

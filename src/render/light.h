@@ -92,6 +92,8 @@ struct LightOutput {
     double irradiance = 0;
     // Shape of the spectrum of that power, of any scale; null if the light cannot tell.
     const Curve* spectrum = nullptr;
+    // The same radiance from everywhere: scattering finds it at least as well as any sample of it.
+    bool even = false;
 
     // Where the visible share is not known: daylight's.
     static constexpr double kDaylightShare = 0.4;

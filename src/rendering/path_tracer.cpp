@@ -41,6 +41,11 @@ bool drawsChoices(const Scene& scene, const LightSampler& lights, const Techniqu
            std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
 }
 
+// Whether scattering finds all light that it can hit: not where shadow rays pass what stops others.
+bool scatteringFinds(const Scene& scene, const Technique& technique) {
+    return technique.strategy == Technique::Strategy::mis && !scene.hidden.splits;
+}
+
 // One render from the first pass to the last: owns the schedule, the statistics and the talk with the caller.
 class RenderJob {
   public:
@@ -48,7 +53,8 @@ class RenderJob {
               const RenderControl& control)
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
           watch_(control.stop, settings.timeLimit > 0 ? settings.timeLimit + kOvertime : 0),
-          lights_(scene.lights, settings.technique.lightChoice, watch_.over()),
+          lights_(scene.lights, settings.technique.lightChoice, watch_.over(),
+                  scatteringFinds(scene, settings.technique)),
           context_{scene, lights_, settings, drawsChoices(scene, lights_, settings.technique),
                    settings.samplesPerReplicate(film.replicates())},
           range_(settings.range(film.replicates())), ownState_(ownState(scene, film, settings, control)),

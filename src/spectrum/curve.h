@@ -39,12 +39,7 @@ class SampledCurve final : public Curve {
     // keep their power. Zero beyond both ends. For emission.
     static SampledCurve fromEmissionPoints(std::span<const double> nm, std::span<const double> values);
 
-    Spectrum at(const Wavelengths& w) const override {
-        const Int8 next = w.cell + 1;
-        const Spectrum a(_mm256_i32gather_ps(table_.data(), reinterpret_cast<__m256i>(w.cell), 4));
-        const Spectrum b(_mm256_i32gather_ps(table_.data(), reinterpret_cast<__m256i>(next), 4));
-        return fma(b - a, w.fraction, a);
-    }
+    Spectrum at(const Wavelengths& w) const override { return interpolate(table_.data(), w.cell, w.fraction); }
     double at(double nanometres) const override;
     bool isConstant() const override { return minimum_ == maximum_; }
     double minimum() const override { return minimum_; }

@@ -68,6 +68,18 @@ inline bool allFinite(Spectrum a) {
     return _mm256_movemask_ps(_mm256_cmp_ps(z.v, z.v, _CMP_UNORD_Q)) == 0;
 }
 
+// Linear between the node of a table that each lane names and the next one. The two are loaded at once: gathers take
+// several times the micro-operations of that where they are made of loads.
+inline Spectrum interpolate(const float* nodes, Int8 cell, Spectrum fraction) {
+    const auto ends = [&](int lane) { // of this cell and of the next lane's
+        const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(nodes + cell[lane]));
+        return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(nodes + cell[lane + 1]));
+    };
+    const __m256 even = _mm256_set_m128(ends(4), ends(0)), odd = _mm256_set_m128(ends(6), ends(2));
+    const Spectrum a(_mm256_shuffle_ps(even, odd, 0b10001000)), b(_mm256_shuffle_ps(even, odd, 0b11011101));
+    return fma(b - a, fraction, a);
+}
+
 // e^x per lane, relative error below 2e-7 for x in [-87, 88]; flushes to 0 below, saturates above.
 // Cephes' reduction and polynomial (Moshier 1989).
 inline Spectrum exp(Spectrum a) {

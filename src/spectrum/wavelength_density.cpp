@@ -68,12 +68,7 @@ const std::array<Nodes, kReflectances>& reflectances() {
 }
 
 // As SampledCurve reads it: linear between the nodes.
-Spectrum lookup(const Nodes& nodes, const Wavelengths& w) {
-    const Int8 next = w.cell + 1;
-    const Spectrum a(_mm256_i32gather_ps(nodes.data(), reinterpret_cast<__m256i>(w.cell), 4));
-    const Spectrum b(_mm256_i32gather_ps(nodes.data(), reinterpret_cast<__m256i>(next), 4));
-    return fma(b - a, w.fraction, a);
-}
+Spectrum lookup(const Nodes& nodes, const Wavelengths& w) { return interpolate(nodes.data(), w.cell, w.fraction); }
 
 // To an integral of 1, linear between the nodes.
 void normalize(std::span<double> density) {
@@ -164,10 +159,7 @@ Wavelengths WavelengthDensity::tabulated(double u) const {
     }
     Wavelengths w = Wavelengths::at(min(nm, Spectrum(kMaxWavelength)), Spectrum(1.f));
     // At the wavelength as it was rounded, so that light and density are read at the same place.
-    const Int8 next = w.cell + 1;
-    const Spectrum a(_mm256_i32gather_ps(t.rounded.data(), reinterpret_cast<__m256i>(w.cell), 4));
-    const Spectrum b(_mm256_i32gather_ps(t.rounded.data(), reinterpret_cast<__m256i>(next), 4));
-    w.pdf = fma(b - a, w.fraction, a);
+    w.pdf = interpolate(t.rounded.data(), w.cell, w.fraction);
     return w;
 }
 

@@ -14,12 +14,13 @@ struct Description {
     bool infinite = false;    // met by rays that leave
     double irradiance = 0;    // of far ones
     std::uint32_t dark = 999; // a part without power
+    bool even = false;        // the same from everywhere
 };
 
 template <typename Kind> class TestLight : public Kind {
   public:
     TestLight(const Description& d, std::size_t number) : d_(d), x_(static_cast<float>(number)) {}
-    LightOutput output() const override { return {d_.power, d_.power, d_.irradiance}; }
+    LightOutput output() const override { return {d_.power, d_.power, d_.irradiance, nullptr, d_.even}; }
     std::uint32_t parts() const override { return std::max(d_.parts, 1u); }
     std::optional<LightBounds> bounds(std::uint32_t part) const override {
         if (d_.parts == 0) return std::nullopt;
@@ -129,6 +130,34 @@ TEST_CASE("light choice: dark lights are never picked, and no lights at all are 
     CHECK(sampler.probability(one[1].get(), 1, kFloor) == 0);
     // Of another scene.
     CHECK(sampler.probability(dark[0].get(), 0, kFloor) == 0);
+}
+
+TEST_CASE("light choice: even skies are left to scattering, where it finds them and there is anything else") {
+    const auto sampler = [](const Lights& lights, bool leavesEven = true,
+                            Technique::LightChoice choice = Technique::LightChoice::tree) {
+        return LightSampler(lights, choice, kNeverStop, leavesEven);
+    };
+    const Description sky{.infinite = true, .irradiance = 3, .even = true}, sun{.infinite = true, .irradiance = 6};
+    const Lights both = lightsOf({sky, sun}), lamp = lightsOf({sky, {.power = 2, .parts = 3}});
+    CHECK(sampler(both).probability(both[0].get(), 0, kFloor) == 0);
+    CHECK(sampler(both).probability(both[1].get(), 0, kFloor) == 1);
+    CHECK(sampler(both).infinite().size() == 2); // rays still meet both
+    CHECK(sampler(lamp).probability(lamp[0].get(), 0, kFloor) == 0);
+    for (const float u : {0.f, 0.5f, kOneMinusEpsilon}) {
+        CHECK(sampler(both).pick(u, kFloor).light == both[1].get());
+        CHECK(sampler(lamp).pick(u, kFloor).light == lamp[1].get());
+    }
+    CHECK(sampler(both, false).probability(both[0].get(), 0, kFloor) > 0.3f);
+    CHECK(sampler(both, true, Technique::LightChoice::uniform).probability(both[0].get(), 0, kFloor) == 0.5f);
+    // Nothing else is there, or all else is dark.
+    const Lights skies = lightsOf({sky, sky, {.power = 0, .infinite = true}});
+    CHECK(sampler(skies).probability(skies[0].get(), 0, kFloor) == 0.5f);
+    // Scattered rays do not see it.
+    Lights hidden = lightsOf({sun});
+    auto seen = std::make_unique<DistantTestLight>(sky, 1);
+    seen->setVisible(RayKind::camera);
+    hidden.push_back(std::move(seen));
+    CHECK(sampler(hidden).probability(hidden[1].get(), 0, kFloor) > 0.3f);
 }
 
 TEST_CASE("light choice along a ray: lights that are there") {
