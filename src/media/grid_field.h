@@ -41,13 +41,18 @@ template <typename Value> class FieldAlong {
     Vec3d origin() const { return origin_; } // index space
     Vec3d direction() const { return direction_; }
 
-    Value at(float t) noexcept { return sampler_.at(Vec3(origin_ + direction_ * static_cast<double>(t))); }
+    Value at(float t) noexcept {
+        const __m256d p = _mm256_fmadd_pd(four(direction_), _mm256_set1_pd(static_cast<double>(t)), four(origin_));
+        return sampler_.at(_mm256_cvtpd_ps(p));
+    }
     // Beside the line by `shift`, in render space.
     Value at(float t, Vec3d shift) noexcept {
         return sampler_.at(Vec3(origin_ + direction_ * static_cast<double>(t) + toIndex_->vector(shift)));
     }
 
   private:
+    static __m256d four(const Vec3d& v) { return _mm256_maskload_pd(&v.x, _mm256_setr_epi64x(-1, -1, -1, 0)); }
+
     typename BasicVoxelGrid<Value>::Sampler sampler_;
     const Transform* toIndex_;
     Vec3d origin_, direction_;

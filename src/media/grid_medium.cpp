@@ -105,6 +105,7 @@ namespace {
 struct GridParts {
     const GridField<float>& density;
     const BrickBounds& bricks;
+    double perVoxel;
     const GridColor* color;
     const GridMotion* motion;
     const Curve& albedo;
@@ -115,7 +116,8 @@ class GridWalk final : public MediumWalk {
   public:
     GridWalk(const GridParts& parts, const Ray& ray, float tMax)
         : density_(parts.density, Vec3d(ray.origin), Vec3d(ray.direction)),
-          walk_(parts.bricks, density_.origin(), density_.direction(), 0, tMax, parts.thickest),
+          walk_(parts.bricks, density_.origin() * parts.perVoxel, density_.direction() * parts.perVoxel, 0, tMax,
+                parts.thickest),
           color_(parts.color, Vec3d(ray.origin), Vec3d(ray.direction)),
           motion_(parts.motion, Vec3d(ray.origin), Vec3d(ray.direction), ray.time), albedo_(&parts.albedo),
           factor_(parts.factor) {}
@@ -142,6 +144,17 @@ class GridWalk final : public MediumWalk {
     float factor_;
 };
 
+// Of bricks of eight voxels, until the thickest is not many mean free paths across: loose bounds cost lookups, small
+// bricks steps and memory (docs/performance.md).
+int halvingsFor(const GridField<float>& density, float thickest) {
+    constexpr double kThick = 4;
+    double voxel = 0;
+    for (const Vec3d axis : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)})
+        voxel = std::max(voxel, length(density.toRender().vector(axis)));
+    const double brick = 8 * voxel * static_cast<double>(density.grid().maximum() * thickest);
+    return brick > 2 * kThick ? 2 : brick > kThick ? 1 : 0;
+}
+
 template <typename T> const T* pointer(const std::optional<T>& o) { return o ? &*o : nullptr; }
 
 } // namespace
@@ -156,8 +169,10 @@ GridMedium::GridMedium(MediumOptics optics, VoxelGrid grid, double factor, const
         motion_.emplace(std::move(*extras.velocity), worldToRender);
         if (!motion_->moves()) motion_.reset();
     }
-    bricks_ = BrickBounds::build(density_.grid(), static_cast<float>(drift()));
     thickest_ = factor_ * static_cast<float>(extinction().maximum());
+    const int halvings = motion_ ? 0 : halvingsFor(density_, thickest_); // bounds dilated by many bricks take long
+    bricks_ = BrickBounds::build(density_.grid(), static_cast<float>(drift()), halvings);
+    perVoxel_ = 1 << halvings;
     if (extras.flame) flame_.emplace(std::move(extras.flame->grid), worldToRender);
     if (extras.temperature) temperature_.emplace(std::move(extras.temperature->grid), worldToRender);
     if (extras.glow) makeEmission(*extras.glow, extras);
@@ -188,7 +203,8 @@ void GridMedium::makeEmission(const Glow& glow, const GridExtras& extras) {
 }
 
 MediumWalk* GridMedium::walk(const Ray& ray, float tMax, WalkSpace& space) const noexcept {
-    const GridParts parts{density_, bricks_, pointer(color_), pointer(motion_), albedo(), factor_, thickest_};
+    const GridParts parts{density_,         bricks_,  perVoxel_, pointer(color_),
+                          pointer(motion_), albedo(), factor_,   thickest_};
     return space.make<GridWalk>(parts, ray, tMax);
 }
 

@@ -64,7 +64,8 @@ class GridMedium final : public OpticalMedium {
     std::optional<GridColor> color_;
     std::optional<GridMotion> motion_; // only if something moves
     std::optional<GridField<float>> flame_, temperature_;
-    BrickBounds bricks_; // wherever things are while the shutter is open
+    BrickBounds bricks_;  // wherever things are while the shutter is open
+    double perVoxel_ = 1; // units of their space
     Bounds3 bounds_;
     float factor_, thickest_; // `thickest_`: greatest extinction at density 1 of the grid, 1/m
     std::unique_ptr<const GridEmission> emission_;

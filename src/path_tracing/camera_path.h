@@ -39,6 +39,8 @@ template <EffectBits E> class CameraPath {
 
     // Whose start is set from outside.
     Walk& walk() { return walk_; }
+    // NextEvent::weighBy().
+    void weighLightBy(float worth) requires(kMedia) { nee_.weighBy(worth); }
 
   private:
     template <typename Follow>

@@ -24,6 +24,9 @@ template <EffectBits E> class NextEvent {
     void atSurface(const SurfaceHit&, const Bsdf&, const EyeDirection&, const VertexSample&, std::uint32_t depth);
     // Where tracking collided, from the direction.
     void inMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth);
+    // What light of the mean 1 over the path's wavelengths is of all that the pixel shows, roughly. While it is 0 every
+    // shadow ray is followed to its end.
+    void weighBy(float worth) requires(PathWalk<E>::kMedia) { worth_ = worth; }
 
     // The light at one place of the ray, before it is followed: distances drawn by how near they come to a light
     // [Kulla2012], beside those that tracking finds. In thin fog around a light tracking rarely stops where the light
@@ -39,6 +42,10 @@ template <EffectBits E> class NextEvent {
     void collideAt(float t) { leg_.collision = t; }
 
   private:
+    // Of what a pixel shows: light in a medium that is less is looked for as much less often, and a transmittance that
+    // makes it less is followed as much less often (docs/performance.md has the figures of other values).
+    static constexpr float kWorth = 0.7f;
+
     // The way that the path is on, from a vertex or a boundary; `media` is empty where near lights are not looked for.
     struct Leg {
         Ray ray;
@@ -61,6 +68,18 @@ template <EffectBits E> class NextEvent {
         eval.pdfSolidAngle = phase;
         return neeWeight(walk_, picked.probability * light.pdfSolidAngle, eval, light.delta);
     }
+    // Light for a place in a medium.
+    struct LightInMedium {
+        LightSample light;
+        PickedLight picked;
+        Spectrum contribution; // if nothing is in its way
+        float expected;        // of that, mean of all candidates and wavelengths
+        float weight = 1;      // for not being the only candidate
+        float phase, pdf;      // densities of its direction: of the phase function, and its own
+    };
+    std::optional<LightInMedium> lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth) const;
+    std::optional<LightInMedium> chooseInMedium(Vec3 p, Vec3 direction, const VertexSample&, std::uint32_t depth,
+                                                RandomStream&) const;
     std::optional<EquiangularDistances> distancesTowards(const Light&) const;
     float trackingShare(const PickedLight&);
     Spectrum scatteredAlongRay(const LightSample&, const PickedLight&, Vec3 p, std::uint32_t depth);
@@ -69,6 +88,7 @@ template <EffectBits E> class NextEvent {
     const CameraVertex& last_;
     CameraCaustics<E>& caustics_;
     [[no_unique_address]] std::conditional_t<PathWalk<E>::kMedia, Leg, NoState> leg_;
+    float worth_ = 0;
 };
 
 template <EffectBits E>
@@ -120,26 +140,73 @@ void NextEvent<E>::inMedium(Vec3 p, Vec3 direction, const VertexSample& sample, 
     const auto& path = walk_.path;
     RadianceEstimate& estimate = walk_.estimate;
     if (!context.how.nextEvent || context.lights.empty()) return;
-    const PickedLight picked = context.lights.pick(sample.pick, p);
-    auto light = picked.light->sample(p, picked.part, sample.light, path.lambda, path.time);
-    if (!light) return;
-    const PhaseFunction& phase = walk_.collided->phase();
-    const float cosine = dot(direction, light->wi), value = phase.value(cosine);
-    if (value == 0) return;
+    RandomStream random = walk_.sampler.stream(2 * depth + 1);
+    const auto chosen = chooseInMedium(p, direction, sample, depth, random);
+    if (!chosen) return;
+    // As much as a ray brings in the mean decides whether it is followed, and how far.
+    const float share = worth_ * chosen->expected;
+    float weight = chosen->weight;
+    if (share < kWorth) {
+        if (!(random.uniform() * kWorth < share)) return;
+        weight *= kWorth / share;
+    }
+    const float least = worth_ > 0 ? kWorth / std::max(share, kWorth) : 0;
     ++walk_.counters.shadowRays;
     const Spectrum passing =
-        walk_.transmittance(p, *light, {path.nested.here, {}}, walk_.sampler.stream(2 * depth + 1));
+        walk_.transmittance(p, chosen->light, {path.nested.here, {}}, random, RayKind::shadow, least);
     if (!anyNonZero(passing)) return;
+    const PickedLight& picked = chosen->picked;
+    estimate.add(chosen->contribution * passing * (weight * trackingShare(picked)), picked.light, false, [&] {
+        const float value = chosen->phase;
+        estimate.observer->samples(picked.light, chosen->light, {Spectrum(value), value}, chosen->pdf);
+    });
+}
+
+// One light out of two that are drawn, in proportion to what they would give if nothing were in their way: what decides
+// is the phase function, of which picking knows nothing [Talbot2005].
+template <EffectBits E>
+auto NextEvent<E>::chooseInMedium(Vec3 p, Vec3 direction, const VertexSample& sample, std::uint32_t depth,
+                                  RandomStream& random) const -> std::optional<LightInMedium> {
+    const int candidates = walk_.context.lights.needsChoice() ? 2 : 1;
+    std::optional<LightInMedium> chosen;
+    float sum = 0;
+    for (int i = 0; i < candidates; ++i) {
+        const float pick = sample.pick + static_cast<float>(i) / static_cast<float>(candidates);
+        auto light = lightInMedium(p, direction, pick < 1 ? pick : pick - 1, sample.light, depth);
+        if (!light) continue;
+        sum += light->expected;
+        if (!chosen || random.uniform() * sum < light->expected) chosen = light;
+    }
+    if (!chosen) return chosen;
+    sum /= static_cast<float>(candidates);
+    chosen->weight = sum / chosen->expected;
+    chosen->expected = sum;
+    return chosen;
+}
+
+// Nothing where no light comes from.
+template <EffectBits E>
+auto NextEvent<E>::lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std::uint32_t depth) const
+    -> std::optional<LightInMedium> {
+    const PathContext& context = walk_.context;
+    const auto& path = walk_.path;
+    RadianceEstimate& estimate = walk_.estimate;
+    const PickedLight picked = context.lights.pick(pick, p);
+    auto light = picked.light->sample(p, picked.part, u, path.lambda, path.time);
+    if (!light) return std::nullopt;
+    const PhaseFunction& phase = walk_.collided->phase();
+    const float cosine = dot(direction, light->wi), value = phase.value(cosine);
+    if (value == 0) return std::nullopt;
     hideFromScattering(walk_, *light, *picked.light, p);
     const float pdf = picked.probability * light->pdfSolidAngle;
-    const float w = weightInMedium(*light, picked, p, context.how.mixedDensity(value, depth));
-    Spectrum contribution = path.beta * light->radiance * passing * (value * w / pdf);
-    if (phase.spectral()) contribution *= phase.ratio(cosine, path.lambda);
     estimate.checkDensity(pdf);
     estimate.checkDensity(value, {walk_.collided, "phase function"});
-    estimate.add(contribution * trackingShare(picked), picked.light, false, [&] {
-        estimate.observer->samples(picked.light, *light, {Spectrum(value), value}, pdf);
-    });
+    const float w = weightInMedium(*light, picked, p, context.how.mixedDensity(value, depth));
+    Spectrum contribution = path.beta * light->radiance * (value * w / pdf);
+    if (phase.spectral()) contribution *= phase.ratio(cosine, path.lambda);
+    const float expected = mean(abs(contribution));
+    if (expected == 0) return std::nullopt;
+    return LightInMedium{*light, picked, contribution, expected, 1, value, pdf};
 }
 
 template <EffectBits E>

@@ -122,6 +122,10 @@ template <EffectBits E> class TileKernel {
         if (!(camera.weight > 0)) return withoutRay(camera);
         CameraPath<E> path = newPath(camera, place);
         startFromCamera(path.walk(), at, camera, around_);
+        if constexpr (Walk::kMedia)
+            if (const float shown = job_.roulette->shown(rouletteScale); shown > 0)
+                path.weighLightBy(
+                    static_cast<float>(context_.scene.sensor(Spectrum(1.f), lambda).y * std::abs(factor_)) / shown);
         [[maybe_unused]] const std::uint64_t before = signedWeights();
         Spectrum glints(0.f);
         if constexpr (Walk::kLightPaths) glints = probeGlints(x, y, lambda);

@@ -12,6 +12,8 @@ namespace {
 // After so many lookups a transmittance below kSmall goes on in one case of two, at twice the weight.
 constexpr int kRouletteEvery = 16;
 constexpr float kSmall = 0.02f;
+// Least albedo of a medium that is tracked in two parts, collide().
+constexpr float kClear = 0.9f;
 // A ray may collide without end where bounds are far above densities: it looks up so often.
 constexpr std::uint32_t kLookUpEvery = 1024;
 
@@ -55,9 +57,9 @@ void MediumTracker::start(const Ray& ray, float tMax, const MediumStack& inside,
         MediumWalk* walk = medium.walk(ray, tMax, spaces_[active_.size()]);
         MediumSegment segment;
         if (!walk || !walk->next(segment)) return;
-        const Spectrum extinction = medium.extinction().at(lambda);
-        active_.push_back(
-            {&medium, walk, segment, extinction, medium.albedo().at(lambda), extinction[0], 0, 0, 0, false});
+        const Spectrum extinction = medium.extinction().at(lambda), albedo = medium.albedo().at(lambda);
+        active_.push_back({&medium, walk, segment, extinction, albedo, extinction[0], 0, 0, 0, false,
+                           -maxLane(-albedo) > kClear && !medium.albedoVaries()});
     });
 }
 
@@ -161,22 +163,36 @@ void MediumTracker::emit(const Glow& glow, const Wavelengths& lambda, TrackedWei
 
 // A tentative collision: real with the mean probability over the lanes, a symmetric function of the wavelengths that
 // leaves their densities alone. True if it scatters.
+//
+// Where nothing is thinner than a least density the medium is two that collide independently, one of that density
+// throughout, whose collisions need no lookup, and the rest [Kutz2017; Novak2018, sec. 5.3]. Not where much is
+// absorbed, which the first part would do at collisions alone.
 bool MediumTracker::collide(Active& a, const Wavelengths& lambda, RandomStream& random, TrackedWeights weights,
                             EmissionListener* listener) {
     ++counters.collisions;
     ++counters.volumes[volumeRow(a.medium->number)].collisions;
-    const float bound = a.segment.maximum;
-    const float density = a.walk->density(a.next);
-    note(density, bound, *a.medium);
-    // Below 0 where the bound is none. The weight then has a sign and the estimate is unbiased all the same, as long as
-    // both events are possible: their probabilities are in proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
+    float bound = a.segment.maximum, density = a.segment.minimum;
+    const bool parts = a.parts && density > 0 && density < bound;
+    if (parts && random.uniform() * bound < density) {
+        bound = density;
+    } else {
+        density = a.walk->density(a.next);
+        note(density, a.segment, *a.medium);
+        if (parts) {
+            density -= a.segment.minimum;
+            bound -= a.segment.minimum;
+        }
+    }
+    // Below 0 where the bound is none, as the density is where it is less than the least. The weight then has a sign
+    // and the estimate is unbiased all the same, as long as both events are possible: their probabilities are in
+    // proportion to magnitudes [Novak2018, sec. 5.2; Kutz2017].
     const float nothing = bound - density;
     const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(a.next, lambda) : a.albedo;
     if (listener && listener->minds) [[unlikely]]
         listener->absorbs(a.next, mean(Spectrum(1.f) - albedo) * density / bound);
     const Spectrum scattering = albedo * density;
-    const Spectrum kept = scattering + Spectrum(std::abs(nothing));
-    const float scatters = mean(select(kept.v > 0, scattering / kept, Spectrum(0.f)));
+    const Spectrum likely = abs(scattering), kept = likely + Spectrum(std::abs(nothing));
+    const float scatters = mean(select(kept.v > 0, likely / kept, Spectrum(0.f)));
     const bool real = random.uniform() < scatters;
     Spectrum factor = real ? scattering * (1 / (bound * scatters))
                            : Spectrum(scatters < 1 ? nothing / (bound * (1 - scatters)) : 0.f);
@@ -209,8 +225,9 @@ bool MediumTracker::toldToLeave() {
     return counters.left = true;
 }
 
-void MediumTracker::note(float density, float bound, const Medium& medium) {
-    if (density >= 0 && density <= bound) [[likely]]
+void MediumTracker::note(float density, const MediumSegment& bounds, const Medium& medium) {
+    const float bound = bounds.maximum;
+    if (density >= bounds.minimum && density <= bound) [[likely]]
         return;
     if (!(density >= 0 && density < kInfinity)) {
         ++counters.faults;
@@ -249,24 +266,30 @@ void MediumTracker::shareDistance(float t, TrackedWeights weights) const {
 }
 
 Spectrum MediumTracker::transmittance(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
-                                      RandomStream& random) {
+                                      RandomStream& random, float least) {
     const WorkScope work(Work::lights);
     start(ray, tMax, inside, lambda);
     Spectrum result(1.f);
     for (Active& a : active_) {
-        result *= ratioTracking(a, random);
+        result *= ratioTracking(a, random, least > 0 ? least / maxLane(abs(result)) : 0);
         if (!anyNonZero(result)) break;
     }
     return result;
 }
 
-Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random) {
+Spectrum MediumTracker::ratioTracking(Active& a, RandomStream& random, float least) {
     setWork(volumeWork(a.medium->number));
     Residual residual;
     double control = 0; // of the mean density
     do {
         if (!ratioTracking(a, control, random, residual)) return Spectrum(0.f);
         control += static_cast<double>(a.segment.mean) * static_cast<double>(a.segment.tFar - a.segment.tNear);
+        if (!(least > 0)) continue;
+        residual.keepInRange();
+        const float soFar = maxLane(abs(residual.times(a.extinction, control)));
+        if (!(soFar < least)) continue;
+        if (!(random.uniform() * least < soFar)) return Spectrum(0.f);
+        residual.weight *= least / soFar;
     } while (a.walk->next(a.segment));
     return residual.times(a.extinction, control);
 }
@@ -296,12 +319,13 @@ bool MediumTracker::ratioTracking(Active& a, double control, RandomStream& rando
     const double length = static_cast<double>(s.tFar - s.tNear);
     int count = 0;
     // In double: steps of a dense medium far from the origin would vanish in float.
-    for (double t = static_cast<double>(random.exponential()) / rate; t < length;
-         t += static_cast<double>(random.exponential()) / rate) {
+    const double step = 1 / rate;
+    for (double t = static_cast<double>(random.exponential()) * step; t < length;
+         t += static_cast<double>(random.exponential()) * step) {
         ++counters.lookups;
         ++counters.volumes[volumeRow(a.medium->number)].lookups;
         const float density = a.walk->density(s.tNear + static_cast<float>(t));
-        note(density, s.maximum, *a.medium);
+        note(density, s, *a.medium);
         const Spectrum kept = Spectrum(1.f) - share * (density - s.mean);
         // Below the bound only rounding makes it negative.
         if (density <= s.maximum) {
@@ -348,7 +372,7 @@ float MediumTracker::expected(const Ray& ray, float t, const MediumStack& inside
             if (!there) continue;
             const Spectrum albedo = a.medium->albedoVaries() ? a.walk->albedo(t, lambda) : a.albedo;
             const float density = a.walk->density(t);
-            note(density, std::numeric_limits<float>::max(), *a.medium); // no bound counts here
+            note(density, {0, 0, 0, 0, std::numeric_limits<float>::max()}, *a.medium); // no bound counts here
             there->push_back({a.medium, a.extinction * albedo * density});
         }
     }

@@ -77,8 +77,10 @@ class MediumTracker {
     // told without following it: in a single medium of constant density that does not emit. Elsewhere infinite.
     float reach(const Ray&, const MediumStack& inside, const Wavelengths&, RandomStream);
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
-    // [Novak2014] with the mean density of each segment as control.
-    Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&);
+    // [Novak2014] with the mean density of each segment as control. Where it falls below `least` roulette ends it or
+    // takes it back there, segment by segment: for whom less is not worth its lookups.
+    Spectrum transmittance(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
+                           float least = 0);
 
     // About the density of the distances that follow() finds: that of collisions if every segment had its mean density
     // throughout, 1/m. A pure function of the ray and t. If asked, also all that scatters at t.
@@ -107,6 +109,7 @@ class MediumTracker {
         float optical; // hero's optical length still to go after `next` when that is the segment's end
         double passed; // integral of the bounding density over the segments before this one
         bool collides; // at `next`
+        bool parts;    // tracked as two media, collide()
     };
 
     // The weight of residual ratio tracking, over the exponential of what its lanes gave up to stay in range.
@@ -145,9 +148,9 @@ class MediumTracker {
     bool collide(Active&, const Wavelengths&, RandomStream&, TrackedWeights, EmissionListener*);
     void keepInRange(TrackedWeights);
     void shareDistance(float t, TrackedWeights) const;
-    void note(float density, float bound, const Medium&);
+    void note(float density, const MediumSegment& bounds, const Medium&);
     bool toldToLeave();
-    Spectrum ratioTracking(Active&, RandomStream&);
+    Spectrum ratioTracking(Active&, RandomStream&, float least);
     bool ratioTracking(Active&, double control, RandomStream&, Residual&);
 
     std::span<const Medium* const> open_;

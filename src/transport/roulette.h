@@ -77,6 +77,8 @@ class RouletteReference {
     float scale(int x, int y) const;
     // L̄, W·m⁻²·sr⁻¹ weighed with ȳ as the film's Y; 0 if nothing was seen, or looked at.
     float average() const { return average_; }
+    // Î of a pixel of that scale, likewise.
+    float shown(float scale) const { return average_ / (kThreshold * scale); }
     static float survival(float meanThroughput, float scale) { return std::clamp(meanThroughput * scale, kFloor, 1.f); }
 
   private:

@@ -133,8 +133,9 @@ template <EffectBits E> class PathWalk {
     // False where the shading normal would let light through a surface or keep it from crossing one.
     static bool sidesAgree(const SurfaceHit&, const EyeDirection&, Vec3 wi, Vec3 wiRender);
 
-    // Of everything between a vertex and a light: nothing behind a surface.
-    Spectrum transmittance(Vec3 origin, const LightSample&, NestedDielectrics, RandomStream, RayKind = RayKind::shadow);
+    // Of everything between a vertex and a light: nothing behind a surface. `least`: as MediumTracker::transmittance().
+    Spectrum transmittance(Vec3 origin, const LightSample&, NestedDielectrics, RandomStream, RayKind = RayKind::shadow,
+                           float least = 0);
     bool occluded(Vec3 origin, const LightSample& light, RayKind kind = RayKind::shadow) const {
         const Intersector& world = *context.scene.intersector;
         return light.distance < kInfinity ? world.occluded(origin, light.p, path.time, kind)
@@ -378,13 +379,13 @@ template <EffectBits E> Spectrum PathWalk<E>::clearness(const Surroundings& insi
 
 template <EffectBits E>
 Spectrum PathWalk<E>::transmittance(Vec3 origin, const LightSample& light, NestedDielectrics nested,
-                                    [[maybe_unused]] RandomStream random, RayKind kind) {
+                                    [[maybe_unused]] RandomStream random, RayKind kind, [[maybe_unused]] float least) {
     const bool infinite = !(light.distance < kInfinity);
     // Up to tMax; `end` is the same, measured as without media, where they shall make no difference.
     const auto along = [&](const Ray& ray, const Surroundings& inside, float tMax, float end) {
         const Spectrum clear = clearness(inside, end);
         if constexpr (kMedia)
-            return clear * media.tracker.transmittance(ray, tMax, inside.media(), path.lambda, random);
+            return clear * media.tracker.transmittance(ray, tMax, inside.media(), path.lambda, random, least);
         return clear;
     };
     Ray ray{origin, light.wi, infinite ? kInfinity : length(light.p - origin), path.time, kind};

@@ -87,79 +87,87 @@ std::vector<Place> placesOf(const VoxelGrid::Nano& grid) {
 
 // --- bounds of one brick
 
-// Voxels -1 … 9 of a brick along each axis, z fastest.
-struct Patch {
-    static constexpr int kSize = 11;
-    float v[kSize][kSize][kSize];
+// Voxels -1 … n + 1 of a brick of n along each axis, z fastest.
+class Patch {
+  public:
+    static constexpr int kMost = 11;
 
-    // Over the brick's own cells: voxels 0 … 8, those at the ends with half the weight. 0 only if all of them are 0.
-    double mean() const {
-        double sum = 0;
-        for (int x = 1; x <= 9; ++x)
-            for (int y = 1; y <= 9; ++y) {
-                const float* row = v[x][y];
-                double line = 0.5 * (double(row[1]) + double(row[9]));
-                for (int z = 2; z <= 8; ++z) line += double(row[z]);
-                sum += line * (x == 1 || x == 9 ? 0.5 : 1.0) * (y == 1 || y == 9 ? 0.5 : 1.0);
-            }
-        return sum / 512;
-    }
+    explicit Patch(int voxels) : size_(voxels + 3) {}
 
-    // A multilinear field takes its extremes over a box at corners of cells; the box ends kMargin beyond the brick, so
-    // the outermost values move there, axis by axis.
-    void moveEndsToMargin() {
-        const auto move = [](float& end, float inner) { end = std::fma(kMargin, end - inner, inner); };
-        for (int a = 0; a < kSize; ++a)
-            for (int b = 0; b < kSize; ++b) {
-                move(v[a][b][0], v[a][b][1]);
-                move(v[a][b][10], v[a][b][9]);
-            }
-        for (int a = 0; a < kSize; ++a)
-            for (int b = 0; b < kSize; ++b) {
-                move(v[a][0][b], v[a][1][b]);
-                move(v[a][10][b], v[a][9][b]);
-            }
-        for (int a = 0; a < kSize; ++a)
-            for (int b = 0; b < kSize; ++b) {
-                move(v[0][a][b], v[1][a][b]);
-                move(v[10][a][b], v[9][a][b]);
-            }
-    }
+    int size() const { return size_; }
+    float* row(int x, int y) { return v_ + (x * size_ + y) * size_; }
 
     FieldBounds bounds() {
         const double average = mean();
         if (average == 0) return {}; // what the margin reaches is not part of the field here
         moveEndsToMargin();
-        const float* all = &v[0][0][0];
-        float low = all[0], high = all[0];
-        for (int i = 1; i < kSize * kSize * kSize; ++i) {
-            low = std::min(low, all[i]);
-            high = std::max(high, all[i]);
+        float low = v_[0], high = v_[0];
+        for (int i = 1; i < size_ * size_ * size_; ++i) {
+            low = std::min(low, v_[i]);
+            high = std::max(high, v_[i]);
         }
         if (low == high) return {low, low, low};
         low *= 1 - kRounding;
         high *= 1 + kRounding;
         return {low, std::clamp(static_cast<float>(average), low, high), high};
     }
+
+  private:
+    // Over the brick's own cells: voxels 0 … n, those at the ends with half the weight. 0 only if all of them are 0.
+    double mean() {
+        const int last = size_ - 2, cells = size_ - 3;
+        double sum = 0;
+        for (int x = 1; x <= last; ++x)
+            for (int y = 1; y <= last; ++y) {
+                const float* r = row(x, y);
+                double line = 0.5 * (double(r[1]) + double(r[last]));
+                for (int z = 2; z < last; ++z) line += double(r[z]);
+                sum += line * (x == 1 || x == last ? 0.5 : 1.0) * (y == 1 || y == last ? 0.5 : 1.0);
+            }
+        return sum / (cells * cells * cells);
+    }
+
+    // A multilinear field takes its extremes over a box at corners of cells; the box ends kMargin beyond the brick, so
+    // the outermost values move there, axis by axis.
+    void moveEndsToMargin() {
+        const auto move = [](float& end, float inner) { end = std::fma(kMargin, end - inner, inner); };
+        const int last = size_ - 1;
+        for (int a = 0; a < size_; ++a)
+            for (int b = 0; b < size_; ++b) {
+                move(row(a, b)[0], row(a, b)[1]);
+                move(row(a, b)[last], row(a, b)[last - 1]);
+            }
+        for (int a = 0; a < size_; ++a)
+            for (int b = 0; b < size_; ++b) {
+                move(row(a, 0)[b], row(a, 1)[b]);
+                move(row(a, last)[b], row(a, last - 1)[b]);
+            }
+        for (int a = 0; a < size_; ++a)
+            for (int b = 0; b < size_; ++b) {
+                move(row(0, a)[b], row(1, a)[b]);
+                move(row(last, a)[b], row(last - 1, a)[b]);
+            }
+    }
+
+    int size_;
+    float v_[kMost * kMost * kMost];
 };
 
-// What is at one brick of the grid: a leaf's values, or a constant.
+// What is at one leaf's place in the grid: its values, or a constant.
 struct Slot {
     const float* values = nullptr;
     float constant = 0;
 };
 
-// The bricks of one node and one around them.
+// The leaves of one node, `width` of them along each axis, and one around them.
 class NodeSlots {
   public:
-    static constexpr int kSize = 10;
-
-    NodeSlots(nanovdb::DefaultReadAccessor<float>& accessor, Place place) {
-        for (int x = 0; x < kSize; ++x)
-            for (int y = 0; y < kSize; ++y)
-                for (int z = 0; z < kSize; ++z) {
-                    const nanovdb::Coord c((place.x * 8 + x - 1) * 8, (place.y * 8 + y - 1) * 8,
-                                           (place.z * 8 + z - 1) * 8);
+    NodeSlots(nanovdb::DefaultReadAccessor<float>& accessor, Place place, int width) {
+        for (int x = 0; x < width + 2; ++x)
+            for (int y = 0; y < width + 2; ++y)
+                for (int z = 0; z < width + 2; ++z) {
+                    const nanovdb::Coord c((place.x * width + x - 1) * 8, (place.y * width + y - 1) * 8,
+                                           (place.z * width + z - 1) * 8);
                     Slot& slot = slots_[x][y][z];
                     if (const auto* leaf = accessor.probeLeaf(c))
                         slot.values = leaf->data()->mValues;
@@ -168,7 +176,7 @@ class NodeSlots {
                 }
     }
 
-    // The value of bricks [x0, x1) and so on if it is one constant.
+    // The value of slots [a, b) if it is one constant.
     bool constant(Vec3i a, Vec3i b, float& value) const {
         value = slots_[a.x][a.y][a.z].constant;
         for (int x = a.x; x < b.x; ++x)
@@ -178,42 +186,58 @@ class NodeSlots {
         return true;
     }
 
-    // The patch of the brick in slot `at` (1 … 8).
+    // The patch of the brick whose first voxel is `at`, counted from that of the slots.
     void read(Vec3i at, Patch& patch) const {
-        for (int x = 0; x < Patch::kSize; ++x)
-            for (int y = 0; y < Patch::kSize; ++y) {
-                const Slot* row = slots_[at.x + ((x - 1) >> 3)][at.y + ((y - 1) >> 3)] + at.z;
-                const int offset = ((x - 1) & 7) << 6 | ((y - 1) & 7) << 3;
-                float* out = patch.v[x][y];
-                out[0] = row[-1].values ? row[-1].values[offset + 7] : row[-1].constant;
-                for (int z = 0; z < 8; ++z) out[1 + z] = row[0].values ? row[0].values[offset + z] : row[0].constant;
-                for (int z = 0; z < 2; ++z) out[9 + z] = row[1].values ? row[1].values[offset + z] : row[1].constant;
+        const Vec3i first = at - Vec3i(1, 1, 1);
+        for (int i = 0; i < patch.size(); ++i)
+            for (int j = 0; j < patch.size(); ++j) {
+                const int x = first.x + i, y = first.y + j;
+                const Slot* row = slots_[x >> 3][y >> 3];
+                const int offset = (x & 7) << 6 | (y & 7) << 3;
+                float* out = patch.row(i, j);
+                for (int k = 0; k < patch.size(); ++k) {
+                    const int z = first.z + k;
+                    const Slot& slot = row[z >> 3];
+                    out[k] = slot.values ? slot.values[offset + (z & 7)] : slot.constant;
+                }
             }
     }
 
   private:
-    Slot slots_[kSize][kSize][kSize];
+    Slot slots_[10][10][10];
 };
 
-void fillNode(const VoxelGrid::Nano& grid, Place place, NodeBricks& bricks) {
+void fillNode(const VoxelGrid::Nano& grid, Place place, int halvings, NodeBricks& bricks) {
     auto accessor = grid.getAccessor();
-    const NodeSlots slots(accessor, place);
+    const int width = 8 >> halvings, voxels = 8 >> halvings; // leaves of the node and voxels of a brick, on each axis
+    const NodeSlots slots(accessor, place, width);
     float value = 0;
-    if (slots.constant({0, 0, 0}, {10, 10, 10}, value)) {
+    if (slots.constant({0, 0, 0}, Vec3i(1, 1, 1) * (width + 2), value)) {
         bricks.fill({value, value, value});
         return;
     }
-    Patch patch;
+    Patch patch(voxels);
     for (int i = 0; i < 512; ++i) {
-        const Vec3i at(1 + (i >> 6), 1 + (i >> 3 & 7), 1 + (i & 7));
+        const Vec3i at = Vec3i(8, 8, 8) + Vec3i(i >> 6, i >> 3 & 7, i & 7) * voxels;
         FieldBounds& bounds = bricks[static_cast<std::size_t>(i)];
-        if (slots.constant(at - Vec3i(1, 1, 1), at + Vec3i(2, 2, 2), value)) {
+        const Vec3i end = at + Vec3i(1, 1, 1) * (voxels + 1);
+        if (slots.constant((at - Vec3i(1, 1, 1)) >> 3, (end >> 3) + Vec3i(1, 1, 1), value)) {
             bounds = {value, value, value};
             continue;
         }
         slots.read(at, patch);
         bounds = patch.bounds();
     }
+}
+
+// The same places, of nodes of finer bricks.
+std::vector<Place> halved(const std::vector<Place>& places, int halvings) {
+    std::vector<Place> result;
+    const int parts = 1 << halvings;
+    for (const Place p : places)
+        for (int i = 0; i < parts * parts * parts; ++i)
+            result.push_back(p * parts + Vec3i(i / (parts * parts), i / parts % parts, i % parts));
+    return result;
 }
 
 // --- bounds that hold some bricks away
@@ -269,11 +293,12 @@ BrickBounds dilated(const BrickBounds& tight, int radius) {
 
 } // namespace
 
-BrickBounds BrickBounds::build(const VoxelGrid& grid, float dilation) {
+BrickBounds BrickBounds::build(const VoxelGrid& grid, float dilation, int halvings) {
     if (grid.empty()) return {};
-    BrickTreeBuilder builder(placesOf(grid.nano()));
-    BrickBounds tight = builder.build([&](Place place, NodeBricks& bricks) { fillNode(grid.nano(), place, bricks); });
-    const int radius = static_cast<int>(std::ceil((dilation + kMargin) / 8));
+    BrickTreeBuilder builder(halved(placesOf(grid.nano()), halvings));
+    BrickBounds tight =
+        builder.build([&](Place place, NodeBricks& bricks) { fillNode(grid.nano(), place, halvings, bricks); });
+    const int radius = static_cast<int>(std::ceil((dilation + kMargin) / static_cast<float>(8 >> halvings)));
     return dilation > 0 && !tight.empty() ? dilated(tight, radius) : std::move(tight);
 }
 

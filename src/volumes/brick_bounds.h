@@ -24,8 +24,10 @@ class BrickBounds {
     // With a `dilation` in voxels the bounds of a brick hold for all points that far away from it, along any axis: for
     // fields that are displaced or move during the shutter. Runs in parallel. Throws std::length_error for grids with a
     // constant value over more than about 10^10 bricks.
-    // Requires: no voxel below 0.
-    static BrickBounds build(const VoxelGrid& grid, float dilation = 0);
+    // Finer ones, of 4³ or 2³ cells, are those of a grid whose index space is that of this one times 2^halvings, for
+    // whoever looks them up: bounds are tighter, and there are more of them.
+    // Requires: no voxel below 0, halvings 0 to 2.
+    static BrickBounds build(const VoxelGrid& grid, float dilation = 0, int halvings = 0);
 
     bool empty() const { return nodes_.empty(); }
     std::size_t brickCount() const { return bricks_.size(); }

@@ -34,22 +34,12 @@ class BrickWalk {
     bool next(BrickSegment& segment) noexcept {
         while (!done_) {
             const BrickBounds::Node& node = bounds_->nodes_[stack_[level_]];
-            const int shift = 3 * (level_ - 1);
-            const std::uint32_t child = (c_[0] >> shift & 7) << 6 | (c_[1] >> shift & 7) << 3 | (c_[2] >> shift & 7);
             if (node.constant()) {
                 if (pass(3 * level_, node.bounds, segment)) return true;
-            } else if (!node.has(child)) {
-                leave(shift);
             } else if (level_ == 1) {
-                if (passBrick(bounds_->bricks_[node.index(child)], segment)) return true;
-            } else {
-                const std::uint32_t index = node.index(child);
-                const FieldBounds& b = bounds_->nodes_[index].bounds;
-                if (b.maximum * extinction_ * static_cast<float>(std::min(exitOf(shift).t, end_) - t_) <= kThin) {
-                    if (pass(shift, b, segment)) return true;
-                } else {
-                    stack_[--level_] = index;
-                }
+                if (passBricks(node, segment)) return true;
+            } else if (goesDown(node)) {
+                if (pass(3 * (level_ - 1), bounds_->nodes_[stack_[level_ - 1]].bounds, segment)) return true;
             }
         }
         return false;
@@ -80,29 +70,56 @@ class BrickWalk {
         return exit;
     }
 
-    // The same as pass(0, …), but keeps the next planes of bricks: only that of the axis crossed changes.
-    bool passBrick(const FieldBounds& b, BrickSegment& segment) noexcept {
+    // Enters the child that it is in, unless there is none, which it leaves, or it is thin: true, and it is passed as a
+    // whole.
+    bool goesDown(const BrickBounds::Node& node) noexcept {
+        const int shift = 3 * (level_ - 1);
+        const std::uint32_t child = childAt(shift);
+        if (!node.has(child)) return leave(shift), false;
+        const std::uint32_t index = stack_[level_ - 1] = node.index(child);
+        const float most = bounds_->nodes_[index].bounds.maximum * extinction_;
+        if (most * static_cast<float>(std::min(exitOf(shift).t, end_) - t_) <= kThin) return true;
+        --level_;
+        return false;
+    }
+    std::uint32_t childAt(int shift) const noexcept {
+        return (c_[0] >> shift & 7) << 6 | (c_[1] >> shift & 7) << 3 | (c_[2] >> shift & 7);
+    }
+
+    // Through the bricks of a node up to one that gives a segment; false if it has left the node before. Keeps the next
+    // planes of bricks: only that of the axis crossed changes.
+    bool passBricks(const BrickBounds::Node& node, BrickSegment& segment) noexcept {
         if (!planesKnown_) {
             for (int a = 0; a < 3; ++a) plane_[a] = planeOf(a);
             planesKnown_ = true;
         }
-        const double before = t_;
+        do {
+            const double before = t_;
+            const std::uint32_t child = childAt(0);
+            leaveBrick();
+            if (!node.has(child)) continue;
+            const float near = static_cast<float>(before), far = static_cast<float>(t_);
+            if (!(near < far)) continue;
+            const FieldBounds& b = bounds_->bricks_[node.index(child)];
+            segment = {near, far, b.minimum, b.mean, b.maximum};
+            return true;
+        } while (level_ == 1 && !done_);
+        return false;
+    }
+    // The same as leave(0).
+    void leaveBrick() noexcept {
         int axis = plane_[1] < plane_[0] ? 1 : 0;
         axis = plane_[2] < plane_[axis] ? 2 : axis;
-        if (plane_[axis] < end_) {
-            t_ = std::max(t_, plane_[axis]);
-            const std::uint32_t brick = c_[axis];
-            c_[axis] = brick + 2 * ahead_[axis] - 1;
-            plane_[axis] = planeOf(axis);
-            climb(brick ^ c_[axis]);
-        } else {
+        if (!(plane_[axis] < end_)) {
             t_ = end_;
             done_ = true;
+            return;
         }
-        const float near = static_cast<float>(before), far = static_cast<float>(t_);
-        if (!(near < far)) return false;
-        segment = {near, far, b.minimum, b.mean, b.maximum};
-        return true;
+        t_ = std::max(t_, plane_[axis]);
+        const std::uint32_t brick = c_[axis];
+        c_[axis] = brick + 2 * ahead_[axis] - 1;
+        plane_[axis] = planeOf(axis);
+        climb(brick ^ c_[axis]);
     }
     double planeOf(int a) const noexcept {
         return std::fma(static_cast<double>(std::int64_t{c_[a] + ahead_[a]} * 8), inverse_[a], offset_[a]);

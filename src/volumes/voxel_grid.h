@@ -7,10 +7,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <immintrin.h>
 #include <memory>
 #include <nanovdb/NanoVDB.h>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace abbe {
@@ -72,13 +74,49 @@ template <typename Value> class VoxelSampler {
 
     // The field at a point in index space: trilinear between voxel centres, 0 outside the grid (and at NaN). A constant
     // neighbourhood gives its value exactly.
-    Value at(Vec3 p) noexcept {
-        const bool inside =
-            p.x > lower_.x && p.y > lower_.y && p.z > lower_.z && p.x < upper_.x && p.y < upper_.y && p.z < upper_.z;
-        if (!inside) return Value{};
-        const Vec3 cell{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
-        const Vec3 f = p - cell;
-        const nanovdb::Coord c(static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z));
+    Value at(Vec3 p) noexcept { return at(_mm_setr_ps(p.x, p.y, p.z, 0)); }
+    // The same; the fourth component means nothing.
+    Value at(__m128 p) noexcept {
+        const __m128 inside = _mm_and_ps(_mm_cmpgt_ps(p, three(lower_)), _mm_cmplt_ps(p, three(upper_)));
+        if ((_mm_movemask_ps(inside) & 7) != 7) return Value{};
+        const __m128 cell = _mm_floor_ps(p);
+        alignas(16) float f[4];
+        alignas(16) int at[4];
+        _mm_store_ps(f, _mm_sub_ps(p, cell));
+        _mm_store_si128(reinterpret_cast<__m128i*>(at), _mm_cvttps_epi32(cell));
+        return between({at[0], at[1], at[2]}, {f[0], f[1], f[2]});
+    }
+
+    // The value of one voxel.
+    Value voxel(Vec3i c) noexcept { return VoxelValue<Value>::read(accessor_.getValue({c.x, c.y, c.z})); }
+
+  private:
+    static __m128 three(const Vec3& v) { return _mm_maskload_ps(&v.x, _mm_setr_epi32(-1, -1, -1, 0)); }
+    static Vec3 mix(Vec3 a, Vec3 b, float t) {
+        return {std::fma(t, b.x - a.x, a.x), std::fma(t, b.y - a.y, a.y), std::fma(t, b.z - a.z, a.z)};
+    }
+    // Four corners each at the lower and at the upper x, in the order of y, z.
+    static float mix(__m128 lower, __m128 upper, Vec3 f) {
+        const __m128 x = _mm_fmadd_ps(_mm_set1_ps(f.x), _mm_sub_ps(upper, lower), lower);
+        const __m128 y = _mm_fmadd_ps(_mm_set1_ps(f.y), _mm_sub_ps(_mm_movehl_ps(x, x), x), x);
+        const __m128 z = _mm_fmadd_ss(_mm_set_ss(f.z), _mm_sub_ss(_mm_movehdup_ps(y), y), y);
+        return _mm_cvtss_f32(z);
+    }
+    static __m128 pairs(const float* first, const float* second) {
+        const auto load = [](const float* p) {
+            return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)));
+        };
+        return _mm_movelh_ps(load(first), load(second));
+    }
+    // The same, of eight corners whose bit 2 is x, bit 0 z.
+    static float mix(const float* v, Vec3 f) { return mix(_mm_load_ps(v), _mm_load_ps(v + 4), f); }
+    static Vec3 mix(const Vec3* v, Vec3 f) {
+        return mix(mix(mix(v[0], v[1], f.z), mix(v[2], v[3], f.z), f.y),
+                   mix(mix(v[4], v[5], f.z), mix(v[6], v[7], f.z), f.y), f.x);
+    }
+
+    // In the cell above `c`.
+    Value between(const nanovdb::Coord& c, Vec3 f) noexcept {
         switch (((c[0] & 7) == 7) << 2 | ((c[1] & 7) == 7) << 1 | ((c[2] & 7) == 7)) {
         case 0:
             return inLeaf(c, f);
@@ -99,27 +137,25 @@ template <typename Value> class VoxelSampler {
         }
     }
 
-    // The value of one voxel.
-    Value voxel(Vec3i c) noexcept { return VoxelValue<Value>::read(accessor_.getValue({c.x, c.y, c.z})); }
-
-  private:
-    static float mix(float a, float b, float t) { return std::fma(t, b - a, a); }
-    static Vec3 mix(Vec3 a, Vec3 b, float t) { return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)}; }
-
     // All eight corners in one leaf, or in one tile, which is constant.
     Value inLeaf(const nanovdb::Coord& c, Vec3 f) noexcept {
         const auto* leaf = accessor_.probeLeaf(c);
         if (!leaf) return VoxelValue<Value>::read(accessor_.getValue(c));
         const std::uint32_t o = leaf->CoordToOffset(c);
-        const auto v = [&](std::uint32_t i) { return VoxelValue<Value>::read(leaf->getValue(o + i)); };
-        const Value a = mix(mix(v(0), v(1), f.z), mix(v(8), v(9), f.z), f.y);
-        const Value b = mix(mix(v(64), v(65), f.z), mix(v(72), v(73), f.z), f.y);
-        return mix(a, b, f.x);
+        if constexpr (std::is_same_v<Value, float>) {
+            const float* v = leaf->data()->mValues + o;
+            return mix(pairs(v, v + 8), pairs(v + 64, v + 72), f);
+        } else {
+            Value v[8];
+            for (std::uint32_t i = 0; i < 8; ++i)
+                v[i] = VoxelValue<Value>::read(leaf->getValue(o + (i >> 2) * 64 + (i >> 1 & 1) * 8 + (i & 1)));
+            return mix(v, f);
+        }
     }
     // Corners in two, four or eight leaves, each looked up once. Bit 2 of a corner is x, bit 0 z; `Crossed` has the
     // bits of the axes along which the cell leaves its leaf.
     template <int Crossed> Value acrossLeaves(const nanovdb::Coord& c, Vec3 f) noexcept {
-        Value v[8];
+        alignas(16) Value v[8];
         unrolled([&](auto part) {
             if constexpr ((part() & ~Crossed) == 0) {
                 const nanovdb::Coord first = c.offsetBy(part() >> 2, part() >> 1 & 1, part() & 1);
@@ -134,8 +170,7 @@ template <typename Value> class VoxelSampler {
                 });
             }
         });
-        return mix(mix(mix(v[0], v[1], f.z), mix(v[2], v[3], f.z), f.y),
-                   mix(mix(v[4], v[5], f.z), mix(v[6], v[7], f.z), f.y), f.x);
+        return mix(v, f);
     }
     // body(0) … body(7), as constants.
     template <typename Body> static void unrolled(const Body& body) noexcept {

@@ -76,6 +76,40 @@ TEST_CASE("dilated bounds hold as far away as was asked for") {
     }
 }
 
+TEST_CASE("finer bricks hold what is in them, are tighter, and have the means of their cells") {
+    const VoxelGrid grid = makeVoxelGrid(randomVoxels(11, 50, 60'000, {-31, -5, 70}), facts());
+    const BrickBounds whole = BrickBounds::build(grid);
+    VoxelGrid::Sampler sampler = grid.sampler();
+    for (const int halvings : {1, 2}) {
+        const float scale = static_cast<float>(1 << halvings), reach = halvings == 1 ? 0 : 5.f;
+        const BrickBounds bounds = BrickBounds::build(grid, reach, halvings),
+                          tight = BrickBounds::build(grid, 0, halvings);
+        CHECK(tight.brickCount() > 4 * whole.brickCount());
+        std::mt19937 random(12);
+        std::uniform_real_distribution<float> within(0.f, 1.f), step(-reach, reach), beside(-0.03f, 0.03f);
+        for (int i = 0; i < 200'000; ++i) {
+            const Vec3 p(-34 + 60 * within(random), -8 + 60 * within(random), 66 + 60 * within(random));
+            REQUIRE(holds(tight.at(p * scale), sampler.at(p)));
+            if (tight.at(p * scale).maximum == 0) continue;
+            REQUIRE(holds(whole.at(p), tight.at(p * scale).minimum));
+            REQUIRE(holds(whole.at(p), tight.at(p * scale).maximum));
+            const float away = reach > 0 ? step(random) : beside(random);
+            REQUIRE(holds(bounds.at(p * scale), sampler.at(p + Vec3(away, -away, away))));
+        }
+        const int n = 8 >> halvings;
+        for (const Vec3i cell : {Vec3i(0, 0, 80), Vec3i(-16, 12, 92), Vec3i(4, 20, 100)}) {
+            double sum = 0;
+            for (int i = 0; i < 8 * n * n * n; ++i)
+                sum +=
+                    double(sampler.at(Vec3(cell) + (Vec3(Vec3i(i / (4 * n * n), i / (2 * n) % (2 * n), i % (2 * n))) +
+                                                    Vec3(0.5f, 0.5f, 0.5f)) *
+                                                       0.5f));
+            CHECK(double(tight.at((Vec3(cell) + Vec3(1, 1, 1)) * scale).mean) ==
+                  doctest::Approx(sum / (8 * n * n * n)).epsilon(1e-4));
+        }
+    }
+}
+
 TEST_CASE("a constant region is one node, however large") {
     const VoxelGrid grid = makeVoxelGrid(block({0, 0, 0}, {200, 200, 200}, 1.f), facts());
     const BrickBounds bounds = BrickBounds::build(grid);
