@@ -67,6 +67,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
     if (near_ > 0) tree_.emplace(near, stop);
     lights_.insert(lights_.end(), far.begin(), far.end());
     weighFar(farAmounts);
+    farInSight_ = choice == tree && far.size() > 1 && far.size() <= kMostWeighed;
     number(lights);
 }
 
@@ -82,6 +83,7 @@ void LightSampler::weighFar(const std::vector<double>& amounts) {
         sum += p;
         farCumulative_.push_back(sum);
         farProbability_.push_back(static_cast<float>(p));
+        farAmount_.push_back(static_cast<float>(a));
     }
 }
 
@@ -112,7 +114,35 @@ float LightSampler::nearShare(const Receiver& at) const noexcept {
     return std::clamp(near / (near + farIrradiance_), kLeastShare, 1 - kLeastShare);
 }
 
-PickedLight LightSampler::pickFar(double u, float share) const noexcept {
+// A surface that turns its back on the sun need not ask for it, and in a room the sun lies behind walls unless a window
+// shows it.
+LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexcept {
+    FarShares shares{};
+    float seen = 0, total = 0;
+    const std::size_t count = farAmount_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const DistantLight* const distant = lights_[near_ + i].light->asDistant();
+        shares[i] = distant ? distant->inSight(at) : 1;
+        seen += shares[i];
+        total += shares[i] * farAmount_[i];
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        shares[i] = seen > 0 ? shares[i] * 0.5f * (1 / seen + (total > 0 ? farAmount_[i] / total : 1 / seen))
+                             : farProbability_[i];
+    return shares;
+}
+
+PickedLight LightSampler::pickFar(double u, float share, const Receiver& at) const noexcept {
+    if (farInSight_) {
+        const FarShares shares = farShares(at);
+        std::uint32_t last = 0;
+        for (std::uint32_t i = 0; i < farAmount_.size(); ++i) {
+            if (!(shares[i] > 0)) continue;
+            last = i;
+            if ((u -= static_cast<double>(shares[i])) < 0) break;
+        }
+        return picked(near_ + last, share * shares[last]);
+    }
     const auto found = std::upper_bound(farCumulative_.begin(), farCumulative_.end() - 1, u * farCumulative_.back());
     const auto i = static_cast<std::uint32_t>(found - farCumulative_.begin());
     return picked(near_ + i, share * farProbability_[i]);
@@ -123,7 +153,7 @@ PickedLight LightSampler::pick(float u, const Receiver& at, const ScatterView& v
     const float share = nearShare(at);
     const auto border = static_cast<double>(share);
     const double x = refined(u, at.p);
-    if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share);
+    if (!(x < border)) return pickFar((x - border) / (1 - border), 1 - share, at);
     const LightTree::Pick p = tree_->pick(x / border, at, view);
     return picked(p.light, share * p.probability);
 }
@@ -132,7 +162,8 @@ float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const Sca
     if (i == kNone) return 0;
     if (lights_.size() == 1) return 1;
     const float share = nearShare(at);
-    return i < near_ ? share * tree_->probability(i, at, view) : (1 - share) * farProbability_[i - near_];
+    if (i < near_) return share * tree_->probability(i, at, view);
+    return (1 - share) * (farInSight_ ? farShares(at)[i - near_] : farProbability_[i - near_]);
 }
 
 float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at,

@@ -5,6 +5,7 @@
 #include "render/integrator.h"
 #include "render/light.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,9 +21,10 @@ struct PickedLight {
 };
 
 // Lights that have bounds are the leaves of a tree, part by part; the others, far away, are chosen half by what they
-// give and half evenly. Between the two an estimate of the irradiance by each decides, but neither gets less than
-// kLeastShare of the picks: a tree's estimate knows nothing of walls, and inside its bounds next to nothing at all.
-// Dark lights are never picked. Refers to the scene's lights, which must outlive it.
+// give and half evenly, and where they are few as far as a receiver can have them in sight. Between the two an estimate
+// of the irradiance by each decides, but neither gets less than kLeastShare of the picks: a tree's estimate knows
+// nothing of walls, and inside its bounds next to nothing at all. Dark lights are never picked. Refers to the scene's
+// lights, which must outlive it.
 //
 // Where scattering finds all light beside it, even skies are left to it as long as there is anything else to pick: a
 // matte surface scatters just as its cosine would choose among their directions, so that samples of them would bring
@@ -70,7 +72,10 @@ class LightSampler {
     void number(const std::vector<std::unique_ptr<const Light>>&);
     std::uint32_t find(const Light*, std::uint32_t part) const noexcept;
     float nearShare(const Receiver&) const noexcept;
-    PickedLight pickFar(double u, float share) const noexcept;
+    static constexpr std::size_t kMostWeighed = 8; // of far lights: those that a receiver is asked about
+    using FarShares = std::array<float, kMostWeighed>;
+    FarShares farShares(const Receiver&) const noexcept; // Requires farInSight_
+    PickedLight pickFar(double u, float share, const Receiver&) const noexcept;
     PickedLight picked(std::uint32_t i, float probability) const {
         return {lights_[i].light, lights_[i].part, probability};
     }
@@ -82,6 +87,8 @@ class LightSampler {
     float farIrradiance_ = 0;           // by all far lights, W/m²
     std::vector<double> farCumulative_; // of farProbability_, ends at 1
     std::vector<float> farProbability_; // among them
+    std::vector<float> farAmount_;
+    bool farInSight_ = false; // whether a receiver has a say
     std::vector<const DistantLight*> infinite_;
     std::unordered_map<const Light*, Run> offsets_; // of their parts in places_
     std::vector<std::uint32_t> places_;             // in lights_, or kNone: dark

@@ -67,6 +67,7 @@ schema::TypeInfo daylightType() {
                               .doc("Whether the disk of the sun shines; the sky stays as it is without.")
                               .example("sun off")
                               .synonyms({"sun-disk", "sun_disc"}));
+    type.fields.push_back(portalsField<DaylightParams>());
     type.fields.push_back(distantVisibleField<DaylightParams>());
     type.fields.push_back(schema::field(FieldType::transform, "transform", &DaylightParams::transform)
                               .doc("Turns the light; moving it has no effect.")
@@ -200,11 +201,19 @@ std::vector<std::unique_ptr<DistantLight>> makeDaylight(const DaylightParams& pa
     auto sky = std::make_unique<DaylightSky>(Frame::fromNormalTangent(Vec3(zenith), Vec3(sun)), elevation,
                                              AirParams{params.turbidity, params.ozone},
                                              params.groundAlbedo ? *params.groundAlbedo : albedo, params.sun);
-    std::unique_ptr<DistantLight> disk;
+    std::unique_ptr<SunLight> disk;
     if (params.sun && elevation > 0)
         disk = std::make_unique<SunLight>(sun, kSunHalfAngle, ScaledCurve{&sky->sunlight(), 1});
+    const auto windows = portalCorners(params, context, diagnostics);
+    if (!windows) return {};
     std::vector<std::unique_ptr<DistantLight>> lights;
-    lights.push_back(std::move(sky));
+    if (windows->empty() || !context.besideScattering) {
+        lights.push_back(std::move(sky));
+    } else {
+        auto room = std::make_unique<WindowLight>(std::move(sky), *windows);
+        if (disk) disk->lookThrough(room->portals());
+        lights.push_back(std::move(room));
+    }
     if (disk) lights.push_back(std::move(disk));
     return lights;
 }

@@ -5,6 +5,7 @@
 #include "lights/clear_sky.h"
 #include "lights/light_context.h"
 #include "lights/sun_light.h"
+#include "lights/window_light.h"
 #include "math/distribution.h"
 #include "render/light.h"
 #include "render/visible_field.h"
@@ -14,7 +15,7 @@
 
 namespace abbe {
 
-struct DaylightParams : SunPlace, VisibleParams {
+struct DaylightParams : SunPlace, VisibleParams, PortalParams {
     double turbidity = 3;
     double ozone = 300;                  // Dobson units
     const Curve* groundAlbedo = nullptr; // null: 0.2

@@ -73,12 +73,7 @@ schema::TypeInfo environmentLightType() {
                               .doc("Brightens or darkens the image; each stop doubles it.")
                               .example("exposure 0.5 stops")
                               .synonyms({"ev", "gain"}));
-    type.fields.push_back(schema::field(FieldType::points, "portals", &EnvironmentLightParams::portals)
-                              .unit({Dimension::length})
-                              .doc("Windows through which the light enters a room: four corners of a rectangle each, "
-                                   "counter-clockwise seen from inside. They only help: nothing else changes.")
-                              .example("portals { - -1 1 -3; - 1 1 -3; - 1 2 -3; - -1 2 -3 }")
-                              .synonyms({"portal", "windows"}));
+    type.fields.push_back(portalsField<EnvironmentLightParams>());
     type.fields.push_back(distantVisibleField<EnvironmentLightParams>());
     type.fields.push_back(schema::field(FieldType::transform, "transform", &EnvironmentLightParams::transform)
                               .doc("Turns the image; moving it has no effect.")
@@ -183,45 +178,8 @@ Vec3 EnvironmentLight::lookup(Vec2 point) const noexcept {
     return mix(upper, lower, fy);
 }
 
-double EnvironmentLight::luminance(Vec3 w) const noexcept {
-    return dot(Vec3d(lookup(imagePoint(axes_.toLocal(w)))), channelWeights_);
-}
-
-struct EnvironmentLight::Seen {
-    std::array<std::pair<const Portal*, Portal::View>, kMaxPortals> views;
-    std::size_t count = 0;
-};
-
-EnvironmentLight::Seen EnvironmentLight::seen(const Receiver& from) const noexcept {
-    Seen result;
-    for (const Portal& portal : portals_)
-        if (const auto view = portal.view(from)) result.views[result.count++] = {&portal, *view};
-    return result;
-}
-
-float EnvironmentLight::pdfPortals(const Seen& seen, Vec3 w) const noexcept {
-    float sum = 0;
-    for (std::size_t i = 0; i < seen.count; ++i) sum += seen.views[i].first->pdf(seen.views[i].second, w);
-    return sum / static_cast<float>(seen.count);
-}
-
-std::optional<LightSample> EnvironmentLight::samplePortals(const Receiver& from, Vec2 u,
-                                                           const Wavelengths& lambda) const noexcept {
-    const Seen all = seen(from);
-    if (all.count == 0) return std::nullopt;
-    const float scaled = u.x * static_cast<float>(all.count);
-    const std::size_t chosen = std::min(static_cast<std::size_t>(scaled), all.count - 1);
-    u.x = std::min(scaled - static_cast<float>(chosen), kOneMinusEpsilon);
-    const auto& [portal, view] = all.views[chosen];
-    const Portal::Sample s = portal->sample(view, u);
-    // Portals may overlap: the density of each counts. Rounding may put a direction just outside of its own.
-    const float pdf = std::max(pdfPortals(all, s.w), s.pdf / static_cast<float>(all.count));
-    return std::optional<LightSample>(std::in_place, s.w, Vec3{}, kInfinity, escaped(s.w, lambda, 0), pdf);
-}
-
-std::optional<LightSample> EnvironmentLight::sample(const Receiver& from, std::uint32_t, Vec2 u,
-                                                    const Wavelengths& lambda, float) const noexcept {
-    if (!portals_.empty()) return samplePortals(from, u, lambda);
+std::optional<LightSample> EnvironmentLight::sample(const Receiver&, std::uint32_t, Vec2 u, const Wavelengths& lambda,
+                                                    float) const noexcept {
     return sampleImage(u, lambda);
 }
 
@@ -257,11 +215,7 @@ Spectrum EnvironmentLight::escaped(Vec3 w, const Wavelengths& lambda, float) con
     return upsampling_->at(lookup(imagePoint(axes_.toLocal(w))), lambda) * scale_;
 }
 
-float EnvironmentLight::pdfEscaped(const Receiver& from, Vec3 w, float) const noexcept {
-    if (portals_.empty()) return pdfImage(w);
-    const Seen all = seen(from);
-    return all.count > 0 ? pdfPortals(all, w) : 0;
-}
+float EnvironmentLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return pdfImage(w); }
 
 float EnvironmentLight::pdfImage(Vec3 w) const noexcept {
     const Vec2 point = imagePoint(axes_.toLocal(w));
@@ -317,33 +271,6 @@ bool checkEnvironmentImage(EnvironmentImage& image, double scale, Span span, Dia
     return checkBrightestPixel(image, scale, span, diagnostics);
 }
 
-namespace {
-
-// Of all portals, in render space. False after an error.
-bool portalCorners(const EnvironmentLightParams& params, const LightContext& context,
-                   std::vector<std::array<Vec3d, 4>>& result, Diagnostics& diagnostics) {
-    const std::vector<Vec3d>& points = params.portals;
-    if (points.size() % 4 != 0 || points.size() > 4 * EnvironmentLight::kMaxPortals) {
-        diagnostics.error("E0753", context.span, fmt::format("{} corners are no portals", points.size()),
-                          fmt::format("four for each, at most {} portals", EnvironmentLight::kMaxPortals));
-        return false;
-    }
-    for (std::size_t i = 0; i < points.size(); i += 4) {
-        std::array<Vec3d, 4> corners;
-        for (std::size_t k = 0; k < 4; ++k) corners[k] = context.toRender.point(points[i + k]);
-        if (!Portal::isRectangle(corners)) {
-            diagnostics.error("E0753", context.span, fmt::format("portal {} is no rectangle", i / 4 + 1),
-                              "`portals` takes the four corners of each in order");
-            return false;
-        }
-        if (context.toRender.determinant() < 0) std::swap(corners[1], corners[3]);
-        result.push_back(corners);
-    }
-    return true;
-}
-
-} // namespace
-
 std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams& params, EnvironmentImage image,
                                                    std::unique_ptr<const RgbRadiance> upsampling, bool compensated,
                                                    const LightContext& context, Diagnostics& diagnostics) {
@@ -356,15 +283,9 @@ std::unique_ptr<DistantLight> makeEnvironmentLight(const EnvironmentLightParams&
         diagnostics.error("E0348", context.span, "an environment can be turned, but not stretched");
         return nullptr;
     }
-    std::vector<std::array<Vec3d, 4>> windows;
-    if (!portalCorners(params, context, windows, diagnostics)) return nullptr;
-    auto light =
-        std::make_unique<EnvironmentLight>(std::move(image), std::move(upsampling), scale, toRender, compensated);
-    std::vector<Portal> portals;
-    if (compensated)
-        for (const auto& corners : windows) portals.emplace_back(corners, [&](Vec3 w) { return light->luminance(w); });
-    light->lookThrough(std::move(portals));
-    return light;
+    return throughWindows(
+        std::make_unique<EnvironmentLight>(std::move(image), std::move(upsampling), scale, toRender, compensated),
+        params, context, diagnostics);
 }
 
 } // namespace abbe

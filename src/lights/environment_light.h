@@ -3,7 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
-#include "lights/portal.h"
+#include "lights/window_light.h"
 #include "math/distribution.h"
 #include "math/frame.h"
 #include "render/light.h"
@@ -30,11 +30,10 @@ class RgbRadiance {
     virtual Spectrum at(Vec3 rgb, const Wavelengths&) const noexcept = 0;
 };
 
-struct EnvironmentLightParams : VisibleParams {
+struct EnvironmentLightParams : VisibleParams, PortalParams {
     schema::Text image;                        // resolved path; key `space`
     std::optional<schema::Quantity> luminance; // cd/m² of a texel of (1, 1, 1); default: 683 ∫ȳ dλ = 72 983
     double exposure = 0;                       // stops, on top of that
-    std::vector<Vec3d> portals;                // four corners of each, in the space of the light's parent
     KeyedTransform transform;                  // light to parent; a rotation, mirrored or not, and a uniform scale
 };
 
@@ -43,42 +42,30 @@ schema::TypeInfo environmentLightType();
 // Radiance is interpolated bilinearly between the centres of the texels, in RGB, and upsampled after.
 class EnvironmentLight final : public DistantLight {
   public:
-    static constexpr std::size_t kMaxPortals = 32;
-
     // `compensated` takes the mean radiance off the sampling density [Karlik2019]: better, but only right beside BSDF
     // sampling, as dim directions are then never sampled from here. `toRender` turns the image's axes (+y its zenith)
     // into render space; its matrix is orthogonal. Requires: a checked image, scale >= 0.
     EnvironmentLight(EnvironmentImage, std::unique_ptr<const RgbRadiance>, double scale, const Transform& toRender,
                      bool compensated);
 
-    // From now on only directions through these windows are sampled, where any can be seen: the same holds as for
-    // `compensated`. Before the light is used.
-    void lookThrough(std::vector<Portal> portals) { portals_ = std::move(portals); }
-    double luminance(Vec3 w) const noexcept; // up to a factor, > 0 wherever there is light
-
     void commit(const Bounds3&) override;
     // No power: all texels are black, and the light must be left out. The irradiance is between that of an even sky, a
     // quarter, and that of a sun, all of it; daylight's share of visible light.
     LightOutput output() const override {
         constexpr double share = LightOutput::kDaylightShare;
-        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get(), even_ && portals_.empty()};
+        return {power_, share * power_, share * 0.5 * fluence_, powerShape_.get(), even_};
     }
     std::optional<LightSample> sample(const Receiver&, std::uint32_t part, Vec2 u, const Wavelengths&,
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
-    // By the image, and evenly for what compensation took off; portals are seen from places alone.
+    // By the image, and evenly for what compensation took off.
     std::optional<LightSample> sampleDistant(Vec2 u, const Wavelengths&, float) const noexcept override;
     float pdfDistant(Vec3 w, float) const noexcept override;
 
   private:
-    // The portals that a receiver sees, and how they are sampled together.
-    struct Seen;
-    Seen seen(const Receiver&) const noexcept;
-    float pdfPortals(const Seen&, Vec3 w) const noexcept;
     float pdfImage(Vec3 w) const noexcept;
     LightSample sampleImage(Vec2 u, const Wavelengths&) const noexcept;
-    std::optional<LightSample> samplePortals(const Receiver&, Vec2 u, const Wavelengths&) const noexcept;
     Vec2 imagePoint(Vec3 local) const noexcept;
     Vec3 texel(int column, int row) const noexcept;
     Vec3 lookup(Vec2 point) const noexcept;
@@ -92,11 +79,10 @@ class EnvironmentLight final : public DistantLight {
     float scale_;
     Frame axes_;                    // x, y, z of the image's axes in render space (left-handed when mirrored)
     std::vector<double> rowCosine_; // cos θ at the upper edge of each row, and at the lower edge of the last
-    Vec3d channelWeights_;          // of luminance()
+    Vec3d channelWeights_;          // of the sampling density
     double dimShare_ = 0;           // of all light: what compensation took off
     bool even_ = false;             // nothing stands out from the mean
     Distribution2D distribution_;
-    std::vector<Portal> portals_;
     std::unique_ptr<const Curve> powerShape_; // null where all is black
     double fluence_;                          // ∫∫ L dω dλ, W/m²
     double power_;

@@ -53,6 +53,7 @@ struct LightContext {
     Span span;                           // of the definition's head
     bool zUp = false;                    // what `elevation`, `azimuth` and an environment's poles refer to
     double time = 0;                     // s, for which it is made: when the shutter opens
+    bool besideScattering = true;        // whether samples may leave out what scattering finds as well
     const LightMotion* motion = nullptr; // null: it stands still; read while the light is made
     // Area lights with a texture, ready for TextureUse::light; all null or unused without one.
     const Texture* texture = nullptr;

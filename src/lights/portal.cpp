@@ -33,13 +33,18 @@ bool Portal::isRectangle(const std::array<Vec3d, 4>& p) {
            length(p[2] - (p[0] + x + y)) <= tolerance * std::min(width, height);
 }
 
-Portal::Portal(const std::array<Vec3d, 4>& p, const std::function<double(Vec3)>& luminance)
-    : halfWidth_(length(p[1] - p[0]) / 2), halfHeight_(length(p[3] - p[0]) / 2),
-      table_(static_cast<std::size_t>(kSize + 1) * (kSize + 1)) {
+Portal::Portal(const std::array<Vec3d, 4>& p, const std::function<double(Vec3)>& luminance, const Portal* alike)
+    : halfWidth_(length(p[1] - p[0]) / 2), halfHeight_(length(p[3] - p[0]) / 2) {
     ABBE_CHECK(isRectangle(p));
     const Vec3d x = normalize(p[1] - p[0]), inwards = normalize(cross(x, p[3] - p[0]));
     frame_ = {Vec3(x), Vec3(cross(x, inwards)), Vec3(-inwards)};
     centre_ = Vec3((p[0] + p[2]) * 0.5);
+    const auto same = [](Vec3 a, Vec3 b) { return length(a - b) < 1e-4f; }; // a twentieth of a cell
+    const bool shared = alike && same(frame_.x, alike->frame_.x) && same(frame_.z, alike->frame_.z);
+    table_ = shared ? alike->table_ : std::make_shared<const Table>(tabulate(luminance));
+}
+
+Portal::Table Portal::tabulate(const std::function<double(Vec3)>& luminance) const {
     std::vector<double> cells(static_cast<std::size_t>(kSize * kSize));
     double mean = 0;
     constexpr double step = 1.0 / (kSize * kPointsPerCell);
@@ -52,11 +57,13 @@ Portal::Portal(const std::array<Vec3d, 4>& p, const std::function<double(Vec3)>&
             mean += part / (kSize * kSize);
         }
     if (!(mean > 0)) mean = 1;
+    Table table(static_cast<std::size_t>(kSize + 1) * (kSize + 1));
     for (std::size_t i = 0; i < kSize; ++i)
         for (std::size_t j = 0; j < kSize; ++j) {
-            const auto at = [&](std::size_t k, std::size_t l) -> double& { return table_[k * (kSize + 1) + l]; };
+            const auto at = [&](std::size_t k, std::size_t l) -> double& { return table[k * (kSize + 1) + l]; };
             at(i + 1, j + 1) = cells[i * kSize + j] + kFloor * mean + at(i, j + 1) + at(i + 1, j) - at(i, j);
         }
+    return table;
 }
 
 Portal::Place Portal::place(double x) {
@@ -74,7 +81,7 @@ double between(double p, double q, double t) { return p + t * (q - p); }
 
 // Exact for cells of even density: linear between the corners.
 double Portal::sum(std::size_t column, Place b) const noexcept {
-    const double* at = table_.data() + column * (kSize + 1) + b.cell;
+    const double* at = table_->data() + column * (kSize + 1) + b.cell;
     return between(at[0], at[1], b.part);
 }
 
@@ -93,8 +100,31 @@ std::optional<Portal::View> Portal::view(const Receiver& from) const noexcept {
            toUnit((y + halfHeight_) / z), 0};
     if (!(v.a1 - v.a0 > 1e-7 && v.b1 - v.b0 > 1e-7)) return std::nullopt;
     v.weight = weight(v.a0, v.a1, v.b0, v.b1);
-    if (!(v.weight > 1e-12 * table_.back())) return std::nullopt;
+    if (!(v.weight > 1e-12 * table_->back())) return std::nullopt;
     return v;
+}
+
+bool Portal::behind(const Receiver& from) const noexcept {
+    if (!from.oneSided()) return false;
+    const float reach = static_cast<float>(halfWidth_) * std::abs(dot(frame_.x, from.n)) +
+                        static_cast<float>(halfHeight_) * std::abs(dot(frame_.y, from.n));
+    return dot(centre_ - from.p, from.n) + reach <= 0;
+}
+
+float Portal::share(Vec3 p) const noexcept {
+    const Vec3 d = centre_ - p;
+    const float z = dot(d, frame_.z), r2 = lengthSquared(d);
+    if (!(z > 0)) return 0;
+    const float area = static_cast<float>(4 * halfWidth_ * halfHeight_);
+    return std::min(area * z / (2 * kPi * r2 * std::sqrt(r2)), 1.f);
+}
+
+bool Portal::crosses(Vec3 p, Vec3 w) const noexcept {
+    const Vec3 d = frame_.toLocal(centre_ - p), local = frame_.toLocal(w);
+    if (!(local.z > 0 && d.z > 0)) return false;
+    const float t = d.z / local.z;
+    return std::abs(static_cast<double>(local.x * t - d.x)) <= halfWidth_ &&
+           std::abs(static_cast<double>(local.y * t - d.y)) <= halfHeight_;
 }
 
 namespace {
@@ -132,7 +162,7 @@ Portal::Sample Portal::sample(const View& v, Vec2 u) const noexcept {
     const std::size_t cell = place(a).cell;
     const auto column = [&](Place b) { return sum(cell + 1, b) - sum(cell, b); };
     const double under = column(low), whole = column(high) - under;
-    const double *left = table_.data() + cell * (kSize + 1), *right = left + kSize + 1;
+    const double *left = table_->data() + cell * (kSize + 1), *right = left + kSize + 1;
     const double b = invert(v.b0, v.b1, kSize, whole, static_cast<double>(u.y) * whole,
                             [&](std::size_t edge) { return right[edge] - left[edge] - under; });
     const double x = toTangent(a), y = toTangent(b);
@@ -140,7 +170,7 @@ Portal::Sample Portal::sample(const View& v, Vec2 u) const noexcept {
 }
 
 double Portal::density(const View& v, double a, double b) const noexcept {
-    const double *left = table_.data() + place(a).cell * (kSize + 1) + place(b).cell, *right = left + kSize + 1;
+    const double *left = table_->data() + place(a).cell * (kSize + 1) + place(b).cell, *right = left + kSize + 1;
     return (right[1] - left[1] - right[0] + left[0]) * kSize * kSize / v.weight;
 }
 

@@ -1,4 +1,5 @@
-// Windows through which an environment lights a room, and directions through them in proportion to what is seen there.
+// A window through which light from far away enters a room, and directions through it in proportion to what is seen
+// there.
 #pragma once
 
 #include "math/frame.h"
@@ -6,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,7 +20,9 @@ class Portal {
   public:
     // Corners in order around it, counter-clockwise seen from the room. `luminance` is asked for unit directions that
     // leave the room, about 2 million times. Requires: a rectangle (isRectangle), finite luminance >= 0.
-    Portal(const std::array<Vec3d, 4>& corners, const std::function<double(Vec3)>& luminance);
+    // One that lies as `alike` does, in a wall parallel to its, shares the table of it; luminance is not asked then.
+    Portal(const std::array<Vec3d, 4>& corners, const std::function<double(Vec3)>& luminance,
+           const Portal* alike = nullptr);
     static bool isRectangle(const std::array<Vec3d, 4>& corners);
 
     // What a receiver sees of it: bounds of the two angles, from 0 to 1 as the table has them, and the table's weight.
@@ -37,8 +41,17 @@ class Portal {
     Sample sample(const View&, Vec2 u) const noexcept;
     float pdf(const View&, Vec3 w) const noexcept; // 0 where w misses the opening
 
+    bool inside(Vec3 p) const noexcept { return dot(centre_ - p, frame_.z) > 0; } // on the room's side of its plane
+    // None of it lies in front of an opaque surface.
+    bool behind(const Receiver&) const noexcept;
+    // Of the half of all directions in front of a wall those through the opening, roughly: at most 1, 0 from outside.
+    float share(Vec3 p) const noexcept;
+    bool crosses(Vec3 p, Vec3 w) const noexcept; // whether a ray from p leaves the room through the opening
+
   private:
     static constexpr int kSize = 512; // cells along each angle
+    using Table = std::vector<double>; // sums over all cells below, (kSize + 1)²
+    Table tabulate(const std::function<double(Vec3)>& luminance) const;
     struct Place {
         std::size_t cell;
         double part; // of its width, 0 … 1
@@ -53,7 +66,7 @@ class Portal {
     Frame frame_; // z leaves the room
     Vec3 centre_;
     double halfWidth_, halfHeight_;
-    std::vector<double> table_; // sums over all cells below, (kSize + 1)²
+    std::shared_ptr<const Table> table_;
 };
 
 } // namespace abbe

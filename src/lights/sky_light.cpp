@@ -23,6 +23,7 @@ schema::TypeInfo skyLightType() {
                           .example = "light sky { luminance 8000 nits }",
                           .fields = {}};
     addAmountFields<SkyLightParams>(type.fields, kSkyAmounts);
+    type.fields.push_back(portalsField<SkyLightParams>());
     type.fields.push_back(distantVisibleField<SkyLightParams>());
     return type;
 }
@@ -56,7 +57,7 @@ std::unique_ptr<DistantLight> makeSkyLight(const SkyLightParams& params, const L
     const auto radiance = absoluteSpectrum(amount, *context.defaultColor, {.irradiance = kPiD, .range = kSkyRadiance},
                                            context.span, diagnostics);
     if (!radiance) return nullptr;
-    return std::make_unique<SkyLight>(*radiance);
+    return throughWindows(std::make_unique<SkyLight>(*radiance), params, context, diagnostics);
 }
 
 } // namespace abbe

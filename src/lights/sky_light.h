@@ -3,6 +3,7 @@
 
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "lights/window_light.h"
 #include "render/light.h"
 #include "render/visible_field.h"
 
@@ -11,7 +12,7 @@
 namespace abbe {
 
 // Without an amount: kDefaultSkyLuminance.
-struct SkyLightParams : AmountParams, VisibleParams {};
+struct SkyLightParams : AmountParams, VisibleParams, PortalParams {};
 
 inline constexpr double kDefaultSkyLuminance = 20000; // cd/m²: a bright hazy sky
 

@@ -98,6 +98,13 @@ Spectrum SunLight::escaped(Vec3 w, const Wavelengths& lambda, float) const noexc
 
 float SunLight::pdfEscaped(const Receiver&, Vec3 w, float) const noexcept { return inside(w) ? pdf_ : 0; }
 
+// The disk's edge shines on surfaces that its middle does not reach.
+float SunLight::inSight(const Receiver& from) const noexcept {
+    const float facing = from.oneSided() ? std::clamp(dot(from.n, frame_.z) + chord_, 0.f, 1.f) : 1;
+    if (!windows_ || !windows_->inside(from.p) || windows_->cross(from.p, frame_.z)) return facing;
+    return facing * kBesidePortals;
+}
+
 std::unique_ptr<DistantLight> makeSunLight(const SunLightParams& params, const LightContext& context,
                                            Diagnostics& diagnostics) {
     const auto place = sunDirection(params, context.zUp, context.span, diagnostics);

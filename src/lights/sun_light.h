@@ -4,6 +4,7 @@
 #include "base/diagnostic.h"
 #include "lights/amount.h"
 #include "lights/light_context.h"
+#include "lights/window_light.h"
 #include "math/frame.h"
 #include "render/light.h"
 #include "render/visible_field.h"
@@ -67,6 +68,9 @@ class SunLight final : public DistantLight {
     // the light. Requires: halfAngle in [0, π/2].
     SunLight(Vec3d direction, double halfAngle, ScaledCurve irradiance);
 
+    // Lights rooms through these windows, as far as inSight() tells. They outlive it; before it is used.
+    void lookThrough(const Portals& windows) { windows_ = &windows; }
+
     void commit(const Bounds3&) override;
     LightOutput output() const override {
         return {power_, LightOutput::kDaylightShare * power_, visibleIrradiance_, radiance_.curve};
@@ -76,6 +80,7 @@ class SunLight final : public DistantLight {
                                       float) const noexcept override;
     Spectrum escaped(Vec3 w, const Wavelengths&, float) const noexcept override;
     float pdfEscaped(const Receiver&, Vec3 w, float) const noexcept override;
+    float inSight(const Receiver&) const noexcept override;
 
   private:
     bool inside(Vec3 w) const noexcept;
@@ -88,6 +93,7 @@ class SunLight final : public DistantLight {
     double irradiance_;    // W/m²
     double visibleIrradiance_;
     double power_;
+    const Portals* windows_ = nullptr;
 };
 
 // Null after an error.

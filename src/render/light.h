@@ -169,6 +169,9 @@ class DistantLight : public Light {
     // sample(from, 0, ·) makes that direction.
     virtual Spectrum escaped(Vec3 w, const Wavelengths&, float time) const noexcept = 0;
     virtual float pdfEscaped(const Receiver& from, Vec3 w, float time) const noexcept = 0;
+    // Of the irradiance that output() states, what may arrive at a receiver, roughly, for choosing among lights: in
+    // [0, 1], 0 only if nothing that counts there can.
+    virtual float inSight(const Receiver&) const noexcept { return 1; }
 
     // Paths that start here: a direction for the scene as a whole, as sample() has it, and its density, 1/sr, for the
     // unit direction w to the light. All that gives light has a density. A delta carries irradiance.

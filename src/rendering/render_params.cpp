@@ -13,6 +13,7 @@ constexpr std::string_view kRouletteWords[] = {"pilot", "throughput", "off"};
 constexpr std::string_view kLightPathWords[] = {"automatic", "off", "always", "alone"};
 constexpr std::string_view kMergingWords[] = {"automatic", "off", "always"};
 constexpr std::string_view kGuidingWords[] = {"automatic", "off", "always"};
+constexpr std::string_view kWindowWords[] = {"automatic", "stated"};
 
 } // namespace
 
@@ -25,14 +26,21 @@ template <> std::span<const std::string_view> words<Technique::Roulette>() { ret
 template <> std::span<const std::string_view> words<Technique::LightPaths>() { return kLightPathWords; }
 template <> std::span<const std::string_view> words<Technique::Merging>() { return kMergingWords; }
 template <> std::span<const std::string_view> words<Technique::Guiding>() { return kGuidingWords; }
+template <> std::span<const std::string_view> words<Technique::Windows>() { return kWindowWords; }
 
 std::vector<std::pair<std::string, std::string>> properties(const Technique& t) {
     const auto text = [](auto e) { return std::string(word(e)); };
-    return {{"sampler", text(t.numbers)},          {"strategy", text(t.strategy)},
-            {"mis-weights", text(t.weights)},      {"directions", text(t.directions)},
-            {"light-choice", text(t.lightChoice)}, {"roulette", text(t.roulette)},
-            {"light-paths", text(t.lightPaths)},   {"merging", text(t.merging)},
-            {"guiding", text(t.guiding)},          {"wavelengths", std::to_string(t.wavelengths)}};
+    return {{"sampler", text(t.numbers)},
+            {"strategy", text(t.strategy)},
+            {"mis-weights", text(t.weights)},
+            {"directions", text(t.directions)},
+            {"light-choice", text(t.lightChoice)},
+            {"roulette", text(t.roulette)},
+            {"light-paths", text(t.lightPaths)},
+            {"merging", text(t.merging)},
+            {"guiding", text(t.guiding)},
+            {"windows", text(t.windows)},
+            {"wavelengths", std::to_string(t.wavelengths)}};
 }
 
 using namespace schema;
@@ -110,53 +118,60 @@ std::vector<FieldInfo> goalFields() {
 
 // How light is estimated: the same image by other means, to compare.
 std::vector<FieldInfo> techniqueFields() {
-    return {field(FieldType::choice, "sampler", &P::sampler)
-                .words(words<Technique::Numbers>())
-                .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
-                .example("sampler sobol"),
-            field(FieldType::choice, "strategy", &P::strategy)
-                .words(words<Technique::Strategy>())
-                .doc("How light is found: by next-event estimation and BSDF sampling, or by one alone, to compare.")
-                .example("strategy mis"),
-            field(FieldType::choice, "mis-weights", &P::weights)
-                .words(words<Technique::Weights>())
-                .synonyms({"mis-heuristic", "heuristic"})
-                .doc("How `strategy mis` weights its two techniques; all but `balance` are to compare.")
-                .example("mis-weights power"),
-            field(FieldType::choice, "directions", &P::directions)
-                .words(words<Technique::Directions>())
-                .doc("How directions are sampled: as the surface scatters; evenly, or by a mixture, to compare.")
-                .example("directions uniform"),
-            field(FieldType::choice, "roulette", &P::roulette)
-                .words(words<Technique::Roulette>())
-                .synonyms({"rr", "russian-roulette"})
-                .doc("Russian roulette: by what the pixel shows; by throughput or none, to compare.")
-                .example("roulette throughput"),
-            field(FieldType::choice, "light-paths", &P::lightPaths)
-                .words(words<Technique::LightPaths>())
-                .synonyms({"caustics", "light-tracing", "photons"})
-                .doc("Light tracing, for caustics: where it pays; never, always or alone, to compare.")
-                .example("light-paths off"),
-            field(FieldType::choice, "merging", &P::merging)
-                .words(words<Technique::Merging>())
-                .synonyms({"photon-map", "sppm", "vertex-merging"})
-                .doc("Photon merging, for caustics behind glass and in mirrors that nothing else finds: biased.")
-                .example("merging off"),
-            field(FieldType::choice, "guiding", &P::guiding)
-                .words(words<Technique::Guiding>())
-                .synonyms({"path-guiding", "use_guiding"})
-                .doc("Paths guided to where pilots found indirect light: where it pays; never or always, to compare.")
-                .example("guiding off"),
-            field(FieldType::integer, "wavelengths", &P::wavelengths)
-                .range(1, 8)
-                .byDefault("8")
-                .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer to compare.")
-                .example("wavelengths 4"),
-            field(FieldType::choice, "light-choice", &P::lightChoice)
-                .words(words<Technique::LightChoice>())
-                .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
-                .doc("How a light is chosen: by what each may give to a point; by power or evenly, to compare.")
-                .example("light-choice tree")};
+    return {
+        field(FieldType::choice, "sampler", &P::sampler)
+            .words(words<Technique::Numbers>())
+            .doc("Owen-scrambled Sobol points; jittered strata or independent random numbers to compare.")
+            .example("sampler sobol"),
+        field(FieldType::choice, "strategy", &P::strategy)
+            .words(words<Technique::Strategy>())
+            .doc("How light is found: by next-event estimation and BSDF sampling, or by one alone, to compare.")
+            .example("strategy mis"),
+        field(FieldType::choice, "mis-weights", &P::weights)
+            .words(words<Technique::Weights>())
+            .synonyms({"mis-heuristic", "heuristic"})
+            .doc("How `strategy mis` weights its two techniques; all but `balance` are to compare.")
+            .example("mis-weights power"),
+        field(FieldType::choice, "directions", &P::directions)
+            .words(words<Technique::Directions>())
+            .doc("How directions are sampled: as the surface scatters; evenly, or by a mixture, to compare.")
+            .example("directions uniform"),
+        field(FieldType::choice, "roulette", &P::roulette)
+            .words(words<Technique::Roulette>())
+            .synonyms({"rr", "russian-roulette"})
+            .doc("Russian roulette: by what the pixel shows; by throughput or none, to compare.")
+            .example("roulette throughput"),
+        field(FieldType::choice, "light-paths", &P::lightPaths)
+            .words(words<Technique::LightPaths>())
+            .synonyms({"caustics", "light-tracing", "photons"})
+            .doc("Light tracing, for caustics: where it pays; never, always or alone, to compare.")
+            .example("light-paths off"),
+        field(FieldType::choice, "merging", &P::merging)
+            .words(words<Technique::Merging>())
+            .synonyms({"photon-map", "sppm", "vertex-merging"})
+            .doc("Photon merging, for caustics behind glass and in mirrors that nothing else finds: biased.")
+            .example("merging off"),
+        field(FieldType::choice, "guiding", &P::guiding)
+            .words(words<Technique::Guiding>())
+            .synonyms({"path-guiding", "use_guiding"})
+            .doc("Paths guided to where pilots found indirect light: where it pays; never or always, to compare.")
+            .example("guiding off"),
+        field(FieldType::choice, "windows", &P::windows)
+            .words(words<Technique::Windows>())
+            .synonyms({"portals"})
+            .doc("Windows of a room through which skies are sampled: found, or those that lights state as `portals` "
+                 "alone, to compare.")
+            .example("windows stated"),
+        field(FieldType::integer, "wavelengths", &P::wavelengths)
+            .range(1, 8)
+            .byDefault("8")
+            .doc("Different wavelengths of a path, 1, 2, 4 or 8; fewer to compare.")
+            .example("wavelengths 4"),
+        field(FieldType::choice, "light-choice", &P::lightChoice)
+            .words(words<Technique::LightChoice>())
+            .synonyms({"lightsampler", "light-sampler", "use_light_tree"})
+            .doc("How a light is chosen: by what each may give to a point; by power or evenly, to compare.")
+            .example("light-choice tree")};
 }
 
 } // namespace
@@ -186,6 +201,7 @@ Technique technique(const RenderParams& p) {
     t.lightPaths = p.lightPaths;
     t.merging = p.merging;
     t.guiding = p.guiding;
+    t.windows = p.windows;
     t.wavelengths = static_cast<std::uint8_t>(p.wavelengths);
     return t;
 }

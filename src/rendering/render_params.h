@@ -25,6 +25,7 @@ template <> std::span<const std::string_view> words<Technique::Roulette>();
 template <> std::span<const std::string_view> words<Technique::LightPaths>();
 template <> std::span<const std::string_view> words<Technique::Merging>();
 template <> std::span<const std::string_view> words<Technique::Guiding>();
+template <> std::span<const std::string_view> words<Technique::Windows>();
 
 template <typename E>
 requires std::is_enum_v<E> std::string_view word(E e) { return words<E>()[static_cast<std::size_t>(e)]; }
@@ -54,6 +55,7 @@ struct RenderParams {
     Technique::LightPaths lightPaths{};
     Technique::Merging merging{};
     Technique::Guiding guiding{};
+    Technique::Windows windows{};
     std::int64_t wavelengths = 8; // 1, 2, 4 or 8
     Technique::LightChoice lightChoice{};
 };

@@ -76,6 +76,7 @@ std::vector<ImageAttribute> provenance(const ProvenanceInput& p) {
         real("abbe.lightPathGain", found.gain);
     }
     text("abbe.guidingTechnique", std::string(word(technique.guiding)));
+    text("abbe.windowTechnique", std::string(word(technique.windows)));
     if (const std::string line = guideLine(guide); !line.empty()) text("abbe.guide", line);
     whole("abbe.wavelengthsPerPath", technique.wavelengths);
     if (settings.maxDepth > 0) whole("abbe.maxDepth", settings.maxDepth); // a biased switch

@@ -193,6 +193,7 @@ void SceneBuilder::finish() {
     context_.checkForbidden();
     context_.checkCompiled();
     commitGeometry();
+    if (scene.intersector) lights_.findWindows();
     scene.curves = context_.curves.release();
     for (auto& texture : textures_.release()) scene.textures.push_back(std::move(texture));
     scene.materials = materials_.release();

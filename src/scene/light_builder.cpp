@@ -28,6 +28,7 @@ LightContext LightBuilder::contextOf(const Definition& d, const Motion& toRender
     context.span = d.span;
     context.zUp = context_.tree.header.zUp;
     context.time = motion_.opening();
+    context.besideScattering = context_.built.render.strategy == Technique::Strategy::mis;
     return context;
 }
 
@@ -274,10 +275,8 @@ std::unique_ptr<DistantLight> loadEnvironmentLight(const EnvironmentLightParams&
         scene.diagnostics.error("E0403", params.image.span, reason);
         return nullptr;
     }
-    // Else its samples must cover everything.
-    const bool compensated = scene.built.render.strategy == Technique::Strategy::mis;
     auto light = makeEnvironmentLight(params, {file.width(), file.height(), std::move(file.rgb)}, std::move(upsampling),
-                                      compensated, context, scene.diagnostics);
+                                      context.besideScattering, context, scene.diagnostics);
     if (light && !(light->power() > 0)) {
         scene.diagnostics.warning("W0602", params.image.span, "this environment is black; the light is left out");
         return nullptr;

@@ -70,6 +70,9 @@ class LightBuilder {
     // Once all geometry is known, whose bounds these are: makes the lights ready. Returns what they emit, W.
     double commit(const Bounds3&);
     void checkGroups(); // that light groups name lights
+    // Where the camera is in a room and no portals are stated: by which windows skies light it. Requires commit(), and
+    // an intersector. It looks at some thousand rays outdoors, and at up to 150 000 in rooms.
+    void findWindows();
     const std::vector<std::unique_ptr<Light>>& all() const { return lights_; }
     std::vector<std::unique_ptr<Light>> release() { return std::move(lights_); }
 

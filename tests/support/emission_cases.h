@@ -125,6 +125,8 @@ inline std::vector<EmissionCase> emissionCases() {
         {"light daylight { elevation 40 deg; sun off }", true, 6e-3},
         {environment + "}", true, 0.04, 1, true, false},
         {environment + "portals { - -1 -1 -1; - 1 -1 -1; - 1 1 -1; - -1 1 -1 } }", true, 0.04, 1, true, false},
+        {"light sky { luminance 3000 nits; portals { - -1 -1 -1; - 1 -1 -1; - 1 1 -1; - -1 1 -1 } }", true, 0.04, 1,
+         true, false},
         {"light sun { toward 0.3 -1 0.2; angular-diameter 20 deg; transform { at 0 s { rotate z 0 deg }\n"
          "at 1 s { rotate z 60 deg } } }",
          true, 1e-4, 2 / (1 + std::cos(kPiD / 18))},

@@ -69,6 +69,7 @@ void writeSky(const LightSiteThere& site) {
     const auto stated = statedLight(site.light, {.irradiance = kPiD}, site.w.out.scene, 20000);
     pugi::xml_node node = site.node("constant");
     site.spectrum(node, "radiance", *stated);
+    Export::ignore(site.light, {"portals"}); // they change no picture
     site.w.remark(node);
 }
 
@@ -81,7 +82,7 @@ void writeEnvironment(const LightSiteThere& site) {
     const double scale = environmentScale(site.light) * site.w.exposure;
     if (scale != 1) xmlNumber(node, "scale", rounded(scale));
     xmlTransform(node, Transform::scale({-1, 1, -1}).then(environmentToWorld(site.placed, site.w.out.scene)));
-    Export::ignore(site.light, {"portals"}); // they change no picture
+    Export::ignore(site.light, {"portals"});
     site.w.remark(node);
 }
 
@@ -100,6 +101,7 @@ void writeDaylight(const LightSiteThere& site) {
     if (const StatedSpectrum albedo = site.light.spectrum("ground-albedo"); albedo.curve)
         xmlSpectrum(node, "albedo", plainSpectrum(*albedo.curve));
     if (!sun) xmlNumber(node, "sun_scale", 0);
+    Export::ignore(site.light, {"portals"});
     xmlTransform(node, map);
     site.w.out.approximated(site.light.span, "`daylight`",
                             "by Mitsuba's `sunsky`, whose brightness and colours differ");

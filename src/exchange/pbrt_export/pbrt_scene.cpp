@@ -350,6 +350,7 @@ std::string lightLine(const Placed& placed, const StatedThing& light, PbrtWriter
     } else if (light.type == "sky") {
         const auto stated = statedLight(light, {.irradiance = kPiD, .units = exactUnits()}, scene, 20000);
         pbrtWriteLight(list, "L", *stated);
+        Export::ignore(light, {"portals"});
         return fmt::format("LightSource \"infinite\"{}", list.str());
     } else if (light.type == "environment") {
         return environmentLine(placed, light, w);

@@ -1,4 +1,4 @@
-// Environments through windows: the image with portals is that without, and has less noise; turned environments.
+// Skies through windows: the image with portals is that without, and has less noise; turned environments.
 #include "support/environment_file.h"
 #include "support/scene_test.h"
 #include "support/scene_test_compare.h"
@@ -36,6 +36,8 @@ std::string room(const std::string& environment) {
            quad("-2.5 1 -3  -1 1 -3  -1 2.2 -3  -2.5 2.2 -3") + quad("1 1 -3  2.5 1 -3  2.5 2.2 -3  1 2.2 -3");
 }
 
+const char* const kStated = "render { guiding off; windows stated }\n";
+
 double meanVariance(const RecordingFilm& film) {
     double sum = 0;
     const PixelBounds b = film.bounds();
@@ -50,7 +52,7 @@ TEST_CASE("a room lit through a window: the same image with portals, and less no
     const std::string file = skyFile(64, 32);
     const std::string portal = "portals { - -1 1 -3; - 1 1 -3; - 1 2.2 -3; - -1 2.2 -3 } ";
     const TestScene with = TestScene::parse(room("light environment \"" + file + "\" { " + portal + "}\n"));
-    const TestScene without = TestScene::parse(room("light environment \"" + file + "\"\n"));
+    const TestScene without = TestScene::parse(room("light environment \"" + file + "\"\n" + kStated));
     const TestImage a = render(with, nightly() ? 8192 : 1024, 3), b = render(without, nightly() ? 32768 : 4096, 4);
     for (const Channel channel : {Channel::x, Channel::y, Channel::z})
         checkSame(compareImages(a.film, b.film, channel), 0.05);
@@ -64,6 +66,31 @@ TEST_CASE("a room lit through a window: the same image with portals, and less no
     const TestImage c = render(partly, nightly() ? 32768 : 4096, 5);
     checkSame(compareImages(c.film, b.film, Channel::y), 0.05);
     std::filesystem::remove(file);
+}
+
+TEST_CASE("a room lit by a clear day through a window: the same image with portals, and less noise") {
+    const char* const day = "light daylight { elevation 35 deg; azimuth 10 deg; ";
+    const TestScene with =
+        TestScene::parse(room(std::string(day) + "portals { - -1 1 -3; - 1 1 -3; - 1 2.2 -3; - -1 2.2 -3 } }\n"));
+    const TestScene without = TestScene::parse(room(std::string(day) + "}\n" + kStated));
+    const TestImage a = render(with, nightly() ? 8192 : 1024, 3), b = render(without, nightly() ? 32768 : 4096, 4);
+    for (const Channel channel : {Channel::x, Channel::y, Channel::z})
+        checkSame(compareImages(a.film, b.film, channel), 0.05);
+    const double gain = 4 * meanVariance(b.film) / meanVariance(a.film);
+    MESSAGE("variance without portals over that with them, at equal samples: " << gain);
+    CHECK(gain > 1.5);
+}
+
+TEST_CASE("windows are found: the same image as by looking at the whole sky, and less noise") {
+    const std::string sky = "light sky { luminance 3000 nits }\n";
+    const TestScene found = TestScene::parse(room(sky + "render { guiding off }\n"));
+    const TestScene whole = TestScene::parse(room(sky + kStated));
+    const TestImage a = render(found, nightly() ? 8192 : 1024, 3), b = render(whole, nightly() ? 32768 : 4096, 4);
+    for (const Channel channel : {Channel::x, Channel::y, Channel::z})
+        checkSame(compareImages(a.film, b.film, channel), 0.05);
+    const double gain = 4 * meanVariance(b.film) / meanVariance(a.film);
+    MESSAGE("variance of looking at the whole sky over that with windows: " << gain);
+    CHECK(gain > 2);
 }
 
 // Hard case 33: the pole and the seam of the image may lie anywhere.

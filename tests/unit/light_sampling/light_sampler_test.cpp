@@ -15,6 +15,7 @@ struct Description {
     double irradiance = 0;    // of far ones
     std::uint32_t dark = 999; // a part without power
     bool even = false;        // the same from everywhere
+    float sight = 1;          // of far ones that rays meet
 };
 
 template <typename Kind> class TestLight : public Kind {
@@ -33,8 +34,10 @@ template <typename Kind> class TestLight : public Kind {
         return std::nullopt;
     }
 
-  private:
+  protected:
     Description d_;
+
+  private:
     float x_;
 };
 
@@ -43,6 +46,7 @@ class DistantTestLight final : public TestLight<DistantLight> {
     using TestLight::TestLight;
     Spectrum escaped(Vec3, const Wavelengths&, float) const noexcept override { return Spectrum(0.f); }
     float pdfEscaped(const Receiver&, Vec3, float) const noexcept override { return 0; }
+    float inSight(const Receiver&) const noexcept override { return d_.sight; }
 };
 
 std::unique_ptr<const Light> lightOf(const Description& d, std::size_t number) {
@@ -64,8 +68,13 @@ const Receiver kFloor({0.5f, 0, 0.5f}, {0, 1, 0}, false);
 
 TEST_CASE("light choice: probabilities sum to one over all parts, and are those of the picks") {
     const Lights cases[] = {
-        lightsOf({{.power = 3, .parts = 1}}), lightsOf({{.power = 3, .parts = 1}, {.power = 1, .parts = 5, .dark = 2}}),
+        lightsOf({{.power = 3, .parts = 1}}),
+        lightsOf({{.power = 3, .parts = 1}, {.power = 1, .parts = 5, .dark = 2}}),
         lightsOf({{.infinite = true, .irradiance = 1}, {.irradiance = 2}, {}}),
+        lightsOf({{.infinite = true, .irradiance = 10, .sight = 0},
+                  {.irradiance = 2},
+                  {.infinite = true, .irradiance = 3, .sight = 0.1f}}),
+        lightsOf({{.infinite = true, .irradiance = 10, .sight = 0}, {.infinite = true, .irradiance = 2, .sight = 0}}),
         lightsOf(
             {{.power = 3, .parts = 7}, {.infinite = true, .irradiance = 0.01}, {.irradiance = 0.3}, {.parts = 1}})};
     for (const Lights& lights : cases)

