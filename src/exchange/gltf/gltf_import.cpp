@@ -31,14 +31,16 @@ std::string_view gltfJson(std::string_view bytes) {
     return bytes.size() < kHeader ? std::string_view() : bytes.substr(kHeader, length);
 }
 
-// Whether a surface is brighter than the white of a picture.
-bool gltfShines(const tinygltf::Material& m) {
+// Whether a surface emits more than so many times its colour.
+bool gltfExceeds(const tinygltf::Material& m, double strength) {
     const auto found = m.extensions.find("KHR_materials_emissive_strength");
     return found != m.extensions.end() && found->second.Has("emissiveStrength") &&
            found->second.Get("emissiveStrength").IsNumber() &&
-           found->second.Get("emissiveStrength").GetNumberAsDouble() > 1 &&
+           found->second.Get("emissiveStrength").GetNumberAsDouble() > strength &&
            std::ranges::any_of(m.emissiveFactor, [](double x) { return x > 0; });
 }
+constexpr double kWhite = 1;   // is brighter than the white of a picture
+constexpr double kLamp = 1000; // is meant in nits: a fluorescent tube has some thousand, and no viewer's glow as much
 
 // What the file has beside the scene that is imported.
 void warnOfTheRest(const GltfContext& ctx) {
@@ -90,7 +92,12 @@ void writeGltfView(GltfContext& ctx, const Bounds3d& bounds) {
 void writeGltfScene(GltfContext& ctx) {
     ctx.hasLights = std::ranges::any_of(ctx.pose.nodes(),
                                         [&](const GltfNodePose& pose) { return gltfLightOf(ctx, pose.node) >= 0; });
-    ctx.measures = ctx.hasLights || std::ranges::any_of(ctx.model().materials, gltfShines);
+    const auto some = [&](double strength) {
+        return std::ranges::any_of(ctx.model().materials,
+                                   [&](const tinygltf::Material& m) { return gltfExceeds(m, strength); });
+    };
+    ctx.hasLights |= some(kLamp);
+    ctx.measures = ctx.hasLights || some(kWhite);
     const bool emits = std::ranges::any_of(ctx.model().materials, [](const tinygltf::Material& m) {
         return std::ranges::any_of(m.emissiveFactor, [](double x) { return x > 0; });
     });

@@ -218,8 +218,11 @@ bool GltfSurface::emits() const {
 void GltfSurface::writeEmission(SceneNode& node, bool open) {
     const GltfObject strong = extension("KHR_materials_emissive_strength");
     constexpr double kMostNits = 1e12;
-    const double strength = std::min(strong.positive("emissiveStrength", 1), kMostNits / ctx_.nit);
+    const double stated = strong.positive("emissiveStrength", 1), strength = std::min(stated, kMostNits / ctx_.nit);
     strong.warnOfUnused();
+    if (strength < stated)
+        ctx_.import.approximated(&node, span_, fmt::format("what {} emits", where_),
+                                 "it has 1e12 nits, the most there is");
     if (!emits() || strength == 0) return;
     if (use_.dark)
         return ctx_.import.leftOut(&node, span_, fmt::format("what {} emits", where_),

@@ -125,6 +125,14 @@ TEST_CASE("glTF: extensions of materials become the layers of OpenPBR") {
               "subsurface-weight 0.5; subsurface-color rgb 1 0.5 0; subsurface-scatter-anisotropy 1"));
     CHECK(has("\"emissiveFactor\":[1,0.5,0]," + gltfExtension("emissive_strength", R"("emissiveStrength":5)"),
               "emission-luminance 364915 nits; emission-color rgb 1 0.5 0"));
+    // A lamp is in nits, and lights the scene alone.
+    const GltfCase lamp = gltfDielectric("\"emissiveFactor\":[1,1,1]," +
+                                         gltfExtension("emissive_strength", R"("emissiveStrength":1500)"));
+    CHECK(lamp.has("emission-luminance 1500 nits"));
+    CHECK_FALSE(lamp.has("light surroundings"));
+    CHECK(
+        gltfDielectric("\"emissiveFactor\":[1,1,1]," + gltfExtension("emissive_strength", R"("emissiveStrength":1e13)"))
+            .says("1e12 nits"));
     CHECK(has(gltfExtension("unlit", ""), "material paint diffuse"));
     CHECK(gltfDielectric(gltfExtension("unlit", "")).says("W0802"));
     // diffuse (1 - 0.2), gloss 0.2 = 5 · 0.04, roughness 1 - 0.75
