@@ -23,8 +23,8 @@ class Abbe:
     name = family = "Abbe"
     biased = False
 
-    def __init__(self, program):
-        self.program = program
+    def __init__(self, program, aspect=1):
+        self.program, self.aspect = program, aspect
         words = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.split()
         self.version = words[1] if len(words) > 1 else ""
 
@@ -37,7 +37,7 @@ class Abbe:
     def render(self, samples, seed):
         out = self.folder / f"abbe-{seed}.exr"
         command = [self.program, "render", str(self.path), "--samples", str(samples), "--seed", str(seed), "-t", "1", "--json",
-                   "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{self.size}", "-o", str(out)]
+                   "--checkpoint", "off", "--png", "off", "--size", f"{self.size}x{round(self.size * self.aspect)}", "-o", str(out)]
         # By a shell, which forks: else the peak would begin with the memory of this program.
         done = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", *command], capture_output=True, text=True)
         if done.returncode != 0:
@@ -146,7 +146,9 @@ class Yardstick:
 
 def all_of(scene, options):
     """Everything that may render a scene of scenes.py, Abbe first."""
-    found = [Abbe(options.abbe)]
+    found = [Abbe(options.abbe, scene.aspect)]
+    if scene.gltf:
+        return found + [Peer("Cycles", "cycles_peer.py")]
     if options.yardstick and scene.name == "cornell":
         found.append(Yardstick(*options.yardstick))
     for variant in options.variants:

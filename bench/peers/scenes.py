@@ -23,6 +23,8 @@ class Scene:
     mitsuba: tuple = ()             # integrators of Mitsuba's beside that of the file
     cycles: tuple = ()              # what else of Cycles', cycles_peer.py
     luxcore: tuple = ()             # what else of LuxCore's, luxcore_peer.py
+    aspect: float = 1               # height over width
+    gltf: bool = False              # all read it as glTF, as `abbe export` makes it; Cycles alone can here
 
 
 def of_repository(relative):
@@ -181,4 +183,9 @@ SCENES = [
     Scene("cloud", "albedo 0.999, forward scattering", 128, cloud, mitsuba=("volpathmis",)),
     Scene("caustic", "of a glass ball, on the floor", 16, caustic, region=(0.5, 0.42, 0.72, 0.62), 
           mitsuba=("ptracer",), luxcore=("bidir", "photons")),
+]
+
+# Rendered where it is asked for by name.
+EXTRA = [
+    Scene("hero", "the still life, exported to glTF", 32, lambda *_: ROOT / "scenes/hero/hero.scene", aspect=9 / 16, gltf=True),
 ]
