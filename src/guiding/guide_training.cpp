@@ -19,6 +19,8 @@ constexpr std::array kGuidedShares = {0.f, 0.25f, 0.5f, 0.75f, 0.87f, 0.95f};
 constexpr std::array kDistances = {0.7f, 1.f, 1.4f, 2.f}; // nearness over that of what is seen, in the mean
 constexpr float kSamePlace = 0.05f;                       // sizes of regions over distances: less is no parallax
 constexpr double kWorthwhile = 0.9;                       // of the second moment without guiding
+// Next-event estimation takes about a sixteenth of what a path still takes; it is made at one vertex of ten at least.
+constexpr double kRestOverLights = 16, kLeastLights = 0.1;
 
 // A direction and what it brought.
 struct GuideRecord {
@@ -27,6 +29,7 @@ struct GuideRecord {
     float radiance = 0, scatter = 0;
     float pdf = 0; // with which it was drawn and followed
     float ownPdf = 0;
+    float litSquared = 0; // of light that next-event estimation found there
 
     float brought() const { return radiance * scatter; }
 };
@@ -65,9 +68,8 @@ class RegionLearner {
         Brought all;
         for (std::size_t i = first; i < records.size(); i += step) {
             const GuideRecord& r = records[i];
-            const PathGuide::Seen seen = frame.seen(r.p, r.w);
-            const SphereSquare at = SphereSquare::of(seen.w);
-            const double area = static_cast<double>(seen.stretch * SphereSquare::areaPerSolidAngle(seen.w));
+            const auto [at, density] = PathGuide::seen(frame.offset(r.p), r.w);
+            const auto area = static_cast<double>(density);
             const auto brought = static_cast<double>(r.brought()), pdf = static_cast<double>(r.pdf);
             const double value = brought / pdf;
             found[at.upper].push_back(
@@ -197,7 +199,9 @@ void judge(const Learnt& learnt, GuideRecords records, std::size_t first, ShareM
         const auto brought = static_cast<double>(r.brought());
         if (!(brought > 0)) continue;
         const float guided =
-            learnt.region.known ? PathGuide::look(learnt.region, learnt.squares.data(), r.p, r.w).pdf : 0;
+            learnt.region.known
+                ? PathGuide::look(learnt.region, learnt.squares.data(), learnt.region.offset(r.p), r.w).pdf
+                : 0;
         const double square = brought * brought / static_cast<double>(r.pdf);
         for (std::size_t s = 0; s < kGuidedShares.size(); ++s) {
             const float pdf = kGuidedShares[s] * guided + (1 - kGuidedShares[s]) * r.ownPdf;
@@ -240,6 +244,15 @@ Judged bestFrame(RegionLearner& learner, GuideRecords records) {
     return best;
 }
 
+// Where lights are rarely seen, of what use shadow rays are: a sum of which one part is found in a share q of the cases
+// is best with q² = (second moments of that part over the other) × (costs of the other over that part).
+float lightShare(GuideRecords records, double otherMoments) {
+    double lit = 0;
+    for (const GuideRecord& r : records) lit += static_cast<double>(r.litSquared);
+    if (!(otherMoments > 0)) return 1;
+    return static_cast<float>(std::clamp(std::sqrt(kRestOverLights * lit / otherMoments), kLeastLights, 1.0));
+}
+
 struct JudgedRegion {
     Learnt learnt;
     double gain = 0; // of the second moment of what a direction brings, which is a mean over the region
@@ -250,6 +263,7 @@ JudgedRegion learnRegion(GuideRecords records, float frameRadiance) {
     RegionLearner learner(frameRadiance);
     const Judged judged = bestFrame(learner, records);
     JudgedRegion result{learner.learn(records, judged.frame, 0, 1)};
+    result.learnt.region.lights = lightShare(records, judged.least());
     const auto share = static_cast<std::size_t>(std::ranges::min_element(judged.moments) - judged.moments.begin());
     if (!(judged.least() < kWorthwhile * judged.moments[0])) return result;
     result.learnt.region.guided = kGuidedShares[share];
@@ -290,7 +304,7 @@ class GuideTrainer {
             const float distance = v.goesOn ? length(vertices_[member.number + 1].p - v.p) : kInfinity;
             records.push_back({v.p, v.w, distance > 0 ? 1 / distance : 0,
                                std::max(0.f, givenOff_.arriving(member.number)), v.scatter, v.pdf * v.survival,
-                               v.ownPdf});
+                               v.ownPdf, v.lightShare * v.lit * v.lit});
         }
         return records;
     }

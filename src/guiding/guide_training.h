@@ -24,6 +24,7 @@ struct PilotVertex {
     float carried = 0;     // what becomes of light from w on its way back along the path, survival counted
     float emission = 0;    // that the vertex gives off towards the one before
     float lit = 0;         // that it scatters there, as found by next-event estimation
+    float lightShare = 1;  // of such vertices, at which that is made
     float beyond = 0;      // that arrives from w and belongs to no vertex: of what is around the scene
 };
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "guiding/space_tree.h"
+#include "math/warp.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -14,11 +16,15 @@ struct SphereSquare {
     bool upper = true;
     Vec2 u; // in [0, 1)²
 
-    // Requires a unit vector.
-    static SphereSquare of(Vec3 w);
+    // With s = |x| + |y| + |z|, v / s lies on a face of the octahedron; seen along z the upper faces fill a square that
+    // stands on its corner. `inverse`: 1 / s.
+    static SphereSquare of(Vec3 v, float inverse) {
+        const float scale = 0.5f * inverse;
+        const Vec2 u{0.5f + (v.x + v.y) * scale, 0.5f + (v.y - v.x) * scale};
+        return {v.z >= 0, {std::clamp(u.x, 0.f, kOneMinusEpsilon), std::clamp(u.y, 0.f, kOneMinusEpsilon)}};
+    }
+    // A unit vector.
     Vec3 direction() const;
-    // Area of the square over the solid angle there, 1/sr.
-    static float areaPerSolidAngle(Vec3 w);
 };
 
 // Regions of space, the leaves of a binary tree, each with a density over directions: two trees of squares, one for
@@ -39,30 +45,59 @@ class PathGuide {
         std::array<float, 3> columns{};             // shares of the first one, two and three columns
         std::array<std::array<float, 3>, 4> rows{}; // of rows in each column
     };
-    struct Seen {
-        Vec3 w;
-        float stretch = 1;
-    };
     // Directions are those from the centre of the region to where they reach a sphere about the place they start from:
     // so they follow what is at that distance, be it what gives off light or a gap through which it comes.
     struct Region {
         Vec3 centre;
         float nearness = 0;          // 1 over the radius of the sphere; 0: at infinity
         float guided = 0;            // share of directions that are to be drawn from here; 0: none
+        float lights = 1;            // share of the vertices at which next-event estimation is worth its ray, above 0
         float upper = 0;             // share of the upper hemisphere
         std::uint32_t first = 0;     // of its squares: the lower hemisphere
         std::uint16_t upperRoot = 0; // the upper one, from there on
         bool known = false;          // whether there is anything to look up
 
-        // How a direction from p is seen from the centre, and the solid angles around it there over those from p.
-        Seen seen(Vec3 p, Vec3 w) const;
         // The way from the centre to p in radii of the sphere; shorter than one: p may lie beyond.
         Vec3 offset(Vec3 p) const;
     };
+    // How a direction from a place is seen from the centre of its region.
+    struct Seen {
+        SphereSquare at;
+        float area = 0; // of the square, over the solid angle around the direction, 1/sr
+    };
+    static Seen seen(Vec3 offset, Vec3 w);
     struct Direction {
         Vec3 w;
         float pdf = 0;      // 1/sr
         float radiance = 0; // expected from there, over that of the frame in the mean
+    };
+
+    // What is known at a place, which the guide outlives.
+    class View {
+      public:
+        View() = default; // nothing
+        View(const PathGuide& guide, const Region& region, Vec3 p)
+            : guide_(&guide), region_(&region), offset_(region.offset(p)) {}
+
+        explicit operator bool() const { return region_ != nullptr; }
+        const Region& region() const { return *region_; }
+        // Share of directions to be drawn from here.
+        float guided() const { return region_ ? region_->guided : 0; }
+        float lights() const { return region_ ? region_->lights : 1; }
+        // Requires that anything is known, as those that follow.
+        Direction look(Vec3 w) const {
+            return PathGuide::look(*region_, &guide_->squares_[region_->first], offset_, w);
+        }
+        // u in [0, 1)²; distributed with the pdf.
+        Direction sample(Vec2 u) const { return guide_->sample(*region_, offset_, u); }
+        // Density of directions of which that share is drawn from here, and all others with the density `own`.
+        float mixed(float own, float here) const { return region_->guided * here + (1 - region_->guided) * own; }
+        float mixed(float own, Vec3 w) const { return mixed(own, look(w).pdf); }
+
+      private:
+        const PathGuide* guide_ = nullptr;
+        const Region* region_ = nullptr;
+        Vec3 offset_;
     };
 
     // `regions`: those of the leaves of `space`.
@@ -71,21 +106,20 @@ class PathGuide {
         : space_(std::move(space)), regions_(std::move(regions)), squares_(std::move(squares)), sums_(std::move(sums)) {
     }
 
-    // Null where nothing is known. `face`: faceOf() the normal of the surface, on the side of the eye.
-    const Region* at(Vec3 p, std::uint8_t face) const {
+    // `face`: faceOf() the normal of the surface, on the side of the eye.
+    View at(Vec3 p, std::uint8_t face) const {
         const Region& region = regions_[space_.leaf(p, face)];
-        return region.known ? &region : nullptr;
+        return region.known ? View(*this, region, p) : View();
     }
-    Direction look(const Region& region, Vec3 p, Vec3 w) const { return look(region, &squares_[region.first], p, w); }
-    // The same with squares that are not in a guide yet: from the first of the region on.
-    static Direction look(const Region&, const Square* first, Vec3 p, Vec3 w);
-    // u in [0, 1)²; distributed with the pdf.
-    Direction sample(const Region&, Vec3 p, Vec2 u) const;
+    // With squares that are not in a guide yet: from the first of the region on.
+    static Direction look(const Region&, const Square* first, Vec3 offset, Vec3 w);
 
     const std::vector<Region>& regions() const { return regions_; }
     std::size_t bytes() const;
 
   private:
+    Direction sample(const Region&, Vec3 offset, Vec2 u) const;
+
     SpaceTree space_;
     std::vector<Region> regions_;
     std::vector<Square> squares_;

@@ -36,9 +36,9 @@ Cut cutThrough(std::span<const SpaceTree::Place> places) {
 
 } // namespace
 
-SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(6) {
+SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(kInMedium + 1) {
     std::ranges::stable_sort(places, {}, &Place::face);
-    for (std::size_t face = 0, first = 0; face < 6; ++face) {
+    for (std::size_t face = 0, first = 0; face <= kInMedium; ++face) {
         std::size_t last = first;
         while (last < places.size() && places[last].face == face) ++last;
         divide(face, {places.data() + first, last - first}, first, least);

@@ -1,4 +1,4 @@
-// Places of surfaces, put together with those near them that look the same way.
+// Places of surfaces, put together with those near them that look the same way, and places in media.
 #pragma once
 
 #include "math/vec.h"
@@ -18,10 +18,13 @@ inline std::uint8_t faceOf(Vec3 n) {
     return static_cast<std::uint8_t>(2 * axis + (n[axis] < 0));
 }
 
+// In place of a face: within a medium.
+inline constexpr std::uint8_t kInMedium = 6;
+
 // Likewise for that normal of a surface which is on the side where `direction` comes from.
 inline std::uint8_t faceAgainst(Vec3 direction, Vec3 n) { return faceOf(dot(n, direction) > 0 ? -n : n); }
 
-// Six binary trees, one for each face of normals, whose leaves are numbered.
+// Binary trees, one for each face of normals and one for media, whose leaves are numbered.
 class SpaceTree {
   public:
     struct Place {

@@ -48,19 +48,19 @@ template <EffectBits E> class CameraPath {
     void meetSurface(SurfaceHit&, Vec3 direction, std::uint32_t depth);
     const Bsdf& bsdfAt(const SurfaceHit&, Vec3 direction, std::uint32_t depth);
     const Bsdf& mixedAt(const Bsdf& own, const SurfaceHit&, Vec3 direction, std::uint32_t depth);
+    std::optional<BsdfSample> sampleGuided(const SurfaceHit&, const Bsdf&, const EyeDirection&, const VertexSample&);
     float indexBeyond(const SurfaceHit&, Vec3 direction) const;
     void standAt(const SurfaceHit&, const Bsdf&, const EyeDirection&);
-    std::optional<BsdfSample> sampleBsdf(const Bsdf&, const EyeDirection&, const VertexSample&);
+    std::optional<BsdfSample> sampleBsdf(const SurfaceHit&, const Bsdf&, const EyeDirection&, const VertexSample&);
     [[gnu::always_inline]] bool scatter(const SurfaceHit&, const BsdfSample&, const EyeDirection&, Ray&);
     bool scatterInMedium(Ray&, std::uint32_t depth);
     void samplePhase(Ray&, const VertexSample&, std::uint32_t depth);
+    float turn(Ray&, const PhaseFunction&, const VertexSample&, std::uint32_t depth);
     bool survives(std::uint32_t depth, float rouletteScale);
 
     Walk walk_;
     CameraVertex last_;
-    const PathGuide::Region* region_ = nullptr; // that guides the path at the present vertex, if any
-    float seen_ = 1;                            // radiance where the guide was looked up last
-    float expected_ = 1;                        // radiance where it goes on to, over that of the frame in the mean
+    float expected_ = 1; // radiance where it goes on to, over that of the frame in the mean
     [[no_unique_address]] CameraCaustics<E> caustics_;
     Emission<E> emission_{walk_, last_, caustics_};
     NextEvent<E> nee_{walk_, last_, caustics_};
@@ -98,7 +98,7 @@ Spectrum CameraPath<E>::radiance(Ray ray, const Wavelengths& lambda, float roule
         standAt(hit, bsdf, eye);
         // BSDF sampling. Before the shadow ray, so that the two chains of arithmetic overlap in the processor.
         const VertexSample sample = walk_.sampler.vertex(depth);
-        const auto next = sampleBsdf(bsdf, eye, sample);
+        const auto next = sampleBsdf(hit, bsdf, eye, sample);
         if (walk_.estimate.observer) [[unlikely]]
             walk_.estimate.observer->scatters(hit, bsdf.lobes(), walk_.path.beta, next ? &*next : nullptr);
         // Next-event estimation.
@@ -152,24 +152,22 @@ inline const Bsdf& CameraPath<E>::bsdfAt(const SurfaceHit& hit, Vec3 direction, 
     walk_.arena.reset();
     const Bsdf& own = *hit.material->bsdf(hit, walk_.path.lambda, walk_.arena);
     expected_ = 1;
-    region_ = nullptr;
     return walk_.context.mixes() ? mixedAt(own, hit, direction, depth) : own;
 }
 
-// What stands for the scattering at a surface some of whose directions are drawn evenly (LoopTechnique::evenly), or by
-// the guide, if it knows the place and the surface is not so glossy that it knows better where to go.
+// What stands for the scattering at a surface some of whose directions are drawn evenly (LoopTechnique::evenly), or
+// where a guide is asked: at surfaces that are not so glossy that they know better where to go.
 template <EffectBits E>
 const Bsdf& CameraPath<E>::mixedAt(const Bsdf& own, const SurfaceHit& hit, Vec3 direction, std::uint32_t depth) {
     const PathContext& context = walk_.context;
     if (context.how.evenly) [[unlikely]]
         return *walk_.arena.template make<DefensiveBsdf>(own, indexBeyond(hit, direction),
                                                          context.how.evenShare(depth));
-    if (!own.lobes().has(Lobe::diffuse) || own.lobes().has(Lobe::dispersive)) return own;
-    region_ = context.guide->at(hit.p, faceAgainst(direction, hit.shading.z));
-    if (!region_ || !(region_->guided > 0)) return own;
-    return *walk_.arena.template make<GuidedBsdf>(
-        own, indexBeyond(hit, direction), region_->guided,
-        GuidedDirections{*context.guide, *region_, hit.p, hit.shading, &seen_});
+    const Lobes lobes = own.lobes();
+    const bool asks = lobes.has(Lobe::diffuse) && !lobes.has(Lobe::dispersive);
+    walk_.path.ownPdf = 0;
+    last_.guide = asks ? context.guide->at(hit.p, faceAgainst(direction, hit.shading.z)) : PathGuide::View();
+    return own;
 }
 
 // Index of the side away from where the path comes from over that of its own side.
@@ -194,17 +192,24 @@ inline void CameraPath<E>::standAt(const SurfaceHit& hit, const Bsdf& bsdf, cons
 }
 
 template <EffectBits E>
-inline std::optional<BsdfSample> CameraPath<E>::sampleBsdf(const Bsdf& bsdf, const EyeDirection& eye,
-                                                           const VertexSample& sample) {
+inline std::optional<BsdfSample> CameraPath<E>::sampleBsdf(const SurfaceHit& hit, const Bsdf& bsdf,
+                                                           const EyeDirection& eye, const VertexSample& sample) {
+    if (last_.guide.guided() > 0) return sampleGuided(hit, bsdf, eye, sample);
     auto next = bsdf.sample(eye.wo, sample.lobe, sample.bsdf, Transport::radiance);
-    expected_ = seen_; // lights look it up, too, after that
     if constexpr (kTextures)
-        if (walk_.context.mixes() && next) [[unlikely]] {
-            const auto density = [&](const auto& mixed) { return mixed.ownDensity(eye.wo, next->wi); };
-            walk_.path.ownPdf = walk_.context.how.evenly         ? density(static_cast<const DefensiveBsdf&>(bsdf))
-                                : region_ && region_->guided > 0 ? density(static_cast<const GuidedBsdf&>(bsdf))
-                                                                 : 0;
-        }
+        if (walk_.context.how.evenly && next) [[unlikely]]
+            walk_.path.ownPdf = static_cast<const DefensiveBsdf&>(bsdf).ownDensity(eye.wo, next->wi);
+    return next;
+}
+
+template <EffectBits E>
+std::optional<BsdfSample> CameraPath<E>::sampleGuided(const SurfaceHit& hit, const Bsdf& bsdf, const EyeDirection& eye,
+                                                      const VertexSample& sample) {
+    const float eta = indexBeyond(hit, -eye.woRender);
+    const auto [next, ownPdf, radiance] =
+        GuidedSample::of(last_.guide, bsdf, hit.shading, eta, eye.wo, sample.lobe, sample.bsdf);
+    walk_.path.ownPdf = ownPdf;
+    expected_ = radiance;
     return next;
 }
 
@@ -212,10 +217,8 @@ template <EffectBits E>
 inline bool CameraPath<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, const EyeDirection& eye, Ray& ray) {
     if (!walk_.scatter(hit, next, eye, ray)) return false;
     last_.origin = ray.origin;
-    if (!region_ || walk_.path.delta)
-        expected_ = 1;
-    else if (!(region_->guided > 0))
-        expected_ = walk_.context.guide->look(*region_, hit.p, ray.direction).radiance;
+    if (last_.guide && !(last_.guide.guided() > 0) && !walk_.path.delta)
+        expected_ = last_.guide.look(ray.direction).radiance;
     if constexpr (kLightPaths) caustics_.scatter(hit, next, eye, ray.direction);
     return true;
 }
@@ -238,12 +241,14 @@ template <EffectBits E> bool CameraPath<E>::scatterInMedium(Ray& ray, std::uint3
     if (walk_.estimate.observer) [[unlikely]]
         walk_.estimate.observer->collides(ray.origin, path.beta);
     last_.lit = walk_.isLit(medium);
+    if (const PathGuide* guide = walk_.context.guide) last_.guide = guide->at(ray.origin, kInMedium);
     if (last_.lit) {
         setWork(Work::lights);
         nee_.inMedium(ray.origin, ray.direction, sample, depth);
         setWork(volumeWork(medium.number));
     }
     samplePhase(ray, sample, depth);
+    if (!anyNonZero(path.beta)) return false; // a direction of the guide in which nothing is scattered
     if constexpr (kLightPaths) caustics_.scatterInMedium(depth);
     if constexpr (kTextures) walk_.widenCone();
     last_.origin = ray.origin;
@@ -251,24 +256,29 @@ template <EffectBits E> bool CameraPath<E>::scatterInMedium(Ray& ray, std::uint3
     return true;
 }
 
-// Phase functions are sampled exactly, so that their weight is 1 but for wavelengths.
+// Phase functions are sampled exactly, so that their weight is 1 but for wavelengths and for directions from elsewhere.
 template <EffectBits E> void CameraPath<E>::samplePhase(Ray& ray, const VertexSample& sample, std::uint32_t depth) {
     auto& path = walk_.path;
     RadianceEstimate& estimate = walk_.estimate;
-    const LoopTechnique& how = walk_.context.how;
     const PhaseFunction& phase = walk_.collided->phase();
-    const float even = how.evenly ? how.evenShare(depth) : 0;
-    const float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
     const FaultSource source{walk_.collided, "phase function"};
+    const float cosine = turn(ray, phase, sample, depth);
     if (!(std::abs(cosine) < 1.001f)) estimate.dropSample(cosine, source);
     last_.receiver = ray.origin;
     last_.scatters.outline.count = 0;
-    path.bsdfPdf = phase.value(cosine);
-    estimate.checkDensity(path.bsdfPdf, source);
-    if (even > 0) [[unlikely]] {
-        path.ownPdf = path.bsdfPdf;
-        path.bsdfPdf = how.mixedDensity(path.ownPdf, depth);
-        path.beta *= path.ownPdf / path.bsdfPdf;
+    const float own = phase.value(cosine);
+    estimate.checkDensity(own, source);
+    path.bsdfPdf = walk_.context.how.mixedDensity(own, depth);
+    path.ownPdf = 0;
+    expected_ = 1;
+    if (last_.guide) {
+        const PathGuide::Direction seen = last_.guide.look(ray.direction);
+        path.bsdfPdf = last_.guide.mixed(own, seen.pdf);
+        expected_ = seen.radiance;
+    }
+    if (walk_.context.mixes() && path.bsdfPdf > 0) [[unlikely]] {
+        path.ownPdf = own;
+        path.beta *= own / path.bsdfPdf;
     }
     path.delta = false;
     if (phase.spectral()) {
@@ -280,8 +290,23 @@ template <EffectBits E> void CameraPath<E>::samplePhase(Ray& ray, const VertexSa
         path.densities.before = path.densities.unidirectional;
         path.densities.direction = path.densities.unidirectional;
     }
-    ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
+    if (estimate.observer) [[unlikely]]
+        estimate.observer->turns(ray.direction, phase, own, path.bsdfPdf, path.beta);
     ray.kind = RayKind::scattered;
+}
+
+// A direction by the phase function, an even one, or one of the guide; its cosine with the one before.
+template <EffectBits E>
+float CameraPath<E>::turn(Ray& ray, const PhaseFunction& phase, const VertexSample& sample, std::uint32_t depth) {
+    const LoopTechnique& how = walk_.context.how;
+    if (sample.lobe < last_.guide.guided()) {
+        const Vec3 before = std::exchange(ray.direction, last_.guide.sample(sample.bsdf).w);
+        return std::clamp(dot(before, ray.direction), -1.f, 1.f);
+    }
+    const float even = how.evenly ? how.evenShare(depth) : 0;
+    const float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
+    ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
+    return cosine;
 }
 
 template <EffectBits E> bool CameraPath<E>::survives(std::uint32_t depth, float rouletteScale) {

@@ -12,56 +12,70 @@
 
 namespace abbe {
 
-// A direction in the frame of the surface.
-struct Drawn {
-    Vec3 wi;
-    float pdf; // 1/sr
-};
-
-// Even over the hemisphere of the eye or, where light is let through, over the sphere.
+// Even over the hemisphere of the eye or, where light is let through, over the sphere; in the frame of the surface.
 struct EvenDirections {
-    static float density(Lobes lobes, Vec3) { return lobes.has(Lobe::transmission) ? kSpherePdf : 2 * kSpherePdf; }
-    static Drawn sample(Lobes lobes, Vec3 wo, Vec2 u) {
+    static float density(Lobes lobes) { return lobes.has(Lobe::transmission) ? kSpherePdf : 2 * kSpherePdf; }
+    static Vec3 sample(Lobes lobes, Vec3 wo, Vec2 u) {
         // The upper hemisphere is the first half of the square.
         Vec3 wi = squareToSphere(lobes.has(Lobe::transmission) ? u : Vec2{0.5f * u.x, u.y});
         if (wo.z < 0) wi.z = -wi.z;
-        return {wi, density(lobes, wi)};
+        return wi;
     }
 };
 
-// As a region of a guide has learnt them; all three outlive it.
-struct GuidedDirections {
-    const PathGuide& guide;
-    const PathGuide::Region& region;
-    Vec3 p;
-    const Frame& shading;
+// A guide's share of what a surface scatters: one direction of the mixture of both. Delta lobes are the surface's
+// alone.
+struct GuidedSample {
+    std::optional<BsdfSample> next;
+    float ownPdf = 0;   // with which the surface itself would have found it, 1/sr
+    float radiance = 1; // expected from there, over that of the frame in the mean
 
-    // What is expected from there, which the path needs to know.
-    float* radiance;
-
-    float density(Lobes, Vec3 wi) const {
-        const PathGuide::Direction found = guide.look(region, p, shading.toWorld(wi));
-        *radiance = found.radiance;
-        return found.pdf;
-    }
-    Drawn sample(Lobes, Vec3, Vec2 u) const {
-        const PathGuide::Direction found = guide.sample(region, p, u);
-        *radiance = found.radiance;
-        return {shading.toLocal(found.w), found.pdf};
+    // Requires a view that guides and a Bsdf that has a diffuse lobe and does not disperse. `eta`: as DefensiveBsdf
+    // takes it.
+    static GuidedSample of(const PathGuide::View& view, const Bsdf& own, const Frame& shading, float eta, Vec3 wo,
+                           float uLobe, Vec2 u) {
+        const float share = view.guided();
+        GuidedSample result;
+        if (uLobe < share) {
+            const PathGuide::Direction found = view.sample(u);
+            const Vec3 wi = shading.toLocal(found.w);
+            const BsdfEval e = own.eval(wo, wi, Transport::radiance);
+            const float pdf = view.mixed(e.pdfSolidAngle, found.pdf);
+            if (!anyNonZero(e.fcos) || !(pdf > 0)) return result;
+            result.ownPdf = e.pdfSolidAngle;
+            result.radiance = found.radiance;
+            const bool through = wo.z * wi.z < 0;
+            const Lobes lobe = Lobe::diffuse | (through ? Lobes(Lobe::transmission) : Lobes(Lobe::reflection));
+            result.next.emplace(wi, e.fcos / pdf, pdf, lobe, through ? eta : 1.f);
+            return result;
+        }
+        result.next = own.sample(wo, std::min((uLobe - share) / (1 - share), kOneMinusEpsilon), u, Transport::radiance);
+        if (!result.next) return result;
+        BsdfSample& next = *result.next;
+        if (next.lobe.has(Lobe::delta)) {
+            next.weight *= 1 / (1 - share);
+            next.pdfSolidAngle *= 1 - share;
+            return result;
+        }
+        const PathGuide::Direction found = view.look(shading.toWorld(next.wi));
+        result.ownPdf = next.pdfSolidAngle;
+        result.radiance = found.radiance;
+        next.pdfSolidAngle = view.mixed(result.ownPdf, found.pdf);
+        next.weight *= result.ownPdf / next.pdfSolidAngle;
+        return result;
     }
 };
 
 // The same values as another Bsdf, found by a mixture of its own directions and of others: defensive importance
 // sampling [Hesterberg1995]. Weights are eval() over the density of the mixture; those that the Bsdf itself puts on its
 // samples count for delta lobes alone, which no other density finds.
-template <typename Directions> class DirectedBsdf final : public Bsdf {
+class DefensiveBsdf final : public Bsdf {
   public:
-    // `own` outlives it. `eta`: index of the side away from the eye over that of the eye's side. `share`: of the other
+    // `own` outlives it. `eta`: index of the side away from the eye over that of the eye's side. `share`: of the even
     // directions, in (0, 1]. With 1 half of the samples are still the Bsdf's own where it has delta lobes beside
     // others, and those of them that are not delta count as nothing. Below 1 a dispersive Bsdf stands as it is: where
     // the hero's density is 0, that of the other wavelengths in the mixture is not known.
-    DirectedBsdf(const Bsdf& own, float eta, float share, const Directions& others = {})
-        : own_(own), others_(others), eta_(eta), lobes_(own.lobes()) {
+    DefensiveBsdf(const Bsdf& own, float eta, float share) : own_(own), eta_(eta), lobes_(own.lobes()) {
         if (!lobes_.any(Lobes(Lobe::diffuse) | Lobe::glossy) || (share < 1 && lobes_.has(Lobe::dispersive))) return;
         mixed_ = share < 1 ? share : lobes_.has(Lobe::delta) ? 0.5f : 1;
         followed_ = share < 1 ? 1 - mixed_ : 0;
@@ -70,17 +84,17 @@ template <typename Directions> class DirectedBsdf final : public Bsdf {
     Lobes lobes() const noexcept override { return lobes_; }
     BsdfEval eval(Vec3 wo, Vec3 wi, Transport transport) const noexcept override {
         const BsdfEval e = own_.eval(wo, wi, transport);
-        return mixed_ > 0 ? mixed(e, wi) : e;
+        return mixed_ > 0 ? mixed(e) : e;
     }
     std::optional<BsdfSample> sample(Vec3 wo, float uLobe, Vec2 u, Transport transport) const noexcept override {
         if (!(mixed_ > 0)) return own_.sample(wo, uLobe, u, transport);
         if (uLobe >= mixed_)
             return sampleOwn(wo, std::min((uLobe - mixed_) / (1 - mixed_), kOneMinusEpsilon), u, transport);
-        const auto [wi, density] = others_.sample(lobes_, wo, u);
+        const Vec3 wi = EvenDirections::sample(lobes_, wo, u);
         const bool through = wo.z * wi.z < 0;
         Lobes lobe = lobes_.has(Lobe::diffuse) ? Lobe::diffuse : Lobe::glossy;
         lobe |= through ? Lobe::transmission : Lobe::reflection;
-        return weighed(mixed(own_.eval(wo, wi, transport), density), wi, lobe, through ? eta_ : 1.f);
+        return weighed(mixed(own_.eval(wo, wi, transport)), wi, lobe, through ? eta_ : 1.f);
     }
     DeltaEval evalDelta(Vec3 wo, Vec3 wi) const noexcept override {
         DeltaEval e = own_.evalDelta(wo, wi);
@@ -92,12 +106,8 @@ template <typename Directions> class DirectedBsdf final : public Bsdf {
     float ownDensity(Vec3 wo, Vec3 wi) const { return own_.eval(wo, wi, Transport::radiance).pdfSolidAngle; }
 
   private:
-    BsdfEval mixed(BsdfEval e, Vec3 wi) const {
-        // Where nothing is scattered no density is asked for, and the lookup is spared.
-        return anyNonZero(e.fcos) ? mixed(e, others_.density(lobes_, wi)) : e;
-    }
-    BsdfEval mixed(BsdfEval e, float othersDensity) const {
-        e.pdfSolidAngle = mixed_ * othersDensity + followed_ * e.pdfSolidAngle;
+    BsdfEval mixed(BsdfEval e) const {
+        e.pdfSolidAngle = mixed_ * EvenDirections::density(lobes_) + followed_ * e.pdfSolidAngle;
         e.pdfRatio = Spectrum(1.f);
         return e;
     }
@@ -114,18 +124,13 @@ template <typename Directions> class DirectedBsdf final : public Bsdf {
             s->pdfSolidAngle *= 1 - mixed_;
             return s;
         }
-        return followed_ > 0 ? weighed(mixed(own_.eval(wo, s->wi, transport), s->wi), s->wi, s->lobe, s->eta)
-                             : std::nullopt;
+        return followed_ > 0 ? weighed(mixed(own_.eval(wo, s->wi, transport)), s->wi, s->lobe, s->eta) : std::nullopt;
     }
 
     const Bsdf& own_;
-    Directions others_;
     float eta_;
     Lobes lobes_;
-    float mixed_ = 0, followed_ = 0; // shares of other directions, 0: none, and of own ones that count
+    float mixed_ = 0, followed_ = 0; // shares of even directions, 0: none, and of own ones that count
 };
-
-using DefensiveBsdf = DirectedBsdf<EvenDirections>;
-using GuidedBsdf = DirectedBsdf<GuidedDirections>;
 
 } // namespace abbe

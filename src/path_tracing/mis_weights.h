@@ -1,6 +1,7 @@
 // Weights of light that both next-event estimation and scattering find [Veach1997, ch. 9].
 #pragma once
 
+#include "guiding/path_guide.h"
 #include "render/receiver.h"
 #include "transport/walk.h"
 
@@ -15,10 +16,19 @@ struct CausticStart;
 // Where a camera path was scattered last, for the densities of next-event estimation there.
 struct CameraVertex {
     Receiver receiver{Vec3()};
-    ScatterView scatters; // if any of its lobes is glossy and lights are chosen by it
-    Vec3 origin;          // where its last ray started
-    bool lit = true;      // whether next-event estimation was made there: false in a medium that no light reaches
+    ScatterView scatters;  // if any of its lobes is glossy and lights are chosen by it
+    Vec3 origin;           // where its last ray started
+    bool lit = true;       // whether next-event estimation was made there: false in a medium that no light reaches
+    PathGuide::View guide; // what is known of where light comes from, if it was asked
+
+    // Density of scattering towards `w`, if surface or medium alone have the density `own`.
+    float mixed(float own, Vec3 w) const { return guide.guided() > 0 ? guide.mixed(own, w) : own; }
 };
+
+// Share of such vertices at which next-event estimation is made at all. Light paths are weighed as if it always were.
+template <EffectBits E> float lightShare(const CameraVertex& last) {
+    return PathWalk<E>::kLightPaths ? 1 : last.guide.lights();
+}
 
 // Whether next-event estimation at the last vertex could have found what the path meets now.
 template <EffectBits E> bool rivalled(const PathWalk<E>& walk, const CameraVertex& last) {

@@ -59,13 +59,14 @@ template <EffectBits E> class NextEvent {
             if (const auto w = caustics_.lightPaths.neeWeight(light, picked, woRender)) return *w;
         return neeWeight(walk_, picked.probability * light.pdfSolidAngle, eval, light.delta);
     }
-    // At the place `p` in a medium, whose phase function has the density `phase` of the light's direction.
+    // At the place `p` in a medium, whose phase function has the density `phase` of the light's direction, which
+    // scattering there has with `pdf`.
     float weightInMedium(const LightSample& light, const PickedLight& picked, [[maybe_unused]] Vec3 p,
-                         float phase) const {
+                         [[maybe_unused]] float phase, float pdf) const {
         if constexpr (kLightPaths)
             if (const auto w = caustics_.lightPaths.neeWeightInMedium(light, picked, p, phase)) return *w;
         BsdfEval eval;
-        eval.pdfSolidAngle = phase;
+        eval.pdfSolidAngle = pdf;
         return neeWeight(walk_, picked.probability * light.pdfSolidAngle, eval, light.delta);
     }
     // Light for a place in a medium.
@@ -99,11 +100,18 @@ void NextEvent<E>::atSurface(const SurfaceHit& hit, const Bsdf& bsdf, const EyeD
     RadianceEstimate& estimate = walk_.estimate;
     if (!context.how.nextEvent || context.lights.empty()) return;
     if (!bsdf.lobes().any(Lobes(Lobe::diffuse) | Lobe::glossy)) return; // deltas have no value for a light's direction
-    const PickedLight picked = context.lights.pick(sample.pick, last_.receiver, last_.scatters);
+    const float share = lightShare<E>(last_);
+    float u = sample.pick;
+    if (share < 1) [[unlikely]] {
+        if (u >= share) return;
+        u /= share;
+    }
+    PickedLight picked = context.lights.pick(std::min(u, kOneMinusEpsilon), last_.receiver, last_.scatters);
+    picked.probability *= share;
     auto light = picked.light->sample(last_.receiver, picked.part, sample.light, path.lambda, path.time);
     if (!light) return;
     const Vec3 wi = hit.shading.toLocal(light->wi);
-    const BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
+    BsdfEval eval = bsdf.eval(eye.wo, wi, Transport::radiance);
     if (!anyNonZero(eval.fcos) || !walk_.sidesAgree(hit, eye, wi, light->wi))
         return estimate.checkDirection(light->wi, {picked.light, "direction"});
     ++walk_.counters.shadowRays;
@@ -119,6 +127,7 @@ void NextEvent<E>::atSurface(const SurfaceHit& hit, const Bsdf& bsdf, const EyeD
         return;
     }
     hideFromScattering(walk_, *light, *picked.light, origin);
+    eval.pdfSolidAngle = last_.mixed(eval.pdfSolidAngle, light->wi); // last, as most lights are hidden where it counts
     const float pdf = picked.probability * light->pdfSolidAngle;
     estimate.checkDensities(pdf, eval.pdfSolidAngle);
     if constexpr (kDispersion) estimate.checkRatios(eval.pdfRatio);
@@ -201,7 +210,8 @@ auto NextEvent<E>::lightInMedium(Vec3 p, Vec3 direction, float pick, Vec2 u, std
     const float pdf = picked.probability * light->pdfSolidAngle;
     estimate.checkDensity(pdf);
     estimate.checkDensity(value, {walk_.collided, "phase function"});
-    const float w = weightInMedium(*light, picked, p, context.how.mixedDensity(value, depth));
+    const float scattering = last_.mixed(context.how.mixedDensity(value, depth), light->wi);
+    const float w = weightInMedium(*light, picked, p, value, scattering);
     Spectrum contribution = path.beta * light->radiance * (value * w / pdf);
     if (phase.spectral()) contribution *= phase.ratio(cosine, path.lambda);
     const float expected = mean(abs(contribution));
@@ -264,13 +274,17 @@ void NextEvent<E>::alongRay(const Ray& ray, float tMax, std::uint32_t depth, std
 template <EffectBits E>
 Spectrum NextEvent<E>::scatteredAlongRay(const LightSample& light, const PickedLight& picked, Vec3 p,
                                          std::uint32_t depth) {
+    const PathContext& context = walk_.context;
     const float cosine = dot(leg_.ray.direction, light.wi);
+    CameraVertex there; // if tracking collided
+    if (context.guide) there.guide = context.guide->at(p, kInMedium);
     Spectrum scattered(0.f);
     for (const InScattering& at : walk_.media.inScattering) {
         const PhaseFunction& phase = at.medium->phase();
         const float density = phase.value(cosine);
         walk_.estimate.checkDensity(density, {at.medium, "phase function"});
-        const float w = weightInMedium(light, picked, p, walk_.context.how.mixedDensity(density, depth));
+        const float scattering = there.mixed(context.how.mixedDensity(density, depth), light.wi);
+        const float w = weightInMedium(light, picked, p, density, scattering);
         Spectrum value = at.coefficient * (density * w);
         if (phase.spectral()) value *= phase.ratio(cosine, walk_.path.lambda);
         scattered += value;

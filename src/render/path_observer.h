@@ -10,6 +10,8 @@
 
 namespace abbe {
 
+class PhaseFunction;
+
 // Receives the events of a path. Called by the path loop in the order of events. Watching changes nothing of the path.
 // All spectra are per lane of the wavelengths that the path started with, over their density: as the radiance that the
 // path returns.
@@ -30,6 +32,10 @@ class PathObserver {
     virtual void scatters(const SurfaceHit&, Lobes, const Spectrum& beta, const BsdfSample*) noexcept = 0;
     // It is scattered in a medium.
     virtual void collides(Vec3 p, const Spectrum& beta) noexcept = 0;
+    // In the direction `w`, which its phase function has with the density `phase`, 1/sr, and the path with `pdf`; then
+    // it carries `beta`.
+    virtual void turns(Vec3 /*w*/, const PhaseFunction&, float /*phase*/, float /*pdf*/,
+                       const Spectrum& /*beta*/) noexcept {}
 
     // What light is made of, before gathers() is called. Sampled on a light and scattered here; `pdf`: of the sample,
     // with the choice of the light.

@@ -73,6 +73,7 @@ ExitCode RenderRun::refuseForMemory() {
                                                       memoryText(beyondBudget_), memoryText(memoryBudget()),
                                                       options_.memory ? "`--memory` allows" : "there are")
                                         : std::string("memory ran out");
+    if (beyondBudget_ == 0 && !shortage_.empty()) why += ": " + shortage_;
     if (imageWritten_) why += fmt::format("; the image so far is in `{}`", summary_.image);
     if (checkpoint_ && checkpoint_->writes() > 0 && checkpoint_->isThere())
         why += fmt::format("; the render was saved as `{}`", checkpoint_->path());

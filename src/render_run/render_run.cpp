@@ -236,7 +236,8 @@ void RenderRun::renderFrom(PixelFilm& film, RenderState& state, InterruptGuard& 
         const WorkScope work(Work::none);
         summary_.statistics = integrator_->render(built_.scene, film, settings_, control);
         settings_.pilot = state.pilot(); // for samples that are taken again
-    } catch (const std::bad_alloc&) {
+    } catch (const std::bad_alloc& e) {
+        if (const auto* limit = dynamic_cast<const MemoryLimitExceeded*>(&e)) shortage_ = limit->what();
         // A tile in hand may be in the film in part: good enough for the image, which says that it is partial, but not
         // to go on from. The checkpoint stays as it was written last.
         outOfMemory_ = true;

@@ -142,6 +142,7 @@ class RenderRun {
     bool outOfMemory_ = false;         // while rendering or writing
     bool imageWritten_ = false;        // in the end
     std::string olderCheckpoint_;      // which stays when memory ran out
+    std::string shortage_;             // why memory ran out, if it is known
     double beyondBudget_ = 0;          // bytes that were taken when that was too much
     bool lostTexture_ = false;
     double watchedUntil_ = 0; // s, textures and memory

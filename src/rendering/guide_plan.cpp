@@ -1,5 +1,6 @@
 #include "rendering/guide_plan.h"
 
+#include "base/memory_limit.h"
 #include "base/parallel.h"
 #include "base/work.h"
 #include "guiding/guide_training.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <new>
 #include <numeric>
 
@@ -23,6 +25,12 @@ constexpr std::size_t kRecordedVertices = 12;  // of a path: later ones matter l
 constexpr float kPatience = 10;
 // Of the variance of samples, what has to go for guiding to be worth what it takes, and for more pilots to be worth it.
 constexpr double kWorthGuiding = 0.5, kWorthPilots = 0.15;
+
+// What a vertex takes while a guide is learnt from it, in bytes: once as a row has found it, once among all, and its
+// places in cells and regions.
+constexpr double kBytesOfVertex = 2.2 * sizeof(PilotVertex);
+// Densities of phase functions that scatter light from everywhere about alike, 1/sr.
+constexpr float kEven = 0.6f;
 
 // What a row of pilots has found.
 struct RowFound {
@@ -68,11 +76,24 @@ class GuideRecorder final : public SampleRecorder {
         if (!v.spreads || next->lobe.has(Lobe::delta)) return;
         v.pdf = v.ownPdf = next->pdfSolidAngle;
         v.scatter = mean(next->weight) * next->pdfSolidAngle;
-        if (guide_)
-            if (const PathGuide::Region* region = guide_->at(v.p, v.face); region && region->guided > 0)
-                v.ownPdf =
-                    std::max(0.f, v.pdf - region->guided * guide_->look(*region, v.p, v.w).pdf) / (1 - region->guided);
+        if (!guide_) return;
+        const PathGuide::View view = guide_->at(v.p, v.face);
+        v.lightShare = view.lights();
+        if (const float share = view.guided(); share > 0)
+            v.ownPdf = std::max(0.f, v.pdf - share * view.look(v.w).pdf) / (1 - share);
     }
+    void turns(Vec3 w, const PhaseFunction& phase, float value, float pdf, const Spectrum& beta) noexcept override {
+        if (steps_.empty()) return;
+        PilotVertex& v = steps_.back().vertex;
+        steps_.back().left = mean(beta);
+        v.face = kInMedium;
+        v.spreads = std::max(phase.value(1), phase.value(-1)) < kEven;
+        v.w = w;
+        v.pdf = pdf;
+        v.ownPdf = v.scatter = value;
+    }
+    // What is gathered next is found as by next-event estimation.
+    void chains(const Light*, Vec3) noexcept override { sampled_ = true; }
     void samples(const void*, const LightSample&, const BsdfEval&, float) noexcept override { sampled_ = true; }
     void hits(const void*, const Spectrum&, float) noexcept override { sampled_ = false; }
     void gathers(const Spectrum& light, const void*, bool passing) noexcept override {
@@ -206,6 +227,18 @@ class GuidePilots {
         return std::accumulate(variances_.begin(), end, 1e-12) / static_cast<double>(variances_.size());
     }
 
+    // As many vertices each as those have that are known; without them the first round is small enough.
+    void requireMemoryFor(double paths) const {
+        if (paths_ == 0) return;
+        const double bytes =
+            kBytesOfVertex * paths * static_cast<double>(vertices_.size()) / static_cast<double>(paths_);
+        if (const double left = memoryLeft(); bytes > left)
+            throw MemoryLimitExceeded(
+                fmt::format("pilots of path guiding take {} more, {} are left; `guiding off` takes "
+                            "none",
+                            memoryText(bytes), memoryText(std::max(left, 0.0))));
+    }
+
     // Of so many samples of each pixel, guided by what is known.
     void round(std::uint32_t samples) {
         PathContext context = context_;
@@ -214,6 +247,7 @@ class GuidePilots {
         context.choices |= guide_ != nullptr;
         const PixelBounds frame = context.scene.frame.area() > 0 ? context.scene.frame : film_.bounds();
         const PilotFilm pixels(frame, context.settings.seed);
+        requireMemoryFor(static_cast<double>(samples) * pixels.columns() * pixels.rows());
         const RouletteReference patient = RouletteReference::constant(kPatience);
         std::vector<RowFound> rows(static_cast<std::size_t>(pixels.rows()));
         parallelFor(rows.size(), [&](std::size_t row) {
@@ -227,6 +261,9 @@ class GuidePilots {
             removeWorkFlag(WorkFlag::pilot);
         });
         if (std::ranges::any_of(rows, &RowFound::full)) throw std::bad_alloc();
+        std::size_t all = vertices_.size();
+        for (const RowFound& row : rows) all += row.vertices.size();
+        vertices_.reserve(all);
         for (RowFound& row : rows) {
             vertices_.insert(vertices_.end(), row.vertices.begin(), row.vertices.end());
             variances_.insert(variances_.end(), row.variances.begin(), row.variances.end());

@@ -15,8 +15,8 @@ struct GuideFindings {
     enum class Verdict : std::uint8_t {
         undecided,      // nothing was looked at yet, or the render was stopped before
         off,            // `guiding off`
-        otherTechnique, // another choice of `render` is at odds with it, or light paths serve the scene
-        media,          // there are any
+        otherTechnique, // another choice of `render` is at odds with it
+        media,          // paths are long in them
         noPilot,        // the render is too short for one
         noGain,         // surfaces know well enough where to go
         used
@@ -46,7 +46,7 @@ class GuideSize {
 // Rounds of pilots, each guided by what those before have found and with up to three times as many samples as all of
 // them [Mueller2017]. After the first, which tells whether any is worth it, nothing more is done where surfaces know
 // well enough. Depends on scene, frame, settings and size alone, unless `stop` cuts it short: then it is good for
-// nothing. Requires 0 < size <= GuideSize::kMost, a context without plans, and a scene without media. `shown`: what
+// nothing. Requires 0 < size <= GuideSize::kMost, and a context with the plans for caustics, if any. `shown`: what
 // pixels show.
 GuidePlan planGuide(const PathContext&, TileFunction, const Film&, const RouletteReference& shown, int size,
                     const std::function<bool()>& stop);

@@ -14,6 +14,7 @@ namespace {
 constexpr double kPilotShare = 0.025, kPilotShareOfLimit = 0.1;
 // Of the paths of the render: most of it only where the first of them say that guiding is worth it.
 constexpr double kGuideShare = 0.2;
+constexpr double kRaysOfDense = 30; // of a path in media too dense to be guided in
 // Of the time that is left, what the first pass of a plan may take as far as pilots tell: they may be wrong by half.
 constexpr double kFirstPassShare = 0.5;
 
@@ -56,7 +57,10 @@ class RenderPlanner {
             return 0;
         }
         const Stopwatch watch;
-        GuidePlan plan = planGuide(in_.context, in_.render, in_.film, result_.ahead.roulette, size, in_.stop);
+        PathContext context = in_.context;
+        result_.caustics.giveTo(context);
+        const TileFunction render = result_.caustics.any() ? in_.lightPaths.render : in_.render;
+        GuidePlan plan = planGuide(context, render, in_.film, result_.ahead.roulette, size, in_.stop);
         result_.rays += plan.rays;
         result_.seconds += watch.seconds();
         findings = plan.findings;
@@ -70,9 +74,10 @@ class RenderPlanner {
         using Verdict = GuideFindings::Verdict;
         const Technique& technique = settings_.technique;
         if (technique.guiding == Technique::Guiding::off) return Verdict::off;
-        if (technique.directions != Technique::Directions::importance || result_.caustics.any())
-            return Verdict::otherTechnique;
-        return in_.context.scene.effects.has(Effect::media) ? Verdict::media : Verdict::undecided;
+        if (technique.directions != Technique::Directions::importance) return Verdict::otherTechnique;
+        // Long paths in dense media forget where they came from, and as pilots they are dear.
+        const bool dense = in_.context.scene.effects.has(Effect::media) && result_.ahead.raysOfPath > kRaysOfDense;
+        return dense && technique.guiding != Technique::Guiding::always ? Verdict::media : Verdict::undecided;
     }
 
     // The largest pilots within their share of the render.

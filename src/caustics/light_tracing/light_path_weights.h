@@ -134,7 +134,7 @@ template <EffectBits E> void LightPathWeights<E>::scatter(const BsdfSample& next
 
 template <EffectBits E> void LightPathWeights<E>::scatterInMedium() {
     weighs_ = odds_ > 0 && !first_;
-    scattering_ = static_cast<double>(walk_.path.bsdfPdf);
+    scattering_ = static_cast<double>(walk_.path.ownPdf > 0 ? walk_.path.ownPdf : walk_.path.bsdfPdf);
     before_ = ahead_;
     if (first_) odds_ /= scattering_;
     first_ = false;

@@ -76,29 +76,51 @@ shape wall    quad { material white; points 0 -1 1    0 -1 -0.9  0 1 -0.9  0 1 1
 light lamp quad { points -0.8 0.9 0.7  -0.8 0.9 -0.3  -0.3 0.9 -0.3  -0.3 0.9 0.7; radiance 5 }
 )";
 
+// What is added to two rooms, guided against not.
+void checkGuided(const std::string& added, Technique::LightPaths lightPaths, double resolution, std::uint32_t samples) {
+    INFO(added);
+    const auto scene = TestScene::parse(kTwoRooms + added);
+    RenderSettings settings = scene.settings();
+    settings.samples = nightly() ? 8 * samples : samples;
+    settings.technique.lightPaths = Technique::LightPaths::off;
+    settings.technique.guiding = Technique::Guiding::off;
+    const TestImage plain = render(scene, settings);
+    settings.technique.lightPaths = lightPaths;
+    settings.technique.guiding = Technique::Guiding::always;
+    settings.pilot = 3 * RenderSettings::kGuidePilot + (lightPaths == Technique::LightPaths::off ? 0 : 1);
+    settings.seed = 2;
+    const TestImage guided = render(scene, settings);
+    const auto& findings = guided.statistics.caustics.of<GuideFindings>();
+    CHECK(findings.verdict == GuideFindings::Verdict::used);
+    CHECK(findings.guided > 0);
+    for (const Channel channel : {Channel::y, Channel::x, Channel::z})
+        checkSame(compareImages(guided.film, plain.film, channel), (nightly() ? 0.4 : 1) * resolution);
+    CHECK(guided.statistics.dropped == std::array<std::uint64_t, 3>{});
+}
+
 TEST_CASE("guided paths show what paths show that are not") {
-    for (const char* ball :
+    for (const std::string ball :
          {"material white", "material openpbr { base-color rgb 0.8 0.3 0.2; specular-roughness 0.3 }",
-          "material dielectric { ior 1.5 }"}) {
-        INFO(std::string(ball));
-        const auto scene = TestScene::parse(
-            kTwoRooms + fmt::format("shape sphere {{ center 0.6 -0.6 -0.3; radius 0.4; {} }}\n", std::string(ball)));
-        RenderSettings settings = scene.settings();
-        settings.samples = nightly() ? 2048 : 256;
-        settings.technique.lightPaths = Technique::LightPaths::off;
-        settings.technique.guiding = Technique::Guiding::off;
-        const TestImage plain = render(scene, settings);
-        settings.technique.guiding = Technique::Guiding::always;
-        settings.pilot = 3 * RenderSettings::kGuidePilot;
-        settings.seed = 2;
-        const TestImage guided = render(scene, settings);
-        const auto& findings = guided.statistics.caustics.of<GuideFindings>();
-        CHECK(findings.verdict == GuideFindings::Verdict::used);
-        CHECK(findings.guided > 0);
-        for (const Channel channel : {Channel::y, Channel::x, Channel::z})
-            checkSame(compareImages(guided.film, plain.film, channel), nightly() ? 0.005 : 0.012);
-        CHECK(guided.statistics.dropped == std::array<std::uint64_t, 3>{});
-    }
+          "material dielectric { ior 1.5 }"})
+        checkGuided(fmt::format("shape sphere {{ center 0.6 -0.6 -0.3; radius 0.4; {} }}\n", ball),
+                    Technique::LightPaths::off, 0.012, 256);
+}
+
+TEST_CASE("guided paths in fog, of phase functions that are even and that are not") {
+    for (const char* phase : {"henyey-greenstein 0", "henyey-greenstein 0.7", "rayleigh"})
+        checkGuided(
+            fmt::format("shape fog box {{ min -0.99 -0.99 -0.99; max 0.99 0.99 0.99; material boundary; interior "
+                        "homogeneous {{ extinction 0.8 per-m; albedo 0.9; phase {} }} }}\n",
+                        std::string(phase)),
+            Technique::LightPaths::off, 0.02, 256);
+}
+
+TEST_CASE("guided paths beside light paths") {
+    const std::string ball = "shape sphere { center -0.55 -0.5 -0.3; radius 0.3; material dielectric { ior 1.5 } }\n";
+    checkGuided(ball, Technique::LightPaths::always, 0.02, 512);
+    checkGuided(ball + "shape fog box { min -0.99 -0.99 -0.99; max 0.99 0.99 0.99; material boundary; interior "
+                       "homogeneous { extinction 0.4 per-m; albedo 0.9; phase henyey-greenstein 0.3 } }\n",
+                Technique::LightPaths::always, 0.03, 512);
 }
 
 TEST_CASE("strategies: lights with textures") {

@@ -50,26 +50,26 @@ std::vector<PilotVertex> floorUnderDisk(std::size_t count, Vec3 centre, float ra
     return list;
 }
 
-const PathGuide::Region& regionAt(const PathGuide& guide, Vec3 p) {
-    const PathGuide::Region* region = guide.at(p, faceOf({0, 0, 1}));
-    REQUIRE(region);
-    return *region;
+PathGuide::View viewFrom(const PathGuide& guide, Vec3 p) {
+    const PathGuide::View view = guide.at(p, faceOf({0, 0, 1}));
+    REQUIRE(view);
+    return view;
 }
 
 // ∫ pdf dω over midpoints of squares of equal area on the sphere.
-double integral(const PathGuide& guide, const PathGuide::Region& region, Vec3 p) {
+double integral(const PathGuide::View& view) {
     constexpr int kCells = 3000;
     double sum = 0;
     for (int i = 0; i < kCells; ++i)
         for (int k = 0; k < kCells; ++k) {
             const Vec2 u{(static_cast<float>(i) + 0.5f) / kCells, (static_cast<float>(k) + 0.5f) / kCells};
-            sum += static_cast<double>(guide.look(region, p, squareToSphere(u)).pdf);
+            sum += static_cast<double>(view.look(squareToSphere(u)).pdf);
         }
     return sum * 4 * static_cast<double>(kPi) / (kCells * kCells);
 }
 
 // Directions drawn, by cells of the sphere, against what the density says of them, by as many even directions.
-void checkDraws(const PathGuide& guide, const PathGuide::Region& region, Vec3 p) {
+void checkDraws(const PathGuide::View& view) {
     constexpr int kDraws = 400000, kSide = 8;
     const auto cell = [](Vec3 w) {
         const Vec2 u = sphereToSquare(w);
@@ -80,12 +80,12 @@ void checkDraws(const PathGuide& guide, const PathGuide::Region& region, Vec3 p)
     Numbers numbers(3);
     int apart = 0;
     for (int i = 0; i < kDraws; ++i) {
-        const PathGuide::Direction d = guide.sample(region, p, numbers.two());
+        const PathGuide::Direction d = view.sample(numbers.two());
         drawn[cell(d.w)] += 1;
-        const PathGuide::Direction again = guide.look(region, p, d.w);
+        const PathGuide::Direction again = view.look(d.w);
         apart += std::abs(again.pdf - d.pdf) > 1e-3f * d.pdf; // next to the edge of a square they may differ
         const Vec3 even = squareToSphere(numbers.two());
-        const double weight = static_cast<double>(guide.look(region, p, even).pdf / kSpherePdf);
+        const double weight = static_cast<double>(view.look(even).pdf / kSpherePdf);
         told[cell(even)] += weight;
         squares[cell(even)] += weight * weight;
     }
@@ -103,12 +103,12 @@ TEST_CASE("directions and their places on the squares are each other's inverse, 
         const SphereSquare from{numbers.one() < 0.5f, numbers.two()};
         const Vec3 w = from.direction();
         CHECK(length(w) == doctest::Approx(1).epsilon(1e-5));
-        const SphereSquare back = SphereSquare::of(w);
+        const SphereSquare back = PathGuide::seen({}, w).at;
         CHECK(back.upper == from.upper);
         CHECK(back.u.x == doctest::Approx(from.u.x).epsilon(2e-4));
         CHECK(back.u.y == doctest::Approx(from.u.y).epsilon(2e-4));
         // Two squares together have the area 2 and 4π sr.
-        area += 1 / static_cast<double>(SphereSquare::areaPerSolidAngle(w));
+        area += 1 / static_cast<double>(PathGuide::seen({}, w).area);
     }
     CHECK(2 * area / 100000 == doctest::Approx(4 * static_cast<double>(kPi)).epsilon(0.005));
 }
@@ -121,14 +121,14 @@ TEST_CASE("a guide finds a small source at infinity, and draws directions with t
         floorUnder(100000, [&](Vec3 p, Vec3 w) { return dot(w, p.x < 0.5f ? left : right) > cosine ? 10 : 0.01f; }), 1);
     CHECK(trained.gain > 0);
     for (const Vec3 p : {Vec3(0.2f, 0.5f, 0), Vec3(0.8f, 0.1f, 0)}) {
-        const PathGuide::Region& region = regionAt(trained.guide, p);
+        const PathGuide::View view = viewFrom(trained.guide, p);
         const Vec3 source = p.x < 0.5f ? left : right;
-        CHECK(region.guided >= 0.75f);
-        CHECK(region.nearness == 0);
-        CHECK(trained.guide.look(region, p, source).pdf > 5);
-        CHECK(trained.guide.look(region, p, source).radiance > 5);
-        CHECK(integral(trained.guide, region, p) == doctest::Approx(1).epsilon(0.004));
-        checkDraws(trained.guide, region, p);
+        CHECK(view.guided() >= 0.75f);
+        CHECK(view.region().nearness == 0);
+        CHECK(view.look(source).pdf > 5);
+        CHECK(view.look(source).radiance > 5);
+        CHECK(integral(view) == doctest::Approx(1).epsilon(0.004));
+        checkDraws(view);
     }
 }
 
@@ -137,11 +137,11 @@ TEST_CASE("a guide follows a source that is near, from where it was learnt and f
     const TrainedGuide trained = trainGuide(floorUnderDisk(60000, centre, 0.1f), 1);
     bool anyNear = false;
     for (const Vec3 p : {Vec3(0.1f, 0.1f, 0), Vec3(0.3f, 0.6f, 0), Vec3(0.9f, 0.8f, 0), Vec3(1.2f, -0.3f, 0)}) {
-        const PathGuide::Region& region = regionAt(trained.guide, p);
-        anyNear = anyNear || region.nearness > 0;
-        if (p.x < 1) CHECK(trained.guide.look(region, p, normalize(centre - p)).pdf > 2);
-        CHECK(integral(trained.guide, region, p) == doctest::Approx(1).epsilon(0.004));
-        checkDraws(trained.guide, region, p);
+        const PathGuide::View view = viewFrom(trained.guide, p);
+        anyNear = anyNear || view.region().nearness > 0;
+        if (p.x < 1) CHECK(view.look(normalize(centre - p)).pdf > 2);
+        CHECK(integral(view) == doctest::Approx(1).epsilon(0.004));
+        checkDraws(view);
     }
     CHECK(anyNear);
 }
