@@ -56,6 +56,11 @@ struct Learnt {
     PathGuide::Region region;
     std::vector<PathGuide::Square> squares;
     std::vector<PathGuide::Sums> sums;
+
+    // Density of the direction.
+    float guided(const GuideRecord& r) const {
+        return region.known ? PathGuide::look(region, squares.data(), region.offset(r.p), r.w).pdf : 0;
+    }
 };
 
 class RegionLearner {
@@ -105,7 +110,7 @@ class RegionLearner {
 
     using Found = std::span<Brought>;
     template <typename Below> static std::pair<Found, Found> halves(Found found, Below below) {
-        const auto rest = std::ranges::stable_partition(found, below);
+        const auto rest = std::ranges::partition(found, below);
         return {found.first(found.size() - rest.size()), found.last(rest.size())};
     }
 
@@ -193,15 +198,13 @@ class RegionLearner {
 // Second moments of what directions bring, for each share of guided ones.
 using ShareMoments = std::array<double, kGuidedShares.size()>;
 
-void judge(const Learnt& learnt, GuideRecords records, std::size_t first, ShareMoments& moments) {
-    for (std::size_t i = first; i < records.size(); i += 2) {
+// By every so many-th of the records.
+void judge(const Learnt& learnt, GuideRecords records, std::size_t first, std::size_t step, ShareMoments& moments) {
+    for (std::size_t i = first; i < records.size(); i += step) {
         const GuideRecord& r = records[i];
         const auto brought = static_cast<double>(r.brought());
         if (!(brought > 0)) continue;
-        const float guided =
-            learnt.region.known
-                ? PathGuide::look(learnt.region, learnt.squares.data(), learnt.region.offset(r.p), r.w).pdf
-                : 0;
+        const float guided = learnt.guided(r);
         const double square = brought * brought / static_cast<double>(r.pdf);
         for (std::size_t s = 0; s < kGuidedShares.size(); ++s) {
             const float pdf = kGuidedShares[s] * guided + (1 - kGuidedShares[s]) * r.ownPdf;
@@ -217,7 +220,8 @@ struct Judged {
     double least() const { return std::ranges::min(moments); }
 };
 
-// The best distance at which to look, judged by one half of the records; then what both say of it.
+// The best distance at which to look, judged by a quarter of the records from another; then what halves of them say of
+// each other.
 Judged bestFrame(RegionLearner& learner, GuideRecords records) {
     Vec3 lower = records[0].p, upper = lower;
     double sum = 0, nearness = 0;
@@ -230,17 +234,20 @@ Judged bestFrame(RegionLearner& learner, GuideRecords records) {
     }
     Judged best;
     best.frame.centre = (lower + upper) * 0.5f;
-    judge(learner.learn(records, best.frame, 0, 2), records, 1, best.moments);
     const float mean = sum > 0 ? static_cast<float>(nearness / sum) : 0;
-    for (const float factor : kDistances) {
-        if (!(length(upper - lower) * mean * factor > kSamePlace)) continue;
-        Judged other;
-        other.frame = best.frame;
-        other.frame.nearness = factor * mean;
-        judge(learner.learn(records, other.frame, 0, 2), records, 1, other.moments);
-        if (other.least() < best.least()) best = other;
+    if (length(upper - lower) * mean * kDistances.back() > kSamePlace) {
+        judge(learner.learn(records, best.frame, 0, 4), records, 1, 4, best.moments);
+        for (const float factor : kDistances) {
+            Judged other;
+            other.frame = best.frame;
+            other.frame.nearness = factor * mean;
+            judge(learner.learn(records, other.frame, 0, 4), records, 1, 4, other.moments);
+            if (other.least() < best.least()) best = other;
+        }
     }
-    judge(learner.learn(records, best.frame, 1, 2), records, 0, best.moments);
+    best.moments = {};
+    for (const std::size_t half : {0, 1})
+        judge(learner.learn(records, best.frame, half, 2), records, 1 - half, 2, best.moments);
     return best;
 }
 

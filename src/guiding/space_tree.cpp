@@ -12,6 +12,8 @@ struct Cut {
     float at = 0;
 };
 
+constexpr std::size_t kEnough = 500; // places by which a median is found
+
 // Through the median along the longest side of what holds the places, or along the next one if all are in one plane.
 Cut cutThrough(std::span<const SpaceTree::Place> places) {
     Vec3 lower = places[0].p, upper = lower;
@@ -22,9 +24,11 @@ Cut cutThrough(std::span<const SpaceTree::Place> places) {
     const Vec3 size = upper - lower;
     std::array axes = {0, 1, 2};
     std::ranges::stable_sort(axes, [&](int a, int b) { return size[a] > size[b]; });
-    std::vector<float> along(places.size());
+    const std::size_t step = std::max<std::size_t>(1, places.size() / kEnough);
+    std::vector<float> along;
     for (const int axis : axes) {
-        std::ranges::transform(places, along.begin(), [&](const SpaceTree::Place& place) { return place.p[axis]; });
+        along.clear();
+        for (std::size_t i = 0; i < places.size(); i += step) along.push_back(places[i].p[axis]);
         const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
         std::ranges::nth_element(along, middle);
         const float at = *middle;
@@ -37,12 +41,12 @@ Cut cutThrough(std::span<const SpaceTree::Place> places) {
 } // namespace
 
 SpaceTree::SpaceTree(std::vector<Place>& places, std::size_t least) : nodes_(kInMedium + 1) {
-    std::ranges::stable_sort(places, {}, &Place::face);
-    for (std::size_t face = 0, first = 0; face <= kInMedium; ++face) {
-        std::size_t last = first;
-        while (last < places.size() && places[last].face == face) ++last;
-        divide(face, {places.data() + first, last - first}, first, least);
-        first = last;
+    std::span<Place> left = places;
+    for (std::size_t face = 0; face <= kInMedium; ++face) {
+        const auto others = std::ranges::partition(left, [face](const Place& place) { return place.face == face; });
+        const std::size_t count = left.size() - others.size();
+        divide(face, left.first(count), places.size() - left.size(), least);
+        left = left.subspan(count);
     }
 }
 
@@ -53,7 +57,7 @@ void SpaceTree::divide(std::size_t node, std::span<Place> places, std::size_t be
         ends_.push_back(before + places.size());
         return;
     }
-    const auto above = std::ranges::stable_partition(places, [&](const Place& p) { return p.p[cut.axis] < cut.at; });
+    const auto above = std::ranges::partition(places, [&](const Place& p) { return p.p[cut.axis] < cut.at; });
     const std::size_t below = places.size() - above.size(), children = nodes_.size();
     nodes_.resize(children + 2);
     nodes_[node].split = cut.at;

@@ -45,7 +45,7 @@ struct GuidedSample {
             result.ownPdf = e.pdfSolidAngle;
             result.radiance = found.radiance;
             const bool through = wo.z * wi.z < 0;
-            const Lobes lobe = Lobe::diffuse | (through ? Lobes(Lobe::transmission) : Lobes(Lobe::reflection));
+            const Lobes lobe = Lobes(Lobe::diffuse) | (through ? Lobe::transmission : Lobe::reflection);
             result.next.emplace(wi, e.fcos / pdf, pdf, lobe, through ? eta : 1.f);
             return result;
         }
