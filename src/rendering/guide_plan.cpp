@@ -22,7 +22,8 @@ constexpr std::uint64_t kGuide = 0x6775696465; // "guide"
 constexpr std::uint32_t kFirstRound = 2;       // samples of each pixel
 constexpr std::size_t kRecordedVertices = 12;  // of a path: later ones matter little
 // Pilots' paths go on while they carry this part of the light: what roulette multiplies is hard to learn from.
-constexpr float kPatience = 10;
+constexpr float kPatience = 5;
+constexpr std::uint32_t kGrowth = 7; // of the number of samples, from round to round at most
 // Of the variance of samples, what has to go for guiding to be worth what it takes, and for more pilots to be worth it.
 constexpr double kWorthGuiding = 0.5, kWorthPilots = 0.15;
 
@@ -195,7 +196,7 @@ class GuidePilots {
         const bool always = context_.settings.technique.guiding == Technique::Guiding::always;
         const std::uint32_t all = GuideSize::samples(size);
         std::uint32_t samples = 0;
-        for (std::uint32_t next = kFirstRound; samples < all; next = std::min(3 * samples, all - samples)) {
+        for (std::uint32_t next = kFirstRound; samples < all; next = std::min(kGrowth * samples, all - samples)) {
             round(next);
             samples += next;
             if (stop_()) return {nullptr, {}, plan_.rays};
