@@ -20,6 +20,12 @@ tells err --memory "\`lots\`"
 [[ ! -e no.exr ]] || fault "an image in spite of too little memory"
 expect 0 "$room" --samples 2 --memory 100GiB --quiet -o yes.exr
 
+# Before more pilots of path guiding are sent.
+sed 's/^render .*/render { samples 64; guiding always }/' "$scenes/../../../scenes/door-ajar/door-ajar.scene" >guided.scene
+expect 5 guided.scene --size 256x256 --pilot 30 --memory 200MiB --quiet -o guided.exr
+says err E0665
+says err "pilots of path guiding"
+
 make_set
 # Long enough for several looks at the memory; one thread, so that machines with many do not make it short.
 long=(set.scene -t 1 --samples "${ABBE_MEMORY_SAMPLES:-96}" --checkpoint 200ms)

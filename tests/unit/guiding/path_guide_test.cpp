@@ -146,6 +146,35 @@ TEST_CASE("a guide follows a source that is near, from where it was learnt and f
     CHECK(anyNear);
 }
 
+TEST_CASE("where lights are not seen few shadow rays are sent, and places in media have regions of their own") {
+    std::vector<PilotVertex> vertices = floorUnder(40000, [](Vec3, Vec3 w) { return w.z > 0.95f ? 10.f : 0.01f; });
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i].lit = i % 2 == 0 ? 3 : 0;
+        if (i % 2 == 0) vertices[i].face = kInMedium;
+    }
+    const TrainedGuide trained = trainGuide(vertices, 1);
+    const Vec3 p{0.5f, 0.5f, 0};
+    CHECK(viewFrom(trained.guide, p).lights() == doctest::Approx(0.1));
+    REQUIRE(trained.guide.at(p, kInMedium));
+    CHECK(trained.guide.at(p, kInMedium).lights() == 1);
+    CHECK(!trained.guide.at(p, faceOf({1, 0, 0})));
+}
+
+TEST_CASE("a share of shadow rays counts as often as it is rarely sent") {
+    // Those of every fourth vertex, which are told: the square of what they bring is four times as much too often.
+    std::vector<PilotVertex> vertices = floorUnder(40000, [](Vec3, Vec3) { return 1.f; }), rare = vertices;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i].lit = 0.1f;
+        rare[i].lit = i % 4 == 0 ? 0.4f : 0;
+        rare[i].lightShare = 0.25f;
+    }
+    const Vec3 p{0.5f, 0.5f, 0};
+    const float share = viewFrom(trainGuide(vertices, 1).guide, p).lights();
+    CHECK(share > 0.15f);
+    CHECK(share < 0.9f);
+    CHECK(viewFrom(trainGuide(rare, 1).guide, p).lights() == doctest::Approx(share).epsilon(0.05));
+}
+
 TEST_CASE("where light comes from all over a guide is not used") {
     const TrainedGuide trained = trainGuide(floorUnder(40000, [](Vec3, Vec3) { return 1.f; }), 1);
     for (const PathGuide::Region& r : trained.guide.regions()) CHECK(r.guided == 0);
