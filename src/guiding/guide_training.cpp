@@ -291,7 +291,10 @@ class GuideTrainer {
         SpaceTree space(places, kRegionVertices);
         std::vector<JudgedRegion> learnt(space.leaves());
         parallelFor(learnt.size(), [&](std::size_t i) {
-            learnt[i] = learnRegion(recordsOf(space.members(places, i)), static_cast<float>(frameRadiance));
+            const std::span<const SpaceTree::Place> members = space.members(places, i);
+            learnt[i] = learnRegion(recordsOf(members), static_cast<float>(frameRadiance));
+            // In media what looks for lights along rays shares their light with what looks from collisions.
+            if (!members.empty() && members[0].face == kInMedium) learnt[i].learnt.region.lights = 1;
         });
         double gain = 0;
         for (std::size_t i = 0; i < learnt.size(); ++i)
