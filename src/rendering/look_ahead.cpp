@@ -3,7 +3,11 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "base/work.h"
+#include "math/hash.h"
+#include "math/warp.h"
+#include "render/camera.h"
 #include "render/film.h"
+#include "render/material.h"
 #include "render/render_state.h"
 #include "render/scene.h"
 
@@ -107,6 +111,46 @@ EndlessPaths judge(const LongScatterings& heard) {
 }
 
 } // namespace
+
+namespace {
+
+// Goes on to the next surface, through boundaries of media.
+bool meetsSurface(const Scene& scene, Ray& ray, SurfaceHit& hit) {
+    constexpr int kMostBoundaries = 64;
+    for (int i = 0; i < kMostBoundaries; ++i) {
+        if (!scene.intersector->intersect(ray, hit)) return false;
+        if (!hit.material || !hit.material->isBoundary()) return true;
+        ray.origin = spawnOrigin(hit, ray.direction);
+    }
+    return true;
+}
+
+} // namespace
+
+float openness(const Scene& scene, PixelBounds frame) {
+    constexpr std::uint64_t kLooks = 1024;
+    int seen = 0, open = 0;
+    for (std::uint64_t i = 0; i < kLooks; ++i) {
+        RandomStream random(mix64(i));
+        const auto along = [&](int first, int size) {
+            return static_cast<float>(first) + random.uniform() * static_cast<float>(size);
+        };
+        CameraSample at;
+        at.film.x = along(frame.x0, frame.width());
+        at.film.y = along(frame.y0, frame.height());
+        at.lens = {0.5f, 0.5f};
+        CameraRay camera = scene.camera->ray(at);
+        SurfaceHit hit;
+        if (!(camera.weight > 0) || !meetsSurface(scene, camera.ray, hit)) continue;
+        const Vec3 n = dot(hit.ng, camera.ray.direction) > 0 ? -hit.ng : hit.ng;
+        const float u = random.uniform(), v = random.uniform();
+        const Vec3 w = Frame::fromNormal(n).toWorld(squareToCosineHemisphere({u, v}));
+        Ray out{spawnOrigin(hit, w), w};
+        ++seen;
+        open += !meetsSurface(scene, out, hit);
+    }
+    return seen > 0 ? static_cast<float>(open) / static_cast<float>(seen) : 1;
+}
 
 EndlessPaths findEndlessPaths(const PathContext& context, TileFunction render, const PilotFilm& pilot,
                               const RouletteReference& roulette) {

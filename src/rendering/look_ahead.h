@@ -11,6 +11,10 @@
 
 namespace abbe {
 
+// Of the directions about what the camera sees, each as a matte surface weighs it, the share that lead out of the
+// scene; 1 where it sees nothing. By a thousand pairs of rays that depend on scene and frame alone.
+float openness(const Scene&, PixelBounds frame);
+
 // So many rays of a path, in the mean over the frame, are worth a look at why.
 inline constexpr double kManyRays = 100;
 

@@ -8,6 +8,7 @@
 #include "render/film.h"
 #include "render/render_state.h"
 #include "render/scene.h"
+#include "rendering/look_ahead.h"
 #include "rendering/render_plans.h"
 #include "rendering/time_left.h"
 
@@ -41,9 +42,13 @@ bool drawsChoices(const Scene& scene, const LightSampler& lights, const Techniqu
            std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m->choosesLobe(); });
 }
 
-// Whether scattering finds all light that it can hit: not where shadow rays pass what stops others.
-bool scatteringFinds(const Scene& scene, const Technique& technique) {
-    return technique.strategy == Technique::Strategy::mis && !scene.hidden.splits;
+// Whether scattering finds even skies as well as light samples do. Not where hardly any ray gets out to them, when a
+// second way to try is worth more than picks of other lights; nor where shadow rays pass what stops others.
+bool leavesEvenSkies(const Scene& scene, const Film& film, const Technique& technique) {
+    constexpr float kOpen = 0.25f; // docs/decisions/038-even-skies.md
+    if (technique.strategy != Technique::Strategy::mis || scene.hidden.splits) return false;
+    if (std::ranges::none_of(scene.lights, [](const auto& light) { return light->output().even; })) return false;
+    return openness(scene, scene.frame.area() > 0 ? scene.frame : film.bounds()) > kOpen;
 }
 
 // One render from the first pass to the last: owns the schedule, the statistics and the talk with the caller.
@@ -54,7 +59,7 @@ class RenderJob {
         : kernel_(kernel), film_(film), settings_(settings), control_(control),
           watch_(control.stop, settings.timeLimit > 0 ? settings.timeLimit + kOvertime : 0),
           lights_(scene.lights, settings.technique.lightChoice, watch_.over(),
-                  scatteringFinds(scene, settings.technique)),
+                  leavesEvenSkies(scene, film, settings.technique)),
           context_{scene, lights_, settings, drawsChoices(scene, lights_, settings.technique),
                    settings.samplesPerReplicate(film.replicates())},
           range_(settings.range(film.replicates())), ownState_(ownState(scene, film, settings, control)),

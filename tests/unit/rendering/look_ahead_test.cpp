@@ -39,6 +39,30 @@ light sky { luminance 100 nits }
     for (std::size_t i = 9; i < 13; ++i) CHECK(with[i] == doctest::Approx(mean));
 }
 
+TEST_CASE("how open a scene is") {
+    const auto openOf = [](const std::string& shapes) {
+        const auto scene = TestScene::parse("scene 1\nfilm { size 40 40 }\nlight sky\n"
+                                            "camera { from 0 1 0; look-at 0 0 -2; fov 60 deg }\n" +
+                                            shapes);
+        REQUIRE(scene.report() == "");
+        return openness(scene.scene(), scene.scene().frame);
+    };
+    CHECK(openOf("") == 1);
+    CHECK(openOf("shape plane { material diffuse }") == 1);
+    CHECK(openOf("shape sphere { center 0 1 0; radius 3; material diffuse }") == 0);
+    // The lower half of a ball of directions about the floor is closed, and the rest of it by a wall.
+    const float half = openOf("shape plane { material diffuse }\n"
+                              "shape plane { center 0 0 -6; normal 0 0 1; material diffuse }");
+    CHECK(half > 0.6f);
+    CHECK(half < 0.98f);
+    // Boundaries of media are no surfaces.
+    CHECK(
+        openOf(
+            "shape plane { material diffuse }\n"
+            "shape sphere { center 0 1 0; radius 50; material boundary; interior homogeneous { scattering 0.1 per-m } "
+            "}") == 1);
+}
+
 } // namespace abbe::test
 
 namespace abbe::test {
