@@ -120,7 +120,14 @@ TEST_CASE("few triangles: too many, too small for their distance, moving, or som
     const Sphere sphere({5, 0, 0}, 1);
     FewTrianglesSink sink;
     CHECK(sink.add(quad, kVisibleToAll));
-    CHECK(sink.make());
+    const auto few = sink.make();
+    REQUIRE(few);
+    for (const Vec2 p : {Vec2{-0.6f, 0.2f}, Vec2{0.8f, 0.6f}}) { // in either half
+        const auto hit = few->intersect({{p.x, p.y, 1}, {0, 0, -1}});
+        REQUIRE(hit);
+        CHECK(hit->u == doctest::Approx((p.x + 1) / 2));
+        CHECK(hit->v == doctest::Approx((p.y + 1) / 2));
+    }
     CHECK_FALSE(sink.add(sphere, kVisibleToAll));
     CHECK_FALSE(sink.make());
 }
