@@ -153,13 +153,15 @@ void NextEvent<E>::inMedium(Vec3 p, Vec3 direction, const VertexSample& sample, 
     const auto chosen = chooseInMedium(p, direction, sample, depth, random);
     if (!chosen) return;
     // As much as a ray brings in the mean decides whether it is followed, and how far.
-    const float share = worth_ * chosen->expected;
-    float weight = chosen->weight;
-    if (share < kWorth) {
-        if (!(random.uniform() * kWorth < share)) return;
-        weight *= kWorth / share;
+    float weight = chosen->weight, least = 0;
+    if (worth_ > 0) {
+        const float share = worth_ * chosen->expected;
+        if (share < kWorth) {
+            if (!(random.uniform() * kWorth < share)) return;
+            weight *= kWorth / share;
+        }
+        least = kWorth / std::max(share, kWorth);
     }
-    const float least = worth_ > 0 ? kWorth / std::max(share, kWorth) : 0;
     ++walk_.counters.shadowRays;
     const Spectrum passing =
         walk_.transmittance(p, chosen->light, {path.nested.here, {}}, random, RayKind::shadow, least);

@@ -48,12 +48,12 @@ void checkTransmittance(const Medium& medium, const Ray& ray, float tMax, double
 }
 
 // A bumpy ball of voxels of 0.1 m, nowhere thinner than that.
-VoxelGrid makeGrid(float least = 0) {
+VoxelGrid makeGrid(float least = 0, int radius = 12) {
     std::vector<Voxel> voxels;
-    for (int z = -12; z <= 12; ++z)
-        for (int y = -12; y <= 12; ++y)
-            for (int x = -12; x <= 12; ++x)
-                if (x * x + y * y + z * z <= 144)
+    for (int z = -radius; z <= radius; ++z)
+        for (int y = -radius; y <= radius; ++y)
+            for (int x = -radius; x <= radius; ++x)
+                if (x * x + y * y + z * z <= radius * radius)
                     voxels.push_back(
                         {{x, y, z},
                          least +
@@ -146,23 +146,23 @@ TEST_CASE("voxels: both estimators against quadrature, whichever way the grid is
 
 TEST_CASE("voxels: collisions are where the density is, with a least density throughout or without") {
     const SlopeCurve grey(0.9, 0.9), white(1, 1), clear(0.93, 0.93), dark(0.5, 0.5);
-    // Bricks inside the ball have a least density; those at its rim and the first half of the ray have none.
-    VoxelGrid grid = makeGrid(0.4f);
+    // Bricks inside the ball have a least density; those at its rim and what is outside have none.
+    VoxelGrid grid = makeGrid(2, 24);
     auto sampler = grid.sampler();
     const Transform toIndex = *grid.indexToWorld().inverse();
-    const Ray ray{{0.05f, 0.03f, -2}, normalize(Vec3{0.3f, 0.2f, 1})};
+    const Ray ray{{0.05f, 0.03f, -3}, normalize(Vec3{0.3f, 0.2f, 1})};
     constexpr int steps = 80'000, places = 8;
     std::vector<double> integrals;
     double integral = 0;
     for (int i = 0; i < steps; ++i) {
         const double t = 4.0 * (i + 0.5) / steps;
-        integral += 4.0 / steps * 1.5 *
+        integral += 4.0 / steps * 0.25 *
                     static_cast<double>(sampler.at(Vec3(toIndex.point(Vec3d(ray.origin) + Vec3d(ray.direction) * t))));
         if ((i + 1) % (steps / places) == 0) integrals.push_back(integral);
     }
     for (const Curve* albedo :
          {static_cast<const Curve*>(&white), static_cast<const Curve*>(&clear), static_cast<const Curve*>(&dark)})
-        checkCollisions(GridMedium(opticsOf(grey, *albedo), makeGrid(0.4f), 1.5, {}), ray, 4, integrals);
+        checkCollisions(GridMedium(opticsOf(grey, *albedo), makeGrid(2, 24), 0.25, {}), ray, 4, integrals);
 }
 
 } // namespace abbe::test
