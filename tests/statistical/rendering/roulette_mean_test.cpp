@@ -34,4 +34,25 @@ light sphere { center 0 0.6 -0.2; radius 0.25; radiance 10 }
     checkSame(compareImages(renderer.film, always), 0.003);
 }
 
+TEST_CASE("roulette: nor on that of shadow rays in media, which the renderer asks for, and single paths do not") {
+    const auto scene = TestScene::parse(R"(scene 1
+film { size 24 24; filter box 0.5 }
+camera { from 0 0 4; look-at 0 0 0; fov 36 deg }
+light sky { luminance 4000 nits }
+light sun { elevation 40 deg; azimuth 110 deg; irradiance 30 klx }
+shape sphere { radius 1; material boundary; interior homogeneous { extinction 8; albedo 0.99; phase henyey-greenstein 0.6 } }
+)");
+    constexpr EffectBits media =
+        (Effects(Effect::absorption) | Effect::textures | Effect::interfaces | Effect::media).bits();
+    const std::uint32_t factor = nightly() ? 8 : 1, depth = 32;
+    const RecordingFilm always =
+        renderPaths<media>(scene, {.samples = 64 * factor, .seed = 1, .maxDepth = depth, .rouletteScale = 1e9});
+    RenderSettings settings = scene.settings();
+    settings.samples = 512 * factor;
+    settings.seed = 4;
+    settings.maxDepth = depth;
+    const TestImage renderer = render(scene, settings);
+    checkSame(compareImages(renderer.film, always), 0.003);
+}
+
 } // namespace abbe::test
