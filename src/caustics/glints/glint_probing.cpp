@@ -27,7 +27,6 @@ constexpr std::size_t kMostLights = 8;
 constexpr int kStep = 4, kWalks = 36; // pixels between places from which so many walks start
 constexpr double kMostSeeds = 16384;  // such places; larger frames and smaller pilots have wider steps
 constexpr float kNear = 1.2f;         // of the light's direction: from where Newton's method starts
-constexpr int kPixelBlock = 4;        // pixels; of candidates that are alike and this near one is taken
 constexpr std::uint32_t kMostCandidates = 16384, kLeastCandidates = 64; // of which Newton's method starts
 constexpr int kIterations = 32;
 constexpr float kDifference = 0.05f, kFinestStep = 0.002f, kLongestPixelStep = 6; // pixels
@@ -107,11 +106,16 @@ class GlintPlanner {
         return {dot(off, about.x), dot(off, about.y)};
     }
 
-    std::vector<GlintQuery> seeds() const {
+    // Pixels between places from which walks start. Of candidates that are alike and this near one is taken.
+    int step() const {
         const double effort = PilotSize(context_.settings).effort();
         const double scale = std::sqrt(static_cast<double>(frame_.area()) / (kMostSeeds * effort));
         const int most = std::max(kStep, std::min(frame_.width(), frame_.height()));
-        const int step = std::min(static_cast<int>(std::ceil(std::max(kStep / std::sqrt(effort), scale))), most);
+        return std::min(static_cast<int>(std::ceil(std::max(kStep / std::sqrt(effort), scale))), most);
+    }
+
+    std::vector<GlintQuery> seeds() const {
+        const int step = this->step();
         std::vector<GlintQuery> queries;
         for (int y = frame_.y0; y < frame_.y1; y += step)
             for (int x = frame_.x0; x < frame_.x1; x += step)
@@ -146,12 +150,12 @@ class GlintPlanner {
             });
         });
         for (const std::uint64_t r : rays) rays_ += r;
+        const int block = step();
         std::map<std::tuple<ChainSignature, std::size_t, int, int>, Candidate> nearest;
         for (const auto& part : parts)
             for (const Candidate& c : part) {
-                const auto place = nearest.try_emplace({c.chain, c.light, static_cast<int>(c.film.x) / kPixelBlock,
-                                                        static_cast<int>(c.film.y) / kPixelBlock},
-                                                       c);
+                const auto place = nearest.try_emplace(
+                    {c.chain, c.light, static_cast<int>(c.film.x) / block, static_cast<int>(c.film.y) / block}, c);
                 if (c.miss < place.first->second.miss) place.first->second = c;
             }
         std::vector<Candidate> list;

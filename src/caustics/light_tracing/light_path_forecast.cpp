@@ -102,6 +102,20 @@ Samples quietOf(Samples samples, double weight) {
     return samples;
 }
 
+// Of all pixels, over what they show: the two brightest count as the third. A firefly that a look happens to meet
+// would be all of the noise, beside which nothing is worth a light path; and another technique may have it.
+void limitOutliers(std::span<Samples> pixels, std::span<const double> weights) {
+    constexpr std::size_t kFew = 2;
+    std::vector<double> all;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        for (const auto& replicate : pixels[i])
+            for (const double v : replicate) all.push_back(v * std::sqrt(weights[i]));
+    std::ranges::nth_element(all, all.begin() + kFew, std::ranges::greater());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        for (auto& replicate : pixels[i])
+            for (double& v : replicate) v = std::min(v, all[kFew] / std::sqrt(weights[i]));
+}
+
 void add(CameraVariance& to, const CameraVariance& v, double share) {
     to.secondMoment += v.secondMoment * share;
     to.variance += v.variance * share;
@@ -131,6 +145,8 @@ std::vector<CameraNoise> cameraNoise(const PathContext& context, TileFunction re
     PathContext without = context;
     without.lightPaths = &all;
     std::vector<CameraNoise> pixels(grid.size());
+    std::vector<Samples> rests(grid.size());
+    std::vector<double> weights(grid.size());
     parallelFor(pixels.size(), [&](std::size_t i) {
         const PixelBounds pixel = grid.pixel(i);
         addWorkFlag(WorkFlag::pilot);
@@ -141,10 +157,16 @@ std::vector<CameraNoise> cameraNoise(const PathContext& context, TileFunction re
         for (std::size_t k = 0; k < found.y.size(); ++k)
             for (std::size_t s = 0; s < found.y[k].size(); ++s) found.y[k][s] -= rest.y[k][s];
         const double weight = measure.weight(pixel.x0, pixel.y0);
-        pixels[i] = {varianceOf(found.y, weight), varianceOf(quietOf(found.y, weight), weight),
-                     varianceOf(rest.y, weight),
-                     static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany), found.rays + rest.rays};
+        rests[i] = rest.y;
+        weights[i] = weight;
+        pixels[i] = {varianceOf(found.y, weight),
+                     varianceOf(quietOf(found.y, weight), weight),
+                     {},
+                     static_cast<double>(found.rays) / (kReplicates * CameraVariance::kMany),
+                     found.rays + rest.rays};
     });
+    limitOutliers(rests, weights);
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].rest = varianceOf(rests[i], weights[i]);
     return pixels;
 }
 

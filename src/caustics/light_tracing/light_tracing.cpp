@@ -23,7 +23,7 @@ namespace {
 
 // Of pilot paths: half as many as the frame has pixels, but within these for the full pilot, and no fewer than the last
 // for any.
-constexpr std::uint32_t kBlock = 1024, kLeastPilotPaths = 8 * kBlock, kMostPilotPaths = 32 * kBlock, kLeastOfAny = 512;
+constexpr std::uint32_t kBlock = 1024, kLeastPilotPaths = 8 * kBlock, kMostPilotPaths = 32 * kBlock, kLeastOfAny = 1024;
 constexpr std::uint64_t kLearnLightPaths = 0x6c6561726e, kJudgeLightPaths = 0x6a75646765; // "learn", "judge"
 // What a ray of a light path costs, over one of a camera path: both of its densities at each vertex, and the film.
 constexpr double kLightCost = 2.5;
@@ -31,6 +31,10 @@ constexpr double kLightCost = 2.5;
 // brighter for it.
 constexpr double kInsurance = 0.1;
 constexpr double kLeastFireflies = 0.02; // second moment of what light paths could bring better
+// Of everything else, however quiet the n pixels are that a pilot looked at, variance of kUnseenRest / n is left:
+// edges, which few of them have. Without it light paths would seem to be all of the noise, and no number of them too
+// large.
+constexpr double kUnseenRest = 0.02;
 // Light paths for each camera path that are tried: √2 apart, since neighbours differ by a few percent in efficiency.
 constexpr std::size_t kShares = 15;
 double shareOf(std::size_t i) { return 0.0625 * std::exp2(0.5 * static_cast<double>(i)); }
@@ -228,7 +232,7 @@ class LightPathPlanner {
     using Efficiencies = std::array<double, kShares>; // over that of camera paths alone
 
     Efficiencies efficiencies(const LightPathForecast& forecast, const CameraNoise& camera) const {
-        const double rest = camera.rest.planned();
+        const double rest = std::max(camera.rest.planned(), leastRest_);
         const double plain = (rest + forecast.variance(0, camera)) * camera.rays;
         Efficiencies result{};
         for (std::size_t i = 0; i < kShares; ++i) {
@@ -294,6 +298,7 @@ class LightPathPlanner {
         seeded.settings.seed = combine64(context_.settings.seed, kJudgeLightPaths);
         const std::vector<CameraNoise> pixels = cameraNoise(seeded, kernel_.render, roulette_, plan, *measure_);
         const CameraNoise camera = CameraNoise::of(pixels);
+        leastRest_ = kUnseenRest / static_cast<double>(pixels.size());
         const double each = kLightCost / static_cast<double>(heard.paths);
         costs_ = {kCostBesideLightPaths * camera.rays, each * static_cast<double>(heard.rays),
                   each * static_cast<double>(heard.raysAfterSpread)};
@@ -328,6 +333,7 @@ class LightPathPlanner {
         double camera = 0, light = 0, afterSpread = 0; // of a path, in rays; the last is a part of light
     };
     Costs costs_;
+    double leastRest_ = 0; // variance
     double raysBeside_ = 0;
     bool sure_ = true; // that there is a gain, whatever it is
     LightPathFindings findings_;

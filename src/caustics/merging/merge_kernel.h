@@ -44,7 +44,7 @@ template <EffectBits E> class MergeKernel {
         sampler_.start(number);
         lambda_ = context_.scene.wavelengths.sample(sampler_.wavelength());
         time_ = sampler_.time();
-        radius_ = MergePlan::radius(number);
+        radius_ = job_.wider * MergePlan::radius(number);
         const PathCounters before = result_.counters;
         const PhotonMaps photons(trace(replicate, number));
         const std::uint64_t photonRays = raysOf(result_.counters) - raysOf(before);
@@ -67,9 +67,15 @@ template <EffectBits E> class MergeKernel {
     bool gatherAll(int replicate, std::uint32_t number, const PhotonMaps& photons) {
         const PixelBounds frame = context_.scene.frame, pixels = film_.bounds();
         gathered_.clear();
+        // Of a part of the pixels others in each round, spread evenly [Roberts2018]; the first is in the middle.
+        const auto phase = [&](double golden) {
+            const double place = 0.5 + number * golden;
+            return static_cast<int>((place - std::floor(place)) * job_.step);
+        };
+        const int px = phase(0.7548776662466927), py = phase(0.5698402909980532);
         for (int y = pixels.y0; y < pixels.y1 && !left(); ++y)
             for (int x = pixels.x0; x < pixels.x1; ++x)
-                if ((x - frame.x0) % job_.step == job_.step / 2 && (y - frame.y0) % job_.step == job_.step / 2)
+                if ((x - frame.x0) % job_.step == px && (y - frame.y0) % job_.step == py)
                     gather(x, y, replicate, number, photons);
         return !left();
     }

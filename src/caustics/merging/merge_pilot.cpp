@@ -82,6 +82,7 @@ std::vector<LightDeposit> MergePilot::Heard::shown() const {
 MergePilot::MergePilot(const PathContext& context, const LightPathKernel& kernel, const std::function<bool()>& stop)
     : context_(context), kernel_(kernel), stop_(stop),
       photons_(PilotSize(context.settings).count(kPhotons, kLeastPhotons)),
+      wider_(std::sqrt(static_cast<float>(kPhotons) / static_cast<float>(photons_))),
       step_(std::max(1, std::max(context.scene.frame.width(), context.scene.frame.height()) /
                             PilotSize(context.settings).side(kRow, kLeastRow))) {
     for (const auto& light : context.scene.lights)
@@ -100,7 +101,7 @@ MergePilot::Heard MergePilot::listen(const MergePlan& plan, std::uint64_t key) c
         NullFilm film(context_.scene.frame);
         const auto round = static_cast<std::uint32_t>(i);
         addWorkFlag(WorkFlag::pilot);
-        const TileResult r = kernel_.merge(context, film, {round, round + 1, 0, 1, step_}, &listener);
+        const TileResult r = kernel_.merge(context, film, {round, round + 1, 0, 1, 0, step_, wider_}, &listener);
         removeWorkFlag(WorkFlag::pilot);
         listener.end();
         parts[i].rays = r.counters.vertices + r.counters.shadowRays;

@@ -38,6 +38,9 @@ class MergePilot {
     MergePilot(const PathContext& context, const LightPathKernel& kernel, const std::function<bool()>& stop);
     // Light paths of a round.
     std::uint32_t photons() const { return photons_; }
+    // Radius of its disks over that of a render: a pilot with few light paths finds as many photons in a disk as one
+    // with many does, or it would know of the images of caustics by luck alone.
+    float wider() const { return wider_; }
     // Depends on the scene, the frame, the settings of the context and the key alone, unless `stop` cuts it short.
     Heard listen(const MergePlan&, std::uint64_t key) const;
 
@@ -48,6 +51,7 @@ class MergePilot {
     const LightPathKernel& kernel_;
     const std::function<bool()>& stop_;
     std::uint32_t photons_;
+    float wider_;
     int step_;
     std::unordered_map<const Light*, std::uint32_t> numbers_;
 };

@@ -29,6 +29,9 @@ constexpr double kLeastMergeGain = 1.5;
 // What a ray of a round costs, over one of a camera path: photons are kept, sorted and looked for.
 constexpr double kRoundCost = 2;
 constexpr std::array kEvery{1u, 2u, 4u};
+// Relative second moment of a round over the number of looks of a pilot, at least: images of caustics may be small, and
+// wide disks of a small pilot blur them.
+constexpr double kUnseenMerged = 1;
 constexpr int kCameraRow = 24, kLeastCameraRow = 6; // pixels in which rays of camera paths are counted
 
 // Of one light: relative second moments of a sample of every pixel, in the mean over pixels.
@@ -80,8 +83,10 @@ class MergePlanner {
     // By the light's place in the scene.
     std::map<std::uint32_t, Moments> moments(const MergePilot::Heard& heard, const NoiseMeasure& measure,
                                              std::uint32_t photons) const {
-        // What single photons bring is noise in proportion to 1 / photons; the rest is not.
-        const double fewer = static_cast<double>(pilot_.photons()) / photons;
+        // What single photons bring is noise in proportion to 1 / photons and, over disks of other areas, to 1 / area;
+        // the rest is not.
+        const double fewer =
+            static_cast<double>(pilot_.photons()) / photons * square(static_cast<double>(pilot_.wider()));
         std::map<std::uint32_t, Moments> result;
         for (const MergePilot::Pixel& p : heard.pixels) {
             const double weight = measure.weight(p.x, p.y) / heard.looks;
@@ -138,6 +143,7 @@ class MergePlanner {
         }
         findings_.photons = plan.photons;
         if (plan.lights.empty()) return false;
+        own = std::max(own, kUnseenMerged / heard.looks);
         findings_.rest = light_.measured ? light_.rest + (light_.used() ? light_.after : light_.before) : 0;
         const double rays = cameraRays();
         const double round =
@@ -176,7 +182,7 @@ void PhotonMerging::plan(const PilotInput& in) {
 std::optional<TileResult> PhotonMerging::render(const PathContext& context, const LightPathKernel& kernel, Film& film,
                                                 const BlockJob& job) const {
     if (!planned_.plan) return TileResult();
-    return kernel.merge(context, film, {job.first, job.last, job.block, job.blocks, 1, job.from.unit}, nullptr);
+    return kernel.merge(context, film, {job.first, job.last, job.block, job.blocks, job.from.unit}, nullptr);
 }
 
 } // namespace abbe

@@ -112,8 +112,11 @@ class LightListener {
 struct MergeJob {
     std::uint32_t first = 0, last = 0;
     std::uint32_t block = 0, blocks = 1;
-    int step = 1; // of pixels, along each axis: pilots look at some of them alone
     std::uint32_t from = 0;
+    // Of pilots, which look at some of the pixels alone, one of so many along each axis, and gather few photons, over
+    // disks that are so much wider.
+    int step = 1;
+    float wider = 1;
 };
 
 // Hears what photons bring, pixel by pixel.

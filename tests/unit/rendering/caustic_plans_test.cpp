@@ -253,7 +253,7 @@ TEST_CASE("pilots: a fortieth of the rays of a render at most, larger for larger
     const TestScene tiny = TestScene::parse(ballPictureText(24, 16));
     const std::uint64_t smallest = renderByPilot(tiny, 1).statistics.pilotRays;
     int before = 0;
-    for (const int samples : {16, 1024, 4096}) {
+    for (const int samples : {16, 1024, 8192}) {
         const TestScene scene = TestScene::parse(ballPictureText(24, samples));
         const TestImage image = renderByPilot(scene, RenderSettings::kPilotByWork);
         const RenderStatistics& s = image.statistics;
