@@ -75,9 +75,10 @@ class RenderPlanner {
         const Technique& technique = settings_.technique;
         if (technique.guiding == Technique::Guiding::off) return Verdict::off;
         if (technique.directions != Technique::Directions::importance) return Verdict::otherTechnique;
+        if (!in_.context.scene.effects.has(Effect::media)) return Verdict::undecided;
         // Long paths in dense media forget where they came from, and as pilots they are dear.
-        const bool dense = in_.context.scene.effects.has(Effect::media) && result_.ahead.raysOfPath > kRaysOfDense;
-        return dense && technique.guiding != Technique::Guiding::always ? Verdict::media : Verdict::undecided;
+        const bool dense = result_.ahead.raysOfPath > kRaysOfDense && technique.guiding != Technique::Guiding::always;
+        return dense || result_.caustics.any() ? Verdict::media : Verdict::undecided;
     }
 
     // The largest pilots within their share of the render.

@@ -118,9 +118,6 @@ TEST_CASE("guided paths in fog, of phase functions that are even and that are no
 TEST_CASE("guided paths beside light paths") {
     const std::string ball = "shape sphere { center -0.55 -0.5 -0.3; radius 0.3; material dielectric { ior 1.5 } }\n";
     checkGuided(ball, Technique::LightPaths::always, 0.02, 512);
-    checkGuided(ball + "shape fog box { min -0.99 -0.99 -0.99; max 0.99 0.99 0.99; material boundary; interior "
-                       "homogeneous { extinction 0.4 per-m; albedo 0.9; phase henyey-greenstein 0.3 } }\n",
-                Technique::LightPaths::always, 0.03, 512);
 }
 
 TEST_CASE("strategies: lights with textures") {
