@@ -203,7 +203,9 @@ TEST_CASE("light paths: caustics in mirrors and through glass, by manifold sampl
     const std::string wide = "look-at 0 0.6 0; fov 40 deg", narrow = "look-at -0.3 0.6 -1.5; fov 24 deg";
     for (const char* ior : {"1.5", "glass SF11"}) {
         const TestScene scene = sceneOf(wide, ior, "radius 0.5; radiance 10");
-        check(std::string(ior) + ", manifolds", seen(scene, 300), seen(scene, 64, Technique::LightPaths::always), 0.02);
+        const bool sparks = std::string(ior) != "1.5"; // what the hero alone brings, of which one may be most of 64
+        check(std::string(ior) + ", manifolds", seen(scene, 300),
+              seen(scene, sparks ? 160 : 64, Technique::LightPaths::always), 0.02);
     }
     // Where little else is seen several estimates for each vertex are worth it.
     const TestScene scene = sceneOf(narrow, "1.5", "radius 0.2; radiance 100");
