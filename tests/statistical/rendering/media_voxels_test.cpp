@@ -50,7 +50,7 @@ void checkStrategies(const SmokeScene& smoke, std::uint32_t samples, double reso
 
 TEST_CASE("voxels: strategies agree on a smoke made here") {
     const MadeVolumes volumes("media_voxels");
-    checkStrategies({volumes.make("smoke", 40), 6, 1.2}, nightly() ? 4096 : 512, 0.006);
+    checkStrategies({volumes.make("smoke", 40), 6, 1.2}, nightly() ? 4096 : 1024, 0.006);
 }
 
 TEST_CASE("voxels: strategies agree on a smoke from elsewhere") {

@@ -30,8 +30,12 @@ TestImage renderScene(const fs::path& path, Technique::Strategy strategy, std::u
 
 // Lights that scattered rays meet too seldom, or never.
 bool smallLights(const fs::path& path) {
-    // A sphere of a micrometre; lights of millimetres that glass and gold gather; a sun that is a disk.
-    for (const char* name : {"tiny-light", "wine-glass", "gold-ring", "diamond", "mirror-caustic", "hero"})
+    // A sphere of a micrometre; lights of millimetres that glass and gold gather; a sun that is a disk; lamps that
+    // matte surfaces meet once in hundreds of paths, beside a sky that both strategies now find alike and nearly
+    // without noise, so that this tail is all there is to compare (of one tile of slivers 16 seeds of 1024 samples
+    // agree to 0.004 %).
+    for (const char* name : {"tiny-light", "wine-glass", "gold-ring", "diamond", "mirror-caustic", "hero", "slivers",
+                             "subdivision-still-life"})
         if (path.stem() == name) return true;
     const TestScene scene = TestScene::load(path);
     const auto& lights = scene.built().facts.lightList;
