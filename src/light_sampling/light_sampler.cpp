@@ -117,18 +117,23 @@ float LightSampler::nearShare(const Receiver& at) const noexcept {
 // A surface that turns its back on the sun need not ask for it, and in a room the sun lies behind walls unless a window
 // shows it.
 LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexcept {
-    FarShares shares{};
+    // So much of the sky in sight is as good as all of it for the half that is shared evenly: what is seen of it may be
+    // the brightest part.
+    constexpr float kEnough = 0.1f;
+    FarShares shares{}, even{};
     float seen = 0, total = 0;
     const std::size_t count = farAmount_.size();
     for (std::size_t i = 0; i < count; ++i) {
         const DistantLight* const distant = lights_[near_ + i].light->asDistant();
         shares[i] = distant ? distant->inSight(at) : 1;
-        seen += shares[i];
+        even[i] = std::min(shares[i], kEnough);
+        seen += even[i];
         total += shares[i] * farAmount_[i];
     }
     for (std::size_t i = 0; i < count; ++i)
-        shares[i] = seen > 0 ? shares[i] * 0.5f * (1 / seen + (total > 0 ? farAmount_[i] / total : 1 / seen))
-                             : farProbability_[i];
+        shares[i] = seen > 0
+                        ? 0.5f * (even[i] / seen + (total > 0 ? farAmount_[i] * shares[i] / total : even[i] / seen))
+                        : farProbability_[i];
     return shares;
 }
 

@@ -60,36 +60,29 @@ Portal::Table Portal::tabulate(const std::function<double(Vec3)>& luminance) con
     Table table(static_cast<std::size_t>(kSize + 1) * (kSize + 1));
     for (std::size_t i = 0; i < kSize; ++i)
         for (std::size_t j = 0; j < kSize; ++j) {
-            const auto at = [&](std::size_t k, std::size_t l) -> double& { return table[k * (kSize + 1) + l]; };
-            at(i + 1, j + 1) = cells[i * kSize + j] + kFloor * mean + at(i, j + 1) + at(i + 1, j) - at(i, j);
+            const auto entry = [&](std::size_t k, std::size_t l) -> double& { return table[k * (kSize + 1) + l]; };
+            entry(i + 1, j + 1) =
+                cells[i * kSize + j] + kFloor * mean + entry(i, j + 1) + entry(i + 1, j) - entry(i, j);
         }
     return table;
 }
 
-Portal::Place Portal::place(double x) {
-    const double cells = x * kSize;
-    const auto cell = std::min(static_cast<std::size_t>(cells), static_cast<std::size_t>(kSize - 1));
-    return {cell, cells - static_cast<double>(cell)};
+// On an edge between rows of cells.
+double Portal::sumBelow(std::size_t row, double b) const noexcept {
+    const double y = b * kSize;
+    const auto j = std::min(static_cast<std::size_t>(y), static_cast<std::size_t>(kSize - 1));
+    return lerp(at(row, j), at(row, j + 1), y - static_cast<double>(j));
 }
 
-namespace {
-
-// std::lerp, which is exact in cases that do not come up here, takes five times as long.
-double between(double p, double q, double t) { return p + t * (q - p); }
-
-} // namespace
-
-// Exact for cells of even density: linear between the corners.
-double Portal::sum(std::size_t column, Place b) const noexcept {
-    const double* at = table_->data() + column * (kSize + 1) + b.cell;
-    return between(at[0], at[1], b.part);
+// Exact for cells of even density: bilinear between the corners.
+double Portal::sum(double a, double b) const noexcept {
+    const double x = a * kSize;
+    const auto i = std::min(static_cast<std::size_t>(x), static_cast<std::size_t>(kSize - 1));
+    return lerp(sumBelow(i, b), sumBelow(i + 1, b), x - static_cast<double>(i));
 }
-
-double Portal::sum(Place a, Place b) const noexcept { return between(sum(a.cell, b), sum(a.cell + 1, b), a.part); }
 
 double Portal::weight(double a0, double a1, double b0, double b1) const noexcept {
-    const Place left = place(a0), right = place(a1), low = place(b0), high = place(b1);
-    return sum(right, high) - sum(left, high) - sum(right, low) + sum(left, low);
+    return sum(a1, b1) - sum(a0, b1) - sum(a1, b0) + sum(a0, b0);
 }
 
 std::optional<Portal::View> Portal::view(const Receiver& from) const noexcept {
@@ -129,20 +122,20 @@ bool Portal::crosses(Vec3 p, Vec3 w) const noexcept {
 
 namespace {
 
-// Where `part` of the whole lies: between lower and upper, over which `below` (of edges between cells) rises from 0 to
-// `whole` and is linear in each cell.
+// Where `part` of the whole lies: between lower and upper, over which a sum rises from 0 to `whole` and is linear in
+// each of `cells` cells; below(i) is its value at the edge i.
 template <typename Below> double invert(double lower, double upper, int cells, double whole, double part, Below below) {
     double a = lower, b = upper, fa = 0, fb = whole;
     int first = static_cast<int>(lower * cells) + 1, last = static_cast<int>(std::ceil(upper * cells)) - 1;
     while (first <= last) { // edges of cells within
         const int middle = (first + last) / 2;
-        const double x = static_cast<double>(middle) / cells, f = below(static_cast<std::size_t>(middle));
+        const double f = below(static_cast<std::size_t>(middle));
         if (f <= part) {
-            a = x;
+            a = static_cast<double>(middle) / cells;
             fa = f;
             first = middle + 1;
         } else {
-            b = x;
+            b = static_cast<double>(middle) / cells;
             fb = f;
             last = middle - 1;
         }
@@ -153,25 +146,23 @@ template <typename Below> double invert(double lower, double upper, int cells, d
 } // namespace
 
 Portal::Sample Portal::sample(const View& v, Vec2 u) const noexcept {
-    const Place low = place(v.b0), high = place(v.b1);
-    const auto strip = [&](auto a) { return sum(a, high) - sum(a, low); };
-    const double before = strip(place(v.a0));
+    const auto strip = [&](std::size_t row) { return sumBelow(row, v.b1) - sumBelow(row, v.b0); };
+    const double left = sum(v.a0, v.b1) - sum(v.a0, v.b0);
     const double a = invert(v.a0, v.a1, kSize, v.weight, static_cast<double>(u.x) * v.weight,
-                            [&](std::size_t edge) { return strip(edge) - before; });
-    // Within a column of cells the density does not change with a: its whole width stands for the line at a.
-    const std::size_t cell = place(a).cell;
-    const auto column = [&](Place b) { return sum(cell + 1, b) - sum(cell, b); };
-    const double under = column(low), whole = column(high) - under;
-    const double *left = table_->data() + cell * (kSize + 1), *right = left + kSize + 1;
-    const double b = invert(v.b0, v.b1, kSize, whole, static_cast<double>(u.y) * whole,
-                            [&](std::size_t edge) { return right[edge] - left[edge] - under; });
+                            [&](std::size_t edge) { return strip(edge) - left; });
+    // Within a row of cells the density does not change with a: its whole width stands for the line at a.
+    const std::size_t row = cellOf(a);
+    const double lower = sumBelow(row + 1, v.b0) - sumBelow(row, v.b0), all = strip(row + 1) - strip(row);
+    const double b = invert(v.b0, v.b1, kSize, all, static_cast<double>(u.y) * all,
+                            [&](std::size_t edge) { return at(row + 1, edge) - at(row, edge) - lower; });
     const double x = toTangent(a), y = toTangent(b);
     return {frame_.toWorld(Vec3(normalize(Vec3d{x, y, 1}))), static_cast<float>(density(v, a, b) / jacobian(x, y))};
 }
 
 double Portal::density(const View& v, double a, double b) const noexcept {
-    const double *left = table_->data() + place(a).cell * (kSize + 1) + place(b).cell, *right = left + kSize + 1;
-    return (right[1] - left[1] - right[0] + left[0]) * kSize * kSize / v.weight;
+    const std::size_t i = cellOf(a), j = cellOf(b);
+    const double cell = at(i + 1, j + 1) - at(i, j + 1) - at(i + 1, j) + at(i, j);
+    return cell * kSize * kSize / v.weight;
 }
 
 float Portal::pdf(const View& v, Vec3 w) const noexcept {

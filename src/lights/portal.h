@@ -5,6 +5,7 @@
 #include "math/frame.h"
 #include "render/receiver.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -49,17 +50,15 @@ class Portal {
     bool crosses(Vec3 p, Vec3 w) const noexcept; // whether a ray from p leaves the room through the opening
 
   private:
-    static constexpr int kSize = 512; // cells along each angle
+    static constexpr int kSize = 512;  // cells along each angle
     using Table = std::vector<double>; // sums over all cells below, (kSize + 1)²
     Table tabulate(const std::function<double(Vec3)>& luminance) const;
-    struct Place {
-        std::size_t cell;
-        double part; // of its width, 0 … 1
-    };
-    static Place place(double); // of an angle, 0 … 1
-    // Of the table: of all cells before an edge of cells, or a place, along the first angle and before b.
-    double sum(std::size_t column, Place b) const noexcept;
-    double sum(Place a, Place b) const noexcept;
+    double at(std::size_t i, std::size_t j) const noexcept { return (*table_)[i * (kSize + 1) + j]; }
+    static std::size_t cellOf(double unit) noexcept {
+        return std::min(static_cast<std::size_t>(unit * kSize), static_cast<std::size_t>(kSize - 1));
+    }
+    double sumBelow(std::size_t row, double b) const noexcept;
+    double sum(double a, double b) const noexcept;
     double weight(double a0, double a1, double b0, double b1) const noexcept;
     double density(const View&, double a, double b) const noexcept; // over the two angles
 

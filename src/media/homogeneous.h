@@ -18,6 +18,7 @@ class HomogeneousMedium final : public OpticalMedium {
     void limitExtinction(double most);
 
     Bounds3 bounds() const override;
+    bool homogeneous() const override { return true; }
     MediumWalk* walk(const Ray&, float tMax, WalkSpace&) const noexcept override;
     const MediumEmission* emission() const override { return emission_ ? &*emission_ : nullptr; }
 

@@ -56,6 +56,8 @@ template <EffectBits E> class CameraPath {
     bool scatterInMedium(Ray&, std::uint32_t depth);
     void samplePhase(Ray&, const VertexSample&, std::uint32_t depth);
     float turn(Ray&, const PhaseFunction&, const VertexSample&, std::uint32_t depth);
+    bool leavesBySurface(const PhaseFunction&) const;
+    void pullToSurface(const VertexSample&, Vec3 before, float& cosine, Vec3& direction);
     bool survives(std::uint32_t depth, float rouletteScale);
 
     Walk walk_;
@@ -295,18 +297,40 @@ template <EffectBits E> void CameraPath<E>::samplePhase(Ray& ray, const VertexSa
     ray.kind = RayKind::scattered;
 }
 
-// A direction by the phase function, an even one, or one of the guide; its cosine with the one before.
+// A direction by the phase function, an even one, one of the guide or one towards the surface; its cosine with the one
+// before.
 template <EffectBits E>
 float CameraPath<E>::turn(Ray& ray, const PhaseFunction& phase, const VertexSample& sample, std::uint32_t depth) {
     const LoopTechnique& how = walk_.context.how;
+    const Vec3 before = ray.direction;
     if (sample.lobe < last_.guide.guided()) {
-        const Vec3 before = std::exchange(ray.direction, last_.guide.sample(sample.bsdf).w);
+        ray.direction = last_.guide.sample(sample.bsdf).w;
         return std::clamp(dot(before, ray.direction), -1.f, 1.f);
     }
     const float even = how.evenly ? how.evenShare(depth) : 0;
-    const float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
-    ray.direction = directionAbout(ray.direction, cosine, sample.bsdf.y);
+    float cosine = sample.lobe < even ? 1 - 2 * sample.bsdf.x : phase.sampleCosine(sample.bsdf.x);
+    ray.direction = directionAbout(before, cosine, sample.bsdf.y);
+    if (!last_.guide && leavesBySurface(phase)) pullToSurface(sample, before, cosine, ray.direction);
     return cosine;
+}
+
+// Walks from where no light is sampled end where they leave the solid. Where scattering prefers directions of its own,
+// those of a half space are too different.
+template <EffectBits E> bool CameraPath<E>::leavesBySurface(const PhaseFunction& phase) const {
+    return !last_.lit && !walk_.context.how.evenly && !phase.spectral() && phase.value(1) == phase.value(-1) &&
+           walk_.media.tracker.even(walk_.path.nested.here.media());
+}
+
+template <EffectBits E>
+void CameraPath<E>::pullToSurface(const VertexSample& sample, Vec3 before, float& cosine, Vec3& direction) {
+    SurfacePull& pull = walk_.path.pull;
+    if (pull.medium != walk_.collided) pull.prepare(*walk_.collided, walk_.path.lambda);
+    pull.drawn = sample.lobe < SurfacePull::kShare;
+    if (pull.drawn) {
+        direction = directionAbout(pull.n, pull.drawCosine(sample.bsdf.x), sample.bsdf.y);
+        cosine = std::clamp(dot(before, direction), -1.f, 1.f);
+    }
+    pull.take(dot(pull.n, direction), walk_.collided->phase().value(cosine));
 }
 
 template <EffectBits E> bool CameraPath<E>::survives(std::uint32_t depth, float rouletteScale) {

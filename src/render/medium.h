@@ -104,6 +104,8 @@ class Medium {
     virtual const Curve& extinction() const = 0; // 1/m at density 1
     virtual const Curve& albedo() const = 0;     // share of the extinction that is scattering, in [0, 1]
     virtual const PhaseFunction& phase() const = 0;
+    // Of density 1 everywhere, and one albedo.
+    virtual bool homogeneous() const { return false; }
     // True where the walk's albedo() tells more than albedo(), which then bounds it.
     virtual bool albedoVaries() const { return false; }
     // Null for media that do not emit.

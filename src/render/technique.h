@@ -39,9 +39,9 @@ struct Technique {
     // Directions of camera paths drawn by where pilots found light, beside those of surfaces: where that is forecast to
     // pay, never, or always.
     enum class Guiding : std::uint8_t { automatic, off, always } guiding = Guiding::automatic;
-    // Windows through which skies are sampled: those that a light states and, where none does, those that paths from
-    // the camera find; or stated ones alone. Read while the scene is built.
-    enum class Windows : std::uint8_t { automatic, stated } windows = Windows::automatic;
+    // Windows through which skies are sampled: those that lights state alone; or, where none does, those that walks
+    // from what the camera sees find. Read while the scene is built.
+    enum class Windows : std::uint8_t { stated, automatic } windows = Windows::stated;
 
     friend bool operator==(const Technique&, const Technique&) = default;
 };

@@ -13,7 +13,7 @@ constexpr std::string_view kRouletteWords[] = {"pilot", "throughput", "off"};
 constexpr std::string_view kLightPathWords[] = {"automatic", "off", "always", "alone"};
 constexpr std::string_view kMergingWords[] = {"automatic", "off", "always"};
 constexpr std::string_view kGuidingWords[] = {"automatic", "off", "always"};
-constexpr std::string_view kWindowWords[] = {"automatic", "stated"};
+constexpr std::string_view kWindowWords[] = {"stated", "automatic"};
 
 } // namespace
 

@@ -85,14 +85,15 @@ bool MediumTracker::advance(Active& a) {
 }
 
 MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumStack& inside, const Wavelengths& lambda,
-                                      RandomStream& random, TrackedWeights weights, EmissionListener* listener) {
+                                      RandomStream& random, TrackedWeights weights, EmissionListener* listener,
+                                      float stretch) {
     const WorkScope work(Work::surface);
     start(ray, tMax, inside, lambda);
     givenUp_ = Spectrum(0.f);
     glows_.clear();
     if (listener) startGlows(ray, tMax, inside, random);
     for (Active& a : active_) {
-        a.optical = random.exponential();
+        a.optical = random.exponential() * stretch;
         schedule(a, a.segment.tNear);
     }
     for (std::uint32_t missed = 1;;) {
@@ -122,14 +123,15 @@ MediumCollision MediumTracker::follow(const Ray& ray, float tMax, const MediumSt
     return {};
 }
 
-float MediumTracker::reach(const Ray& ray, const MediumStack& inside, const Wavelengths& lambda, RandomStream random) {
+float MediumTracker::reach(const Ray& ray, const MediumStack& inside, const Wavelengths& lambda, RandomStream random,
+                           float stretch) {
     if (inside.size() != 1 || !open_.empty() || inside[0]->emission()) return kInfinity;
     MediumWalk* const walk = inside[0]->walk(ray, kInfinity, spaces_[0]);
     MediumSegment all;
     if (!walk || !walk->next(all) || all.tNear > 0 || all.tFar < kInfinity || all.minimum < all.maximum)
         return kInfinity;
     const float rate = all.maximum * inside[0]->extinction().at(lambda)[0];
-    return rate > 0 ? random.exponential() / rate : kInfinity;
+    return rate > 0 ? random.exponential() * stretch / rate : kInfinity;
 }
 
 void MediumTracker::startGlows(const Ray& ray, float tMax, const MediumStack& inside, RandomStream& random) {

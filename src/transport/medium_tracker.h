@@ -72,10 +72,14 @@ class MediumTracker {
     // weight, so that a path that loses a tenth of its light does not end in one of ten cases. Emission is collected on
     // the way, at one place in every segment that emits.
     MediumCollision follow(const Ray&, float tMax, const MediumStack& inside, const Wavelengths&, RandomStream&,
-                           TrackedWeights, EmissionListener* = nullptr);
+                           TrackedWeights, EmissionListener* = nullptr, float stretch = 1);
     // Where follow() with these random numbers will find the ray scattered if nothing is in its way, where that can be
     // told without following it: in a single medium of constant density that does not emit. Elsewhere infinite.
-    float reach(const Ray&, const MediumStack& inside, const Wavelengths&, RandomStream);
+    float reach(const Ray&, const MediumStack& inside, const Wavelengths&, RandomStream, float stretch = 1);
+    // Whether that is so: one medium of constant density that does not emit.
+    bool even(const MediumStack& inside) const {
+        return inside.size() == 1 && open_.empty() && !inside[0]->emission() && inside[0]->homogeneous();
+    }
     // An unbiased estimate of the transmittance to tMax, exact where density is constant: residual ratio tracking
     // [Novak2014] with the mean density of each segment as control. Where it falls below `least` roulette ends it or
     // takes it back there, segment by segment: for whom less is not worth its lookups.

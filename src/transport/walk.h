@@ -251,7 +251,7 @@ bool PathWalk<E>::findAhead(const Ray& ray, SurfaceHit& hit, [[maybe_unused]] co
     if constexpr (kMedia) {
         const Surroundings& here = path.nested.here;
         if (!path.delta && !here.absorption()) { // what looks for lights along the ray must know its end
-            const float t = media.tracker.reach(ray, here.media(), path.lambda, random);
+            const float t = media.tracker.reach(ray, here.media(), path.lambda, random, path.pull.stretch());
             if (t < kInfinity) {
                 constexpr float kMargin = 0x1p-13f; // of the place's distance from the origin: 500 times its rounding
                 Ray piece = ray;
@@ -272,8 +272,16 @@ bool PathWalk<E>::collides(Ray& ray, const SurfaceHit* ahead, RandomStream& rand
     TrackedWeights weights{&path.beta, nullptr};
     if constexpr (kDispersion) weights.density = &path.densities.unidirectional;
     const MediumCollision collision = onTheWay(ray, tMax, crossings, [&](EmissionListener* emission) {
-        return media.tracker.follow(ray, tMax, path.nested.here.media(), path.lambda, random, weights, emission);
+        return media.tracker.follow(ray, tMax, path.nested.here.media(), path.lambda, random, weights, emission,
+                                    path.pull.stretch());
     });
+    if (path.pull.pending) {
+        const Spectrum m = path.pull.mixture(collision.medium ? collision.t : tMax, collision.medium != nullptr);
+        if constexpr (kDispersion)
+            path.densities.unidirectional *= m;
+        else
+            path.beta *= 1 / m[0];
+    }
     if constexpr (kAbsorption)
         if (ahead) absorb(*ahead, ray.direction, collision.medium ? collision.t : tMax);
     if (!collision.medium) return false;
@@ -332,6 +340,10 @@ inline bool PathWalk<E>::scatter(const SurfaceHit& hit, const BsdfSample& next, 
         if (!path.delta) estimate.checkRatios(next.pdfRatio);
         if (!path.delta) d.unidirectional *= next.pdfRatio;
         if constexpr (kMedia) d.direction = d.unidirectional;
+    }
+    if constexpr (kMedia) {
+        path.pull.n = hit.ng;
+        path.pull.medium = nullptr;
     }
     const Vec3 direction = hit.shading.toWorld(next.wi);
     if (!sidesAgree(hit, eye, next.wi, direction)) return estimate.checkDirection(direction), false;
