@@ -159,9 +159,9 @@ std::vector<FieldInfo> techniqueFields() {
         field(FieldType::choice, "windows", &P::windows)
             .words(words<Technique::Windows>())
             .synonyms({"portals"})
-            .doc("Windows of a room through which skies are sampled: found, or those that lights state as `portals` "
-                 "alone, to compare.")
-            .example("windows stated"),
+            .doc("Windows of a room through which skies are sampled: those that lights state as `portals`, or where "
+                 "none does those that are found.")
+            .example("windows automatic"),
         field(FieldType::integer, "wavelengths", &P::wavelengths)
             .range(1, 8)
             .byDefault("8")

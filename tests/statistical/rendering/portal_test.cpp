@@ -83,7 +83,7 @@ TEST_CASE("a room lit by a clear day through a window: the same image with porta
 
 TEST_CASE("windows are found: the same image as by looking at the whole sky, and less noise") {
     const std::string sky = "light sky { luminance 3000 nits }\n";
-    const TestScene found = TestScene::parse(room(sky + "render { guiding off }\n"));
+    const TestScene found = TestScene::parse(room(sky + "render { guiding off; windows automatic }\n"));
     const TestScene whole = TestScene::parse(room(sky + kStated));
     const TestImage a = render(found, nightly() ? 8192 : 1024, 3), b = render(whole, nightly() ? 32768 : 4096, 4);
     for (const Channel channel : {Channel::x, Channel::y, Channel::z})
