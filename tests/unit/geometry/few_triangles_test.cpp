@@ -17,12 +17,15 @@ namespace {
 
 using Triangle = FewTriangles::Triangle;
 
-Vec3 inCube(Random& random) { return {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1}; }
+Vec3 pointInCube(Random& random) {
+    return {2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1};
+}
 
 std::vector<Triangle> triangles(std::size_t count, Random& random) {
     std::vector<Triangle> all;
     for (std::uint32_t i = 0; i < count; ++i)
-        all.push_back({{inCube(random), inCube(random), inCube(random)}, i, 7 * i, false, kVisibleToAll});
+        all.push_back(
+            {{pointInCube(random), pointInCube(random), pointInCube(random)}, i, 7 * i, false, kVisibleToAll});
     return all;
 }
 
@@ -61,7 +64,7 @@ TEST_CASE("few triangles: the nearest is found, and shadow rays end at any") {
         REQUIRE(few);
         int compared = 0, wrong = 0;
         for (int i = 0; i < 4000; ++i) {
-            const Vec3 origin = inCube(random) * 2, direction = normalize(inCube(random));
+            const Vec3 origin = pointInCube(random) * 2, direction = normalize(pointInCube(random));
             Ray ray{origin, direction};
             const Truth truth = nearest(all, ray);
             if (!truth.certain) continue;
@@ -148,7 +151,7 @@ TEST_CASE("few triangles: surfaces are those that the tree finds, and a box lets
     Random random(9);
     int different = 0, out = 0, again = 0;
     for (int i = 0; i < 20000; ++i) {
-        Ray ray{inCube(random) * 0.9f, normalize(inCube(random))};
+        Ray ray{pointInCube(random) * 0.9f, normalize(pointInCube(random))};
         const Vec3 corner{i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f};
         const float along = 2 * random.uniform() - 1;
         if (i % 4 == 0) ray.direction = normalize(Vec3{corner.x, corner.y, along} - ray.origin); // at an edge
@@ -160,7 +163,7 @@ TEST_CASE("few triangles: surfaces are those that the tree finds, and a box lets
         different += a.material != b.material || length(a.p - b.p) > 1e-5f || dot(a.ng, b.ng) < 0.999f ||
                      a.primitive != b.primitive || std::abs(a.distance - b.distance) > 1e-5f;
         // A ray that leaves it meets something else.
-        const Vec3 w = normalize(inCube(random));
+        const Vec3 w = normalize(pointInCube(random));
         SurfaceHit next;
         if (without->intersect({spawnOrigin(a, w), w}, next))
             again += next.material == a.material && next.primitive == a.primitive && a.material == material(1);
