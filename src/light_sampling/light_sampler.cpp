@@ -67,7 +67,7 @@ LightSampler::LightSampler(const std::vector<std::unique_ptr<const Light>>& ligh
     if (near_ > 0) tree_.emplace(near, stop);
     lights_.insert(lights_.end(), far.begin(), far.end());
     weighFar(farAmounts);
-    farInSight_ = choice == tree && far.size() > 1 && far.size() <= kMostWeighed;
+    farInSight_ = choice == tree && !far.empty() && far.size() <= kMostWeighed;
     number(lights);
 }
 
@@ -110,8 +110,21 @@ std::uint32_t LightSampler::find(const Light* light, std::uint32_t part) const n
 float LightSampler::nearShare(const Receiver& at) const noexcept {
     if (near_ == lights_.size()) return 1;
     if (near_ == 0) return 0;
-    const float near = tree_->irradiance(at);
-    return std::clamp(near / (near + farIrradiance_), kLeastShare, 1 - kLeastShare);
+    const float near = tree_->irradiance(at), all = near + farIrradiance(at);
+    return all > 0 ? std::clamp(near / all, kLeastShare, 1 - kLeastShare) : 0.5f;
+}
+
+// In a room a sky gives what comes in by the windows.
+float LightSampler::farIrradiance(const Receiver& at) const noexcept {
+    if (!farInSight_) return farIrradiance_;
+    float sum = 0;
+    for (std::size_t i = 0; i < farAmount_.size(); ++i) sum += farAmount_[i] * inSight(i, at);
+    return sum;
+}
+
+float LightSampler::inSight(std::size_t i, const Receiver& at) const noexcept {
+    const DistantLight* const distant = lights_[near_ + i].light->asDistant();
+    return distant ? distant->inSight(at) : 1;
 }
 
 // A surface that turns its back on the sun need not ask for it, and in a room the sun lies behind walls unless a window
@@ -124,8 +137,7 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexce
     float seen = 0, total = 0;
     const std::size_t count = farAmount_.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const DistantLight* const distant = lights_[near_ + i].light->asDistant();
-        shares[i] = distant ? distant->inSight(at) : 1;
+        shares[i] = inSight(i, at);
         even[i] = std::min(shares[i], kEnough);
         seen += even[i];
         total += shares[i] * farAmount_[i];

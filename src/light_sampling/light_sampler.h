@@ -72,6 +72,8 @@ class LightSampler {
     void number(const std::vector<std::unique_ptr<const Light>>&);
     std::uint32_t find(const Light*, std::uint32_t part) const noexcept;
     float nearShare(const Receiver&) const noexcept;
+    float farIrradiance(const Receiver&) const noexcept;
+    float inSight(std::size_t far, const Receiver&) const noexcept; // how much of a light far away, 0 … 1
     static constexpr std::size_t kMostWeighed = 8; // of far lights: those that a receiver is asked about
     using FarShares = std::array<float, kMostWeighed>;
     FarShares farShares(const Receiver&) const noexcept; // Requires farInSight_

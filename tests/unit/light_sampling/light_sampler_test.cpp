@@ -123,6 +123,10 @@ TEST_CASE("light choice: near and far lights each keep a share of the picks") {
     const Lights even = lightsOf({{.power = 1, .parts = 1}, {.infinite = true, .irradiance = near}});
     CHECK(far(even, Receiver({0, 0, 0}, {0, 1, 0}, false)) == doctest::Approx(0.5).epsilon(1e-3));
     CHECK(far(even, there) > 0.8f);
+    // The same through windows that show a quarter of the sky.
+    const Lights room =
+        lightsOf({{.power = 1, .parts = 1}, {.infinite = true, .irradiance = 4 * near, .sight = 0.25f}});
+    CHECK(far(room, Receiver({0, 0, 0}, {0, 1, 0}, false)) == doctest::Approx(0.5).epsilon(1e-3));
 }
 
 // docs/hard_cases.md, case 35.
