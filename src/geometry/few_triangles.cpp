@@ -129,6 +129,7 @@ FewTriangles::~FewTriangles() = default;
 std::unique_ptr<const FewTriangles> FewTriangles::make(std::span<const Triangle> triangles) {
     // Of weights, in a place that was rounded where it lies, after a way as long as twice the scene.
     constexpr double kRounding = 10 * 0x1p-24, kLargestSlack = 1e-3;
+    constexpr double kLeastArea2 = 1e-30, kMostArea2 = 1e30; // doubled, squared: floats still have its normal
     if (triangles.empty() || triangles.size() > kMost) return nullptr;
     double reach = 0;
     for (const Triangle& t : triangles)
@@ -144,6 +145,7 @@ std::unique_ptr<const FewTriangles> FewTriangles::make(std::span<const Triangle>
         const Vec3d normal = cross(e1, e2);
         const double twice2 = lengthSquared(normal);
         if (!(twice2 > 0)) continue; // nothing to be hit
+        if (!(twice2 > kLeastArea2 && twice2 < kMostArea2)) return nullptr;
         const Vec3d n = normal / std::sqrt(twice2), u = cross(e2, normal) / twice2, v = cross(normal, e1) / twice2;
         const auto size = [](Vec3d w) { return std::abs(w.x) + std::abs(w.y) + std::abs(w.z); };
         const double slack = kRounding * (1 + (size(u) + size(v)) * reach);

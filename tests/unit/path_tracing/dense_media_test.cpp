@@ -59,7 +59,8 @@ TEST_CASE("dense media: the surface ahead is looked for no further than the coll
     const std::string volume = "volume noise { center 0 -6 0; size 0.5 0.5 0.5; extinction 1 per-m }\n";
     for (const std::string boundary : {"diffuse", "dielectric", "dielectric; roughness 0.2"}) {
         INFO(boundary);
-        const std::string text = kView + hidden + kSolid + boundary + " } }\n";
+        // Scattered unevenly, so that no walk is pulled to the surface, which does not happen beside that medium.
+        const std::string text = kView + hidden + kSolid + boundary + "; anisotropy 0.3 } }\n";
         const TestScene alone = TestScene::parse(text), beside = TestScene::parse(text + volume);
         REQUIRE(alone.report() == "");
         REQUIRE(beside.report() == "");

@@ -85,7 +85,8 @@ TEST_CASE("geometry: an instance is the same surface as one made in place") {
         CHECK(instanced.built().facts.instances == 1);
         int met = 0;
         for (int i = 0; i < 400; ++i) {
-            const Vec3d from{-3 + 0.3 * (i % 20), -3 + 0.3 * (i / 20) + 0.01, 9};
+            // Past the edges of the block, where two faces are as near.
+            const Vec3d from{-3 + 0.3 * (i % 20) + 0.013, -3 + 0.3 * (i / 20) + 0.01, 9};
             const WorldHit a = trace(baked, from, {0.05, 0.02, -1}), b = trace(instanced, from, {0.05, 0.02, -1});
             REQUIRE(a.met == b.met);
             if (!a.met) continue;

@@ -86,7 +86,7 @@ TEST_CASE("technique: strata of a whole replicate in places, directions and choi
 
 TEST_CASE("technique: every word says what it says") {
     for (const auto& [name, value] : properties({})) CHECK_FALSE(value.empty());
-    CHECK(properties({}).size() == 10);
+    CHECK(properties({}).size() == 11);
     CHECK(word(Technique::Numbers::random) == "random");
     CHECK(word(Technique::Strategy::lightsOnly) == "lights");
     CHECK(word(Technique::Strategy::bsdfOnly) == "bsdf");
