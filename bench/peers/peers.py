@@ -39,10 +39,14 @@ NOTES = ["Efficiency is 1 / (relMSE × core-seconds); intervals are two standard
 MARKDOWN, README = "six scenes", "short" # blocks
 
 
-def cleanest(scene, running, but):
-    """Renders of the unbiased renderer with the least error, but not of that one; None if there is no other."""
+ANOTHER_SCENE = 0.2 # of coarse difference: Mitsuba's `ptracer` shows glass black, and errors divided by black are large
+
+
+def cleanest(scene, running, but, abbe):
+    """Renders of the unbiased renderer with the least error that shows what Abbe shows, but not of that one; None if there is no other."""
     found = [(np.mean(list(figures.errors_between(images, scene.region).values())), images) for renderer, _, images, _ in running
-             if renderer is not but and not renderer.biased and renderer.family != "yardstick"]
+             if renderer is not but and not renderer.biased and renderer.family != "yardstick"
+             and not (abbe and figures.coarse_difference(images, abbe) > ANOTHER_SCENE)]
     return min(found, key=lambda pair: pair[0], default=(0, None))[1]
 
 
@@ -117,7 +121,7 @@ def compare(scene, options, folder):
                 failed(renderer, error)
                 running.remove(entry)
     abbe = next((images for renderer, _, images, _ in running if renderer.family == "Abbe"), [])
-    rows = [measured(scene, renderer, images, seconds, cleanest(scene, running, renderer), abbe) for renderer, _, images, seconds in running]
+    rows = [measured(scene, renderer, images, seconds, cleanest(scene, running, renderer, abbe), abbe) for renderer, _, images, seconds in running]
     for renderer, *_ in running:
         renderer.close()
     return rows, missing, {(scene.name, renderer.name): picture(images) for renderer, _, images, _ in running}
