@@ -150,7 +150,7 @@ LightSampler::FarShares LightSampler::farShares(const Receiver& at) const noexce
 }
 
 PickedLight LightSampler::pickFar(double u, float share, const Receiver& at) const noexcept {
-    if (farInSight_) {
+    if (farInSight_ && farAmount_.size() > 1) {
         const FarShares shares = farShares(at);
         std::uint32_t last = 0;
         for (std::uint32_t i = 0; i < farAmount_.size(); ++i) {
@@ -180,7 +180,8 @@ float LightSampler::probabilityOf(std::uint32_t i, const Receiver& at, const Sca
     if (lights_.size() == 1) return 1;
     const float share = nearShare(at);
     if (i < near_) return share * tree_->probability(i, at, view);
-    return (1 - share) * (farInSight_ ? farShares(at)[i - near_] : farProbability_[i - near_]);
+    const bool choosing = farInSight_ && farAmount_.size() > 1;
+    return (1 - share) * (choosing ? farShares(at)[i - near_] : farProbability_[i - near_]);
 }
 
 float LightSampler::probability(const Light* light, std::uint32_t part, const Receiver& at,
