@@ -1,5 +1,5 @@
 // Cameras that change what another one does: one whose shutter and movement matter, because something moves while it is
-// open, and one without the effects that it has.
+// open, one without the effects that it has, and one that stands elsewhere.
 #pragma once
 
 #include "cameras/exposure.h"
@@ -80,6 +80,44 @@ class ReducedCamera final : public Camera {
 
     std::unique_ptr<const Camera> inner_;
     bool centred_, still_;
+};
+
+// A camera made for the origin that stands elsewhere in render space: where the space of an earlier camera is kept.
+class MovedCamera final : public Camera {
+  public:
+    MovedCamera(std::unique_ptr<const Camera> inner, Vec3d place) : inner_(std::move(inner)), place_(place) {}
+
+    CameraRay ray(const CameraSample& sample) const noexcept override {
+        CameraRay result = inner_->ray(sample);
+        result.ray.origin = Vec3(Vec3d(result.ray.origin) + place_);
+        return result;
+    }
+    std::optional<Vec2d> project(Vec3d p, double time, Vec2d near) const noexcept override {
+        return inner_->project(p - place_, time, near);
+    }
+    float rayTime(float u) const noexcept override { return inner_->rayTime(u); }
+    std::optional<LensConnection> connect(const LensQuery& query) const noexcept override {
+        auto found = inner_->connect(before(query));
+        if (found) found->lens = Vec3(Vec3d(found->lens) + place_);
+        return found;
+    }
+    float pdfFacingArea(const LensQuery& query, const CameraRay& ray) const noexcept override {
+        CameraRay inner = ray;
+        inner.ray.origin = Vec3(Vec3d(ray.ray.origin) - place_);
+        return inner_->pdfFacingArea(before(query), inner);
+    }
+    bool sharesLens() const override { return inner_->sharesLens(); }
+    bool usesLens() const override { return inner_->usesLens(); }
+    bool disperses() const override { return inner_->disperses(); }
+
+  private:
+    LensQuery before(LensQuery query) const {
+        query.p = Vec3(Vec3d(query.p) - place_);
+        return query;
+    }
+
+    std::unique_ptr<const Camera> inner_;
+    Vec3d place_; // m
 };
 
 } // namespace abbe

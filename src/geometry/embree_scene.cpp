@@ -109,14 +109,13 @@ void attachGeometry(RTCScene scene, RTCGeometry geometry, std::size_t id, Visibi
     rtcReleaseGeometry(geometry);
 }
 
-EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometryRecord>& records, bool nested)
-    : device_(device), scene_(scene), records_(records), firstRecord_(records.size()), nested_(nested) {}
+EmbreeSink::EmbreeSink(RTCDevice device, RTCScene scene, std::vector<GeometrySlot>& slots)
+    : device_(device), scene_(scene), slots_(slots), first_(slots.size()) {}
 
-void EmbreeSink::add(const Shape& shape, const Material* material, const SurfaceLight* light, std::uint32_t space,
-                     Visibility visible) {
-    visible_ = visible;
-    next_ = {&shape, material, light, space, 0, PrimitiveKind::analytic, 1};
-    shape.commit(*this);
+void EmbreeSink::add(const ShapeUse& use) {
+    use_ = use;
+    next_ = {};
+    use.shape->commit(*this);
 }
 
 // A buffer per time step; Embree refuses other numbers of them than the geometry has.
@@ -142,8 +141,8 @@ void EmbreeSink::mesh(RTCGeometryType type, RTCFormat format, TimeSteps<Vec3> ve
     RTCGeometry geometry = rtcNewGeometry(device_, type);
     shareSteps(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, format, indices, 0, stride, count);
-    if (nested_ && next_.material && next_.material->ior()) {
-        rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+    if (use_.skippable) {
+        rtcSetGeometryUserData(geometry, const_cast<Shape*>(use_.shape)); // read back as const
         rtcSetGeometryIntersectFilterFunction(geometry, skipMesh);
     }
     attach(geometry, type == RTC_GEOMETRY_TYPE_QUAD ? PrimitiveKind::quads : PrimitiveKind::triangles);
@@ -191,7 +190,7 @@ void EmbreeSink::curves(CurveBasis basis, CurveForm form, TimeSteps<SizedPoint> 
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, neighbours.data(), 0, 1,
                                    neighbours.size());
     if (basis == CurveBasis::linear && form == CurveForm::round) {
-        rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+        rtcSetGeometryUserData(geometry, const_cast<Shape*>(use_.shape)); // read back as const
         rtcSetGeometryIntersectFilterFunction(geometry, confirmHit);
         rtcSetGeometryOccludedFilterFunction(geometry, confirmHit);
     }
@@ -210,7 +209,7 @@ void EmbreeSink::points(PointForm form, TimeSteps<SizedPoint> points, TimeSteps<
 void EmbreeSink::analytic(const Bounds3&) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, const_cast<Shape*>(next_.shape)); // read back as const
+    rtcSetGeometryUserData(geometry, const_cast<Shape*>(use_.shape)); // read back as const
     rtcSetGeometryBoundsFunction(geometry, analyticBounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, analyticIntersect);
     rtcSetGeometryOccludedFunction(geometry, analyticOccluded);
@@ -218,9 +217,9 @@ void EmbreeSink::analytic(const Bounds3&) {
 }
 
 void EmbreeSink::attach(RTCGeometry geometry, PrimitiveKind kind) {
-    attachGeometry(scene_, geometry, records_.size() - firstRecord_, visible_);
+    attachGeometry(scene_, geometry, slots_.size() - first_, use_.visible);
     next_.kind = kind;
-    records_.push_back(next_);
+    slots_.push_back(next_);
     ++next_.part;
 }
 
@@ -341,7 +340,7 @@ void EmbreeScene::surfaceInside(const GeometryRecord& record, const RawHit& raw,
 [[gnu::always_inline]] inline bool EmbreeScene::nearest(const Ray& ray, RayContext& context, RTCRayHit& rayHit) const {
     if (!few) {
         fill(rayHit.ray, ray, kNearestHit);
-        cast(scene.get(), context, rayHit);
+        cast(scene, context, rayHit);
         return rayHit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
     }
     const WorkScope work(Work::tracing);
@@ -404,7 +403,7 @@ bool EmbreeScene::intersect(const Ray& ray, SurfaceHit& hit) const noexcept {
         }
         fill(rayHit.ray, ray, std::nextafter(reported, kInfinity));
         if (!(rayHit.ray.tnear < rayHit.ray.tfar)) break;
-        cast(scene.get(), context, rayHit);
+        cast(scene, context, rayHit);
     }
     if (!found) return false;
     const Path way{path.data(), nearest.instID[0]};
@@ -421,8 +420,7 @@ bool EmbreeScene::recompute(RTCHit& h, Path path, const Ray& ray, float& distanc
     const GeometryRecord& record = recordOf(h, path);
     const PrimitiveKind kind = record.kind;
     if (kind != PrimitiveKind::triangles && kind != PrimitiveKind::quads) return true; // computed in double already
-    const Corners corners =
-        cornersOf(path.empty() ? scene.get() : path.back().table->object(), h, record, path, ray.time);
+    const Corners corners = cornersOf(path.empty() ? scene : path.back().table->object(), h, record, path, ray.time);
     const Vec3d o(ray.origin), d(ray.direction);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < corners.count; ++i) {
@@ -451,7 +449,7 @@ std::optional<Passage> EmbreeScene::passage(const Ray& ray, const SurfaceHit& hi
     for (int i = 0; i < kMaxRecasts && near < window.tMax; ++i) {
         RTCRayHit rayHit;
         fill(rayHit.ray, window, near);
-        cast(scene.get(), context, rayHit);
+        cast(scene, context, rayHit);
         if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
         const Path path = context.path(rayHit.hit);
         if (recordOf(rayHit.hit, path).shape == hit.shape) return passage(rayHit.hit, path, rayHit.ray.tfar, ray, hit);
@@ -486,17 +484,17 @@ std::size_t EmbreeScene::coincident(const Ray& ray, const SurfaceHit& hit,
     Ray window = ray;
     window.tMax = hit.distance + rounding;
     RayContext context(rejected_);
-    context.skipped[context.skippedCount++] = hit.shape;
+    context.skipped[context.skippedCount++] = hit.shape ? &hit.shape->primitives() : nullptr;
     std::size_t count = 0;
     while (count < others.size()) {
         RTCRayHit rayHit;
         fill(rayHit.ray, window, std::max(hit.distance - rounding, kNearestHit));
-        cast(scene.get(), context, rayHit);
+        cast(scene, context, rayHit);
         if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
         SurfaceHit& other = others[count];
         surface(rayHit.hit, context.path(rayHit.hit), rayHit.ray.tfar, ray, other);
         other.distance = rayHit.ray.tfar;
-        context.skipped[context.skippedCount++] = other.shape;
+        context.skipped[context.skippedCount++] = &other.shape->primitives();
         // Only those of the same layer of other dielectrics: an opaque surface ends the path when it is hit.
         if (other.material->ior()) ++count;
         if (context.skippedCount == RayContext::kMaxSkipped) break;
@@ -514,7 +512,7 @@ bool EmbreeScene::occluded(const Ray& ray) const noexcept {
     RayContext context(rejected_);
     RTCRay r;
     fill(r, ray, kNearestHit);
-    rtcOccluded1(scene.get(), &context.rtc, &r);
+    rtcOccluded1(scene, &context.rtc, &r);
     return r.tfar < 0;
 }
 

@@ -1,5 +1,5 @@
 // All geometry of a scene behind one intersector, by Embree: ownership of its reference-counted handles and its errors
-// as exceptions, shapes as its geometries, and rays. EmbreeSceneBuilder fills it.
+// as exceptions, shapes as its geometries, the trees over them, and rays. EmbreeSceneBuilder fills it.
 #pragma once
 
 #include "geometry/few_triangles.h"
@@ -68,15 +68,29 @@ static_assert(sizeof(GeometryRecord) == 32);
 // Embree accepts hits at the near end itself: without this a ray that starts on a plane through the origin, where the
 // error bound is 0, would hit it again at distance 0.
 inline constexpr float kNearestHit = std::numeric_limits<float>::min();
-// Turns the primitives of shapes into geometries of one Embree scene, numbered in order, with a record for each at the
-// end of `records`. Refers to the shapes and their data (see EmbreeSceneBuilder).
+// A shape as trees know it: whatever it is made of and emits.
+struct ShapeUse {
+    const Shape* shape = nullptr; // Shape::primitives()
+    Visibility visible;
+    bool skippable = false; // rays can be told not to see it, though it is a mesh (RayContext::skips)
+
+    bool operator==(const ShapeUse&) const = default;
+};
+
+// What a geometry id stands for, of the shape that it is part of.
+struct GeometrySlot {
+    std::uint16_t part = 0;
+    PrimitiveKind kind = PrimitiveKind::instance;
+    std::uint8_t steps = 1; // in time
+};
+
+// Turns the primitives of shapes into geometries of one Embree scene, numbered in order, with a slot for each at the
+// end of `slots`. Refers to the shapes and their data (see EmbreeSceneBuilder).
 class EmbreeSink final : public GeometrySink {
   public:
-    // `nested`: meshes of dielectrics can be skipped by rays (RayContext::skips).
-    EmbreeSink(RTCDevice, RTCScene, std::vector<GeometryRecord>& records, bool nested);
+    EmbreeSink(RTCDevice, RTCScene, std::vector<GeometrySlot>& slots);
 
-    void add(const Shape&, const Material*, const SurfaceLight*, std::uint32_t space = GeometryRecord::kUntextured,
-             Visibility = kVisibleToAll);
+    void add(const ShapeUse&);
 
     void triangles(TimeSteps<Vec3>, Triangles) override;
     void quads(TimeSteps<Vec3>, Quads) override;
@@ -93,11 +107,10 @@ class EmbreeSink final : public GeometrySink {
 
     RTCDevice device_;
     RTCScene scene_;
-    std::vector<GeometryRecord>& records_;
-    std::size_t firstRecord_;
-    bool nested_;
-    GeometryRecord next_;
-    Visibility visible_; // of the next one
+    std::vector<GeometrySlot>& slots_;
+    std::size_t first_;
+    ShapeUse use_; // that the next ones are of
+    GeometrySlot next_;
 };
 
 // Sets the mask, commits and hands the geometry over to the scene under the given number.
@@ -107,8 +120,40 @@ void attachGeometry(RTCScene, RTCGeometry, std::size_t id, Visibility);
 // of Embree's distance, a few ulp.
 inline constexpr float kBeforeEnd = 1 - 0x1p-20f;
 
+// A tree over shapes in one space, without those that are placed in it.
+struct ShapeTree {
+    std::shared_ptr<const EmbreeDevice> device;       // outlives the scene
+    std::vector<std::shared_ptr<const Shape>> owners; // of the shapes, where others may still need the tree
+    EmbreeHandle<RTCScene, rtcReleaseScene> scene;
+    std::vector<ShapeUse> uses;
+    std::vector<GeometrySlot> slots;     // by geometry id
+    std::vector<std::size_t> firstSlots; // of each use, and one past the last
+    bool leaf = true;                    // nothing is placed in it
+};
+
+// What rays meet, and nothing of what it is made of: immutable, and shared by all scenes that differ in materials and
+// lights alone.
+struct EmbreeStructure {
+    std::shared_ptr<const ShapeTree> top;
+    std::vector<std::shared_ptr<const ShapeTree>> objects;
+    std::vector<std::unique_ptr<const InstanceTable>> tables;
+    std::unique_ptr<const FewTriangles> few; // all there is to be hit, if it is little; else null
+    Bounds3 bounds;
+    bool moving = false; // anything
+    // What holds a table, the object that it places, and the rays that see it, as bits.
+    struct Placed {
+        std::uint32_t holder = 0, object = 0, visible = 0;
+        auto operator<=>(const Placed&) const = default;
+    };
+    std::vector<Placed> placed; // like tables
+};
+
 class EmbreeScene final : public Intersector {
   public:
+    explicit EmbreeScene(std::shared_ptr<const EmbreeStructure> built)
+        : structure(std::move(built)), scene(structure->top->scene.get()), few(structure->few.get()),
+          moving(structure->moving) {}
+
     bool intersect(const Ray&, SurfaceHit&) const noexcept override;
     bool occluded(const Ray&) const noexcept override;
     bool occluded(Vec3 from, Vec3 to, float time, RayKind kind) const noexcept override {
@@ -116,21 +161,19 @@ class EmbreeScene final : public Intersector {
     }
     std::size_t coincident(const Ray&, const SurfaceHit&, std::span<SurfaceHit>) const noexcept override;
     std::optional<Passage> passage(const Ray&, const SurfaceHit&, float distance) const noexcept override;
-    Bounds3 bounds() const override { return bounds_; }
+    Bounds3 bounds() const override { return structure->bounds; }
     std::uint64_t rejectedRays() const override { return rejected_.load(std::memory_order_relaxed); }
 
-    EmbreeDevice device;
-    std::vector<EmbreeHandle<RTCScene, rtcReleaseScene>> objectScenes;
-    EmbreeHandle<RTCScene, rtcReleaseScene> scene;
+    std::shared_ptr<const EmbreeStructure> structure;
     std::vector<GeometryRecord> records; // of the top scene by geometry id, then of each object
     std::vector<OwnSpace> ownSpaces;     // GeometryRecord::space
-    std::vector<std::unique_ptr<const InstanceTable>> tables;
-    std::unique_ptr<const FewTriangles> few; // all there is to be hit, if it is little; else null
-    Bounds3 bounds_;
-    bool moving = false; // anything
 
   private:
     using Path = std::span<const PlacementStep>; // from the scene to the object that was hit
+
+    RTCScene scene;          // the structure's
+    const FewTriangles* few; // likewise
+    bool moving;
 
     bool nearest(const Ray&, RayContext&, RTCRayHit&) const;
     const GeometryRecord& recordOf(const RTCHit&, Path) const;

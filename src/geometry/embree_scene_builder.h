@@ -9,10 +9,20 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace abbe {
+
+struct EmbreeStructure;
+
+// The trees that one builder leaves to the next: of equal shapes at equal places they are taken over, and materials
+// and lights alone are new. Those of objects without others in them are taken over one by one.
+struct KeptGeometry {
+    std::shared_ptr<const EmbreeStructure> last; // null: none
+    std::size_t built = 0, kept = 0;             // trees, by the last build()
+};
 
 // Collects shapes, then builds the intersector once. Shapes are referred to, not owned: they, and the spans that
 // their commit() hands out, must outlive the intersector. Spans of vertices must be readable for 4 bytes past their
@@ -56,6 +66,9 @@ class EmbreeSceneBuilder {
     void addMoving(std::uint32_t object, const Motion&, std::uint32_t inside = kScene, Visibility = kVisibleToAll);
     // Ends the builder. Throws std::runtime_error with Embree's text when it runs out of memory or refuses data.
     std::unique_ptr<Intersector> build();
+    // The same with trees of an earlier one, and for a later one. `owners` has all shapes: they live as long as any
+    // tree over them.
+    std::unique_ptr<Intersector> build(KeptGeometry&, std::span<const std::shared_ptr<const Shape>> owners);
 
   private:
     struct Impl;

@@ -31,6 +31,8 @@ class Placement {
     // (|det| < 1e-30 |A|³), or makes it so small or large that float cannot hold a ray inside of it.
     static std::optional<std::string> findFault(const Transform&);
 
+    bool operator==(const Placement&) const = default;
+
     Transform map() const; // as rounded
     // The direction keeps its length in object units, so distances along the ray stay those outside.
     Ray toObject(const Ray&) const;

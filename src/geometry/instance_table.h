@@ -4,6 +4,7 @@
 #include "geometry/instance.h"
 #include "math/motion.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -70,6 +71,13 @@ class InstanceTable {
 
     std::size_t size() const { return motions_.empty() ? placements_.size() : motions_.size(); }
     RTCScene object() const { return object_; }
+    // Whether it places as another one does, be it the same object or not.
+    bool placesAs(std::span<const Placement> placements) const {
+        return motions_.empty() && std::ranges::equal(placements_, placements);
+    }
+    bool placesAs(std::span<const Motion> motions, Interval shutter) const {
+        return std::ranges::equal(motions_, motions) && shutter_ == shutter;
+    }
     bool moves() const { return !motions_.empty(); }
     Placement placement(std::uint32_t i, float time) const {
         return motions_.empty() ? placements_[i] : movedTo(i, static_cast<double>(time));

@@ -435,12 +435,13 @@ namespace {
 ShapeTraits traitsWith(const Shape& shape, const std::vector<const Material*>& materials) {
     const auto looksAtTextures = [](const Material* m) { return m && m->usesTextures(); };
     return {.hasTextureCoordinates = shape.hasTextureCoordinates(),
-            .usesTextures = std::ranges::any_of(materials, looksAtTextures)};
+            .usesTextures = std::ranges::any_of(materials, looksAtTextures),
+            .primitives = &shape.primitives()};
 }
 
 } // namespace
 
-FaceMaterials::FaceMaterials(std::unique_ptr<const Shape> shape, std::vector<const Material*> materials,
+FaceMaterials::FaceMaterials(std::shared_ptr<const Shape> shape, std::vector<const Material*> materials,
                              std::vector<std::uint16_t> choice)
     : Shape(traitsWith(*shape, materials)), shape_(std::move(shape)), materials_(std::move(materials)),
       choice_(std::move(choice)) {

@@ -100,7 +100,7 @@ class Mesh final : public Shape, public SurfaceSampling, public VertexAttributes
 class FaceMaterials final : public Shape {
   public:
     // Requires a choice for every primitive of the shape, within `materials`.
-    FaceMaterials(std::unique_ptr<const Shape> shape, std::vector<const Material*> materials,
+    FaceMaterials(std::shared_ptr<const Shape> shape, std::vector<const Material*> materials,
                   std::vector<std::uint16_t> choice);
 
     const Shape& inner() const { return *shape_; }
@@ -122,7 +122,7 @@ class FaceMaterials final : public Shape {
     double area() const override { return shape_->area(); }
 
   private:
-    std::unique_ptr<const Shape> shape_;
+    std::shared_ptr<const Shape> shape_;
     std::vector<const Material*> materials_;
     std::vector<std::uint16_t> choice_;
 };

@@ -16,6 +16,7 @@ namespace abbe {
 struct Interval {
     double open = 0, duration = 0;
 
+    bool operator==(const Interval&) const = default;
     double at(double position) const { return open + position * duration; } // position in [0, 1]
 };
 
@@ -25,6 +26,8 @@ struct Interval {
 struct Quaternion {
     double w = 1;
     Vec3d v{};
+
+    bool operator==(const Quaternion&) const = default;
 };
 
 // A = R S: a rotation after a stretch. S is symmetric; a mirror makes all of S negative, so that R always is a proper
@@ -33,6 +36,8 @@ struct Decomposition {
     Vec3d translation;
     Quaternion rotation;
     std::array<std::array<double, 3>, 3> stretch{};
+
+    bool operator==(const Decomposition&) const = default;
 
     static Decomposition of(const Transform&);
     Transform compose() const;
@@ -51,6 +56,8 @@ struct TransformStep {
     double angle = 0;   // rad, of a rotation
     Transform matrix{}; // of any other step
 
+    bool operator==(const TransformStep&) const = default;
+
     Transform transform() const;
 };
 
@@ -62,12 +69,16 @@ class KeyedTransform {
     struct Key {
         double time = 0; // s
         std::vector<TransformStep> steps;
+
+        bool operator==(const Key&) const = default;
     };
 
     KeyedTransform() = default; // the identity, always
     KeyedTransform(const Transform& still) : keys_{{0, {{TransformStep::Kind::matrix, {}, 0, still}}}} {}
     // Requires strictly increasing finite times and invertible steps. Keys that are all the same stand still.
     explicit KeyedTransform(std::vector<Key>);
+
+    bool operator==(const KeyedTransform&) const = default;
 
     bool moves() const { return keys_.size() > 1; }
     // Whether it changes between two times, the first of which is the earlier one or the same.
@@ -92,12 +103,15 @@ class Motion {
     Motion then(const Motion&) const;
     bool moves() const { return !links_.empty(); }
     Transform at(double time) const;
+    bool operator==(const Motion&) const = default;
 
   private:
     // Applied first to last: each link's map, then what stood still behind it.
     struct Link {
         Transform before;
         KeyedTransform keyed;
+
+        bool operator==(const Link&) const = default;
     };
     std::vector<Link> links_;
     Transform outer_; // after the last link

@@ -12,6 +12,8 @@ struct Transform {
     double a[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     Vec3d t{};
 
+    bool operator==(const Transform&) const = default;
+
     static Transform translate(Vec3d);
     static Transform scale(Vec3d);
     // Right-handed rotation by `radians` about a (not necessarily unit) axis.

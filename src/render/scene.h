@@ -52,7 +52,7 @@ struct Scene {
     std::vector<std::unique_ptr<const Curve>> curves;
     std::vector<std::unique_ptr<const Texture>> textures; // outlive what refers to them
     std::vector<std::unique_ptr<const Material>> materials;
-    std::vector<std::unique_ptr<const Shape>> shapes;
+    std::vector<std::shared_ptr<const Shape>> shapes; // some perhaps of other buildings of the scene, too
     std::vector<SurfaceUse> surfaces;                 // one for each place of a shape
     std::vector<std::unique_ptr<const Light>> lights; // committed
     std::vector<std::unique_ptr<const Medium>> media;
@@ -72,6 +72,7 @@ struct Scene {
     Effects effects;
     std::vector<EffectReason> reasons;
     Vec3d origin; // world position of the origin of render space
+    Vec3 eye;     // where the camera stands there: at its origin, but where that of an earlier camera is kept
     // What the file calls shapes, materials, lights and media that emit: their names or, for those without one, type
     // and number.
     std::unordered_map<const void*, std::string> names;

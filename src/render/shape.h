@@ -88,11 +88,14 @@ enum class Relief : std::uint8_t {
     facets,  // flat pieces with edges between them; emitterParts() tells how many
 };
 
+class Shape;
+
 // What holds all over a shape: fixed when it is made.
 struct ShapeTraits {
     Relief relief = Relief::unknown;
     bool hasTextureCoordinates = true; // uv are texture coordinates of the whole shape
     bool usesTextures = false;         // some of its faces have a material of their own that looks at textures
+    const Shape* primitives = nullptr; // whose primitives these are, where that is another shape, which is part of it
 };
 
 class SurfaceSampling;
@@ -164,6 +167,8 @@ class Shape {
     Relief relief() const { return traits_.relief; }
     bool hasTextureCoordinates() const { return traits_.hasTextureCoordinates; }
     bool usesTextures() const { return traits_.usesTextures; }
+    // What acceleration structures know it by: the same as long as commit() says the same, whatever its materials.
+    const Shape& primitives() const { return traits_.primitives ? *traits_.primitives : *this; }
 
   protected:
     explicit Shape(ShapeTraits traits = {}) : traits_(traits) {}

@@ -32,8 +32,8 @@ class SceneBuilder final : public schema::Resolver {
     using Definition = schema::Definition;
 
     SceneBuilder(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
-                 Diagnostics& diagnostics, BuiltScene& built)
-        : context_(tree, types, options, diagnostics, built, *this) {}
+                 Diagnostics& diagnostics, BuiltScene& built, SceneReuse* reuse)
+        : context_(tree, types, options, diagnostics, built, *this, reuse) {}
 
     void build();
 
@@ -172,7 +172,8 @@ void SceneBuilder::commitGeometry() {
     if (!context_.options.geometry || context_.diagnostics.hasErrors()) return;
     const WorkScope work(Work::committing);
     const auto start = std::chrono::steady_clock::now();
-    context_.built.scene.intersector = placer_.embree.build();
+    context_.built.scene.intersector =
+        context_.reuse ? placer_.embree.build(context_.reuse->geometry, shapes_.all()) : placer_.embree.build();
     context_.built.commitSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -183,6 +184,7 @@ void SceneBuilder::finish() {
     built.facts.lights = lights_.all().size();
     built.facts.materials = materials_.count();
     built.facts.bounds = bounds.empty() ? bounds : Bounds3d{bounds.lower + scene.origin, bounds.upper + scene.origin};
+    if (context_.reuse) context_.reuse->reach = bounds.empty() ? 0 : length(bounds.upper - bounds.lower);
     commitLights();
     textures_.noteEffects();
     materials_.noteEffects();
@@ -238,9 +240,18 @@ void SceneBuilder::build() {
 } // namespace
 
 BuiltScene buildScene(const schema::SceneTree& tree, const schema::TypeTable& types, const BuildOptions& options,
-                      Diagnostics& diagnostics) {
+                      Diagnostics& diagnostics, SceneReuse* reuse) {
     BuiltScene built;
-    SceneBuilder(tree, types, options, diagnostics, built).build();
+    if (!reuse) {
+        SceneBuilder(tree, types, options, diagnostics, built, nullptr).build();
+        return built;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t errors = diagnostics.errorCount();
+    reuse->begin();
+    SceneBuilder(tree, types, options, diagnostics, built, reuse).build();
+    reuse->end(diagnostics.errorCount() == errors,
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return built;
 }
 

@@ -58,6 +58,8 @@ struct SceneFacts {
     std::vector<std::string> files; // read while building
 };
 
+class SceneReuse;
+
 struct BuiltScene {
     Scene scene;
     FilmParams film;
@@ -75,6 +77,8 @@ struct BuiltScene {
 
 // Builds everything, or returns what could be built together with errors in `diagnostics`: the caller must not render
 // a scene with errors. Never throws on bad input. Whole-scene sanity (no camera, no light, …) is checked here (E06xx).
-BuiltScene buildScene(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&);
+// What `reuse` has of earlier buildings (scene/reuse.h) is taken over where it is the same.
+BuiltScene buildScene(const schema::SceneTree&, const schema::TypeTable&, const BuildOptions&, Diagnostics&,
+                      SceneReuse* reuse = nullptr);
 
 } // namespace abbe

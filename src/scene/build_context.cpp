@@ -46,6 +46,83 @@ const schema::Definition* BuildContext::only(schema::Kind kind, std::string_view
     return first;
 }
 
+// What other buildings made.
+
+namespace {
+
+// The counters of what is made and of what is taken over.
+std::pair<std::size_t&, std::size_t&> countersOf(Reused kind, ReuseCounters& c) {
+    switch (kind) {
+    case Reused::shape:
+        return {c.shapesLoaded, c.shapesKept};
+    case Reused::place:
+        return {c.placesMade, c.placesKept};
+    case Reused::texture:
+        return {c.texturesRead, c.texturesKept};
+    case Reused::volume:
+        return {c.volumesRead, c.volumesKept};
+    case Reused::table:
+        break;
+    }
+    return {c.tablesMade, c.tablesKept};
+}
+
+constexpr std::size_t kNowhere = ~std::size_t{0};
+
+// Which of the spans each of a diagnostic is; nothing if one is none of them.
+std::optional<std::vector<std::size_t>> placesOf(const Diagnostic& d, std::span<const Span> spans) {
+    std::vector<std::size_t> places;
+    const auto add = [&](Span span) {
+        const auto found = std::ranges::find(spans, span);
+        places.push_back(span.valid() ? static_cast<std::size_t>(found - spans.begin()) : kNowhere);
+        return !span.valid() || found != spans.end();
+    };
+    bool known = add(d.span) && d.fixes.empty();
+    for (const Label& label : d.related) known = known && add(label.span);
+    return known ? std::optional(std::move(places)) : std::nullopt;
+}
+
+} // namespace
+
+BuildContext::Making BuildContext::takeOver(Reused kind, const Digest& key, const Digest& view,
+                                            std::span<const Span> spans) {
+    Making now{nullptr, diagnostics.all().size(), diagnostics.errorCount() + diagnostics.warningCount(),
+               built.facts.files.size()};
+    const SceneReuse::Kept* const kept = reuse->find(key, view);
+    if (!kept) return now;
+    ++countersOf(kind, reuse->count()).second;
+    now.kept = kept->thing;
+    for (std::size_t i = 0; i < kept->warnings.size(); ++i) {
+        Diagnostic d = kept->warnings[i];
+        const auto spanOf = [&](std::size_t place) { return place == kNowhere ? Span{} : spans[place]; };
+        d.span = spanOf(kept->warnedAt[i][0]);
+        for (std::size_t k = 0; k < d.related.size(); ++k) d.related[k].span = spanOf(kept->warnedAt[i][k + 1]);
+        diagnostics.add(std::move(d));
+    }
+    built.facts.files.insert(built.facts.files.end(), kept->files.begin(), kept->files.end());
+    return now;
+}
+
+// What was warned of at a place that the next building cannot find is made again.
+void BuildContext::leave(Reused kind, const Digest& key, const Digest& view, std::span<const Span> spans,
+                         const Making& start, std::shared_ptr<const void> made) {
+    ++countersOf(kind, reuse->count()).first;
+    const auto& all = diagnostics.all();
+    const std::size_t counted = diagnostics.errorCount() + diagnostics.warningCount() - start.counted;
+    if (!made || counted != all.size() - start.diagnostics) return; // some are not listed
+    SceneReuse::Kept kept;
+    kept.thing = std::move(made);
+    kept.view = view;
+    for (std::size_t i = start.diagnostics; i < all.size(); ++i) {
+        auto places = placesOf(all[i], spans);
+        if (!places || all[i].severity == Severity::error) return;
+        kept.warnings.push_back(all[i]);
+        kept.warnedAt.push_back(std::move(*places));
+    }
+    kept.files.assign(built.facts.files.begin() + static_cast<std::ptrdiff_t>(start.files), built.facts.files.end());
+    reuse->keep(key, std::move(kept));
+}
+
 // What a scene needs simulated, who asked for it, and what the scene forbids.
 
 namespace {

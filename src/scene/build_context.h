@@ -5,6 +5,7 @@
 #include "base/diagnostic.h"
 #include "base/enclosure.h"
 #include "scene/build.h"
+#include "scene/reuse.h"
 #include "schema/scene_tree.h"
 #include "spectrum/color_space.h"
 #include "spectrum/curve.h"
@@ -52,14 +53,16 @@ class BuildContext {
 
     // All of it outlives this; `resolver` makes what definitions refer to.
     BuildContext(const schema::SceneTree& sceneTree, const schema::TypeTable& typeTable, const BuildOptions& asked,
-                 Diagnostics& found, BuiltScene& result, schema::Resolver& resolver)
-        : tree(sceneTree), types(typeTable), options(asked), diagnostics(found), built(result), resolver_(resolver) {}
+                 Diagnostics& found, BuiltScene& result, schema::Resolver& resolver, SceneReuse* kept)
+        : tree(sceneTree), types(typeTable), options(asked), diagnostics(found), built(result), reuse(kept),
+          resolver_(resolver) {}
 
     const schema::SceneTree& tree;
     const schema::TypeTable& types;
     const BuildOptions& options;
     Diagnostics& diagnostics;
     BuiltScene& built;
+    SceneReuse* const reuse; // null: nothing is taken over from other buildings
     CurveLibrary curves;
 
     Vec3d up() const { return tree.header.zUp ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0}; }
@@ -97,7 +100,30 @@ class BuildContext {
     void checkForbidden();
     void checkCompiled();
 
+    // What `make` returns, or what an earlier building got from it for the same key: with its warnings, at `spans`, and
+    // the files that it read. `make` must depend on nothing else, but on what `view` stands for, and return null
+    // exactly after an error.
+    template <typename T, typename Make>
+    std::shared_ptr<const T> reused(Reused kind, const Digest& key, std::span<const Span> spans, Make make,
+                                    const Digest& view = {}) {
+        if (!reuse) return make();
+        const Making start = takeOver(kind, key, view, spans);
+        if (start.kept) return std::static_pointer_cast<const T>(start.kept);
+        std::shared_ptr<const T> made = make();
+        leave(kind, key, view, spans, start, made);
+        return made;
+    }
+
   private:
+    // Before a thing is made: that of an earlier building, or what had been reported and read until then.
+    struct Making {
+        std::shared_ptr<const void> kept;
+        std::size_t diagnostics = 0, counted = 0, files = 0;
+    };
+    Making takeOver(Reused, const Digest& key, const Digest& view, std::span<const Span>);
+    void leave(Reused, const Digest& key, const Digest& view, std::span<const Span>, const Making&,
+               std::shared_ptr<const void> made);
+
     schema::Resolver& resolver_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> givenNames_; // of definitions without one, by place
     std::unordered_map<std::string, int> nameless_;                             // definitions without a name, by type

@@ -90,6 +90,7 @@ void CameraBuilder::build() {
     if (placed->toWorld.moves() || shutter.opening + shutter.closing > 0)
         built.scene.camera = std::make_unique<ShutterCamera>(
             std::move(built.scene.camera), placed->toWorld.then(Transform::translate(-placed->origin)), shutter);
+    if (context_.reuse) keepOrigin();
     leaveOutEffects(*definition);
     if (built.scene.camera->disperses())
         context_.noteEffect(Effect::dispersion, definition->span, "the glass of its lens disperses");
@@ -97,6 +98,20 @@ void CameraBuilder::build() {
         context_.noteEffect(Effect::depthOfField, definition->span, "its lens has a width");
     if (placed->toWorld.moves() && built.shutter.duration > 0)
         context_.noteEffect(Effect::motion, definition->span, "the camera moves");
+}
+
+// Where the view is kept, geometry stays where it is, as far as single precision does not mind: the camera moves.
+void CameraBuilder::keepOrigin() {
+    SceneReuse& reuse = *context_.reuse;
+    Scene& scene = context_.built.scene;
+    const Vec3d place = reuse.origin ? scene.origin - *reuse.origin : Vec3d();
+    if (reuse.keepsView() && length(place) > 0 && length(place) <= reuse.reach) {
+        scene.origin = *reuse.origin;
+        scene.camera = std::make_unique<MovedCamera>(std::move(scene.camera), place);
+        scene.eye = Vec3(place);
+        reuse.count().viewKept = true;
+    }
+    reuse.nextOrigin = scene.origin;
 }
 
 // Before anything is placed; the shutter of the scene is known.
@@ -248,7 +263,7 @@ bool seesLight(const Scene& scene, Vec3 from) {
 } // namespace
 
 const Material* darkBodyAroundCamera(const Scene& scene) {
-    constexpr Vec3 camera{0, 0, 0}; // the origin of render space
+    const Vec3 camera = scene.eye;
     const Material* body = nullptr;
     std::array<Vec3, kDirections> inside{};
     for (int i = 0; i < kDirections; ++i) {

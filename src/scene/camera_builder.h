@@ -46,6 +46,8 @@ class CameraBuilder {
     // With the size of pixels filled in, if that is how the surface is diced. `inObject`: it is seen from many places.
     Dicing dicingFor(Dicing, const schema::Quantity& asked, double offscreen, const SubdivisionCage&,
                      const Transform& place, bool inObject);
+    // All that dicingFor() depends on besides its arguments.
+    void addView(DigestWriter&, const Dicing&, const schema::Quantity& asked, double offscreen, bool inObject);
 
   private:
     struct DicingCamera {
@@ -56,6 +58,7 @@ class CameraBuilder {
     CameraContext contextOf(const Definition&);
     const Definition* findShape(const std::vector<Definition>&, std::string_view name, double time, Transform& place);
     std::optional<Vec3d> middleOfShape(std::string_view name, double time); // of its bounds, world space
+    void keepOrigin();
     void leaveOutEffects(const Definition& camera);
     std::optional<DicingCamera> dicingCamera(const schema::Quantity& dicing);
 

@@ -69,11 +69,11 @@ bool InstanceBuilder::scatterSurface(const schema::Text& over, const std::vector
         if (d.name != over.value) continue;
         LoadedShape& loaded = shapes_.loaded(d);
         if (!loaded.sound) return false;
-        const auto shape = shapes_.placeInObject(loaded, loaded.common.transform.at(motion_.opening()));
+        const auto shape = shapes_.placed(loaded, loaded.common.transform.at(motion_.opening()), true);
         if (!shape) return false;
         TriangleSink sink(surface);
         shape->commit(sink);
-        if (const auto* disk = dynamic_cast<const Disk*>(shape.get()))
+        if (const auto* disk = dynamic_cast<const Disk*>(&shape->primitives()))
             surface.disk = {disk->centre(), disk->normal(), disk->radius()};
         if (surface.disk || !surface.triangles.empty()) return true;
         context_.diagnostics.error("E0632", over.span, fmt::format("nothing can be scattered over `{}`", over.value),

@@ -163,10 +163,18 @@ void LightSite::add(std::unique_ptr<DistantLight> light, const LightContext& con
     lights_.add(inMotion(std::move(light), context), definition_, place_.visible & own);
 }
 
-void LightSite::addArea(const AreaLightParams& params, const MakeSurface& make) {
+void LightSite::addArea(const AreaLightParams& params, const std::function<void(DigestWriter&)>& addMeaning,
+                        const MakeSurface& make) {
     const Transform outer = lights_.motion().atOpening(place_.motion);
     const Transform toRender = params.transform.at(lights_.motion().opening()).then(outer);
-    auto shape = make(toRender, lights_.shapes().contextOf(definition_));
+    const ShapeContext surroundings = lights_.shapes().contextOf(definition_);
+    const auto addAll = [&](DigestWriter& writer) {
+        writer.text(definition_.type->name);
+        writer.number(surroundings.unit), writer.number(surroundings.zUp);
+        addMeaning(writer);
+    };
+    auto shape =
+        lights_.shapes().lightSurface(definition_, toRender, addAll, [&] { return make(toRender, surroundings); });
     if (!shape) return;
     placer_.carry(params.transform, place_, definition_.span, [&](const Place& place) {
         LightContext context = lights_.contextOf(definition_, place_.motion);
@@ -212,6 +220,30 @@ std::unique_ptr<const Shape> placeLightMesh(const LightMeshParams& p, const Tran
     if (!mesh) return nullptr;
     if (!p.file.value.empty()) c.files.push_back(p.file.value);
     return placeMesh(std::move(*mesh), Transform::translate(origin).then(place), c.span, c.diagnostics);
+}
+
+void addMeaning(DigestWriter& writer, const LightQuadParams& p) {
+    for (const Vec3d corner : p.points) writer.add(corner);
+    writer.number(p.size.x), writer.number(p.size.y);
+}
+
+void addMeaning(DigestWriter& writer, const LightDiskParams& p) {
+    writer.add(p.center), writer.add(p.normal);
+    writer.number(p.radius);
+}
+
+void addMeaning(DigestWriter& writer, const LightSphereParams& p) {
+    writer.add(p.center);
+    writer.number(p.radius);
+}
+
+void addMeaning(DigestWriter& writer, const LightMeshParams& p) {
+    if (!p.file.value.empty()) writer.file(p.file.value);
+    for (const auto& [key, value] : p.file.keys) writer.text(key), writer.text(value);
+    writer.number(p.points.size());
+    for (const Vec3d point : p.points) writer.add(point);
+    writer.bytes(std::as_bytes(std::span(p.faces.counts)));
+    writer.bytes(std::as_bytes(std::span(p.faces.indices)));
 }
 
 // Lights that files describe: goniometric diagrams and pictures of all directions.

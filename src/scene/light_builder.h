@@ -35,8 +35,9 @@ class LightSite {
     void add(std::unique_ptr<PlacedLight>, const LightContext&, Visibility own);
     void add(std::unique_ptr<DistantLight>, const LightContext&, Visibility own);
     // What has one: makes a shape in render space, which is then a light. `make` returns null after an error.
+    // All that it depends on besides, `addMeaning` adds.
     using MakeSurface = std::function<std::unique_ptr<const Shape>(const Transform& place, const ShapeContext&)>;
-    void addArea(const AreaLightParams&, const MakeSurface& make);
+    void addArea(const AreaLightParams&, const std::function<void(DigestWriter&)>& addMeaning, const MakeSurface& make);
 
   private:
     const schema::Definition& definition_;
@@ -95,5 +96,10 @@ std::unique_ptr<const Shape> placeLightQuad(const LightQuadParams&, const Transf
 std::unique_ptr<const Shape> placeLightDisk(const LightDiskParams&, const Transform& place, const ShapeContext&);
 std::unique_ptr<const Shape> placeLightSphere(const LightSphereParams&, const Transform& place, const ShapeContext&);
 std::unique_ptr<const Shape> placeLightMesh(const LightMeshParams&, const Transform& place, const ShapeContext&);
+// All that these depend on besides their place and the header of the scene.
+void addMeaning(DigestWriter&, const LightQuadParams&);
+void addMeaning(DigestWriter&, const LightDiskParams&);
+void addMeaning(DigestWriter&, const LightSphereParams&);
+void addMeaning(DigestWriter&, const LightMeshParams&);
 
 } // namespace abbe

@@ -51,7 +51,7 @@ void Placer::placeLoaded(LoadedShape& loaded, const Place& place) {
         return;
     }
     const Transform here = motion_.atOpening(place.motion);
-    auto shape = place.object ? shapes_.placeInObject(loaded, here) : loaded.place(here);
+    auto shape = shapes_.placed(loaded, here, place.object != nullptr);
     if (!shape) return;
     countShape(loaded);
     noteEffects(loaded);

@@ -191,9 +191,9 @@ template <typename Params, auto place> RegistryEntry areaLight(schema::TypeInfo 
     const MakeLight maker = [](const BindParams& bind, LightSite& site) {
         Params params;
         if (!bind(&params)) return;
-        site.addArea(params, [&](const Transform& toRender, const ShapeContext& context) {
-            return place(params, toRender, context);
-        });
+        site.addArea(
+            params, [&](DigestWriter& writer) { addMeaning(writer, params); },
+            [&](const Transform& toRender, const ShapeContext& context) { return place(params, toRender, context); });
     };
     return {std::move(type), maker};
 }

@@ -77,8 +77,8 @@ void ShapeBuilder::chooseFaceMaterials(LoadedShape& shape, const FaceGroups& gro
     for (const std::uint32_t g : groups.quads) shape.faceMaterials.push_back((*choices)[g]);
 }
 
-std::unique_ptr<const Shape> ShapeBuilder::withFaceMaterials(const LoadedShape& loaded,
-                                                             std::unique_ptr<const Shape> shape) {
+std::shared_ptr<const Shape> ShapeBuilder::withFaceMaterials(const LoadedShape& loaded,
+                                                             std::shared_ptr<const Shape> shape) {
     std::vector<const Material*> used{nullptr};
     for (const schema::GroupReference& group : loaded.common.groupMaterials) {
         used.push_back(materials.ofGroup(group, loaded.common));
@@ -86,7 +86,7 @@ std::unique_ptr<const Shape> ShapeBuilder::withFaceMaterials(const LoadedShape& 
         if (used.back()->focuses())
             scene.built.scene.focusing.push_back({kEverything, scene.nameOf(*loaded.definition)});
     }
-    return std::make_unique<const FaceMaterials>(std::move(shape), std::move(used), loaded.faceMaterials);
+    return std::make_shared<const FaceMaterials>(std::move(shape), std::move(used), loaded.faceMaterials);
 }
 
 ShapeEmission ShapeBuilder::emissionOf(const LoadedShape& shape) {
@@ -116,11 +116,82 @@ void ShapeBuilder::noteFiles(const std::vector<ShapeKey>& keys) {
         if (!key.file.value.empty()) scene.noteFile(key.file.value);
 }
 
-std::unique_ptr<const Shape> ShapeBuilder::placeInObject(const LoadedShape& shape, const Transform& toObject) {
-    inObject_ = true;
-    auto placed = shape.place(toObject);
-    inObject_ = false;
-    return placed;
+namespace {
+
+// What is no part of a shape's geometry. Transforms are: as the map that places it.
+constexpr std::string_view kNotGeometry[] = {"material", "interior", "emission", "visible-to", "transform"};
+
+bool hasKeys(const schema::Definition& d) {
+    return std::ranges::any_of(d.properties, [](const schema::Node& property) { return property.name() == "at"; });
+}
+
+Digest marked(const Digest& digest, std::string_view mark) {
+    DigestWriter writer;
+    writer.text(mark);
+    writer.add(digest);
+    return writer.digest();
+}
+
+// A shape in its place, and what placing it said of it.
+struct PlacedShape {
+    std::shared_ptr<const Shape> shape;
+    std::vector<std::uint16_t> faceMaterials;
+    std::size_t dicedTriangles = 0, dicedQuads = 0;
+};
+
+} // namespace
+
+// Shapes that are alike and stand at one place are counted: each is a shape of its own.
+Digest ShapeBuilder::placeDigest(const LoadedShape& shape, const Transform& to, bool inObject) {
+    DigestWriter writer;
+    writer.text("place");
+    writer.add(shape.meaning.digest);
+    writer.add(to);
+    writer.number(inObject);
+    if (hasKeys(*shape.definition))
+        writer.number(scene.built.shutter.open), writer.number(scene.built.shutter.duration);
+    if (shape.subdivided) writer.number(scene.options.without.leavesOut(SwitchedEffect::displacement));
+    const Digest once = writer.digest();
+    writer.number(scene.reuse->timesAsked(once));
+    return writer.digest();
+}
+
+std::shared_ptr<const Shape> ShapeBuilder::placed(LoadedShape& shape, const Transform& to, bool inObject) {
+    const auto make = [&]() -> std::shared_ptr<const PlacedShape> {
+        inObject_ = inObject;
+        std::shared_ptr<const Shape> made = shape.place(to);
+        inObject_ = false;
+        if (!made) return nullptr;
+        return std::make_shared<const PlacedShape>(
+            PlacedShape{std::move(made), shape.faceMaterials, shape.dicedTriangles, shape.dicedQuads});
+    };
+    std::shared_ptr<const PlacedShape> placed;
+    if (scene.reuse) {
+        DigestWriter view;
+        if (shape.view) shape.view(view, inObject);
+        placed = scene.reused<PlacedShape>(Reused::place, placeDigest(shape, to, inObject), shape.meaning.spans, make,
+                                           view.digest());
+    } else {
+        placed = make();
+    }
+    if (!placed) return nullptr;
+    shape.faceMaterials = placed->faceMaterials;
+    shape.dicedTriangles = placed->dicedTriangles;
+    shape.dicedQuads = placed->dicedQuads;
+    return shape.common.groupMaterials.empty() ? placed->shape : withFaceMaterials(shape, placed->shape);
+}
+
+std::shared_ptr<const Shape> ShapeBuilder::lightSurface(const Definition& d, const Transform& place,
+                                                        const std::function<void(DigestWriter&)>& addMeaning,
+                                                        const std::function<std::unique_ptr<const Shape>()>& make) {
+    if (!scene.reuse) return make();
+    DigestWriter writer;
+    writer.text("light");
+    addMeaning(writer);
+    writer.add(place);
+    writer.number(scene.reuse->timesAsked(writer.digest()));
+    return scene.reused<Shape>(Reused::place, writer.digest(), std::span(&d.span, 1),
+                               [&] { return std::shared_ptr<const Shape>(make()); });
 }
 
 LoadedShape& ShapeBuilder::loaded(const Definition& d) {
@@ -128,16 +199,12 @@ LoadedShape& ShapeBuilder::loaded(const Definition& d) {
     LoadedShape& shape = found->second;
     if (!isNew) return shape;
     shape.definition = &d;
+    if (scene.reuse) shape.meaning = meaningOf(d, scene.tree, kNotGeometry);
     const auto bindInto = scene.binder(d);
     if (d.type)
         makerOf<LoadShape> (*d.type)(bindInto, *this, shape);
     else
         bindInto(nullptr); // unknown type: report what is wrong besides
-    if (shape.sound && !shape.common.groupMaterials.empty())
-        shape.place = [this, &shape, inner = std::move(shape.place)](const Transform& t) {
-            auto placed = inner(t);
-            return placed ? withFaceMaterials(shape, std::move(placed)) : nullptr;
-        };
     if (shape.sound && shape.infinite && emissionOf(shape).radiance.curve) {
         scene.diagnostics.error("E0606", d.span, "an infinite plane cannot emit",
                                 "give it an end: use a quad or a disk");
@@ -277,6 +344,12 @@ OpenEdges openEdges(const SubdivisionCage& cage) {
     return counter.count();
 }
 
+OpenEdges ShapeBuilder::edgesOf(const LoadedShape& shape) {
+    if (!shape.mesh) return shape.cageEdges;
+    return *scene.reused<OpenEdges>(Reused::table, marked(shape.meaning.digest, "edges"), shape.meaning.spans,
+                                    [&] { return std::make_shared<const OpenEdges>(openEdges(*shape.mesh)); });
+}
+
 // Media fill what has an inside: a plane has one, below it; a disk has none.
 void ShapeBuilder::checkInterior(LoadedShape& shape) {
     if (!shape.sound || !materials.holdsMedium(shape.common)) return;
@@ -301,7 +374,7 @@ void ShapeBuilder::checkInterior(LoadedShape& shape) {
         shape.sound = false;
         return;
     }
-    const OpenEdges edges = shape.mesh ? openEdges(*shape.mesh) : shape.cageEdges;
+    const OpenEdges edges = edgesOf(shape);
     if (edges.closed()) return;
     const auto number = [](std::uint64_t n, std::string_view what) {
         return fmt::format("{} {}", n, n == 1 ? fmt::format("edge {}", what) : fmt::format("edges {}", what));

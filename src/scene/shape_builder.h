@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,9 @@ struct LoadedShape : UnplacedShape {
     bool deforms = false;                              // while the shutter is open
     bool sound = false;
     bool texturesChecked = false;
+    Meaning meaning; // of what it is, without its place and its materials; where buildings take over from others
+    // What its dicing depends on besides, in an object or out of it; empty: nothing.
+    std::function<void(DigestWriter&, bool inObject)> view = {};
 };
 
 // What a shape gives off.
@@ -104,11 +108,17 @@ class ShapeBuilder {
           materials(materialBuilder), cameras(cameraBuilder) {}
 
     LoadedShape& loaded(const Definition&);
-    // For geometry that is seen from many places, or from none that is known yet.
-    std::unique_ptr<const Shape> placeInObject(const LoadedShape&, const Transform& toObject);
+    // In the space that the map leads to, with the materials of its faces; null after an error. `inObject`: it is seen
+    // from many places, or from none that is known yet.
+    std::shared_ptr<const Shape> placed(LoadedShape&, const Transform&, bool inObject);
     bool placesInObject() const { return inObject_; } // there is no camera to measure pixels by
-    const Shape* keep(std::unique_ptr<const Shape> shape) { return shapes_.emplace_back(std::move(shape)).get(); }
-    std::vector<std::unique_ptr<const Shape>> release() { return std::move(shapes_); }
+    const Shape* keep(std::shared_ptr<const Shape> shape) { return shapes_.emplace_back(std::move(shape)).get(); }
+    std::vector<std::shared_ptr<const Shape>> release() { return std::move(shapes_); }
+    std::span<const std::shared_ptr<const Shape>> all() const { return shapes_; }
+    // The surface of a light: what `addMeaning` adds is all that it depends on besides its place.
+    std::shared_ptr<const Shape> lightSurface(const Definition&, const Transform& place,
+                                              const std::function<void(DigestWriter&)>& addMeaning,
+                                              const std::function<std::unique_ptr<const Shape>()>& make);
 
     // Its own emission, or else that of its material.
     ShapeEmission emissionOf(const LoadedShape&);
@@ -116,6 +126,11 @@ class ShapeBuilder {
     // For those who load shapes.
     ShapeContext contextOf(const Definition&);
     void noteFiles(const std::vector<struct ShapeKey>&);
+    // What the loader of a shape reads and what it states in place: from `make`, which returns null after an error, or
+    // from an earlier building. Once for each shape.
+    template <typename T, typename Make> std::shared_ptr<const T> data(const LoadedShape& shape, Make make) {
+        return scene.reused<T>(Reused::shape, shape.meaning.digest, shape.meaning.spans, std::move(make));
+    }
     // For each group of faces the material that it has, by its position in `groupMaterials` from 1 on; 0: the shape's
     // own. Nothing after an error.
     std::optional<std::vector<std::uint16_t>> groupChoices(const ShapeParams&, const std::vector<std::string>& names);
@@ -130,11 +145,13 @@ class ShapeBuilder {
 
   private:
     void checkInterior(LoadedShape&);
-    std::unique_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::unique_ptr<const Shape>);
+    OpenEdges edgesOf(const LoadedShape&);
+    Digest placeDigest(const LoadedShape&, const Transform&, bool inObject);
+    std::shared_ptr<const Shape> withFaceMaterials(const LoadedShape&, std::shared_ptr<const Shape>);
 
     std::map<const Definition*, LoadedShape> loaded_;
-    std::vector<std::unique_ptr<const Shape>> shapes_; // those that were placed
-    bool inObject_ = false;                            // placeInObject() is running
+    std::vector<std::shared_ptr<const Shape>> shapes_; // those that were placed
+    bool inObject_ = false;                            // placed() is running for an object
 };
 
 struct CurvesParams;

@@ -253,19 +253,26 @@ void deformMesh(const MeshParams& params, ShapeBuilder& builder, LoadedShape& sh
     const ShapeContext context = builder.contextOf(*shape.definition);
     const bool ownPoints = !params.file.value.empty() || !params.points.empty();
     if (!checkKeys(params, params.keys, ownPoints, false, context.diagnostics)) return;
-    FaceGroups groups;
+    struct Loaded {
+        MeshKeys keys;
+        FaceGroups groups;
+    };
     const bool grouped = !params.groupMaterials.empty();
-    auto keys = loadMeshKeys(params, context.unit, context.zUp, grouped ? &groups : nullptr, context.diagnostics);
-    if (!keys ||
-        !addPointData(params, !params.keys[0].file.value.empty(), keys->states[0], context.span, context.diagnostics))
-        return;
+    const auto loaded = builder.data<Loaded>(shape, [&]() -> std::shared_ptr<const Loaded> {
+        FaceGroups groups;
+        auto keys = loadMeshKeys(params, context.unit, context.zUp, grouped ? &groups : nullptr, context.diagnostics);
+        const bool ofFile = !params.keys[0].file.value.empty();
+        if (!keys || !addPointData(params, ofFile, keys->states[0], context.span, context.diagnostics)) return nullptr;
+        return std::make_shared<const Loaded>(Loaded{std::move(*keys), std::move(groups)});
+    });
+    if (!loaded) return;
     builder.noteFiles(params.keys);
-    shape.mesh = std::make_shared<const MeshData>(keys->states[0]);
+    shape.mesh = {loaded, &loaded->keys.states[0]};
     shape.sound = true;
-    shape.deforms = builder.motion.deforms(keys->times);
-    if (grouped) builder.chooseFaceMaterials(shape, groups);
-    shape.place = [kept = std::make_shared<const MeshKeys>(std::move(*keys)), context](const Transform& place) {
-        return placeMeshKeys(*kept, context.shutter, place, context.span, context.diagnostics);
+    shape.deforms = builder.motion.deforms(loaded->keys.times);
+    if (grouped) builder.chooseFaceMaterials(shape, loaded->groups);
+    shape.place = [loaded, context](const Transform& place) {
+        return placeMeshKeys(loaded->keys, context.shutter, place, context.span, context.diagnostics);
     };
 }
 
@@ -377,7 +384,10 @@ std::unique_ptr<const Shape> placePointKeys(const PointKeys& keys, Interval shut
 void deformCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape& shape) {
     const ShapeContext context = builder.contextOf(*shape.definition);
     if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), context.diagnostics)) return;
-    auto keys = loadCurveKeys(params, context.unit, context.diagnostics);
+    const auto keys = builder.data<CurveKeys>(shape, [&]() -> std::shared_ptr<const CurveKeys> {
+        auto made = loadCurveKeys(params, context.unit, context.diagnostics);
+        return made ? std::make_shared<const CurveKeys>(std::move(*made)) : nullptr;
+    });
     if (!keys) return;
     builder.noteFiles(params.keys);
     const CurveData& first = keys->states[0];
@@ -386,22 +396,25 @@ void deformCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape
     shape.strands = first.strandSizes.size();
     shape.sound = true;
     shape.deforms = builder.motion.deforms(keys->times);
-    shape.place = [kept = std::make_shared<const CurveKeys>(std::move(*keys)), context](const Transform& place) {
-        return placeCurveKeys(*kept, context.shutter, place, context.span, context.diagnostics);
+    shape.place = [keys, context](const Transform& place) {
+        return placeCurveKeys(*keys, context.shutter, place, context.span, context.diagnostics);
     };
 }
 
 void deformPoints(const PointsParams& params, ShapeBuilder& builder, LoadedShape& shape) {
     const ShapeContext context = builder.contextOf(*shape.definition);
     if (!checkKeys(params, params.keys, ownPoints(params), ownRadius(params), context.diagnostics)) return;
-    auto keys = loadPointKeys(params, context.unit, context.diagnostics);
+    const auto keys = builder.data<PointKeys>(shape, [&]() -> std::shared_ptr<const PointKeys> {
+        auto made = loadPointKeys(params, context.unit, context.diagnostics);
+        return made ? std::make_shared<const PointKeys>(std::move(*made)) : nullptr;
+    });
     if (!keys) return;
     builder.noteFiles(params.keys);
     shape.points = keys->states[0].points.size();
     shape.sound = true;
     shape.deforms = builder.motion.deforms(keys->times);
-    shape.place = [kept = std::make_shared<const PointKeys>(std::move(*keys)), context](const Transform& place) {
-        return placePointKeys(*kept, context.shutter, place, context.span, context.diagnostics);
+    shape.place = [keys, context](const Transform& place) {
+        return placePointKeys(*keys, context.shutter, place, context.span, context.diagnostics);
     };
 }
 

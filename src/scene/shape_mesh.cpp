@@ -241,17 +241,26 @@ void loadMeshShape(const MeshParams& params, ShapeBuilder& builder, LoadedShape&
                                   "`materials on`");
         return;
     }
-    FaceGroups groups;
+    struct Loaded {
+        MeshData mesh;
+        FaceGroups groups;
+    };
     const bool grouped = !params.groupMaterials.empty();
     const Vec3d origin = farMiddle(params.points);
-    auto mesh = loadMesh(params.file, context.unit, relativeTo(origin, params.points), params.faces, context.span,
-                         context.diagnostics, context.zUp, grouped ? &groups : nullptr);
-    if (!mesh || !addPointData(params, !params.file.value.empty(), *mesh, context.span, context.diagnostics)) return;
+    const auto loaded = builder.data<Loaded>(shape, [&]() -> std::shared_ptr<const Loaded> {
+        FaceGroups groups;
+        auto mesh = loadMesh(params.file, context.unit, relativeTo(origin, params.points), params.faces, context.span,
+                             context.diagnostics, context.zUp, grouped ? &groups : nullptr);
+        if (!mesh || !addPointData(params, !params.file.value.empty(), *mesh, context.span, context.diagnostics))
+            return nullptr;
+        return std::make_shared<const Loaded>(Loaded{std::move(*mesh), std::move(groups)});
+    });
+    if (!loaded) return;
     if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
     shape.meshOrigin = origin;
-    shape.mesh = std::make_shared<const MeshData>(std::move(*mesh));
+    shape.mesh = {loaded, &loaded->mesh};
     shape.sound = true;
-    if (grouped) builder.chooseFaceMaterials(shape, groups);
+    if (grouped) builder.chooseFaceMaterials(shape, loaded->groups);
     shape.place = [mesh = shape.mesh, origin, context](const Transform& place) {
         return placeMesh(*mesh, Transform::translate(origin).then(place), context.span, context.diagnostics);
     };

@@ -216,15 +216,18 @@ void loadCurves(const CurvesParams& params, ShapeBuilder& builder, LoadedShape& 
     shape.openBecause = "curves are open at their ends";
     if (refuseEmission(*shape.definition, params, context.diagnostics)) return;
     if (!params.keys.empty()) return deformCurves(params, builder, shape);
-    auto data = loadCurveData(params, context.unit, context.span, context.diagnostics);
+    const auto data = builder.data<CurveData>(shape, [&]() -> std::shared_ptr<const CurveData> {
+        auto made = loadCurveData(params, context.unit, context.span, context.diagnostics);
+        return made ? std::make_shared<const CurveData>(std::move(*made)) : nullptr;
+    });
     if (!data) return;
     if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
     for (const std::uint32_t size : data->strandSizes)
         shape.segments += (size - leastPoints(data->basis)) / pointStep(data->basis) + 1;
     shape.strands = data->strandSizes.size();
     shape.sound = true;
-    shape.place = [kept = std::make_shared<const CurveData>(std::move(*data)), context](const Transform& place) {
-        return placeCurves(*kept, place, context.span, context.diagnostics);
+    shape.place = [data, context](const Transform& place) {
+        return placeCurves(*data, place, context.span, context.diagnostics);
     };
 }
 
@@ -317,13 +320,16 @@ void loadPoints(const PointsParams& params, ShapeBuilder& builder, LoadedShape& 
     if (params.form.word != "sphere") shape.openBecause = "disks have no inside";
     if (refuseEmission(*shape.definition, params, context.diagnostics)) return;
     if (!params.keys.empty()) return deformPoints(params, builder, shape);
-    auto data = loadPointData(params, context.unit, context.span, context.diagnostics);
+    const auto data = builder.data<PointData>(shape, [&]() -> std::shared_ptr<const PointData> {
+        auto made = loadPointData(params, context.unit, context.span, context.diagnostics);
+        return made ? std::make_shared<const PointData>(std::move(*made)) : nullptr;
+    });
     if (!data) return;
     if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
     shape.points = data->points.size();
     shape.sound = true;
-    shape.place = [kept = std::make_shared<const PointData>(std::move(*data)), context](const Transform& place) {
-        return placePoints(*kept, place, context.span, context.diagnostics);
+    shape.place = [data, context](const Transform& place) {
+        return placePoints(*data, place, context.span, context.diagnostics);
     };
 }
 

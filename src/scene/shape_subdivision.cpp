@@ -230,23 +230,25 @@ std::optional<std::vector<std::uint16_t>> cageChoices(const ShapeParams& params,
 // Everything about a subdivision surface that does not depend on where it stands.
 struct CageToPlace {
     std::shared_ptr<const Cage> cage;
-    CageKeys keys;
+    std::shared_ptr<const CageKeys> keys;
     Dicing dicing;
     schema::Quantity asked; // of the dicing
     double offscreen, memory;
     std::vector<std::uint16_t> choices; // see cageChoices
     DisplacementChoice displacement;
+    std::function<bool()> readMap; // of a displacement: into memory; false after an error
 };
 
 // Places it, and counts in `shape` what it is diced into.
 std::unique_ptr<const Shape> placeCage(const CageToPlace& c, const ShapeContext& context, CameraBuilder& cameras,
                                        bool inObject, const Transform& place, LoadedShape& shape) {
+    if (c.displacement.moves && !c.readMap()) return nullptr;
     const Dicing rate = cameras.dicingFor(c.dicing, c.asked, c.offscreen, *c.cage, place, inObject);
     std::vector<DicedSurface::Face> faces;
     const Displacement* const moves = c.displacement.moves ? &c.displacement.displacement : nullptr;
     const Span span = context.span;
-    auto placed = !c.keys.times.empty() ? placeCageKeys(*c.cage, c.keys, context.shutter, moves, rate, c.memory, place,
-                                                        span, context.diagnostics, &faces)
+    auto placed = !c.keys->times.empty() ? placeCageKeys(*c.cage, *c.keys, context.shutter, moves, rate, c.memory,
+                                                         place, span, context.diagnostics, &faces)
                   : moves ? placeDisplaced(*c.cage, *moves, rate, c.memory, place, span, context.diagnostics, &faces)
                           : placeSubdivision(*c.cage, rate, c.memory, place, span, context.diagnostics, &faces);
     if (!placed) return placed;
@@ -263,6 +265,20 @@ std::unique_ptr<const Shape> placeCage(const CageToPlace& c, const ShapeContext&
     return placed;
 }
 
+// What is read from files or stated in place.
+struct CageData {
+    LoadedCage loaded;
+    CageKeys keys;
+};
+
+// The map is read when a surface is diced that is not there already; what is wrong with it is said once.
+std::function<bool()> mapReader(TextureBuilder& textures, schema::Reference map, Span user) {
+    return [&textures, map, user, good = std::make_shared<std::optional<bool>>()] {
+        if (!*good) *good = textures.textureFor(map, TextureUse::heights, user) != nullptr;
+        return **good;
+    };
+}
+
 } // namespace
 
 void loadSubdivision(const SubdivisionParams& params, ShapeBuilder& builder, LoadedShape& shape) {
@@ -272,31 +288,35 @@ void loadSubdivision(const SubdivisionParams& params, ShapeBuilder& builder, Loa
     const auto dicing = dicingOf(params.dicing, diagnostics);
     SubdivisionParams stated = params;
     if (!useFirstKey(stated, diagnostics)) return;
-    auto loaded = loadCage(stated, context.unit, context.span, diagnostics);
-    if (!builder.cameras.checkDicingCamera(params.dicing) || !loaded || !dicing) return;
+    const auto data = builder.data<CageData>(shape, [&]() -> std::shared_ptr<const CageData> {
+        auto loaded = loadCage(stated, context.unit, context.span, diagnostics);
+        if (!loaded) return nullptr;
+        auto keys = loadCageKeys(params, loaded->cage, context.unit, diagnostics);
+        return keys ? std::make_shared<const CageData>(CageData{std::move(*loaded), std::move(*keys)}) : nullptr;
+    });
+    if (!builder.cameras.checkDicingCamera(params.dicing) || !data || !dicing) return;
     if (!params.file.value.empty()) builder.scene.noteFile(params.file.value);
-    auto keys = loadCageKeys(params, loaded->cage, context.unit, diagnostics);
-    if (!keys) return;
     builder.noteFiles(params.keys);
-    auto choices = cageChoices(params, *loaded, builder);
+    const SubdivisionCage& outline = data->loaded.cage;
+    auto choices = cageChoices(params, data->loaded, builder);
     if (!choices) return;
-    const Texture* const map = builder.textures.textureFor(
-        params.displacementMap, TextureUse::heights, params.displacement ? params.displacement->span : context.span);
-    auto displacement = chooseDisplacement(params, map, loaded->cage, diagnostics);
+    const Texture* const map = builder.textures.unprepared(params.displacementMap);
+    auto displacement = chooseDisplacement(params, map, outline, diagnostics);
     if (!displacement) return;
     if (displacement->moves && builder.scene.leavesOut({SwitchedEffect::displacement}, context.span))
         displacement.emplace();
     shape.sound = true;
-    shape.deforms = !keys->times.empty() && builder.motion.deforms(keys->times);
-    if (builder.materials.holdsMedium(params)) shape.cageEdges = openEdges(loaded->cage);
-    CageToPlace cage{std::make_shared<const Cage>(std::move(loaded->cage)),
-                     std::move(*keys),
-                     *dicing,
-                     params.dicing,
-                     params.offscreen,
-                     params.memory,
-                     std::move(*choices),
-                     *displacement};
+    shape.deforms = !data->keys.times.empty() && builder.motion.deforms(data->keys.times);
+    if (builder.materials.holdsMedium(params)) shape.cageEdges = openEdges(outline);
+    const Span user = params.displacement ? params.displacement->span : context.span;
+    CageToPlace cage{
+        {data, &outline},    {data, &data->keys}, *dicing,
+        params.dicing,       params.offscreen,    params.memory,
+        std::move(*choices), *displacement,       mapReader(builder.textures, params.displacementMap, user)};
+    shape.view = [&builder, dicing = *dicing, asked = params.dicing, offscreen = params.offscreen](DigestWriter& writer,
+                                                                                                   bool inObject) {
+        builder.cameras.addView(writer, dicing, asked, offscreen, inObject);
+    };
     shape.place = [&builder, &shape, context, cage = std::move(cage)](const Transform& place) {
         return placeCage(cage, context, builder.cameras, builder.placesInObject(), place, shape);
     };

@@ -99,6 +99,11 @@ class ViewCone {
         angle_ = kMargin * std::acos(std::clamp(cosine, -1.0, 1.0)) + kPiD / 180;
     }
 
+    void addTo(DigestWriter& writer) const {
+        writer.add(from_), writer.add(axis_);
+        writer.number(spread_), writer.number(angle_), writer.number(all_);
+    }
+
     // 0 for what is seen, or nearly; 1 for what is far outside or behind.
     double outside(Vec3d p) const {
         if (all_) return 0;
@@ -130,20 +135,31 @@ void unknownCamera(const schema::SceneTree& tree, std::string_view name, Span sp
 
 } // namespace
 
+namespace {
+
+// The size of a pixel in the middle of the film, and what the film sees.
+struct PixelView {
+    Vec3d from, shift, turn; // from one pixel to the next, origin and direction of rays move by so much
+    ViewCone cone;
+
+    static PixelView of(const Camera& camera, Vec2d filmSize) {
+        CameraSample sample;
+        sample.film = {static_cast<float>(filmSize.x / 2), static_cast<float>(filmSize.y / 2)};
+        sample.lens = {0.5f, 0.5f};
+        const CameraRay a = camera.ray(sample);
+        sample.film.x += 1;
+        const CameraRay b = camera.ray(sample);
+        return {Vec3d(a.ray.origin), Vec3d(b.ray.origin) - Vec3d(a.ray.origin),
+                Vec3d(b.ray.direction) - Vec3d(a.ray.direction), ViewCone(camera, filmSize, a.ray)};
+    }
+};
+
+} // namespace
+
 std::function<double(Vec3)> pixelSizeOf(const Camera& camera, Vec2d filmSize, double offscreen) {
-    CameraSample sample;
-    sample.film = {static_cast<float>(filmSize.x / 2), static_cast<float>(filmSize.y / 2)};
-    sample.lens = {0.5f, 0.5f};
-    const CameraRay a = camera.ray(sample);
-    sample.film.x += 1;
-    const CameraRay b = camera.ray(sample);
-    // From one pixel to the next, origin and direction move by so much.
-    const Vec3d shift = Vec3d(b.ray.origin) - Vec3d(a.ray.origin);
-    const Vec3d turn = Vec3d(b.ray.direction) - Vec3d(a.ray.direction);
-    const ViewCone cone(camera, filmSize, a.ray);
-    return [from = Vec3d(a.ray.origin), shift, turn, cone, offscreen](Vec3 p) {
-        const double size = length(shift + turn * length(Vec3d(p) - from));
-        return size * (1 + (offscreen - 1) * cone.outside(Vec3d(p)));
+    return [view = PixelView::of(camera, filmSize), offscreen](Vec3 p) {
+        const double size = length(view.shift + view.turn * length(Vec3d(p) - view.from));
+        return size * (1 + (offscreen - 1) * view.cone.outside(Vec3d(p)));
     };
 }
 
@@ -192,6 +208,20 @@ Dicing CameraBuilder::dicingFor(Dicing dicing, const schema::Quantity& asked, do
                             shift = camera->toCamera](Vec3 p) { return size(Vec3(Vec3d(p) + shift)); };
     }
     return dicing;
+}
+
+void CameraBuilder::addView(DigestWriter& writer, const Dicing& dicing, const schema::Quantity& asked, double offscreen,
+                            bool inObject) {
+    if (dicing.mode != Dicing::Mode::pixels) return;
+    const auto camera = dicingCamera(asked);
+    writer.number(camera.has_value());
+    writer.number(offscreen);
+    if (!camera) return;
+    const Vec2d film = context_.built.film.size;
+    if (inObject) return writer.number(film.y);
+    const PixelView view = PixelView::of(*camera->camera, film);
+    writer.add(view.from), writer.add(view.shift), writer.add(view.turn), writer.add(camera->toCamera);
+    view.cone.addTo(writer);
 }
 
 namespace {

@@ -35,6 +35,8 @@ class TextureBuilder {
     schema::Reference reference(const Definition&, Diagnostics&);
     // The texture made of a request, as part of the texture that is being made or, without one, ready for its use.
     const Texture* requested(schema::Reference made, const schema::TextureRequest&);
+    // For who asks what it is like, before it is made ready for a use. Null for none.
+    const Texture* unprepared(schema::Reference r) const { return r.valid() ? textures_[r.index].get() : nullptr; }
     // Null for none, or after an error at `user`.
     const Texture* textureFor(schema::Reference, TextureUse, Span user);
 

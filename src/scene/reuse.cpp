@@ -1,0 +1,240 @@
+#include "scene/reuse.h"
+
+#include "base/enclosure.h"
+#include "base/file.h"
+#include "io/gltf.h"
+#include "textures/texture_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <set>
+#include <sys/stat.h>
+
+namespace abbe {
+
+using schema::Definition;
+using schema::Kind;
+using schema::Node;
+using schema::Value;
+
+void DigestWriter::text(std::string_view s) {
+    number(s.size());
+    bytes(std::as_bytes(std::span(s.data(), s.size())));
+}
+
+void DigestWriter::add(const Transform& t) {
+    for (const auto& row : t.a)
+        for (const double v : row) number(v);
+    add(t.t);
+}
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000; // ns
+// Times of files come in ticks of the kernel, of up to 10 ms: what is written twice in one has the same time twice.
+constexpr std::int64_t kUnsure = 40'000'000; // ns
+
+std::int64_t nanoseconds(const timespec& t) { return t.tv_sec * kSecond + t.tv_nsec; }
+
+std::int64_t now() {
+    timespec t{};
+    clock_gettime(CLOCK_REALTIME, &t);
+    return nanoseconds(t);
+}
+
+} // namespace
+
+void DigestWriter::file(const std::filesystem::path& path) {
+    text(path.native());
+    struct stat s {};
+    if (stat(path.c_str(), &s) != 0) return number(-1);
+    const std::int64_t modified = nanoseconds(s.st_mtim), changed = nanoseconds(s.st_ctim);
+    for (const std::uint64_t n : {std::uint64_t{s.st_dev}, std::uint64_t{s.st_ino}}) number(n);
+    number(static_cast<std::int64_t>(s.st_size));
+    number(modified), number(changed);
+    const std::int64_t read = now();
+    if (std::max(modified, changed) + kUnsure > read) number(read);
+}
+
+namespace {
+
+constexpr std::string_view kTilePattern = "<UDIM>";
+
+class MeaningReader {
+  public:
+    MeaningReader(const schema::SceneTree& tree, std::span<const std::string_view> without)
+        : tree_(tree), without_(without) {}
+
+    void definition(const Definition& d) {
+        span(d.span), span(d.nameSpan);
+        writer_.number(static_cast<int>(d.kind));
+        writer_.text(d.type ? d.type->name : std::string_view());
+        header(d);
+        writer_.number(d.arguments.size());
+        for (const Value& v : d.arguments) value(v);
+        keys(d.keys);
+        for (const Node& property : d.properties)
+            if (std::ranges::find(without_, property.name()) == without_.end())
+                node(property);
+            else
+                groups(property);
+    }
+
+    Meaning release() { return {writer_.digest(), std::move(spans_)}; }
+
+  private:
+    void span(Span s) { spans_.push_back(s); }
+
+    // Bare lengths, colours and axes mean what the header says.
+    void header(const Definition& d) {
+        const schema::Header& h = tree_.headerOf(d.span);
+        writer_.number(h.length);
+        writer_.number(static_cast<int>(h.rgb));
+        writer_.number(h.zUp), writer_.number(tree_.header.zUp);
+    }
+
+    void groups(const Node& property) {
+        for (const schema::Key& key : property.keys())
+            if (key.name == "group") writer_.text(property.name()), one(key);
+    }
+
+    void node(const Node& n) {
+        writer_.text(n.name());
+        if (n.allNumbers()) {
+            const auto numbers = n.numbers();
+            writer_.number(numbers.size());
+            writer_.bytes(std::as_bytes(numbers));
+        } else {
+            span(n.nameSpan()), span(n.headSpan());
+            writer_.number(n.valueCount());
+            for (std::size_t i = 0; i < n.valueCount(); ++i) value(n.value(i));
+        }
+        keys(n.keys());
+        writer_.number(n.hasBlock());
+        if (!n.hasBlock()) return;
+        for (const Node child : n.children()) node(child);
+        writer_.text("}");
+    }
+
+    void keys(std::span<const schema::Key> all) {
+        writer_.number(all.size());
+        for (const schema::Key& key : all) one(key);
+    }
+
+    void one(const schema::Key& key) {
+        writer_.text(key.name);
+        span(key.nameSpan);
+        value(key.value);
+    }
+
+    void value(const Value& v) {
+        span(v.span), span(v.use);
+        writer_.number(static_cast<int>(v.kind));
+        if (v.kind == schema::ValueKind::number) return writer_.number(v.number);
+        if (v.kind == schema::ValueKind::boolean) return writer_.number(v.boolean);
+        writer_.text(v.text);
+        if (!v.isText() || v.text.empty()) return;
+        if (v.kind == schema::ValueKind::string || v.text.find('.') != v.text.npos) file(v);
+        for (const Kind kind : {Kind::texture, Kind::spectrum})
+            if (const Definition* named = tree_.find(kind, v.text); named && seen_.insert(named).second)
+                definition(*named);
+    }
+
+    // What was made for a model that the scene takes with its materials is made anew whenever the scene is read.
+    void file(const Value& v) {
+        if (v.text.find('\0') != v.text.npos) return;
+        const std::filesystem::path path = tree_.directoryOf(v.span) / std::filesystem::path(v.text);
+        std::error_code error;
+        if (const std::size_t tile = path.native().find(kTilePattern); tile != std::string::npos)
+            return tiles(path, tile);
+        if (!std::filesystem::is_regular_file(path, error)) return;
+        if (!tree_.made.empty() && isBelow(path.string(), tree_.made)) return contents(path);
+        writer_.file(path);
+        std::string head(256, '\0');
+        head.resize(RegularFile(path.string()).readAt(0, head));
+        if (looksLikeGltf(head))
+            for (const std::string& buffer : gltfBufferFiles(path.string())) writer_.file(path.parent_path() / buffer);
+    }
+
+    void tiles(const std::filesystem::path& pattern, std::size_t at) {
+        std::error_code error;
+        for (int tile = 1001; tile < 2000; ++tile) {
+            const std::filesystem::path path =
+                std::string(pattern.native()).replace(at, kTilePattern.size(), std::to_string(tile));
+            if (std::filesystem::is_regular_file(path, error)) writer_.file(path);
+        }
+    }
+
+    void contents(const std::filesystem::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        std::vector<char> buffer(1 << 20);
+        while (in) {
+            in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+            writer_.bytes(std::as_bytes(std::span(buffer.data(), static_cast<std::size_t>(in.gcount()))));
+        }
+    }
+
+    const schema::SceneTree& tree_;
+    std::span<const std::string_view> without_;
+    DigestWriter writer_;
+    std::vector<Span> spans_;
+    std::set<const Definition*> seen_; // named ones that are part of it already
+};
+
+} // namespace
+
+Meaning meaningOf(const Definition& d, const schema::SceneTree& tree, std::span<const std::string_view> without) {
+    MeaningReader reader(tree, without);
+    reader.definition(d);
+    return reader.release();
+}
+
+SceneReuse::SceneReuse() = default;
+SceneReuse::~SceneReuse() = default;
+
+void SceneReuse::forgetAll() {
+    kept_.clear();
+    geometry = {};
+    textures.reset();
+    origin.reset();
+}
+
+void SceneReuse::begin() {
+    ++building_;
+    counters_ = {};
+    asked_.clear();
+}
+
+// After a faulty building all stays that the last faultless one used: the fault may be one of typing. What others left
+// goes.
+void SceneReuse::end(bool faultless, double seconds) {
+    counters_.seconds = seconds;
+    counters_.structuresBuilt = geometry.built;
+    counters_.structuresKept = geometry.kept;
+    if (faultless) origin = nextOrigin;
+    std::erase_if(kept_, [&](const auto& entry) {
+        return entry.second.used != building_ && (faultless || !entry.second.proven);
+    });
+    if (faultless)
+        for (auto& [key, kept] : kept_) kept.proven = true;
+    asked_.clear();
+}
+
+const SceneReuse::Kept* SceneReuse::find(const Digest& key, const Digest& view) {
+    const auto found = kept_.find(key);
+    if (found == kept_.end()) return nullptr;
+    if (found->second.view != view) {
+        if (!keepsView_) return nullptr;
+        counters_.viewKept = true;
+    }
+    found->second.used = building_;
+    return &found->second;
+}
+
+void SceneReuse::keep(const Digest& key, Kept kept) {
+    kept.used = building_;
+    kept_[key] = std::move(kept);
+}
+
+} // namespace abbe
